@@ -1,0 +1,3 @@
+//! Skiagraph.
+
+fn main() {}

@@ -1,0 +1,85 @@
+//! Views and the cameras they make on a given viewport.
+
+use glam::{DMat4, DVec3};
+
+/// A named view of a scene: a perspective camera without a viewport.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    /// Name on the command line and in results.
+    pub name: String,
+    /// Eye position, world space.
+    pub eye: DVec3,
+    /// Viewing direction, any length but zero.
+    pub direction: DVec3,
+    /// Up vector, any length, not parallel to `direction`.
+    pub up: DVec3,
+    /// Vertical field of view, degrees, between 0 and 180.
+    pub fov_y_degrees: f64,
+    /// Distance of the near plane, above 0.
+    pub near: f64,
+    /// Distance of the far plane, above `near`.
+    pub far: f64,
+}
+
+/// A view on a viewport: orthonormal frame and extents, in f64.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Eye position, world space.
+    pub eye: DVec3,
+    /// Unit vector to the right of the image.
+    pub right: DVec3,
+    /// Unit vector to the top of the image.
+    pub up: DVec3,
+    /// Unit viewing direction.
+    pub forward: DVec3,
+    /// Half the image width at distance 1: tan(fov/2) · width / height.
+    pub half_width: f64,
+    /// Half the image height at distance 1: tan(fov/2).
+    pub half_height: f64,
+    /// Near plane distance.
+    pub near: f64,
+    /// Far plane distance.
+    pub far: f64,
+    /// Viewport width and height in pixels.
+    pub viewport: [u32; 2],
+}
+
+impl View {
+    /// The camera of this view on a viewport of `[width, height]` pixels.
+    pub fn camera(&self, viewport: [u32; 2]) -> Camera {
+        let forward = self.direction.normalize();
+        let right = forward.cross(self.up).normalize();
+        let up = right.cross(forward);
+        let half_height = (self.fov_y_degrees.to_radians() * 0.5).tan();
+        let half_width = half_height * f64::from(viewport[0]) / f64::from(viewport[1]);
+        Camera { eye: self.eye, right, up, forward, half_width, half_height, near: self.near, far: self.far, viewport }
+    }
+}
+
+impl Camera {
+    /// Direction from the eye through the centre of pixel (`x`, `y`), y down; its component along `forward` is 1.
+    pub fn pixel_direction(&self, x: u32, y: u32) -> DVec3 {
+        let ndc_x = (f64::from(x) + 0.5) / f64::from(self.viewport[0]) * 2.0 - 1.0;
+        let ndc_y = 1.0 - (f64::from(y) + 0.5) / f64::from(self.viewport[1]) * 2.0;
+        self.forward + self.right * (ndc_x * self.half_width) + self.up * (ndc_y * self.half_height)
+    }
+
+    /// World to wgpu clip space (x right, y up, z in 0..1 from near to far).
+    pub fn view_projection(&self) -> DMat4 {
+        let rotation = DMat4::from_cols(
+            self.right.extend(0.0),
+            self.up.extend(0.0),
+            (-self.forward).extend(0.0),
+            glam::DVec4::W,
+        )
+        .transpose();
+        let range = self.far / (self.near - self.far);
+        let projection = DMat4::from_cols_array(&[
+            1.0 / self.half_width, 0.0, 0.0, 0.0,
+            0.0, 1.0 / self.half_height, 0.0, 0.0,
+            0.0, 0.0, range, -1.0,
+            0.0, 0.0, self.near * range, 0.0,
+        ]);
+        projection * rotation * DMat4::from_translation(-self.eye)
+    }
+}

@@ -1,0 +1,54 @@
+//! Indexed triangle meshes with welded positions.
+
+use glam::{DVec3, Vec3};
+use std::ops::Range;
+
+/// A triangle mesh. Positions are *welded* (bit-equal positions are stored once, -0 counts as 0), so that an index names a
+/// point in space and adjacency can be read off `triangles`; normals are indexed apart, so that a crease costs no duplicate position.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Welded positions, world space, finite.
+    pub positions: Vec<Vec3>,
+    /// Three position indices per triangle, counter-clockwise seen from outside. The index in this list is the *primitive id*.
+    pub triangles: Vec<[u32; 3]>,
+    /// Vertex normals, unit length.
+    pub normals: Vec<Vec3>,
+    /// Three normal indices per triangle, parallel to `triangles`.
+    pub normal_indices: Vec<[u32; 3]>,
+    /// Consecutive runs of triangles with the name they had in the file or generator.
+    pub groups: Vec<Group>,
+}
+
+/// A named run of triangles.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Group {
+    /// Name in the file.
+    pub name: String,
+    /// Primitive ids of the group.
+    pub triangles: Range<u32>,
+}
+
+impl Mesh {
+    /// Corners of triangle `primitive`, in f64 (exact).
+    ///
+    /// # Panics
+    /// If `primitive` is not below `triangles.len()`.
+    pub fn corners(&self, primitive: u32) -> [DVec3; 3] {
+        self.triangles[primitive as usize].map(|index| self.positions[index as usize].as_dvec3())
+    }
+
+    /// Vertex normals of triangle `primitive`, in f64, corner by corner.
+    ///
+    /// # Panics
+    /// If `primitive` is not below `triangles.len()`.
+    pub fn corner_normals(&self, primitive: u32) -> [DVec3; 3] {
+        self.normal_indices[primitive as usize].map(|index| self.normals[index as usize].as_dvec3())
+    }
+
+    /// Smallest box around all positions that a triangle uses, or `None` for an empty mesh.
+    pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
+        let mut used = self.triangles.iter().flatten().map(|&index| self.positions[index as usize]);
+        let first = used.next()?;
+        Some(used.fold((first, first), |(min, max), p| (min.min(p), max.max(p))))
+    }
+}

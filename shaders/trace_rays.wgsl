@@ -156,11 +156,12 @@ fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
             }
         }
         if height == 0u {
-            return hit;
+            break;
         }
         height -= 1u;
         node = stack[height];
     }
+    return hit;
 }
 
 // Tests one triangle, two-sided, edges and corners included; shortens `hit` to it.

@@ -1,7 +1,10 @@
 //! `Trace`: rays in, hits out, through the scene's hierarchy, on compute shaders. The number of rays stays on the GPU.
 
 use serde::Deserialize;
-use skiagraph_graph::{Dispatch, Groups, Located, Lowering, PassKind, Program, Step};
+use skiagraph_graph::{
+    Located, Lowering, PassKind,
+    step::{Dispatch, Groups, Program, Step},
+};
 
 /// Which hit of a ray is recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]

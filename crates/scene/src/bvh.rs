@@ -44,7 +44,10 @@ impl Bvh {
             return Self::default();
         }
         // Triangles stay whole (no spatial splits): a split primitive would be tested, and counted, more than once.
-        let params = BvhBuildParams { pre_split: false, ..BvhBuildParams::slow_build() };
+        let params = BvhBuildParams {
+            pre_split: false,
+            ..BvhBuildParams::slow_build()
+        };
         let tree = build_bvh2_from_tris(&triangles, params, &mut Duration::default());
         let nodes: Vec<BvhNode> = tree
             .nodes
@@ -57,7 +60,11 @@ impl Bvh {
             })
             .collect();
         let depth = depth(&nodes);
-        Self { nodes, primitives: tree.primitive_indices, depth }
+        Self {
+            nodes,
+            primitives: tree.primitive_indices,
+            depth,
+        }
     }
 }
 

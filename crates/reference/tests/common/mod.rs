@@ -2,5 +2,4 @@
 #![allow(dead_code)]
 
 pub mod scenes;
-pub mod sponza;
 pub mod twin;

@@ -13,7 +13,7 @@ const PITCH: f64 = 1.7;
 
 pub(super) fn flower_box(builder: &mut Builder) {
     // Its long side lies across the light, so that the shadows of all rows fall on the lawn behind.
-    let planter = Frame::upright(DVec3::new(-15.0, 0.0, 5.5), -0.152);
+    let planter = Frame::upright(DVec3::new(-17.0, 0.0, 4.0), 0.152);
     builder.group("planter");
     let wall = 0.4;
     let rings = [
@@ -41,7 +41,7 @@ pub(super) fn flower_box(builder: &mut Builder) {
 }
 
 fn flower(builder: &mut Builder, foot: Frame, random: &mut Random) {
-    let height = random.range(4.2, 7.2);
+    let height = random.range(4.8, 8.4);
     let radius = 0.06;
     let bend = random.range(0.0, 0.08);
     let axis = |y: f64| {
@@ -58,7 +58,7 @@ fn flower(builder: &mut Builder, foot: Frame, random: &mut Random) {
 
 /// Leaves in a spiral, none above another nearer than the rise from one to the next.
 fn leaves(builder: &mut Builder, foot: Frame, height: f64, inner: f64, random: &mut Random) {
-    let count = 9;
+    let count = 10;
     for index in 0..count {
         let y = 0.4 + (height - 1.6) * f64::from(index) / f64::from(count);
         let (cos, sin) = turn(0.382 * f64::from(index));
@@ -91,7 +91,7 @@ fn head(builder: &mut Builder, foot: Frame, y: f64, random: &mut Random) {
             let along = (out + centre.y * rise).normalize();
             let origin = centre.at(0.0, lift, 0.0) + out * (DOME + 0.03);
             let frame = Frame::along(origin, along.cross(centre.y.cross(out)).normalize(), along);
-            builder.leaf(frame, 0.5, 0.13, 0.012, 10);
+            builder.leaf(frame, 0.5, 0.13, 0.012, 12);
         }
     }
 }

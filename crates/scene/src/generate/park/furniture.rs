@@ -6,7 +6,7 @@ use glam::DVec3;
 /// A bench of slats on two frames, with a leaning back.
 pub(super) fn bench(builder: &mut Builder) {
     builder.group("bench");
-    let bench = Frame::upright(DVec3::new(6.0, 0.0, 15.0), 0.31);
+    let bench = Frame::upright(DVec3::new(8.0, 0.0, 18.0), 0.152);
     let part = |builder: &mut Builder, centre: [f64; 3], half: [f64; 3]| {
         let frame = Frame {
             origin: bench.at(centre[0], centre[1], centre[2]),
@@ -14,36 +14,36 @@ pub(super) fn bench(builder: &mut Builder) {
         };
         builder.cuboid(frame, DVec3::from(half));
     };
-    const SEAT: f64 = 4.5;
-    for x in [-6.5, 6.5] {
-        for z in [-1.7, 1.7] {
-            part(builder, [x, GAP + 2.0, z], [0.3, 2.0, 0.3]);
+    const SEAT: f64 = 5.5;
+    for x in [-8.0, 8.0] {
+        for z in [-2.2, 2.2] {
+            part(builder, [x, GAP + 2.45, z], [0.4, 2.45, 0.4]);
         }
-        part(builder, [x, 4.0 + 2.0 * GAP + 0.2, 0.0], [0.3, 0.2, 2.2]);
+        part(builder, [x, 4.9 + 2.0 * GAP + 0.25, 0.0], [0.4, 0.25, 2.7]);
     }
     for slat in 0..5 {
-        let z = -2.0 + f64::from(slat);
-        part(builder, [0.0, SEAT + 3.0 * GAP, z], [8.0, 0.12, 0.4]);
+        let z = -2.4 + 1.2 * f64::from(slat);
+        part(builder, [0.0, SEAT + 3.0 * GAP, z], [10.0, 0.08, 0.5]);
     }
     // The back leans away from the seat, its posts begin behind the last slat.
     let lean = Frame::along(
-        bench.at(0.0, SEAT, -2.75),
+        bench.at(0.0, SEAT, -3.2),
         (bench.y - bench.z * 0.25).normalize(),
         bench.x,
     );
-    for x in [-6.5, 6.5] {
+    for x in [-8.0, 8.0] {
         let frame = Frame {
-            origin: lean.at(x, 2.2, 0.0),
+            origin: lean.at(x, 2.75, 0.0),
             ..lean
         };
-        builder.cuboid(frame, DVec3::new(0.3, 2.2, 0.15));
+        builder.cuboid(frame, DVec3::new(0.4, 2.75, 0.15));
     }
     for slat in 0..3 {
         let frame = Frame {
-            origin: lean.at(0.0, 1.4 + 1.3 * f64::from(slat), 0.15 + GAP + 0.12),
+            origin: lean.at(0.0, 1.7 + 1.6 * f64::from(slat), 0.15 + GAP + 0.15),
             ..lean
         };
-        builder.cuboid(frame, DVec3::new(8.0, 0.5, 0.12));
+        builder.cuboid(frame, DVec3::new(10.0, 0.6, 0.15));
     }
 }
 

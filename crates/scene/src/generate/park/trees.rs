@@ -19,22 +19,22 @@ pub(super) fn trees(builder: &mut Builder) {
         (
             "tree 1",
             Tree {
-                foot: DVec3::new(-6.0, 0.0, -22.0),
-                crown: 46.0,
-                across: 17.0,
-                up: 15.0,
-                leaves: 330,
+                foot: DVec3::new(-15.0, 0.0, -22.0),
+                crown: 47.0,
+                across: 24.0,
+                up: 22.0,
+                leaves: 480,
                 seed: 7,
             },
         ),
         (
             "tree 2",
             Tree {
-                foot: DVec3::new(22.0, 0.0, -50.0),
-                crown: 34.0,
-                across: 16.0,
-                up: 15.0,
-                leaves: 300,
+                foot: DVec3::new(20.0, 0.0, -56.0),
+                crown: 30.0,
+                across: 14.0,
+                up: 13.0,
+                leaves: 210,
                 seed: 11,
             },
         ),
@@ -70,7 +70,7 @@ fn grow(builder: &mut Builder, tree: &Tree) {
         if leaves.len() == tree.leaves {
             break;
         }
-        let (position, radius) = (centre + random.in_ball() * half, random.range(1.5, 2.6));
+        let (position, radius) = (centre + random.in_ball() * half, random.range(1.6, 3.0));
         let free = leaves
             .iter()
             .all(|(other, r)| position.distance(*other) > radius + r + GAP)

@@ -193,3 +193,24 @@ mod median {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    #[test]
+    fn some_meshes_do_need_the_tree_of_last_resort() {
+        // Each triangle 1.5 times as large as the one before, from one corner: PLOC joins the two smallest, then the next …
+        let triangles: Vec<Triangle> = (0..200)
+            .map(|i| 1.5f32.powi(i - 120))
+            .map(|size| Triangle {
+                v0: Vec3::ZERO.into(),
+                v1: Vec3::new(size, size, 0.0).into(),
+                v2: Vec3::new(0.0, size, size).into(),
+            })
+            .collect();
+        assert!(Bvh::from_obvhs(ploc(&triangles)).depth > MAX_DEPTH);
+        assert!(median::build(&triangles).depth < 8);
+    }
+}

@@ -91,7 +91,7 @@ impl Bvh {
 /// obvhs's `slow_build` with two changes. Triangles stay whole (no spatial splits): a split one would be tested, and
 /// counted, more than once. And leaves are smaller: on Sponza's shadow rays a traversal cost of 1.5 instead of 3 halves the
 /// triangle tests (8.0 → 4.2 per ray) for 5 % more box tests (64.5 → 67.6), and a watertight triangle test costs several boxes.
-/// The faster presets build in a third of the time for as many boxes; 0.9 s for Sponza on two cores is little beside its import.
+/// The faster presets build in a third of the time for as many boxes; half a second for Sponza on two cores is little beside its import.
 fn ploc(triangles: &[Triangle]) -> Bvh2 {
     let params = BvhBuildParams {
         collapse_traversal_cost: 1.5,

@@ -3,19 +3,19 @@
 mod support;
 
 use glam::{DVec3, Vec3};
-use skiagraph_graph::{Executor, Graph, ParamValue, Plan, PlanRequest, gpu};
-use skiagraph_passes::{EmbeddedSources, SceneProvider, presets, registry};
+use skiagraph_graph::{Executor, ParamValue, gpu};
+use skiagraph_passes::presets;
 use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
-use std::{collections::BTreeMap, sync::Arc};
+use std::sync::Arc;
 use support::{
     brute::{self, MISS, Ray},
-    graphs::{run, values},
+    graphs::{plan, provider, run, values},
 };
 
 const VIEWPORT: [u32; 2] = [96, 64];
 
 /// A floor, and a box that floats above it.
-fn scene() -> Scene {
+fn scene() -> Arc<Scene> {
     let mut positions = vec![];
     let mut triangles = vec![];
     let mut quad = |corners: [Vec3; 4]| {
@@ -41,27 +41,12 @@ fn scene() -> Scene {
         near: 0.5,
         far: 50.0,
     };
-    Scene {
+    Arc::new(Scene {
         name: "box".into(),
         mesh: support::meshes::mesh(positions, triangles),
         views: vec![view],
-        light: DirectionalLight { direction: DVec3::new(-0.4, -1.0, -0.3) },
-    }
-}
-
-fn plan(path: &str, provider: &SceneProvider, params: &[(&str, ParamValue)], outputs: &[&str]) -> Plan {
-    let graph = Graph::load(path, &registry(), &EmbeddedSources).unwrap_or_else(|error| panic!("{error}"));
-    let mut request = PlanRequest::new(VIEWPORT, provider);
-    request.params = params.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect::<BTreeMap<_, _>>();
-    request.outputs = (!outputs.is_empty()).then(|| outputs.iter().map(|&name| name.to_owned()).collect());
-    graph.plan(&request).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn provider(scene: Scene) -> SceneProvider {
-    let view = scene.views[0].clone();
-    let mut provider = SceneProvider::new(Arc::new(scene));
-    provider.set_view(&view, VIEWPORT);
-    provider
+        light: DirectionalLight { direction: DVec3::new(-0.4, -1.0, 0.3) },
+    })
 }
 
 /// What a pixel shows.
@@ -123,8 +108,11 @@ fn rt_agrees_with_rays_traced_by_hand() {
     assert!(count(&truth, Truth::Unsure) < truth.len() / 50);
 
     for per_pixel in [false, true] {
-        let mut provider = provider(scene());
-        let plan = plan("pipelines/rt.ron", &provider, &[("per_pixel", ParamValue::Bool(per_pixel))], &[]);
+        let scene = scene();
+        let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
+        let plan = plan("pipelines/rt.ron", &provider, VIEWPORT, |request| {
+            request.params.insert("per_pixel".into(), ParamValue::Bool(per_pixel));
+        });
         let report = run(plan, &mut provider, &["visibility", "status", "ray_count"], false);
         let (visibility, status) = (values(&report, "visibility"), values(&report, "status"));
         for (index, &truth) in truth.iter().enumerate().filter(|(_, truth)| truth.is_settled()) {
@@ -144,13 +132,16 @@ fn rt_agrees_with_rays_traced_by_hand() {
 
 #[test]
 fn nsm_is_wrong_at_contours_only_and_less_so_on_a_finer_map() {
-    // A shadow may be off by about a texel: 2 % of the floor's quads at a map of 64 texels' edge.
-    let settled = truth(&scene(), 0.03);
+    // A contour may be off by a texel or so: 12 % of a face of the box at a map of 64 texels' edge.
+    let settled = truth(&scene(), 0.12);
     let all = truth(&scene(), 1e-4);
     let mut wrong = vec![];
     for map_size in [64, 1024] {
-        let mut provider = provider(scene());
-        let plan = plan("pipelines/nsm.ron", &provider, &[("map_size", ParamValue::U32(map_size))], &[]);
+        let scene = scene();
+        let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
+        let plan = plan("pipelines/nsm.ron", &provider, VIEWPORT, |request| {
+            request.params.insert("map_size".into(), ParamValue::U32(map_size));
+        });
         let report = run(plan, &mut provider, &["visibility", "status"], false);
         let (visibility, status) = (values(&report, "visibility"), values(&report, "status"));
         let expected = |truth| match truth {
@@ -171,8 +162,9 @@ fn nsm_is_wrong_at_contours_only_and_less_so_on_a_finer_map() {
 #[test]
 fn only_a_traced_graph_builds_a_hierarchy() {
     for (preset, traces) in [("nsm", false), ("rt", true)] {
-        let mut provider = provider(scene());
-        let plan = plan(&format!("pipelines/{preset}.ron"), &provider, &[], &[]);
+        let scene = scene();
+        let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
+        let plan = plan(&format!("pipelines/{preset}.ron"), &provider, VIEWPORT, |_| ());
         assert_eq!(plan.provided().iter().any(|name| name.contains("bvh")), traces, "{preset}");
         run(plan, &mut provider, &[], false);
         assert_eq!(provider.built().iter().any(|name| name.contains("bvh")), traces, "{preset}: {:?}", provider.built());
@@ -182,8 +174,9 @@ fn only_a_traced_graph_builds_a_hierarchy() {
 #[test]
 fn an_empty_scene_is_all_background() {
     for preset in presets() {
-        let mut provider = provider(Scene { mesh: Mesh::default(), ..scene() });
-        let plan = plan(&preset.path, &provider, &[], &[]);
+        let scene = Arc::new(Scene { mesh: Mesh::default(), ..Scene::clone(&scene()) });
+        let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
+        let plan = plan(&preset.path, &provider, VIEWPORT, |_| ());
         let report = run(plan, &mut provider, &["visibility", "status"], false);
         assert!(values(&report, "visibility").iter().all(|&visibility| visibility == 1), "{}", preset.name);
         assert!(values(&report, "status").iter().all(|&status| status == 0), "{}", preset.name);
@@ -193,9 +186,10 @@ fn an_empty_scene_is_all_background() {
 #[test]
 fn two_graphs_share_what_the_provider_built() {
     let gpu = gpu::open(None).unwrap_or_else(|error| panic!("{error}"));
-    let mut provider = provider(scene());
+    let scene = scene();
+        let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
     let executors: Vec<Executor> = ["rt", "nsm"]
-        .map(|preset| plan(&format!("pipelines/{preset}.ron"), &provider, &[], &[]))
+        .map(|preset| plan(&format!("pipelines/{preset}.ron"), &provider, VIEWPORT, |_| ()))
         .into_iter()
         .map(|plan| Executor::new(&gpu.device, &gpu.queue, plan, &mut provider).unwrap())
         .collect();

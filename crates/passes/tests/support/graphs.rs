@@ -5,6 +5,7 @@ use skiagraph_graph::{
     Sources, gpu,
 };
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
+use skiagraph_scene::{Scene, View};
 use std::{collections::BTreeMap, sync::Arc};
 use wgpu::util::DeviceExt;
 
@@ -67,6 +68,21 @@ pub fn run_text(document: &str, provider: &mut dyn Provider, output: &str) -> Ve
     match report.readbacks.into_iter().next().unwrap().content {
         Content::Buffer(bytes) | Content::Texture { bytes, .. } => bytes,
     }
+}
+
+/// Plans a preset for a scene, all outputs, after `adjust` has had its say.
+pub fn plan(path: &str, provider: &SceneProvider, viewport: [u32; 2], adjust: impl FnOnce(&mut PlanRequest)) -> Plan {
+    let graph = Graph::load(path, &registry(), &EmbeddedSources).unwrap_or_else(|error| panic!("{error}"));
+    let mut request = PlanRequest::new(viewport, provider);
+    adjust(&mut request);
+    graph.plan(&request).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Provides a scene under one of its views.
+pub fn provider(scene: &Arc<Scene>, view: &View, viewport: [u32; 2]) -> SceneProvider {
+    let mut provider = SceneProvider::new(Arc::clone(scene));
+    provider.set_view(view, viewport);
+    provider
 }
 
 /// Runs one frame of a plan on a device of its own.

@@ -7,7 +7,7 @@ use super::{
 use serde::{Deserialize, Deserializer};
 
 /// A declared material.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug)]
 pub enum Material {
     /// A 2D texture, possibly with mips and layers.
     Texture(TextureEntry),

@@ -100,7 +100,7 @@ pub(crate) fn parse(file: SourceFile, registry: &Registry, diagnostics: &mut Vec
         }
     }
     for node in entries(sections.get("materials"), diagnostics) {
-        keep(node.parse(), diagnostics, |material| document.materials.push(material));
+        keep(material(&node), diagnostics, |material| document.materials.push(material));
     }
     for node in entries(sections.get("passes"), diagnostics) {
         keep(pass(&node, registry), diagnostics, |pass| document.passes.push(pass));
@@ -150,6 +150,24 @@ fn sections(fields: Vec<Field>, diagnostics: &mut Vec<Diagnostic>) -> HashMap<St
 
 fn entries(section: Option<&Node>, diagnostics: &mut Vec<Diagnostic>) -> Vec<Node> {
     section.and_then(|node| ok(node.list(), diagnostics)).unwrap_or_default()
+}
+
+fn material(node: &Node) -> Result<Material, Diagnostic> {
+    const KINDS: [&str; 3] = ["Texture", "Buffer", "Sampler"];
+    let (tag, body) = node.variant().ok_or_else(|| {
+        Diagnostic::error(Code::Syntax, "a material begins with its kind")
+            .at(node.span.clone(), "for example `Texture(name: \"…\", …)`")
+            .suggest("", KINDS)
+    })?;
+    let fields = body.fields()?;
+    match tag.as_str() {
+        "Texture" => from_fields(&fields, &tag.span).map(Material::Texture),
+        "Buffer" => from_fields(&fields, &tag.span).map(Material::Buffer),
+        "Sampler" => from_fields(&fields, &tag.span).map(Material::Sampler),
+        _ => Err(Diagnostic::error(Code::UnknownVariant, format!("unknown kind of material `{}`", *tag))
+            .at(tag.span.clone(), "")
+            .suggest(&tag, KINDS)),
+    }
 }
 
 fn pass(node: &Node, registry: &Registry) -> Result<PassEntry, Diagnostic> {

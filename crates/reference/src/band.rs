@@ -1,0 +1,174 @@
+//! The band: pixels whose answer flips when receiver or casters move by their own f32 rounding error.
+//!
+//! A caster is *touched* when some admissible displacement of the receiver, or of the caster's corners, makes the shadow ray
+//! hit it, and *robust* when every one does. A lit pixel that touches no caster and a shadowed one with a robust caster are
+//! certain. A shadowed pixel without one (its ray meets an edge between two casters, say) is certain if displaced rays find it in shadow all around.
+
+use crate::{
+    ray::{Corners, Ray},
+    receiver::F32_ROUNDING,
+};
+use glam::DVec3;
+
+/// Roundings that move a caster's corner across the ray, in units of its distance from the receiver: corner − origin (1), the
+/// shear's coefficients (3: two rounded components and a division), its product and sum (2), both axes together (√2).
+const CASTER_ROUNDINGS: f64 = 8.0;
+
+/// Where f32 arithmetic may put a receiver: its exact place + Σ [−1, 1] · segmentᵢ + a ball.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Uncertainty {
+    /// Displacements in the receiver's plane, from its barycentrics.
+    pub(crate) segments: [DVec3; 3],
+    /// Radius of the ball, scene units.
+    pub(crate) radius: f64,
+}
+
+impl Uncertainty {
+    /// Half the extent of the displacements along `normal`, times its length, without the ball.
+    fn along(&self, normal: DVec3) -> f64 {
+        self.segments
+            .iter()
+            .map(|segment| segment.dot(normal).abs())
+            .sum()
+    }
+
+    /// Radius of a ball that holds every displacement of receiver and casters within `reach`.
+    pub(crate) fn extent(&self, reach: f64) -> f64 {
+        self.segments
+            .iter()
+            .map(|segment| segment.length())
+            .sum::<f64>()
+            + self.radius
+            + caster_error(reach)
+    }
+
+    /// Displacements of the receiver towards eight sides of the light direction, each raised towards the light by the ball's
+    /// radius; `caster` is the largest error of the casters in question.
+    pub(crate) fn displacements(&self, towards_light: DVec3, caster: f64) -> [DVec3; 8] {
+        let (side, other) = towards_light.any_orthonormal_pair();
+        std::array::from_fn(|eighth| {
+            let (sin, cos) = (eighth as f64 * std::f64::consts::FRAC_PI_4).sin_cos();
+            let outwards = side * cos + other * sin;
+            let in_plane: DVec3 = self
+                .segments
+                .iter()
+                .map(|&s| if s.dot(outwards) < 0.0 { -s } else { s })
+                .sum();
+            in_plane + (outwards + towards_light) * (self.radius + caster)
+        })
+    }
+}
+
+/// Bound on the f32 displacement of a caster whose corners are within `distance` of the receiver.
+fn caster_error(distance: f64) -> f64 {
+    CASTER_ROUNDINGS * F32_ROUNDING * distance
+}
+
+/// What a shadow ray has to do with a caster.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Contact {
+    /// No displacement makes it a hit.
+    Miss,
+    /// No hit, but some displacement makes it one.
+    Touched,
+    /// A hit that some displacement undoes; with the caster's error.
+    Hit(f64),
+    /// A hit under every displacement.
+    Robust,
+}
+
+/// A shadow ray with its uncertainty, in the ray's sheared space.
+pub(crate) struct FuzzyRay<'a> {
+    ray: &'a Ray,
+    origin: DVec3,
+    direction: DVec3,
+    uncertainty: &'a Uncertainty,
+    sheared_segments: [DVec3; 3],
+}
+
+impl<'a> FuzzyRay<'a> {
+    /// `direction` is a unit vector, the one `ray` was made of.
+    pub(crate) fn new(
+        ray: &'a Ray,
+        origin: DVec3,
+        direction: DVec3,
+        uncertainty: &'a Uncertainty,
+    ) -> Self {
+        let sheared_segments = uncertainty
+            .segments
+            .map(|segment| ray.sheared_vector(segment.to_array()));
+        Self {
+            ray,
+            origin,
+            direction,
+            uncertainty,
+            sheared_segments,
+        }
+    }
+
+    /// Classifies one caster.
+    pub(crate) fn contact(&self, corners: &Corners) -> Contact {
+        let sheared = corners.map(|corner| self.ray.sheared(corner));
+        let [a, b, c] = sheared;
+        let [sx, sy, _] = self.ray.shear;
+        // |S| ≤ 1 twice, so a ball's image is within √3 of its radius, and so is a sheared corner of the corner itself.
+        let farthest = corners
+            .map(|corner| (glam::Vec3::from(corner).as_dvec3() - self.origin).length_squared());
+        let caster = caster_error(farthest[0].max(farthest[1]).max(farthest[2]).sqrt());
+        let ball = self.uncertainty.radius + caster;
+        let reach = self
+            .sheared_segments
+            .iter()
+            .fold(DVec3::ZERO, |sum, s| sum + s.abs())
+            + DVec3::splat(ball * 3f64.sqrt());
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        if low.x > reach.x
+            || low.y > reach.y
+            || high.x < -reach.x
+            || high.y < -reach.y
+            || high.z < -reach.z
+        {
+            return Contact::Miss;
+        }
+        if corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0] {
+            // Two equal corners stay equal in any arithmetic, and the edge functions cancel exactly.
+            return Contact::Miss;
+        }
+
+        let edges = Ray::edges(sheared);
+        let sides = [c - b, a - c, b - a];
+        let thresholds: [f64; 3] = std::array::from_fn(|i| {
+            let side = sides[i];
+            let segments: f64 = self
+                .sheared_segments
+                .iter()
+                .map(|s| (side.x * s.y - side.y * s.x).abs())
+                .sum();
+            segments
+                + ball
+                    * (side.x * side.x + side.y * side.y + (side.y * sx - side.x * sy).powi(2))
+                        .sqrt()
+        });
+        let (t, t_error) = self.distance(corners, ball);
+        let inside =
+            |sign: f64, margin: f64| (0..3).all(|i| sign * edges[i] >= margin * thresholds[i]);
+        match Ray::hit_sheared(sheared, edges).filter(|hit| hit.t > 0.0) {
+            Some(_) if t > t_error && (inside(1.0, 1.0) || inside(-1.0, 1.0)) => Contact::Robust,
+            Some(_) => Contact::Hit(caster),
+            None if t > -t_error && (inside(1.0, -1.0) || inside(-1.0, -1.0)) => Contact::Touched,
+            None => Contact::Miss,
+        }
+    }
+
+    /// Distance to the caster's plane and how much displacements change it; anything goes for a plane along the ray.
+    fn distance(&self, corners: &Corners, ball: f64) -> (f64, f64) {
+        let [a, b, c] = corners.map(|corner| glam::Vec3::from(corner).as_dvec3());
+        let normal = (b - a).cross(c - a);
+        let slope = normal.dot(self.direction);
+        if slope == 0.0 {
+            return (0.0, f64::INFINITY);
+        }
+        let error = (self.uncertainty.along(normal) + ball * normal.length()) / slope.abs();
+        (normal.dot(a - self.origin) / slope, error)
+    }
+}

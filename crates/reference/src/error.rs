@@ -1,0 +1,73 @@
+//! Everything that can go wrong in this crate.
+
+use thiserror::Error;
+
+/// Why an oracle run, a count or an image could not be made.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The caller's interruption flag was raised; no partial result is kept.
+    #[error("interrupted before the reference was finished")]
+    Interrupted,
+    /// A buffer does not hold one value per viewport pixel.
+    #[error("{name} holds {actual} values, but a viewport of {}x{} has {expected} pixels", viewport[0], viewport[1])]
+    PixelCount {
+        /// Which buffer: `primitives`, `visibility` or `status`.
+        name: &'static str,
+        /// Viewport width and height.
+        viewport: [u32; 2],
+        /// Pixels of the viewport.
+        expected: u64,
+        /// Values in the buffer.
+        actual: u64,
+    },
+    /// The G-buffer names a triangle that the mesh does not have: it was drawn from another mesh.
+    #[error(
+        "pixel ({x}, {y}) shows primitive {primitive}, but the mesh has only {count} triangles"
+    )]
+    UnknownPrimitive {
+        /// Pixel column.
+        x: u32,
+        /// Pixel row.
+        y: u32,
+        /// The id found there.
+        primitive: u32,
+        /// Triangles of the mesh.
+        count: u64,
+    },
+    /// A `visibility` or `status` value outside the contract of shadow presets.
+    #[error("{name} is {value} at pixel ({x}, {y}); {expected}")]
+    Value {
+        /// Which buffer: `visibility` or `status`.
+        name: &'static str,
+        /// Pixel column.
+        x: u32,
+        /// Pixel row.
+        y: u32,
+        /// The value found there.
+        value: u32,
+        /// The values the contract allows, as a sentence.
+        expected: &'static str,
+    },
+    /// The light's direction has no length or is not finite.
+    #[error("the light's direction ({x}, {y}, {z}) has no length or is not finite")]
+    Light {
+        /// Component x.
+        x: f64,
+        /// Component y.
+        y: f64,
+        /// Component z.
+        z: f64,
+    },
+    /// The offset of [`OracleMode::Offset`](crate::OracleMode::Offset) is negative or not finite.
+    #[error("the oracle's offset is {0}; expected a finite length of at least 0, in scene units")]
+    Offset(f64),
+    /// Text that is neither `exact` nor `offset:LENGTH`.
+    #[error(
+        "`{0}` is no oracle mode; expected `exact` or `offset:LENGTH` with a length of at least 0 in scene units, such as `offset:0.03`"
+    )]
+    Mode(String),
+    /// A prebuilt hierarchy that does not belong to the mesh.
+    #[error("the hierarchy does not belong to the mesh: {0}")]
+    Hierarchy(&'static str),
+}

@@ -1,0 +1,195 @@
+//! Pictures as RGB bytes; whoever needs a file encodes them.
+
+use crate::{
+    Class, Error, Reference,
+    oracle::check_pixel_count,
+    statistics::{Verdict, for_each_verdict, status},
+};
+
+type Colour = [u8; 3];
+
+const BACKGROUND: Colour = [96, 112, 128];
+const LIGHT: Colour = [255, 255, 255];
+const SHADOW: Colour = [0, 0, 0];
+/// Facing away is green and uncertain is purple, as in the dissertation's figures (38, 46).
+const FACING_AWAY: Colour = [0, 128, 0];
+const UNCERTAIN: Colour = [160, 32, 240];
+const WRONGLY_LIT: Colour = [48, 96, 255];
+const WRONGLY_LIT_IN_BAND: Colour = [160, 190, 255];
+const WRONGLY_SHADOWED: Colour = [255, 32, 32];
+const WRONGLY_SHADOWED_IN_BAND: Colour = [255, 170, 170];
+/// Grey levels under the error image: dark enough for blue and red to stand out, apart enough to show shadow contours.
+const DIM_LIGHT: Colour = [96, 96, 96];
+const DIM_SHADOW: Colour = [40, 40, 40];
+const DIM_FACING_AWAY: Colour = [24, 24, 24];
+const DIM_BACKGROUND: Colour = [8, 8, 8];
+
+/// Ambient light of [`Image::shaded`], as a share of the light's own at normal incidence.
+const AMBIENT: f32 = 0.2;
+
+/// An RGB picture, 8 bits per channel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Image {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Three bytes (red, green, blue; sRGB) per pixel, row by row from the top left.
+    pub rgb: Vec<u8>,
+}
+
+impl Image {
+    /// Where a method is wrong: blue = wrongly lit, red = wrongly in shadow, both paler in band, over the
+    /// reference's shadows in dark grey. What counts as wrong is said at [`Statistics`](crate::Statistics).
+    ///
+    /// # Errors
+    /// Those of [`Statistics::judged`](crate::Statistics::judged).
+    pub fn error<V, S>(visibility: &[V], status: &[S], reference: &Reference) -> Result<Self, Error>
+    where
+        V: Copy + Into<u32>,
+        S: Copy + Into<u32>,
+    {
+        let mut rgb = Vec::with_capacity(reference.classes.len() * 3);
+        for_each_verdict(
+            visibility,
+            status,
+            reference,
+            |_, class, _, in_band, verdict| {
+                rgb.extend(match (verdict, in_band, class) {
+                    (Verdict::WronglyLit, false, _) => WRONGLY_LIT,
+                    (Verdict::WronglyLit, true, _) => WRONGLY_LIT_IN_BAND,
+                    (Verdict::WronglyShadowed, false, _) => WRONGLY_SHADOWED,
+                    (Verdict::WronglyShadowed, true, _) => WRONGLY_SHADOWED_IN_BAND,
+                    (Verdict::Right, _, Class::Background) => DIM_BACKGROUND,
+                    (Verdict::Right, _, Class::FacingAway) => DIM_FACING_AWAY,
+                    (Verdict::Right, _, Class::Lit) => DIM_LIGHT,
+                    (Verdict::Right, _, Class::Shadow) => DIM_SHADOW,
+                });
+            },
+        )?;
+        Ok(Self {
+            size: reference.viewport,
+            rgb,
+        })
+    }
+
+    /// A method's shadows: white = lit, black = shadow, green = facing away, grey-blue = background.
+    ///
+    /// # Errors
+    /// [`Error::PixelCount`] if a buffer does not fit `viewport`.
+    pub fn visibility<V, S>(
+        viewport: [u32; 2],
+        visibility: &[V],
+        status: &[S],
+    ) -> Result<Self, Error>
+    where
+        V: Copy + Into<u32>,
+        S: Copy + Into<u32>,
+    {
+        Self::of_status(viewport, visibility, status, None)
+    }
+
+    /// As [`visibility`](Self::visibility), with the uncertain pixels in purple.
+    ///
+    /// # Errors
+    /// [`Error::PixelCount`] if a buffer does not fit `viewport`.
+    pub fn uncertain<V, S>(
+        viewport: [u32; 2],
+        visibility: &[V],
+        status: &[S],
+    ) -> Result<Self, Error>
+    where
+        V: Copy + Into<u32>,
+        S: Copy + Into<u32>,
+    {
+        Self::of_status(viewport, visibility, status, Some(UNCERTAIN))
+    }
+
+    fn of_status<V, S>(
+        viewport: [u32; 2],
+        visibility: &[V],
+        status: &[S],
+        uncertain: Option<Colour>,
+    ) -> Result<Self, Error>
+    where
+        V: Copy + Into<u32>,
+        S: Copy + Into<u32>,
+    {
+        check_pixel_count("visibility", viewport, visibility.len())?;
+        check_pixel_count("status", viewport, status.len())?;
+        let colour = |visibility: u32, status: u32| match (status, uncertain) {
+            (status::BACKGROUND, _) => BACKGROUND,
+            (status::FACING_AWAY, _) => FACING_AWAY,
+            (status::UNCERTAIN, Some(uncertain)) => uncertain,
+            _ if visibility == 0 => SHADOW,
+            _ => LIGHT,
+        };
+        let pixels = visibility.iter().zip(status);
+        let rgb = pixels
+            .flat_map(|(&visibility, &status)| colour(visibility.into(), status.into()))
+            .collect();
+        Ok(Self {
+            size: viewport,
+            rgb,
+        })
+    }
+
+    /// The scene in grey under Lambert's law: max(n · l, 0) × visibility + ambient, with the reference's n · l and the given
+    /// visibility.
+    ///
+    /// # Errors
+    /// [`Error::PixelCount`] if `visibility` does not fit the reference.
+    pub fn shaded<V: Copy + Into<u32>>(
+        visibility: &[V],
+        reference: &Reference,
+    ) -> Result<Self, Error> {
+        check_pixel_count("visibility", reference.viewport, visibility.len())?;
+        let mut rgb = Vec::with_capacity(reference.classes.len() * 3);
+        for (index, &class) in reference.classes.iter().enumerate() {
+            let shown: u32 = visibility[index].into();
+            let direct = if shown == 0 {
+                0.0
+            } else {
+                reference.n_dot_l[index].max(0.0)
+            };
+            // A little of n · l in the ambient term keeps form readable where no light arrives.
+            let ambient = AMBIENT * (0.75 + 0.25 * reference.n_dot_l[index].clamp(-1.0, 1.0));
+            rgb.extend(if class == Class::Background {
+                BACKGROUND
+            } else {
+                grey(ambient + (1.0 - AMBIENT) * direct)
+            });
+        }
+        Ok(Self {
+            size: reference.viewport,
+            rgb,
+        })
+    }
+}
+
+impl Reference {
+    /// The reference's own visibility: 1 where lit, 0 elsewhere.
+    pub fn visibility(&self) -> Vec<u8> {
+        self.classes
+            .iter()
+            .map(|&class| u8::from(class == Class::Lit))
+            .collect()
+    }
+
+    /// The reference's own status: never uncertain.
+    pub fn status(&self) -> Vec<u8> {
+        let status = |class: &Class| match class {
+            Class::Background => status::BACKGROUND,
+            Class::FacingAway => status::FACING_AWAY,
+            Class::Lit => status::CERTAIN_LIGHT,
+            Class::Shadow => status::CERTAIN_SHADOW,
+        };
+        self.classes
+            .iter()
+            .map(|class| status(class) as u8)
+            .collect()
+    }
+}
+
+/// Linear light 0..1 as an sRGB grey (gamma 2.2 is near enough for a picture).
+fn grey(linear: f32) -> Colour {
+    [(linear.clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0).round() as u8; 3]
+}

@@ -1,0 +1,115 @@
+//! The receiver of a pixel: the point of the G-buffer's primitive that its ray meets, and how far f32 may err from it.
+
+use crate::band::Uncertainty;
+use glam::DVec3;
+use skiagraph_scene::Mesh;
+
+/// Half an ulp of 1 in f32: the relative error of one rounding.
+pub(crate) const F32_ROUNDING: f64 = 1.0 / (1u32 << 24) as f64;
+
+/// Roundings in an edge function of a receiver, as `dir · ((p + q) × (q − p))` with corners relative to the eye: the pixel's
+/// direction (three products and two sums of rounded vectors, about 4), corners relative to the eye (1), cross product (2), dot product (2), less
+/// than all of them at their worst at once.
+const EDGE_ROUNDINGS: f64 = 8.0;
+
+/// Roundings in a position as the sum of barycentric × corner, in units of Σ |barycentric| |corner|: the sum of the edge functions
+/// and the division by it (3), product (1), sums (2).
+const POSITION_ROUNDINGS: f64 = 6.0;
+
+/// Roundings in dot(Σ barycentric × normal, l) apart from the barycentrics' own: products and sums (6), the light's rounded direction (2).
+const FACING_ROUNDINGS: f64 = 8.0;
+
+/// Share of the determinant beyond which the edge functions' error makes the hit meaningless.
+const INDETERMINATE: f64 = 0.25;
+
+/// A pixel's receiver.
+pub(crate) struct Receiver {
+    /// Hit on the primitive's plane, world space.
+    pub(crate) position: DVec3,
+    /// Interpolated, unnormalised vertex normal · unit vector towards the light.
+    pub(crate) n_dot_l: f64,
+    /// Bound on the f32 error of `n_dot_l`.
+    pub(crate) n_dot_l_error: f64,
+    /// Where f32 arithmetic may put the receiver; `None` where it may put it anywhere (a primitive seen edge-on).
+    pub(crate) uncertainty: Option<Uncertainty>,
+}
+
+impl Receiver {
+    /// The point where the ray from `eye` along `direction` meets the plane of `primitive`.
+    ///
+    /// Barycentrics are not clamped: a rasteriser snaps vertices to a subpixel grid, so that a pixel's centre may lie a little outside
+    /// the primitive that covers it, and a deferred shader that does not clamp sees the same point. A primitive exactly
+    /// edge-on has no such point; its centroid stands in, and the pixel is always in band.
+    pub(crate) fn new(
+        mesh: &Mesh,
+        primitive: u32,
+        eye: DVec3,
+        direction: DVec3,
+        towards_light: DVec3,
+    ) -> Self {
+        let world = mesh.corners(primitive);
+        let normals = mesh.corner_normals(primitive);
+        let [a, b, c] = world.map(|corner| corner - eye);
+        let pairs = [(b, c), (c, a), (a, b)];
+        let edges = pairs.map(|(p, q)| direction.dot((p + q).cross(q - p)));
+        let determinant: f64 = edges.iter().sum();
+        let reach = a.length().max(b.length()).max(c.length());
+        // |(p + q) × (q − p)| ≤ 2 · reach · edge; the eye itself is rounded, which moves every corner by as much (√3, taken as 2).
+        let lever =
+            2.0 * (EDGE_ROUNDINGS * reach + 2.0 * eye.length()) * F32_ROUNDING * direction.length();
+        let errors = pairs.map(|(p, q)| lever * (q - p).length() / determinant.abs());
+        let error: f64 = errors.iter().sum();
+        let determinate = error < INDETERMINATE;
+
+        let weights = if determinant == 0.0 {
+            [1.0 / 3.0; 3]
+        } else {
+            edges.map(|edge| edge / determinant)
+        };
+        let position = weighted(weights, world);
+        let n_dot_l = weighted(weights, normals).dot(towards_light);
+        let position_error = POSITION_ROUNDINGS
+            * F32_ROUNDING
+            * weights
+                .iter()
+                .zip(world)
+                .map(|(w, p)| w.abs() * p.length())
+                .sum::<f64>();
+        let facing_error = FACING_ROUNDINGS
+            * F32_ROUNDING
+            * weights
+                .iter()
+                .zip(normals)
+                .map(|(w, n)| w.abs() * n.length())
+                .sum::<f64>();
+        // Weight i off by errorᵢ moves the point along (cornerᵢ − point), before dividing by the new sum of weights.
+        let scale = |i: usize| errors[i] / (1.0 - error);
+        let n_dot_l_error = facing_error
+            + (0..3)
+                .map(|i| scale(i) * (normals[i].dot(towards_light) - n_dot_l).abs())
+                .sum::<f64>();
+        let uncertainty = determinate.then(|| Uncertainty {
+            segments: std::array::from_fn(|i| (world[i] - position) * scale(i)),
+            radius: position_error,
+        });
+        let n_dot_l_error = if determinate {
+            n_dot_l_error
+        } else {
+            f64::INFINITY
+        };
+        Self {
+            position,
+            n_dot_l,
+            n_dot_l_error,
+            uncertainty,
+        }
+    }
+}
+
+fn weighted(weights: [f64; 3], points: [DVec3; 3]) -> DVec3 {
+    weights
+        .iter()
+        .zip(points)
+        .map(|(&weight, point)| point * weight)
+        .sum()
+}

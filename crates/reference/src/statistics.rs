@@ -1,0 +1,221 @@
+//! Counts of right and wrong pixels, as `results.json` holds them.
+
+use crate::{Class, Error, Reference, oracle::check_pixel_count};
+use serde::{Deserialize, Serialize};
+
+/// Values of the output `status` of a shadow preset.
+pub mod status {
+    /// Shows no geometry.
+    pub const BACKGROUND: u32 = 0;
+    /// Faces away from the light.
+    pub const FACING_AWAY: u32 = 1;
+    /// The method is certain that the pixel is lit.
+    pub const CERTAIN_LIGHT: u32 = 2;
+    /// The method is certain that the pixel is in shadow.
+    pub const CERTAIN_SHADOW: u32 = 3;
+    /// The method could not tell, and asked a tracer or guessed.
+    pub const UNCERTAIN: u32 = 4;
+}
+
+/// The reference's pixels. `background + facing_away + facing_light` is the viewport, `lit + shadow` is `facing_light`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PixelCounts {
+    /// Show no geometry.
+    pub background: u64,
+    /// Face away from the light (PnFL).
+    pub facing_away: u64,
+    /// Face the light (PFL), the denominator of every share.
+    pub facing_light: u64,
+    /// Of `facing_light`: see the light.
+    pub lit: u64,
+    /// Of `facing_light`: do not.
+    pub shadow: u64,
+}
+
+/// PFL pixels (by the reference) that the method calls certain, right or wrong.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CertainCounts {
+    /// Status *certain light*.
+    pub lit: u64,
+    /// Status *certain shadow*.
+    pub shadow: u64,
+}
+
+/// Pixels whose visibility is not the reference's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WrongCounts {
+    /// Lit by the method, not by the reference.
+    pub lit: u64,
+    /// In shadow by the method, lit by the reference.
+    pub shadow: u64,
+    /// `lit + shadow`, in-band pixels included.
+    pub total: u64,
+    /// Of `total`: the method called them certain, and they are not in band.
+    pub certain: u64,
+    /// Of `total`: in band, where the answer hangs on f32 rounding.
+    pub in_band: u64,
+}
+
+/// How one method's picture compares with the reference.
+///
+/// *Which pixels are judged.* Every PFL pixel of the reference, by the visibility it shows (0 is shadow): one that the method calls background or facing
+/// away (status 0 or 1) is wrong if it shows shadow where the reference is lit, or light where it is not. A
+/// pixel that the reference calls facing away but the method does not (status 2 to 4) is wrong, as `lit`, if it shows light; shown in
+/// shadow it looks the same and is right. Pixels facing away by both, and background, are not judged, whatever their visibility.
+/// `facing_mismatch` counts the disagreements about facing, wrong or not.
+///
+/// `certain` and `uncertain` count PFL pixels of the reference, so that `certain.lit + certain.shadow + uncertain` is
+/// `pixels.facing_light` but for PFL pixels that the method does not take for such.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Statistics {
+    /// The reference's own pixels.
+    pub pixels: PixelCounts,
+    /// PFL pixels called certain.
+    pub certain: CertainCounts,
+    /// PFL pixels called uncertain.
+    pub uncertain: u64,
+    /// Wrong pixels.
+    pub wrong: WrongCounts,
+    /// PFL pixels in band, right or wrong.
+    pub band: u64,
+    /// Pixels that face the light by the reference but not by the method's status, or the other way round.
+    pub facing_mismatch: u64,
+}
+
+impl Statistics {
+    /// Judges a method's outputs, one value per pixel, row by row from the top left, as u8 or u32: `visibility` is 0 in shadow and 1 in
+    /// light, `status` is one of [`status`].
+    ///
+    /// # Errors
+    /// [`Error::PixelCount`] if a buffer is not as large as the reference, [`Error::Value`] for a value outside the contract.
+    pub fn judged<V, S>(
+        visibility: &[V],
+        status: &[S],
+        reference: &Reference,
+    ) -> Result<Self, Error>
+    where
+        V: Copy + Into<u32>,
+        S: Copy + Into<u32>,
+    {
+        let mut counts = Self::default();
+        for_each_verdict(
+            visibility,
+            status,
+            reference,
+            |_, class, status, in_band, verdict| {
+                counts.add(class, status, in_band, verdict);
+            },
+        )?;
+        Ok(counts)
+    }
+
+    fn add(&mut self, class: Class, status: u32, in_band: bool, verdict: Verdict) {
+        let faces_light = class.faces_light();
+        match class {
+            Class::Background => self.pixels.background += 1,
+            Class::FacingAway => self.pixels.facing_away += 1,
+            Class::Lit => self.pixels.lit += 1,
+            Class::Shadow => self.pixels.shadow += 1,
+        }
+        if faces_light {
+            self.pixels.facing_light += 1;
+            self.band += u64::from(in_band);
+            match status {
+                status::CERTAIN_LIGHT => self.certain.lit += 1,
+                status::CERTAIN_SHADOW => self.certain.shadow += 1,
+                status::UNCERTAIN => self.uncertain += 1,
+                _ => {}
+            }
+        }
+        self.facing_mismatch += u64::from(faces_light != (status >= status::CERTAIN_LIGHT));
+        match verdict {
+            Verdict::Right => return,
+            Verdict::WronglyLit => self.wrong.lit += 1,
+            Verdict::WronglyShadowed => self.wrong.shadow += 1,
+        }
+        self.wrong.total += 1;
+        self.wrong.in_band += u64::from(in_band);
+        let certain = matches!(status, status::CERTAIN_LIGHT | status::CERTAIN_SHADOW);
+        self.wrong.certain += u64::from(certain && !in_band);
+    }
+
+    /// A count as a share of the pixels facing the light, 0..1; 0 where none does.
+    pub fn share(&self, count: u64) -> f64 {
+        if self.pixels.facing_light == 0 {
+            0.0
+        } else {
+            count as f64 / self.pixels.facing_light as f64
+        }
+    }
+
+    /// Wrong pixels as a share of PFL.
+    pub fn wrong_share(&self) -> f64 {
+        self.share(self.wrong.total)
+    }
+
+    /// Uncertain pixels as a share of PFL.
+    pub fn uncertain_share(&self) -> f64 {
+        self.share(self.uncertain)
+    }
+
+    /// The band as a share of PFL.
+    pub fn band_share(&self) -> f64 {
+        self.share(self.band)
+    }
+}
+
+/// How one pixel of a method stands against the reference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Verdict {
+    Right,
+    WronglyLit,
+    WronglyShadowed,
+}
+
+/// Calls `pixel` with index, class, status, in-band flag and verdict of every pixel.
+pub(crate) fn for_each_verdict<V, S>(
+    visibility: &[V],
+    status: &[S],
+    reference: &Reference,
+    mut pixel: impl FnMut(usize, Class, u32, bool, Verdict),
+) -> Result<(), Error>
+where
+    V: Copy + Into<u32>,
+    S: Copy + Into<u32>,
+{
+    check_pixel_count("visibility", reference.viewport, visibility.len())?;
+    check_pixel_count("status", reference.viewport, status.len())?;
+    for (index, (&class, &in_band)) in reference.classes.iter().zip(&reference.in_band).enumerate()
+    {
+        let (visibility, status) = (visibility[index].into(), status[index].into());
+        let value = |name, value, expected| {
+            let width = reference.viewport[0] as usize;
+            Error::Value {
+                name,
+                x: (index % width) as u32,
+                y: (index / width) as u32,
+                value,
+                expected,
+            }
+        };
+        if visibility > 1 {
+            return Err(value(
+                "visibility",
+                visibility,
+                "expected 0 in shadow, 1 in light",
+            ));
+        }
+        if status > status::UNCERTAIN {
+            let expected = "expected 0 background, 1 facing away, 2 certain light, 3 certain shadow or 4 uncertain";
+            return Err(value("status", status, expected));
+        }
+        let verdict = match (class, visibility) {
+            (Class::Shadow, 1) => Verdict::WronglyLit,
+            (Class::FacingAway, 1) if status >= status::CERTAIN_LIGHT => Verdict::WronglyLit,
+            (Class::Lit, 0) => Verdict::WronglyShadowed,
+            _ => Verdict::Right,
+        };
+        pixel(index, class, status, in_band, verdict);
+    }
+    Ok(())
+}

@@ -34,9 +34,11 @@ pub enum Command {
         skiagraph compare rt my_method.ron --oracle offset:0.03 --format markdown")]
     Compare(CompareArgs),
     /// Render one frame with one graph and save any of its materials.
-    #[command(after_help = "Examples:\n  skiagraph run nsm --save visibility=shadow.png\n  \
+    #[command(
+        after_help = "Examples:\n  skiagraph run nsm --save visibility=shadow.png\n  \
         skiagraph run nsm --save shadow_map@create_shadow_map=map.png --set map_size=512\n  \
-        skiagraph run my_method.ron --scene sponza --save status=status.bin")]
+        skiagraph run my_method.ron --scene sponza --save status=status.bin"
+    )]
     Run(RunArgs),
     /// Check graphs and their shaders. Needs no GPU.
     #[command(after_help = "Example:\n  skiagraph check my_method.ron pipelines/*.ron")]
@@ -95,7 +97,12 @@ pub struct CompareArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     /// Viewport sizes in pixels, separated by commas.
-    #[arg(long, value_name = "WxH,…", value_delimiter = ',', default_value = "1024x1024")]
+    #[arg(
+        long,
+        value_name = "WxH,…",
+        value_delimiter = ',',
+        default_value = "1024x1024"
+    )]
     pub size: Vec<Size>,
     /// Shadow map sizes in texels, separated by commas: the param `map_size` of the graphs that have it.
     #[arg(long, value_name = "N,…", value_delimiter = ',')]
@@ -179,8 +186,15 @@ mod tests {
     #[test]
     fn every_command_shows_an_example() {
         for command in Cli::command().get_subcommands() {
-            let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
-            assert!(help.contains(&format!("skiagraph {}", command.get_name())), "{}", command.get_name());
+            let help = command
+                .get_after_help()
+                .map(ToString::to_string)
+                .unwrap_or_default();
+            assert!(
+                help.contains(&format!("skiagraph {}", command.get_name())),
+                "{}",
+                command.get_name()
+            );
         }
     }
 
@@ -190,19 +204,33 @@ mod tests {
             "skiagraph compare rt a.ron --size 8x4,16x9 --map-size 512,1024 --eye -1,2,-3 --light -0.5,-1,0 --set bias=-2",
         )
         .unwrap();
-        let Command::Compare(args) = cli.command else { panic!("not compare") };
+        let Command::Compare(args) = cli.command else {
+            panic!("not compare")
+        };
         assert_eq!(args.presets, ["rt", "a.ron"]);
         assert_eq!(args.size, [Size([8, 4]), Size([16, 9])]);
         assert_eq!(args.map_size, [512, 1024]);
         assert_eq!(args.scene.eye, Some(DVec3::new(-1.0, 2.0, -3.0)));
         assert_eq!(args.scene.light, Some(DVec3::new(-0.5, -1.0, 0.0)));
-        assert_eq!(args.params, [Assignment { name: "bias".into(), value: "-2".into() }]);
-        assert_eq!((args.frames, args.warmup, args.oracle), (10, 2, OracleMode::Exact));
+        assert_eq!(
+            args.params,
+            [Assignment {
+                name: "bias".into(),
+                value: "-2".into()
+            }]
+        );
+        assert_eq!(
+            (args.frames, args.warmup, args.oracle),
+            (10, 2, OracleMode::Exact)
+        );
     }
 
     #[test]
     fn the_adapter_may_stand_on_either_side_of_the_command() {
-        for line in ["skiagraph --adapter x doctor", "skiagraph doctor --adapter x"] {
+        for line in [
+            "skiagraph --adapter x doctor",
+            "skiagraph doctor --adapter x",
+        ] {
             assert_eq!(parse(line).unwrap().adapter.as_deref(), Some("x"));
         }
     }

@@ -1,5 +1,6 @@
 //! Everything that can end a command early, with its exit code.
 
+use skiagraph_graph::{Diagnostic, Severity};
 use std::{
     error::Error,
     io::{self, IsTerminal, Write},
@@ -66,7 +67,10 @@ pub enum CliError {
 impl CliError {
     /// A failure to write `path`.
     pub fn write(path: &Path, source: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
-        Self::Write { path: path.to_path_buf(), source: source.into() }
+        Self::Write {
+            path: path.to_path_buf(),
+            source: source.into(),
+        }
     }
 
     /// The process's exit code.
@@ -91,7 +95,10 @@ impl CliError {
             };
             let mut cause = self.source();
             while let Some(error) = cause {
-                text.push_str(&format!("\n  because: {}", error.to_string().replace('\n', "\n  ")));
+                text.push_str(&format!(
+                    "\n  because: {}",
+                    error.to_string().replace('\n', "\n  ")
+                ));
                 cause = error.source();
             }
             // With standard error closed there is nobody left to tell.
@@ -108,7 +115,18 @@ pub fn colour() -> bool {
 
 /// `text` in an ANSI style where standard error takes it.
 pub fn style(text: &str, code: &str) -> String {
-    if colour() { format!("\u{1b}[{code}m{text}\u{1b}[0m") } else { text.to_string() }
+    if colour() {
+        format!("\u{1b}[{code}m{text}\u{1b}[0m")
+    } else {
+        text.to_string()
+    }
+}
+
+/// How many of the diagnostics are errors.
+pub fn count_errors<'a>(diagnostics: impl Iterator<Item = &'a Diagnostic>) -> usize {
+    diagnostics
+        .filter(|diagnostic| diagnostic.severity == Severity::Error)
+        .count()
 }
 
 /// A line on standard error that is not an error.
@@ -119,7 +137,10 @@ pub fn note(text: &str) {
 /// Prints on standard output.
 pub fn print(text: &str) -> Result<(), CliError> {
     let mut stdout = io::stdout().lock();
-    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(CliError::Stdout)
+    stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush())
+        .map_err(CliError::Stdout)
 }
 
 #[cfg(test)]
@@ -130,7 +151,9 @@ mod tests {
     fn exit_codes_are_the_documented_ones() {
         let pipe = CliError::Stdout(io::ErrorKind::BrokenPipe.into());
         let full = CliError::Stdout(io::ErrorKind::StorageFull.into());
-        let interrupted = CliError::Interrupted { kept: "nothing".into() };
+        let interrupted = CliError::Interrupted {
+            kept: "nothing".into(),
+        };
         let codes = [
             (pipe, 0),
             (full, 1),

@@ -13,12 +13,15 @@ impl FromStr for Size {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (width, height) =
-            text.split_once(['x', 'X', '×']).ok_or("expected WIDTHxHEIGHT, for example 1024x1024")?;
+        let (width, height) = text
+            .split_once(['x', 'X', '×'])
+            .ok_or("expected WIDTHxHEIGHT, for example 1024x1024")?;
         let edge = |text: &str| match text.trim().parse::<u32>() {
             Ok(0) => Err("a viewport must be at least 1x1".to_string()),
             Ok(edge) => Ok(edge),
-            Err(_) => Err(format!("`{text}` is not a number of pixels; expected WIDTHxHEIGHT, for example 1024x1024")),
+            Err(_) => Err(format!(
+                "`{text}` is not a number of pixels; expected WIDTHxHEIGHT, for example 1024x1024"
+            )),
         };
         Ok(Self([edge(width)?, edge(height)?]))
     }
@@ -35,13 +38,22 @@ pub fn vector(text: &str) -> Result<DVec3, String> {
     let expected = "expected three numbers x,y,z, for example 0.3,-1,0.2";
     let numbers = text
         .split(',')
-        .map(|number| number.trim().parse::<f64>().map_err(|_| format!("`{number}` is not a number; {expected}")))
+        .map(|number| {
+            number
+                .trim()
+                .parse::<f64>()
+                .map_err(|_| format!("`{number}` is not a number; {expected}"))
+        })
         .collect::<Result<Vec<_>, _>>()?;
     let [x, y, z] = numbers[..] else {
         return Err(format!("{} numbers; {expected}", numbers.len()));
     };
     let vector = DVec3::new(x, y, z);
-    if vector.is_finite() { Ok(vector) } else { Err("all three numbers must be finite".into()) }
+    if vector.is_finite() {
+        Ok(vector)
+    } else {
+        Err("all three numbers must be finite".into())
+    }
 }
 
 /// A direction: like [`vector`], but not zero.
@@ -83,9 +95,10 @@ impl FromStr for Assignment {
 
     fn from_str(text: &str) -> Result<Self, String> {
         match text.split_once('=') {
-            Some((name, value)) if !name.trim().is_empty() => {
-                Ok(Self { name: name.trim().into(), value: value.trim().into() })
-            }
+            Some((name, value)) if !name.trim().is_empty() => Ok(Self {
+                name: name.trim().into(),
+                value: value.trim().into(),
+            }),
             _ => Err("expected NAME=VALUE, for example slope_bias=2".into()),
         }
     }
@@ -127,13 +140,28 @@ impl FromStr for Save {
             return Err(expected.into());
         }
         let file = PathBuf::from(file);
-        let extension = file.extension().map(|extension| extension.to_ascii_lowercase());
-        let encoding = match extension.as_deref().and_then(|extension| extension.to_str()) {
+        let extension = file
+            .extension()
+            .map(|extension| extension.to_ascii_lowercase());
+        let encoding = match extension
+            .as_deref()
+            .and_then(|extension| extension.to_str())
+        {
             Some("png") => Encoding::Png,
             Some("bin") => Encoding::Raw,
-            _ => return Err(format!("`{}` must end in .png (a picture) or .bin (raw bytes)", file.display())),
+            _ => {
+                return Err(format!(
+                    "`{}` must end in .png (a picture) or .bin (raw bytes)",
+                    file.display()
+                ));
+            }
         };
-        Ok(Self { material: material.into(), after, file, encoding })
+        Ok(Self {
+            material: material.into(),
+            after,
+            file,
+            encoding,
+        })
     }
 }
 
@@ -160,7 +188,13 @@ mod tests {
 
     #[test]
     fn assignments_keep_everything_after_the_first_equals_sign() {
-        assert_eq!("a=b=c".parse(), Ok(Assignment { name: "a".into(), value: "b=c".into() }));
+        assert_eq!(
+            "a=b=c".parse(),
+            Ok(Assignment {
+                name: "a".into(),
+                value: "b=c".into()
+            })
+        );
         assert!("=1".parse::<Assignment>().is_err());
         assert!("cull".parse::<Assignment>().is_err());
     }
@@ -170,8 +204,18 @@ mod tests {
         let save: Save = "shadow_map@create_shadow_map=out/a=b.PNG".parse().unwrap();
         assert_eq!(save.material, "shadow_map");
         assert_eq!(save.after.as_deref(), Some("create_shadow_map"));
-        assert_eq!((save.file, save.encoding), (PathBuf::from("out/a=b.PNG"), Encoding::Png));
-        for wrong in ["visibility", "visibility=a.jpg", "visibility=a", "=a.png", "v@=a.png", "v="] {
+        assert_eq!(
+            (save.file, save.encoding),
+            (PathBuf::from("out/a=b.PNG"), Encoding::Png)
+        );
+        for wrong in [
+            "visibility",
+            "visibility=a.jpg",
+            "visibility=a",
+            "=a.png",
+            "v@=a.png",
+            "v=",
+        ] {
             assert!(wrong.parse::<Save>().is_err(), "{wrong}");
         }
     }

@@ -157,11 +157,18 @@ pub struct Spread {
 impl Spread {
     /// Of some samples; `None` if there are none.
     pub fn of(samples: &[Duration]) -> Option<Self> {
-        let mut ms: Vec<f64> = samples.iter().map(|sample| sample.as_secs_f64() * 1e3).collect();
+        let mut ms: Vec<f64> = samples
+            .iter()
+            .map(|sample| sample.as_secs_f64() * 1e3)
+            .collect();
         ms.sort_by(f64::total_cmp);
         let last = ms.len().checked_sub(1)?;
         let rank = (ms.len() as f64 * 0.95).ceil() as usize;
-        Some(Self { min: ms[0], median: (ms[last / 2] + ms[ms.len() / 2]) * 0.5, p95: ms[rank.clamp(1, ms.len()) - 1] })
+        Some(Self {
+            min: ms[0],
+            median: (ms[last / 2] + ms[ms.len() / 2]) * 0.5,
+            p95: ms[rank.clamp(1, ms.len()) - 1],
+        })
     }
 
     /// Of samples of which any may be missing; `None` if one is.
@@ -173,7 +180,8 @@ impl Spread {
 impl Results {
     /// The contents of `results.json`.
     pub fn to_json(&self) -> String {
-        let mut text = serde_json::to_string_pretty(self).expect("plain structs with string keys always serialise");
+        let mut text = serde_json::to_string_pretty(self)
+            .expect("plain structs with string keys always serialise");
         text.push('\n');
         text
     }
@@ -191,8 +199,13 @@ impl Results {
 
     fn record(&self, run: &Run) -> Vec<String> {
         let measured = run.measured.as_ref();
-        let count = |pick: fn(&Measured) -> u64| measured.map(|m| pick(m).to_string()).unwrap_or_default();
-        let ms = |spread: Option<Spread>| spread.map(|s| format!("{:.6}", s.median)).unwrap_or_default();
+        let count =
+            |pick: fn(&Measured) -> u64| measured.map(|m| pick(m).to_string()).unwrap_or_default();
+        let ms = |spread: Option<Spread>| {
+            spread
+                .map(|s| format!("{:.6}", s.median))
+                .unwrap_or_default()
+        };
         vec![
             self.adapter.name.clone(),
             self.scene.name.clone(),
@@ -202,7 +215,9 @@ impl Results {
             run.view.clone(),
             run.viewport[0].to_string(),
             run.viewport[1].to_string(),
-            run.map_size.map(|size| size.to_string()).unwrap_or_default(),
+            run.map_size
+                .map(|size| size.to_string())
+                .unwrap_or_default(),
             run.pixels.background.to_string(),
             run.pixels.facing_away.to_string(),
             run.pixels.facing_light.to_string(),
@@ -212,7 +227,10 @@ impl Results {
             count(|m| m.certain.lit),
             count(|m| m.certain.shadow),
             count(|m| m.uncertain),
-            measured.and_then(|m| m.rays).map(|rays| rays.to_string()).unwrap_or_default(),
+            measured
+                .and_then(|m| m.rays)
+                .map(|rays| rays.to_string())
+                .unwrap_or_default(),
             count(|m| m.wrong.lit),
             count(|m| m.wrong.shadow),
             count(|m| m.wrong.total),
@@ -231,7 +249,9 @@ impl Results {
     pub fn save(&self, folder: &Path) -> Result<(), CliError> {
         write_whole(&folder.join("results.json"), self.to_json().as_bytes())?;
         let path = folder.join("results.csv");
-        let csv = self.to_csv().map_err(|error| CliError::write(&path, error))?;
+        let csv = self
+            .to_csv()
+            .map_err(|error| CliError::write(&path, error))?;
         write_whole(&path, csv.as_bytes())
     }
 }
@@ -294,13 +314,20 @@ pub(crate) mod tests {
 
     /// Results with every field in use: one full run, one without a map or GPU times, one unavailable.
     pub(crate) fn sample() -> Results {
-        let spread = |ms: f64| Spread { min: ms, median: ms * 1.5, p95: ms * 2.0 };
+        let spread = |ms: f64| Spread {
+            min: ms,
+            median: ms * 1.5,
+            p95: ms * 2.0,
+        };
         let run = |preset: &str, map_size| Run {
             preset: preset.into(),
             view: "main".into(),
             viewport: [512, 256],
             map_size,
-            params: BTreeMap::from([("slope_bias".into(), 1.5.into()), ("cull".into(), "front".into())]),
+            params: BTreeMap::from([
+                ("slope_bias".into(), 1.5.into()),
+                ("cull".into(), "front".into()),
+            ]),
             pixels: PixelCounts {
                 background: 72,
                 facing_away: 31_000,
@@ -313,15 +340,31 @@ pub(crate) mod tests {
             unavailable: None,
         };
         let measured = |name: &str, gpu: bool, rays| Measured {
-            certain: CertainCounts { lit: 59_000, shadow: 41_000 },
+            certain: CertainCounts {
+                lit: 59_000,
+                shadow: 41_000,
+            },
             uncertain: 0,
             rays,
-            wrong: WrongCounts { lit: 1_000, shadow: 2_500, total: 3_500, certain: 3_495, in_band: 5 },
+            wrong: WrongCounts {
+                lit: 1_000,
+                shadow: 2_500,
+                total: 3_500,
+                certain: 3_495,
+                in_band: 5,
+            },
             facing_mismatch: 3,
             passes: ["gbuffer", name]
-                .map(|name| Pass { name: name.into(), gpu_ms: gpu.then(|| spread(0.25)), cpu_ms: spread(0.01) })
+                .map(|name| Pass {
+                    name: name.into(),
+                    gpu_ms: gpu.then(|| spread(0.25)),
+                    cpu_ms: spread(0.01),
+                })
                 .into(),
-            frame: FrameTimes { gpu_ms: gpu.then(|| spread(1.0)), wall_ms: spread(2.0) },
+            frame: FrameTimes {
+                gpu_ms: gpu.then(|| spread(1.0)),
+                wall_ms: spread(2.0),
+            },
             cached: None,
             memory_bytes: 12_582_912,
             saved_bytes: 1_048_576,
@@ -341,14 +384,26 @@ pub(crate) mod tests {
                 device_type: "Cpu".into(),
                 gpu_unavailable: None,
             },
-            scene: Scene { name: "park".into(), triangles: 55_000 },
+            scene: Scene {
+                name: "park".into(),
+                triangles: 55_000,
+            },
             oracle: "exact".into(),
             frames: 10,
             warmup: 2,
             runs: vec![
-                Run { measured: Some(measured("create_shadow_map", true, None)), ..run("nsm", Some(1024)) },
-                Run { measured: Some(measured("trace_rays", false, Some(100_000))), ..run("rt", None) },
-                Run { unavailable: Some("needs ray queries, \"not\" here".into()), ..run("rt_hw", None) },
+                Run {
+                    measured: Some(measured("create_shadow_map", true, None)),
+                    ..run("nsm", Some(1024))
+                },
+                Run {
+                    measured: Some(measured("trace_rays", false, Some(100_000))),
+                    ..run("rt", None)
+                },
+                Run {
+                    unavailable: Some("needs ray queries, \"not\" here".into()),
+                    ..run("rt_hw", None)
+                },
             ],
         }
     }
@@ -365,17 +420,51 @@ pub(crate) mod tests {
         let csv = sample().to_csv().unwrap();
         insta::assert_snapshot!(csv);
         let mut reader = csv::Reader::from_reader(csv.as_bytes());
-        assert_eq!(reader.records().map(|record| record.unwrap().len()).collect::<Vec<_>>(), [COLUMNS.len(); 3]);
+        assert_eq!(
+            reader
+                .records()
+                .map(|record| record.unwrap().len())
+                .collect::<Vec<_>>(),
+            [COLUMNS.len(); 3]
+        );
     }
 
     #[test]
     fn spreads_are_order_statistics() {
-        let ms = |list: &[u64]| Spread::of(&list.iter().map(|&ms| Duration::from_millis(ms)).collect::<Vec<_>>());
+        let ms = |list: &[u64]| {
+            Spread::of(
+                &list
+                    .iter()
+                    .map(|&ms| Duration::from_millis(ms))
+                    .collect::<Vec<_>>(),
+            )
+        };
         assert_eq!(ms(&[]), None);
-        assert_eq!(ms(&[7]), Some(Spread { min: 7.0, median: 7.0, p95: 7.0 }));
-        assert_eq!(ms(&[4, 1, 2, 9]), Some(Spread { min: 1.0, median: 3.0, p95: 9.0 }));
+        assert_eq!(
+            ms(&[7]),
+            Some(Spread {
+                min: 7.0,
+                median: 7.0,
+                p95: 7.0
+            })
+        );
+        assert_eq!(
+            ms(&[4, 1, 2, 9]),
+            Some(Spread {
+                min: 1.0,
+                median: 3.0,
+                p95: 9.0
+            })
+        );
         let hundred: Vec<u64> = (1..=100).rev().collect();
-        assert_eq!(ms(&hundred), Some(Spread { min: 1.0, median: 50.5, p95: 95.0 }));
+        assert_eq!(
+            ms(&hundred),
+            Some(Spread {
+                min: 1.0,
+                median: 50.5,
+                p95: 95.0
+            })
+        );
         assert_eq!(Spread::of_all(&[Some(Duration::ZERO), None]), None);
     }
 
@@ -386,8 +475,17 @@ pub(crate) mod tests {
         write_whole(&path, b"old and long").unwrap();
         write_whole(&path, b"new").unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"new");
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file stays");
+        assert_eq!(
+            std::fs::read_dir(folder.path()).unwrap().count(),
+            1,
+            "no temporary file stays"
+        );
         let missing = folder.path().join("missing").join("a.txt");
-        assert!(write_whole(&missing, b"x").unwrap_err().to_string().contains("a.txt"));
+        assert!(
+            write_whole(&missing, b"x")
+                .unwrap_err()
+                .to_string()
+                .contains("a.txt")
+        );
     }
 }

@@ -1,1 +1,36 @@
-//! Skiagraph.
+//! A render graph for wgpu, written in RON and WGSL.
+//!
+//! A document names *materials* (textures, buffers, samplers) and *passes*; bindings and access come from the shaders by
+//! reflection, order from what passes read and write. The phases are one file each, in this order:
+//! [`document`], `resolve`, `wgsl` (reflection), `link`, `order`, `cull`, `schedule`, `lifetime`, `allocate`, `execute`.
+//! All before `allocate` are pure functions on plain data and need no GPU.
+//!
+//! The crate knows no scenes and no shadows: what a graph does not make itself comes from a [`Provider`].
+
+mod cull;
+pub mod diagnostics;
+pub mod document;
+mod graph;
+mod lifetime;
+mod link;
+mod order;
+mod passes;
+mod plan;
+mod provider;
+pub mod registry;
+mod resolve;
+mod schedule;
+mod source;
+pub mod step;
+mod wgsl;
+
+pub use diagnostics::{Code, Diagnostic, Diagnostics, Label, Severity};
+pub use document::{
+    located::Located,
+    params::{Param, ParamType, ParamValue},
+};
+pub use graph::{Graph, ParamError};
+pub use plan::{Capture, CulledPass, OutputSummary, PassSummary, Plan, PlanRequest};
+pub use provider::{NoProvider, Provided, Provider, ProviderError};
+pub use registry::{Lowering, PassKind, Registry};
+pub use source::{FolderSources, LayeredSources, SourceFile, Sources, Span};

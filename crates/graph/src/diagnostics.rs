@@ -1,0 +1,307 @@
+//! What is wrong with a document or shader: collected, located, printed in source order.
+
+use crate::source::Span;
+use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource};
+use std::fmt;
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The document cannot be used.
+    Error,
+    /// The document can be used, but something in it has no effect or is likely a mistake.
+    Warning,
+}
+
+macro_rules! codes {
+    ($($(#[doc = $doc:literal])+ $name:ident = $text:literal,)+) => {
+        /// What kind of mistake a [`Diagnostic`] is about; stable names for scripts.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[non_exhaustive]
+        pub enum Code { $($(#[doc = $doc])+ $name,)+ }
+
+        impl Code {
+            /// The kebab-case name that is printed and written to machine-readable output.
+            pub fn as_str(self) -> &'static str {
+                match self { $(Code::$name => $text,)+ }
+            }
+        }
+    };
+}
+
+codes! {
+    /// A document, shader or imported file is missing or unreadable.
+    MissingFile = "missing-file",
+    /// The RON text is not well-formed, or a value has the wrong type.
+    Syntax = "syntax",
+    /// A field that the document format does not know.
+    UnknownField = "unknown-field",
+    /// A field that must be given is missing.
+    MissingField = "missing-field",
+    /// A pass kind, enum variant or format that is not known.
+    UnknownVariant = "unknown-variant",
+    /// The document's `format` is not one this version reads.
+    FormatVersion = "format-version",
+    /// Two things of one name.
+    DuplicateName = "duplicate-name",
+    /// A name that no material, provided resource or view has.
+    UnknownResource = "unknown-resource",
+    /// A param that the document does not declare.
+    UnknownParam = "unknown-param",
+    /// A param's value has the wrong type or is out of range.
+    ParamValue = "param-value",
+    /// A size or count that is zero, absurd, or above the adapter's limits.
+    Size = "size",
+    /// A resource that is not of the kind needed here (a buffer where a texture must stand, …).
+    ResourceKind = "resource-kind",
+    /// A texture's format does not fit the shader, the attachment or the copy.
+    FormatMismatch = "format-mismatch",
+    /// Two shaders see one buffer with different item layouts, or a layout does not fit the buffer.
+    LayoutMismatch = "layout-mismatch",
+    /// The WGSL does not parse or validate.
+    Shader = "shader",
+    /// A shader without the entry point that the pass needs.
+    EntryPoint = "entry-point",
+    /// A shader's binding cannot be satisfied (unsupported type, clashing numbers).
+    Binding = "binding",
+    /// A material is read before any pass has written it.
+    ReadBeforeWrite = "read-before-write",
+    /// Passes that need each other's results.
+    Cycle = "cycle",
+    /// A pass samples a texture that it draws to.
+    FeedbackLoop = "feedback-loop",
+    /// A limit of the adapter, or a feature that it lacks.
+    Limit = "limit",
+    /// A material that no pass uses.
+    Unused = "unused",
+    /// A document without outputs, or an output asked for that is not declared.
+    Output = "output",
+}
+
+/// A place and what is to be said about it.
+#[derive(Clone, Debug)]
+pub struct Label {
+    /// The place.
+    pub span: Span,
+    /// What is to be said; may be empty.
+    pub text: String,
+}
+
+/// One mistake.
+#[derive(Clone, Debug)]
+pub struct Diagnostic {
+    /// Its kind.
+    pub code: Code,
+    /// Error or warning.
+    pub severity: Severity,
+    /// What is wrong, naming the thing.
+    pub message: String,
+    /// Where; the first label is the place itself, others explain.
+    pub labels: Vec<Label>,
+    /// What to do about it.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// An error without a place yet.
+    pub fn error(code: Code, message: impl Into<String>) -> Self {
+        Self { code, severity: Severity::Error, message: message.into(), labels: Vec::new(), help: None }
+    }
+
+    /// A warning without a place yet.
+    pub fn warning(code: Code, message: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, ..Self::error(code, message) }
+    }
+
+    /// Adds a place; the first one added is the mistake's own.
+    #[must_use]
+    pub fn at(mut self, span: Span, text: impl Into<String>) -> Self {
+        self.labels.push(Label { span, text: text.into() });
+        self
+    }
+
+    /// Says what to do.
+    #[must_use]
+    pub fn help(mut self, text: impl Into<String>) -> Self {
+        self.help = Some(text.into());
+        self
+    }
+
+    /// Adds "did you mean …" if one of `known` is close to `word`, else a list of what there is.
+    #[must_use]
+    pub fn suggest<'a>(self, word: &str, known: impl IntoIterator<Item = &'a str>) -> Self {
+        match suggestion(word, known) {
+            Some(text) => self.help(text),
+            None => self,
+        }
+    }
+
+    fn key(&self) -> (Severity, &str, usize) {
+        let first = self.labels.first();
+        (
+            self.severity,
+            first.map_or("", |label| &label.span.file.name),
+            first.map_or(0, |label| label.span.range.start),
+        )
+    }
+}
+
+/// "did you mean …" for a misspelt `word`, or the list of what is known.
+pub fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    let known: Vec<&str> = known.into_iter().collect();
+    let best = known
+        .iter()
+        .map(|name| (strsim::jaro_winkler(word, name), *name))
+        .max_by(|a, b| a.0.total_cmp(&b.0))?;
+    // Below 0.8 two short names share little more than a letter or two; a list helps more than a wild guess.
+    if best.0 >= 0.8 {
+        return Some(format!("did you mean `{}`?", best.1));
+    }
+    const SHOWN: usize = 16;
+    let rest = known.len().saturating_sub(SHOWN);
+    let mut list = known.iter().take(SHOWN).map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    if rest > 0 {
+        list.push_str(&format!(" and {rest} more"));
+    }
+    Some(format!("known here: {list}"))
+}
+
+/// A non-empty list of diagnostics, errors first, in source order.
+#[derive(Clone, Debug)]
+pub struct Diagnostics(Vec<Diagnostic>);
+
+impl Diagnostics {
+    pub(crate) fn new(mut list: Vec<Diagnostic>) -> Self {
+        list.sort_by(|a, b| a.key().cmp(&b.key()));
+        list.dedup_by(|a, b| a.message == b.message && a.key() == b.key());
+        Self(list)
+    }
+
+    /// The diagnostics, in the order in which they are printed.
+    pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
+        self.0.iter()
+    }
+
+    /// All of them rendered: file, line, the word underlined, help.
+    pub fn render(&self, colour: bool) -> String {
+        render(&self.0, colour)
+    }
+}
+
+impl fmt::Display for Diagnostics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.render(false))
+    }
+}
+
+impl std::error::Error for Diagnostics {}
+
+impl From<Diagnostic> for Diagnostics {
+    fn from(diagnostic: Diagnostic) -> Self {
+        Self(vec![diagnostic])
+    }
+}
+
+/// Renders a list of diagnostics, one after the other.
+pub fn render(list: &[Diagnostic], colour: bool) -> String {
+    let theme = if colour { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
+    let handler = GraphicalReportHandler::new_themed(theme).with_width(110).with_links(false);
+    let mut text = String::new();
+    for diagnostic in list {
+        // Rendering into a String fails only if a Display implementation does; then the bare message must do.
+        if handler.render_report(&mut text, &Report::new(diagnostic)).is_err() {
+            text.push_str(&diagnostic.message);
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// One diagnostic as miette sees it: labels of the first file on the report itself, those of other files as related notes.
+#[derive(Debug)]
+struct Report<'a> {
+    diagnostic: &'a Diagnostic,
+    message: String,
+    source: Option<NamedSource<String>>,
+    labels: Vec<LabeledSpan>,
+    related: Vec<Report<'a>>,
+}
+
+impl<'a> Report<'a> {
+    fn new(diagnostic: &'a Diagnostic) -> Self {
+        let first = diagnostic.labels.first().map(|label| label.span.file.clone());
+        let mut report = Self::of_file(diagnostic, diagnostic.message.clone(), first.as_ref());
+        let mut files: Vec<_> = diagnostic.labels.iter().map(|label| label.span.file.clone()).collect();
+        files.dedup();
+        for file in files.into_iter().filter(|file| Some(file) != first.as_ref()) {
+            report.related.push(Self::of_file(diagnostic, format!("see also {}", file.name), Some(&file)));
+        }
+        report
+    }
+
+    fn of_file(diagnostic: &'a Diagnostic, message: String, file: Option<&crate::source::SourceFile>) -> Self {
+        let labels = diagnostic
+            .labels
+            .iter()
+            .filter(|label| Some(&label.span.file) == file)
+            .map(|label| {
+                let text = (!label.text.is_empty()).then(|| label.text.clone());
+                let range = clamp(&label.span);
+                LabeledSpan::new(text, range.start, range.len())
+            })
+            .collect();
+        let source = file.map(|file| NamedSource::new(&*file.name, file.text.to_string()));
+        Self { diagnostic, message, source, labels, related: Vec::new() }
+    }
+}
+
+/// A span that miette can show: inside the text, on character borders.
+fn clamp(span: &Span) -> std::ops::Range<usize> {
+    let text = &span.file.text;
+    let border = |mut at: usize| {
+        at = at.min(text.len());
+        while !text.is_char_boundary(at) {
+            at -= 1;
+        }
+        at
+    };
+    let start = border(span.range.start);
+    start..border(span.range.end).max(start)
+}
+
+impl fmt::Display for Report<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Report<'_> {}
+
+impl miette::Diagnostic for Report<'_> {
+    fn code<'b>(&'b self) -> Option<Box<dyn fmt::Display + 'b>> {
+        Some(Box::new(self.diagnostic.code.as_str()))
+    }
+
+    fn severity(&self) -> Option<miette::Severity> {
+        Some(match self.diagnostic.severity {
+            Severity::Error => miette::Severity::Error,
+            Severity::Warning => miette::Severity::Warning,
+        })
+    }
+
+    fn help<'b>(&'b self) -> Option<Box<dyn fmt::Display + 'b>> {
+        self.diagnostic.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
+        self.source.as_ref().map(|source| source as &dyn miette::SourceCode)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        Some(Box::new(self.labels.iter().cloned()))
+    }
+
+    fn related<'b>(&'b self) -> Option<Box<dyn Iterator<Item = &'b dyn miette::Diagnostic> + 'b>> {
+        Some(Box::new(self.related.iter().map(|report| report as &dyn miette::Diagnostic)))
+    }
+}

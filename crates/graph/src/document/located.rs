@@ -1,0 +1,359 @@
+//! Reading RON piece by piece, so that every error of a document is found and every name keeps its place.
+//!
+//! ron stops at its first error, so each list entry and each field of a pass is deserialised by itself from its raw text.
+//! A raw value borrows the source, hence the difference of pointers is the byte offset.
+
+use crate::{
+    diagnostics::{Code, Diagnostic},
+    source::{SourceFile, Span},
+};
+use ron::value::RawValue;
+use serde::{
+    Deserialize, Deserializer,
+    de::{DeserializeOwned, DeserializeSeed, Error as _, IntoDeserializer, MapAccess, Visitor},
+};
+use std::{cell::RefCell, fmt, ops::Deref, ops::Range};
+
+/// A value that knows where it stands.
+#[derive(Clone)]
+pub struct Located<T> {
+    /// The value.
+    pub value: T,
+    /// Its place.
+    pub span: Span,
+}
+
+impl<T> Located<T> {
+    /// A value at a place.
+    pub fn new(value: T, span: Span) -> Self {
+        Self { value, span }
+    }
+}
+
+impl<T> Deref for Located<T> {
+    type Target = T;
+    fn deref(&self) -> &T {
+        &self.value
+    }
+}
+
+impl<T: fmt::Debug> fmt::Debug for Located<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.value.fmt(f)
+    }
+}
+
+/// The text that is being deserialised on this thread, and the innermost place where it went wrong.
+struct Reading {
+    file: SourceFile,
+    failed: Option<Range<usize>>,
+}
+
+thread_local! {
+    // serde hands a `Deserialize` implementation no context; this is the context.
+    static READING: RefCell<Option<Reading>> = const { RefCell::new(None) };
+}
+
+fn options() -> ron::Options {
+    ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
+}
+
+/// Byte range of `part` in the text being read, if it is part of it.
+fn range_in(text: &str, part: &str) -> Option<Range<usize>> {
+    let start = (part.as_ptr() as usize).checked_sub(text.as_ptr() as usize)?;
+    (start + part.len() <= text.len()).then(|| start..start + part.len())
+}
+
+/// Deserialises `text`, a part of the file being read, and remembers the innermost place of a failure.
+fn read_part<T: DeserializeOwned>(text: &str) -> Result<T, ron::Error> {
+    options().from_str(text).map_err(|error| {
+        READING.with_borrow_mut(|reading| {
+            if let Some(reading) = reading
+                && reading.failed.is_none()
+                && let Some(whole) = range_in(&reading.file.text, text)
+            {
+                let at = offset(text, error.span.start.line, error.span.start.col);
+                let end = offset(text, error.span.end.line, error.span.end.col).max(at);
+                // ron reports the end of a bad word as its place; a word is what the reader wants to see.
+                reading.failed = Some(word_around(text, at, end, whole.start));
+            }
+        });
+        error.code
+    })
+}
+
+fn offset(text: &str, line: usize, column: usize) -> usize {
+    let start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
+    let rest = text.get(start..).unwrap_or("");
+    start + rest.chars().take(column.saturating_sub(1)).map(char::len_utf8).sum::<usize>()
+}
+
+fn word_around(text: &str, start: usize, end: usize, base: usize) -> Range<usize> {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_' || c == '"';
+    let mut low = start.min(text.len());
+    if low == end {
+        low -= text[..low].chars().rev().take_while(|&c| is_word(c)).map(char::len_utf8).sum::<usize>();
+    }
+    let mut high = end.min(text.len()).max(low);
+    high += text[high..].chars().take_while(|&c| is_word(c)).map(char::len_utf8).sum::<usize>();
+    base + low..base + high
+}
+
+impl<'de, T: DeserializeOwned> Deserialize<'de> for Located<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = <&RawValue>::deserialize(deserializer)?.get_ron().trim();
+        let value = read_part(text).map_err(D::Error::custom)?;
+        let span = READING.with_borrow(|reading| {
+            let reading = reading.as_ref()?;
+            Some(reading.file.span(range_in(&reading.file.text, text)?))
+        });
+        let span = span.ok_or_else(|| D::Error::custom("a located value outside a document"))?;
+        Ok(Self { value, span })
+    }
+}
+
+/// Deserialises a value that may be written as a bare literal (a number) or as a word; `None` if it is a word.
+pub(crate) fn literal<'de, T: DeserializeOwned, D: Deserializer<'de>>(deserializer: D) -> Result<Result<T, &'de str>, D::Error> {
+    let text = <&RawValue>::deserialize(deserializer)?.get_ron().trim();
+    let is_word = text.starts_with(|c: char| c.is_alphabetic()) && text != "true" && text != "false";
+    if is_word { Ok(Err(text)) } else { read_part(text).map(Ok).map_err(D::Error::custom) }
+}
+
+/// Deserialises a part of the text being read that [`literal`] handed back.
+pub(crate) fn word<T: DeserializeOwned, E: serde::de::Error>(text: &str) -> Result<T, E> {
+    read_part(text).map_err(E::custom)
+}
+
+/// A piece of a document: raw RON with its place.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// A named field of a [`Node`].
+#[derive(Clone, Debug)]
+pub struct Field {
+    /// The field's name.
+    pub name: Located<String>,
+    /// Its value.
+    pub node: Node,
+}
+
+impl Node {
+    /// The whole file, without what stands before its opening bracket.
+    pub fn root(file: &SourceFile) -> Self {
+        Self { span: file.span(0..file.text.len()) }
+    }
+
+    /// The raw text.
+    pub fn text(&self) -> &str {
+        self.span.file.text.get(self.span.range.clone()).unwrap_or("")
+    }
+
+    fn sub(&self, part: &str) -> Node {
+        let range = range_in(&self.span.file.text, part).unwrap_or(self.span.range.clone());
+        Node { span: self.span.file.span(range) }
+    }
+
+    /// Deserialises the piece.
+    ///
+    /// # Errors
+    /// One diagnostic at the innermost place that failed.
+    pub fn parse<T: DeserializeOwned>(&self) -> Result<T, Diagnostic> {
+        self.reading(|| read_part(self.text()))
+    }
+
+    fn reading<T>(&self, read: impl FnOnce() -> Result<T, ron::Error>) -> Result<T, Diagnostic> {
+        READING.set(Some(Reading { file: self.span.file.clone(), failed: None }));
+        let result = read();
+        let failed = READING.take().and_then(|reading| reading.failed);
+        result.map_err(|error| explain(&error, self.span.file.span(failed.unwrap_or(self.span.range.clone()))))
+    }
+
+    /// The entries of a list, `[…]`.
+    ///
+    /// # Errors
+    /// If the piece is no list or is not well-formed.
+    pub fn list(&self) -> Result<Vec<Node>, Diagnostic> {
+        struct Raw<'a>(Vec<&'a str>);
+        impl<'de> Deserialize<'de> for Raw<'de> {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let entries = <Vec<&RawValue>>::deserialize(deserializer)?;
+                Ok(Raw(entries.into_iter().map(|entry| entry.get_ron().trim()).collect()))
+            }
+        }
+        let raw: Raw<'_> = self.borrowed()?;
+        Ok(raw.0.into_iter().map(|part| self.sub(part)).collect())
+    }
+
+    /// The fields of a struct, `(name: value, …)`, in order; duplicates are the caller's to find.
+    ///
+    /// # Errors
+    /// If the piece is no struct with named fields or is not well-formed.
+    pub fn fields(&self) -> Result<Vec<Field>, Diagnostic> {
+        struct Raw<'a>(Vec<(String, &'a str)>);
+        impl<'de> Deserialize<'de> for Raw<'de> {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                struct Fields;
+                impl<'de> Visitor<'de> for Fields {
+                    type Value = Raw<'de>;
+                    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                        f.write_str("a struct with named fields, `(name: value, …)`")
+                    }
+                    fn visit_unit<E: serde::de::Error>(self) -> Result<Raw<'de>, E> {
+                        Ok(Raw(Vec::new()))
+                    }
+                    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Raw<'de>, A::Error> {
+                        let mut fields = Vec::new();
+                        while let Some(Word(key)) = map.next_key()? {
+                            fields.push((key, map.next_value::<&RawValue>()?.get_ron().trim()));
+                        }
+                        Ok(Raw(fields))
+                    }
+                }
+                deserializer.deserialize_any(Fields)
+            }
+        }
+        let raw: Raw<'_> = self.borrowed()?;
+        Ok(raw
+            .0
+            .into_iter()
+            .map(|(name, value)| {
+                let node = self.sub(value);
+                Field { name: Located::new(name.clone(), self.key_span(&name, &node)), node }
+            })
+            .collect())
+    }
+
+    /// The place of the field name that stands before `value`.
+    fn key_span(&self, name: &str, value: &Node) -> Span {
+        let before = &self.span.file.text[self.span.range.start..value.span.range.start];
+        match before.rfind(name) {
+            Some(at) => {
+                let start = self.span.range.start + at;
+                self.span.file.span(start..start + name.len())
+            }
+            None => value.span.clone(),
+        }
+    }
+
+    /// Splits `Tag(…)` into the tag and its body; a bare `Tag` has an empty body.
+    pub fn variant(&self) -> Option<(Located<String>, Node)> {
+        let text = self.text();
+        let length: usize = text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').map(char::len_utf8).sum();
+        if length == 0 || !text.starts_with(|c: char| c.is_alphabetic()) {
+            return None;
+        }
+        let start = self.span.range.start;
+        let tag = Located::new(text[..length].to_owned(), self.span.file.span(start..start + length));
+        Some((tag, Node { span: self.span.file.span(start + length..self.span.range.end) }))
+    }
+
+    fn borrowed<'a, T: Deserialize<'a>>(&'a self) -> Result<T, Diagnostic> {
+        options().from_str(self.text()).map_err(|error| {
+            let base = self.span.range.start;
+            let at = offset(self.text(), error.span.start.line, error.span.start.col);
+            let range = word_around(self.text(), at, at, base);
+            explain(&error.code, self.span.file.span(range))
+        })
+    }
+}
+
+/// A key of a struct or a map, identifier or string.
+struct Word(String);
+impl<'de> Deserialize<'de> for Word {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Identifier;
+        impl Visitor<'_> for Identifier {
+            type Value = Word;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a field name")
+            }
+            fn visit_str<E>(self, name: &str) -> Result<Word, E> {
+                Ok(Word(name.to_owned()))
+            }
+        }
+        deserializer.deserialize_identifier(Identifier)
+    }
+}
+
+/// Deserialises a struct from fields that were split before, each from its own text.
+///
+/// # Errors
+/// One diagnostic: an unknown, missing or duplicate field, or a value of the wrong type, at its place.
+pub fn from_fields<T: DeserializeOwned>(fields: &[Field], whole: &Span) -> Result<T, Diagnostic> {
+    struct Access<'a> {
+        fields: std::slice::Iter<'a, Field>,
+        value: Option<&'a Field>,
+    }
+    impl<'de> MapAccess<'de> for Access<'de> {
+        type Error = ron::Error;
+        fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, ron::Error> {
+            let Some(field) = self.fields.next() else { return Ok(None) };
+            self.value = Some(field);
+            let name: &str = &field.name.value;
+            seed.deserialize(IntoDeserializer::<ron::Error>::into_deserializer(name)).map(Some).inspect_err(|_| {
+                READING.with_borrow_mut(|reading| {
+                    if let Some(reading) = reading {
+                        reading.failed = Some(field.name.span.range.clone());
+                    }
+                });
+            })
+        }
+        fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, ron::Error> {
+            let field = self.value.take().ok_or_else(|| ron::Error::custom("a value without its key"))?;
+            let text = field.node.text();
+            options().from_str_seed(text, seed).map_err(|error| {
+                READING.with_borrow_mut(|reading| {
+                    if let Some(reading) = reading
+                        && reading.failed.is_none()
+                    {
+                        let start = offset(text, error.span.start.line, error.span.start.col);
+                        let end = offset(text, error.span.end.line, error.span.end.col).max(start);
+                        reading.failed = Some(word_around(text, start, end, field.node.span.range.start));
+                    }
+                });
+                error.code
+            })
+        }
+    }
+    let node = Node { span: whole.clone() };
+    node.reading(|| {
+        let access = Access { fields: fields.iter(), value: None };
+        T::deserialize(serde::de::value::MapAccessDeserializer::new(access))
+    })
+}
+
+/// A ron error in our words.
+fn explain(error: &ron::Error, span: Span) -> Diagnostic {
+    use ron::Error as R;
+    match error {
+        R::NoSuchStructField { expected, found, .. } => {
+            Diagnostic::error(Code::UnknownField, format!("unknown field `{found}`"))
+                .at(span, "not a field of this")
+                .suggest(found, expected.iter().copied())
+        }
+        R::NoSuchEnumVariant { expected, found, .. } => {
+            Diagnostic::error(Code::UnknownVariant, format!("unknown word `{found}`"))
+                .at(span, "not one of the words that may stand here")
+                .suggest(found, expected.iter().copied())
+        }
+        R::MissingStructField { field, .. } => {
+            Diagnostic::error(Code::MissingField, format!("the field `{field}` is missing"))
+                .at(span, "it must be given here")
+        }
+        R::DuplicateStructField { field, .. } => {
+            Diagnostic::error(Code::DuplicateName, format!("the field `{field}` is given twice")).at(span, "")
+        }
+        other => Diagnostic::error(Code::Syntax, lower_first(&other.to_string())).at(span, "here"),
+    }
+}
+
+fn lower_first(text: &str) -> String {
+    let mut characters = text.chars();
+    match characters.next() {
+        Some(first) => first.to_lowercase().chain(characters).collect(),
+        None => String::new(),
+    }
+}

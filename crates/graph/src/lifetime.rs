@@ -1,0 +1,39 @@
+//! Phase 8: what the live passes use each resource for, and from which to which pass.
+
+use crate::{
+    link::{LinkedPass, Usage},
+    resolve::ResourceId,
+};
+use std::collections::BTreeMap;
+
+/// Uses of one resource by the passes of a schedule.
+#[derive(Clone, Debug)]
+pub(crate) struct Lifetime {
+    pub textures: wgpu::TextureUsages,
+    pub buffers: wgpu::BufferUsages,
+    /// Positions in the schedule of the first and the last pass that touch it.
+    pub first: usize,
+    pub last: usize,
+}
+
+/// Only resources that a scheduled pass touches have a lifetime, and only those are made.
+pub(crate) fn lifetimes(passes: &[LinkedPass], schedule: &[usize]) -> BTreeMap<ResourceId, Lifetime> {
+    let mut lifetimes: BTreeMap<ResourceId, Lifetime> = BTreeMap::new();
+    for (position, &pass) in schedule.iter().enumerate() {
+        for access in &passes[pass].accesses {
+            let lifetime = lifetimes.entry(access.resource).or_insert(Lifetime {
+                textures: wgpu::TextureUsages::empty(),
+                buffers: wgpu::BufferUsages::empty(),
+                first: position,
+                last: position,
+            });
+            lifetime.last = position;
+            match access.usage {
+                Usage::Texture(usage) => lifetime.textures |= usage,
+                Usage::Buffer(usage) => lifetime.buffers |= usage,
+                Usage::None => {}
+            }
+        }
+    }
+    lifetimes
+}

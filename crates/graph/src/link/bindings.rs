@@ -1,0 +1,440 @@
+//! Programs and their bindings: which resource each shader global is, and whether it can be.
+
+use super::{Access, LinkedPass, Linker, Usage, attachments::scalar_of};
+use crate::{
+    diagnostics::{Code, Diagnostic, suggestion},
+    document::materials::Filter,
+    document::params::{ParamType, ParamValue},
+    resolve::{Part, ResourceId, ResourceKind, Target},
+    step::Program,
+    wgsl::{Class, Global, Member, ScalarClass, Shader, TextureClass},
+};
+use naga::ShaderStage;
+use std::sync::Arc;
+
+/// A shader with its entry points, constants and bindings.
+#[derive(Clone, Debug)]
+pub(crate) struct LinkedProgram {
+    pub shader: Arc<Shader>,
+    /// Entry points in stage order (vertex, fragment; or compute).
+    pub entries: Vec<usize>,
+    pub stages: Vec<ShaderStage>,
+    pub constants: Vec<(String, f64)>,
+    pub bindings: Vec<LinkedBinding>,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct LinkedBinding {
+    pub group: u32,
+    pub binding: u32,
+    pub target: BindTarget,
+    pub ty: wgpu::BindingType,
+    pub visibility: wgpu::ShaderStages,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum BindTarget {
+    Buffer(ResourceId),
+    Texture { target: Target, dimension: wgpu::TextureViewDimension },
+    Sampler(ResourceId),
+    /// The `params` uniform, already laid out.
+    Params(Vec<u8>),
+}
+
+impl Linker<'_, '_> {
+    pub(super) fn program(&mut self, program: &Program, stages: &[ShaderStage], pass: &mut LinkedPass) -> Option<LinkedProgram> {
+        let shader = self.shader(program)?;
+        let wanted = program.shader.as_ref().map_or(&pass.name.span, |name| &name.span).clone();
+        let mut entries = Vec::new();
+        for stage in stages {
+            let name = match stage {
+                ShaderStage::Vertex => &program.vertex,
+                ShaderStage::Fragment => &program.fragment,
+                _ => &program.compute,
+            };
+            match shader.entry(*stage, name.as_ref(), &wanted) {
+                Ok(entry) => entries.push(entry),
+                Err(error) => self.report(error),
+            }
+        }
+        if entries.len() != stages.len() {
+            return None;
+        }
+        let globals = shader.globals(&entries);
+        for (bound, _) in &program.bind {
+            // A kind with several shaders hands its bindings to all of them, so only what no global could be is wrong.
+            let exists = shader.module.global_variables.iter().any(|(_, global)| global.name.as_deref() == Some(bound.as_str()));
+            if !exists && program.shader.as_ref().is_some_and(|name| name.span != pass.name.span || name.value == pass.name.value) {
+                let names: Vec<&str> = globals.iter().map(|global| global.name.as_str()).collect();
+                self.report(
+                    Diagnostic::error(Code::Binding, format!("`{}` has no global `{}` to bind", shader.source.file.name, bound.value))
+                        .at(bound.span.clone(), "")
+                        .suggest(bound, names),
+                );
+            }
+        }
+        self.clashes(&globals, &shader);
+        let mut linked =
+            LinkedProgram { constants: self.constants(program, &shader), bindings: Vec::new(), shader, entries, stages: stages.to_vec() };
+        let mut complete = true;
+        for global in &globals {
+            match self.bind(global, program, &linked, pass) {
+                Some(binding) => linked.bindings.push(binding),
+                None => complete = false,
+            }
+        }
+        self.counts(&linked, pass);
+        complete.then_some(linked)
+    }
+
+    /// Two used globals with one number.
+    fn clashes(&mut self, globals: &[Global], shader: &Shader) {
+        for (index, global) in globals.iter().enumerate() {
+            let same = |other: &&Global| (other.group, other.binding) == (global.group, global.binding);
+            if let Some(other) = globals[..index].iter().find(same) {
+                self.report(
+                    Diagnostic::error(
+                        Code::Binding,
+                        format!("`{}` and `{}` of `{}` have one binding number", other.name, global.name, shader.source.file.name),
+                    )
+                    .at(global.span.clone(), format!("@group({}) @binding({})", global.group, global.binding))
+                    .at(other.span.clone(), "the same")
+                    .help("leave the numbers out: the graph gives them"),
+                );
+            }
+            if global.group >= self.limits.max_bind_groups {
+                self.report(
+                    Diagnostic::error(Code::Binding, format!("@group({}) is more than the adapter has", global.group))
+                        .at(global.span.clone(), "")
+                        .help("leave the numbers out: the graph gives them"),
+                );
+            }
+        }
+    }
+
+    /// Values of overridable constants: what the pass kind sets, else the param of that name.
+    fn constants(&mut self, program: &Program, shader: &Shader) -> Vec<(String, f64)> {
+        shader
+            .overrides()
+            .filter_map(|name| {
+                let set = program.constants.iter().find(|(constant, _)| constant == name).map(|(_, value)| *value);
+                let value = set.or_else(|| {
+                    let (param, value) = self.params.get(name)?;
+                    match value {
+                        ParamValue::F32(value) => Some(f64::from(*value)),
+                        ParamValue::I32(value) => Some(f64::from(*value)),
+                        other => param.as_u32(other).map(f64::from),
+                    }
+                });
+                value.map(|value| (name.to_owned(), value))
+            })
+            .collect()
+    }
+
+    fn bind(&mut self, global: &Global, program: &Program, linked: &LinkedProgram, pass: &mut LinkedPass) -> Option<LinkedBinding> {
+        let visibility = linked.stages.iter().fold(wgpu::ShaderStages::empty(), |all, stage| {
+            all | match stage {
+                ShaderStage::Vertex => wgpu::ShaderStages::VERTEX,
+                ShaderStage::Fragment => wgpu::ShaderStages::FRAGMENT,
+                _ => wgpu::ShaderStages::COMPUTE,
+            }
+        });
+        let finish = |target, ty| Some(LinkedBinding { group: global.group, binding: global.binding, target, ty, visibility });
+        if let Class::Unsupported(what) = global.class {
+            self.report(
+                Diagnostic::error(Code::Binding, format!("`{}` is {what}, which a graph cannot bind", global.name))
+                    .at(global.span.clone(), ""),
+            );
+            return None;
+        }
+        let bound = program.bind.iter().find(|(name, _)| name.value == global.name).map(|(_, target)| target.clone());
+        if let (Class::Uniform { size, members }, None) = (&global.class, &bound)
+            && global.name == "params"
+        {
+            let block = self.params_block(global, *size, members)?;
+            return finish(BindTarget::Params(block), uniform(*size));
+        }
+        let target = match &bound {
+            Some(name) => self.expect(name)?,
+            None => match self.resources.find_spelt(&global.name) {
+                Some(target) => target,
+                None => {
+                    self.unknown(global, pass);
+                    return None;
+                }
+            },
+        };
+        let resource = self.resources.get(target.id).clone();
+        let wrong_kind = |this: &mut Self, needed: &str| {
+            let mut error = Diagnostic::error(Code::ResourceKind, format!("`{}` needs {needed}, `{}` is {}", global.name, resource.name, resource.kind.describe()))
+                .at(global.span.clone(), format!("the shader declares {needed}"));
+            if let Some(declared) = &resource.declared {
+                error = error.at(declared.clone(), resource.kind.describe());
+            }
+            this.report(error);
+        };
+        let (bind_target, ty, usage) = match (&global.class, &resource.kind) {
+            (Class::Uniform { size, .. }, ResourceKind::Provided(provided)) if provided.uniform => {
+                if *size > provided.stride {
+                    self.report(
+                        Diagnostic::error(Code::LayoutMismatch, format!("`{}` has {} bytes, the shader's type {size}", resource.name, provided.stride))
+                            .at(global.span.clone(), "import its type from the module that declares it"),
+                    );
+                    return None;
+                }
+                (BindTarget::Buffer(target.id), uniform(*size), Usage::Buffer(wgpu::BufferUsages::UNIFORM))
+            }
+            (Class::Storage { fixed, stride, read_only, .. }, ResourceKind::Buffer(_) | ResourceKind::Provided(_)) => {
+                if matches!(&resource.kind, ResourceKind::Provided(provided) if provided.uniform) {
+                    wrong_kind(self, "a storage buffer");
+                    return None;
+                }
+                if matches!(resource.kind, ResourceKind::Provided(_)) && !read_only {
+                    self.report(
+                        Diagnostic::error(Code::ResourceKind, format!("`{}` belongs to the host and cannot be written", resource.name))
+                            .at(global.span.clone(), "declare it `var<storage, read>`"),
+                    );
+                    return None;
+                }
+                self.layouts.see(target.id, global);
+                let ty = wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Storage { read_only: *read_only },
+                    has_dynamic_offset: false,
+                    min_binding_size: std::num::NonZeroU64::new(fixed + stride.unwrap_or(0)),
+                };
+                (BindTarget::Buffer(target.id), ty, Usage::Buffer(wgpu::BufferUsages::STORAGE))
+            }
+            (Class::Texture(class), ResourceKind::Texture(texture)) => {
+                let (ty, usage) = self.texture(global, class, (texture.format, &target.part), linked, &resource.name)?;
+                let dimension = match class {
+                    TextureClass::Sampled { dimension, .. } | TextureClass::Storage { dimension, .. } => *dimension,
+                };
+                (BindTarget::Texture { target: target.clone(), dimension }, ty, Usage::Texture(usage))
+            }
+            (Class::Sampler { comparison }, ResourceKind::Sampler(sampler)) => {
+                let ty = match (*comparison, sampler.compare.is_some(), sampler.filter) {
+                    (true, true, _) => wgpu::SamplerBindingType::Comparison,
+                    (false, false, Filter::Linear) => wgpu::SamplerBindingType::Filtering,
+                    (false, false, Filter::Nearest) => wgpu::SamplerBindingType::NonFiltering,
+                    _ => {
+                        wrong_kind(self, if *comparison { "a sampler with `compare`" } else { "a sampler without `compare`" });
+                        return None;
+                    }
+                };
+                (BindTarget::Sampler(target.id), wgpu::BindingType::Sampler(ty), Usage::None)
+            }
+            (Class::Uniform { .. }, _) => {
+                wrong_kind(self, "a uniform buffer");
+                return None;
+            }
+            (Class::Storage { .. }, _) => {
+                wrong_kind(self, "a storage buffer");
+                return None;
+            }
+            (Class::Texture(_), _) => {
+                wrong_kind(self, "a texture");
+                return None;
+            }
+            _ => {
+                wrong_kind(self, "a sampler");
+                return None;
+            }
+        };
+        pass.accesses.push(Access {
+            resource: target.id,
+            part: if matches!(resource.kind, ResourceKind::Texture(_)) { target.part } else { Part::ONE },
+            reads: global.reads,
+            writes: global.writes,
+            covers: false,
+            usage,
+            span: global.span.clone(),
+            step: 0,
+        });
+        finish(bind_target, ty)
+    }
+
+    fn unknown(&mut self, global: &Global, pass: &LinkedPass) {
+        let known: Vec<String> = self.resources.known().iter().map(|name| name.replace('.', "_")).collect();
+        let mut error = Diagnostic::error(
+            Code::UnknownResource,
+            format!("pass `{}` binds `{}`, but nothing is called so", *pass.name, global.name),
+        )
+        .at(global.span.clone(), "no material or provided resource has this name")
+        .at(pass.name.span.clone(), "bound by this pass");
+        let hint = suggestion(&global.name, known.iter().map(String::as_str)).unwrap_or_default();
+        error = error.help(format!("{hint}\nor bind it: `bind: {{\"{}\": \"…\"}}`", global.name).trim().to_owned());
+        self.report(error);
+    }
+
+    fn texture(
+        &mut self,
+        global: &Global,
+        class: &TextureClass,
+        (format, part): (wgpu::TextureFormat, &Part),
+        linked: &LinkedProgram,
+        name: &str,
+    ) -> Option<(wgpu::BindingType, wgpu::TextureUsages)> {
+        let features = format.guaranteed_format_features(self.features);
+        let mismatch = |expected: String| {
+            Diagnostic::error(Code::FormatMismatch, format!("`{name}` has the format {format:?}, which `{}` cannot be", global.name))
+                .at(global.span.clone(), expected)
+        };
+        let dimension = match class {
+            TextureClass::Sampled { dimension, .. } | TextureClass::Storage { dimension, .. } => *dimension,
+        };
+        if dimension == wgpu::TextureViewDimension::D2 && part.layers.len() > 1 {
+            self.report(
+                Diagnostic::error(Code::ResourceKind, format!("`{name}` has {} layers, the shader sees one", part.layers.len()))
+                    .at(global.span.clone(), "declare an array texture, or bind a view of one layer"),
+            );
+            return None;
+        }
+        match class {
+            TextureClass::Sampled { scalar, depth, .. } => {
+                let declared = scalar_of(format);
+                if declared != Some(*scalar) || (*depth && !format.is_depth_stencil_format()) {
+                    let what = match declared {
+                        _ if *depth => "the shader declares a depth texture".to_owned(),
+                        Some(own) => format!("the shader reads {scalar}, the texture holds {own}"),
+                        None => format!("the shader reads {scalar}"),
+                    };
+                    self.report(mismatch(what));
+                    return None;
+                }
+                let filterable = features.flags.contains(wgpu::TextureFormatFeatureFlags::FILTERABLE);
+                let is_depth = format.is_depth_stencil_format();
+                if !filterable || is_depth {
+                    for sampler in linked.shader.samplers_of(&linked.entries, global.handle) {
+                        let target = self.resources.find_spelt(&sampler);
+                        let linear = target.is_some_and(|target| {
+                            matches!(&self.resources.get(target.id).kind, ResourceKind::Sampler(entry)
+                                if entry.filter == Filter::Linear && entry.compare.is_none())
+                        });
+                        if linear {
+                            self.report(mismatch(format!("sampled through `{sampler}`, but the format cannot be filtered"))
+                                .help("use a sampler with `filter: Nearest`, textureLoad, or a filterable format"));
+                            return None;
+                        }
+                    }
+                }
+                let sample_type = match (scalar, depth) {
+                    (_, true) => wgpu::TextureSampleType::Depth,
+                    (ScalarClass::Float, _) => wgpu::TextureSampleType::Float { filterable: filterable && !is_depth },
+                    (ScalarClass::Uint, _) => wgpu::TextureSampleType::Uint,
+                    (ScalarClass::Sint, _) => wgpu::TextureSampleType::Sint,
+                };
+                let ty = wgpu::BindingType::Texture { sample_type, view_dimension: dimension, multisampled: false };
+                Some((ty, wgpu::TextureUsages::TEXTURE_BINDING))
+            }
+            TextureClass::Storage { format: declared, access, .. } => {
+                // naga's storage formats bear wgpu's names.
+                if *declared != format!("{format:?}") {
+                    self.report(mismatch(format!("the shader declares {declared}")));
+                    return None;
+                }
+                let both = *access == wgpu::StorageTextureAccess::ReadWrite;
+                let allowed = features.allowed_usages.contains(wgpu::TextureUsages::STORAGE_BINDING)
+                    && (!both || features.flags.contains(wgpu::TextureFormatFeatureFlags::STORAGE_READ_WRITE));
+                if !allowed {
+                    self.report(mismatch("the adapter offers no storage access of this kind".to_owned()).help(
+                        "R32Uint, R32Float and the Rgba formats of 8, 16 and 32 bits can be written by every adapter",
+                    ));
+                    return None;
+                }
+                if part.mips.len() > 1 {
+                    self.report(
+                        Diagnostic::error(Code::ResourceKind, format!("`{name}` has several mips, a storage texture is one"))
+                            .at(global.span.clone(), "bind a view of one mip"),
+                    );
+                    return None;
+                }
+                let ty = wgpu::BindingType::StorageTexture { access: *access, format, view_dimension: dimension };
+                Some((ty, wgpu::TextureUsages::STORAGE_BINDING))
+            }
+        }
+    }
+
+    /// Fills the `params` uniform member by member by name.
+    fn params_block(&mut self, global: &Global, size: u64, members: &[Member]) -> Option<Vec<u8>> {
+        let mut bytes = vec![0u8; usize::try_from(size).ok()?];
+        let mut complete = true;
+        for member in members {
+            let Some((param, value)) = self.params.get(&member.name) else {
+                let known: Vec<&str> = self.params.declared.iter().map(|param| param.name.as_str()).collect();
+                self.report(
+                    Diagnostic::error(Code::UnknownParam, format!("no param is called `{}`, which the shader's `params` holds", member.name))
+                        .at(global.span.clone(), "")
+                        .suggest(&member.name, known),
+                );
+                complete = false;
+                continue;
+            };
+            let (expected, words): ((ScalarClass, u32), Vec<u32>) = match (&param.ty, value) {
+                (_, ParamValue::F32(value)) => ((ScalarClass::Float, 1), vec![value.to_bits()]),
+                (_, ParamValue::I32(value)) => ((ScalarClass::Sint, 1), vec![value.cast_unsigned()]),
+                (_, ParamValue::Vec(values)) => {
+                    let width = values.len() as u32;
+                    ((ScalarClass::Float, width), values.iter().map(|value| value.to_bits()).collect())
+                }
+                (ParamType::U32 | ParamType::Bool | ParamType::Choice(_), value) => {
+                    ((ScalarClass::Uint, 1), vec![param.as_u32(value).unwrap_or(0)])
+                }
+                _ => continue,
+            };
+            if member.vector != Some(expected) {
+                let (scalar, width) = expected;
+                let error = Diagnostic::error(
+                    Code::LayoutMismatch,
+                    format!("param `{}` is {} × {scalar} in a shader, `params.{}` is not", param.name.value, width, member.name),
+                )
+                .at(global.span.clone(), "in this uniform")
+                .at(param.name.span.clone(), format!("declared {} here", param.ty));
+                self.report(error);
+                complete = false;
+                continue;
+            }
+            let at = usize::try_from(member.offset).ok()?;
+            for (index, word) in words.iter().enumerate() {
+                bytes.get_mut(at + index * 4..at + index * 4 + 4)?.copy_from_slice(&word.to_le_bytes());
+            }
+        }
+        complete.then_some(bytes)
+    }
+
+    /// The numbers of bindings that wgpu limits per stage.
+    fn counts(&mut self, linked: &LinkedProgram, pass: &LinkedPass) {
+        let count = |is: fn(&wgpu::BindingType) -> bool| linked.bindings.iter().filter(|binding| is(&binding.ty)).count();
+        let limits = self.limits;
+        let checks: [(&str, usize, u32); 4] = [
+            (
+                "storage buffers",
+                count(|ty| matches!(ty, wgpu::BindingType::Buffer { ty: wgpu::BufferBindingType::Storage { .. }, .. })),
+                limits.max_storage_buffers_per_shader_stage,
+            ),
+            ("textures", count(|ty| matches!(ty, wgpu::BindingType::Texture { .. })), limits.max_sampled_textures_per_shader_stage),
+            (
+                "storage textures",
+                count(|ty| matches!(ty, wgpu::BindingType::StorageTexture { .. })),
+                limits.max_storage_textures_per_shader_stage,
+            ),
+            ("samplers", count(|ty| matches!(ty, wgpu::BindingType::Sampler(_))), limits.max_samplers_per_shader_stage),
+        ];
+        for (what, number, most) in checks {
+            if number > most as usize {
+                self.report(
+                    Diagnostic::error(Code::Limit, format!("pass `{}` binds {number} {what}", *pass.name))
+                        .at(pass.name.span.clone(), "")
+                        .help(format!("the adapter's limit is {most} per shader stage: split the pass or pack what it binds")),
+                );
+            }
+        }
+    }
+}
+
+fn uniform(size: u64) -> wgpu::BindingType {
+    wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: std::num::NonZeroU64::new(size),
+    }
+}

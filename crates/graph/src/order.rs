@@ -1,0 +1,150 @@
+//! Phase 5: the file reads as a sequential program. Every access gets the version it means, and with it the edges.
+
+use crate::{
+    diagnostics::{Code, Diagnostic},
+    link::{Access, LinkedPass},
+    resolve::{ResourceId, ResourceKind, Resources},
+};
+use petgraph::graph::{DiGraph, NodeIndex};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Why one pass comes before another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Hazard {
+    /// The later one reads what the earlier one wrote.
+    ReadAfterWrite,
+    /// The later one overwrites what the earlier one reads.
+    WriteAfterRead,
+    /// The later one overwrites what the earlier one wrote.
+    WriteAfterWrite,
+}
+
+/// One mip of one layer of a texture, or a buffer: what has versions.
+type Cell = (ResourceId, u32, u32);
+
+/// The dependency graph: node i is pass i of the file, an edge runs from the earlier to the later pass.
+#[derive(Debug)]
+pub(crate) struct Order {
+    pub edges: DiGraph<(), Hazard>,
+    /// The pass that writes each cell last.
+    last: BTreeMap<Cell, usize>,
+}
+
+impl Order {
+    /// The passes whose versions of a resource are final.
+    pub fn final_writers(&self, resource: ResourceId) -> BTreeSet<usize> {
+        self.last.range((resource, 0, 0)..=(resource, u32::MAX, u32::MAX)).map(|(_, &pass)| pass).collect()
+    }
+}
+
+#[derive(Default)]
+struct State {
+    writer: Option<usize>,
+    readers: BTreeSet<usize>,
+}
+
+fn cells(access: &Access) -> impl Iterator<Item = Cell> + '_ {
+    let layers = access.part.layers.clone();
+    access.part.mips.clone().flat_map(move |mip| layers.clone().map(move |layer| (access.resource, mip, layer)))
+}
+
+pub(crate) fn order(passes: &[LinkedPass], resources: &Resources<'_>, diagnostics: &mut Vec<Diagnostic>) -> Order {
+    let mut edges: BTreeSet<(usize, usize, Hazard)> = BTreeSet::new();
+    let mut states: BTreeMap<Cell, State> = BTreeMap::new();
+    let mut early: Vec<(usize, &Access)> = Vec::new();
+    for (index, pass) in passes.iter().enumerate() {
+        for access in &pass.accesses {
+            let provided = matches!(resources.get(access.resource).kind, ResourceKind::Provided(_) | ResourceKind::Sampler(_));
+            for cell in cells(access) {
+                let state = states.entry(cell).or_default();
+                let mut edge = |from: usize, hazard| {
+                    if from != index {
+                        edges.insert((from, index, hazard));
+                    }
+                };
+                match state.writer {
+                    Some(writer) if access.reads => edge(writer, Hazard::ReadAfterWrite),
+                    // A write that does not cover keeps some of the old version, so it reads it.
+                    Some(writer) if access.writes && !access.covers => edge(writer, Hazard::ReadAfterWrite),
+                    None if access.reads && !provided => {
+                        if !early.iter().any(|(pass, other)| *pass == index && other.resource == access.resource) {
+                            early.push((index, access));
+                        }
+                    }
+                    _ => {}
+                }
+                if access.writes {
+                    if let Some(writer) = state.writer {
+                        edge(writer, Hazard::WriteAfterWrite);
+                    }
+                    for &reader in &state.readers {
+                        edge(reader, Hazard::WriteAfterRead);
+                    }
+                    state.readers.clear();
+                    state.writer = Some(index);
+                }
+                if access.reads {
+                    state.readers.insert(index);
+                }
+            }
+        }
+    }
+    let mut graph = DiGraph::with_capacity(passes.len(), edges.len());
+    let nodes: Vec<NodeIndex> = passes.iter().map(|_| graph.add_node(())).collect();
+    for (from, to, hazard) in edges {
+        graph.add_edge(nodes[from], nodes[to], hazard);
+    }
+    let last = states.into_iter().filter_map(|(cell, state)| Some((cell, state.writer?))).collect();
+    let order = Order { edges: graph, last };
+    for (index, access) in early {
+        diagnostics.push(explain(index, access, passes, resources, &order));
+    }
+    order
+}
+
+/// A read with nothing written above it: written never, written below, or written below by a pass that needs the reader.
+fn explain(reader: usize, access: &Access, passes: &[LinkedPass], resources: &Resources<'_>, order: &Order) -> Diagnostic {
+    let name = &resources.get(access.resource).name;
+    let pass = &passes[reader];
+    let below = (reader + 1..passes.len()).find(|&index| {
+        passes[index].accesses.iter().any(|other| other.writes && other.resource == access.resource && other.part.overlaps(&access.part))
+    });
+    let Some(writer) = below else {
+        let itself = access.writes || passes[reader].accesses.iter().any(|other| other.writes && other.resource == access.resource);
+        let help = if itself {
+            format!("put `Clear(name: \"clear_{name}\", target: \"{name}\")` above it: it starts from what was there before")
+        } else {
+            "let a pass above write it, or name another material".to_owned()
+        };
+        let verb = if itself { "reads and changes" } else { "reads" };
+        return Diagnostic::error(Code::ReadBeforeWrite, format!("pass `{}` {verb} `{name}`, which no pass has written", *pass.name))
+            .at(access.span.clone(), "read here")
+            .at(pass.name.span.clone(), "by this pass")
+            .help(help);
+    };
+    let path = petgraph::algo::astar(
+        &order.edges,
+        NodeIndex::new(reader),
+        |node| node.index() == writer,
+        // Only what a pass needs makes it depend on another; an overwrite could be moved.
+        |edge| if *edge.weight() == Hazard::ReadAfterWrite { 1 } else { 1_000_000 },
+        |_| 0,
+    )
+    .filter(|(cost, _)| *cost < 1_000_000);
+    let writer_name = &passes[writer].name;
+    match path {
+        Some((_, path)) => {
+            let mut names: Vec<&str> = path.iter().map(|node| passes[node.index()].name.as_str()).collect();
+            names.push(&pass.name.value);
+            Diagnostic::error(Code::Cycle, format!("passes need each other's results: {}", names.join(" → ")))
+                .at(pass.name.span.clone(), format!("reads `{name}`"))
+                .at(writer_name.span.clone(), format!("writes `{name}`, and needs what `{}` made", *pass.name))
+                .help("break the cycle: write a second material, or move the read into a pass below")
+        }
+        None => Diagnostic::error(Code::ReadBeforeWrite, format!("pass `{}` reads `{name}` before it is written", *pass.name))
+            .at(access.span.clone(), "read here")
+            .at(pass.name.span.clone(), "by this pass")
+            .at(writer_name.span.clone(), "written only here, below")
+            .help(format!("move `{}` above `{}`: the file reads as a sequential program", writer_name.value, *pass.name)),
+    }
+}

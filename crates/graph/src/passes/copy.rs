@@ -1,0 +1,18 @@
+//! `Copy`: a whole texture or buffer onto another of equal format and size.
+
+use crate::{document::located::Located, registry::{Lowering, PassKind}, step::Step};
+use serde::Deserialize;
+
+/// Body of a `Copy` pass.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Copy {
+    from: Located<String>,
+    to: Located<String>,
+}
+
+impl PassKind for Copy {
+    fn lower(&self, pass: &mut Lowering<'_>) {
+        pass.step(Step::Copy { from: self.from.clone(), to: self.to.clone() });
+    }
+}

@@ -1,0 +1,359 @@
+//! [`Plan`]: a graph on a viewport with values for its params, checked against an adapter's limits. Pure data.
+
+use crate::{
+    cull,
+    diagnostics::{Code, Diagnostic, Diagnostics, Severity},
+    document::{located::Located, params::ParamValue},
+    graph::Graph,
+    lifetime::{Lifetime, lifetimes},
+    link::{LinkedPass, Linker},
+    order::{Order, order},
+    provider::Provider,
+    registry::Params,
+    resolve::{Buffer, Environment, Part, ResourceId, ResourceKind, Resource, Target, resolve},
+    schedule::schedule,
+    step::Step,
+};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What a plan is made for.
+pub struct PlanRequest<'a> {
+    /// Width and height in pixels.
+    pub viewport: [u32; 2],
+    /// Values of params; where missing, the document's default.
+    pub params: BTreeMap<String, ParamValue>,
+    /// The outputs that are wanted; `None` = all that the document declares.
+    pub outputs: Option<Vec<String>>,
+    /// Materials that are to be read back beside the outputs.
+    pub captures: Vec<Capture>,
+    /// Limits that the device will have.
+    pub limits: wgpu::Limits,
+    /// Features that the device will have.
+    pub features: wgpu::Features,
+    /// Describes the provided resources.
+    pub provider: &'a dyn Provider,
+}
+
+impl<'a> PlanRequest<'a> {
+    /// A request with wgpu's default limits, no features, default params and all outputs.
+    pub fn new(viewport: [u32; 2], provider: &'a dyn Provider) -> Self {
+        Self {
+            viewport,
+            params: BTreeMap::new(),
+            outputs: None,
+            captures: Vec::new(),
+            limits: wgpu::Limits::default(),
+            features: wgpu::Features::empty(),
+            provider,
+        }
+    }
+}
+
+/// A material to be read back.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Capture {
+    /// Material, view or provided resource.
+    pub material: String,
+    /// The pass after which its content is wanted; `None` = at the end of the frame.
+    pub after: Option<String>,
+}
+
+impl Capture {
+    /// The name under which it is read back: `material` or `material@pass`.
+    pub fn name(&self) -> String {
+        match &self.after {
+            Some(pass) => format!("{}@{pass}", self.material),
+            None => self.material.clone(),
+        }
+    }
+}
+
+/// A live pass.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PassSummary {
+    /// Name.
+    pub name: String,
+    /// Kind, as the document writes it.
+    pub kind: String,
+}
+
+/// A pass that does not run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CulledPass {
+    /// Name.
+    pub name: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// Something that can be read back.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OutputSummary {
+    /// Name of the output or capture.
+    pub name: String,
+    /// Format of a texture; `None` for a buffer.
+    pub format: Option<wgpu::TextureFormat>,
+    /// Texels of a texture; `[bytes, 1]` of a buffer.
+    pub size: [u32; 2],
+}
+
+/// A graph that is ready to be allocated: live passes in order, every resource with its size and uses.
+#[derive(Debug)]
+pub struct Plan {
+    pub(crate) path: String,
+    pub(crate) resources: Vec<Resource>,
+    pub(crate) passes: Vec<LinkedPass>,
+    pub(crate) schedule: Vec<usize>,
+    pub(crate) lifetimes: BTreeMap<ResourceId, Lifetime>,
+    pub(crate) readable: Vec<(String, Target)>,
+    culled: Vec<CulledPass>,
+    warnings: Vec<Diagnostic>,
+}
+
+impl Graph {
+    /// Plans the graph: resolves names and sizes, links shaders, orders and culls passes. Touches no GPU.
+    ///
+    /// # Errors
+    /// Everything that is wrong, with its place.
+    pub fn plan(&self, request: &PlanRequest<'_>) -> Result<Plan, Diagnostics> {
+        let mut diagnostics = Vec::new();
+        self.check_params(&request.params, &mut diagnostics);
+        if request.viewport.contains(&0) {
+            diagnostics.push(Diagnostic::error(Code::Size, "the viewport has no pixels").at(self.place(), ""));
+        }
+        if !diagnostics.is_empty() {
+            return Err(Diagnostics::new(diagnostics));
+        }
+        let params = Params { declared: &self.document.params, values: &request.params };
+        let environment = Environment { viewport: request.viewport, limits: &request.limits, provider: request.provider };
+        let lowered = self.lower(&request.params, &mut diagnostics);
+        let mut resources = resolve(&self.document.materials, &params, &environment, &mut diagnostics);
+        for (name, bytes) in lowered.iter().flat_map(|pass| &pass.scratch) {
+            let kind = ResourceKind::Buffer(Buffer { count: Some(bytes / 4), bytes: 0 });
+            resources.add(name.clone(), None, kind);
+        }
+        let mut linker =
+            Linker::new(&mut resources, &self.shaders, &params, (&request.limits, request.features), &mut diagnostics);
+        let mut passes = Vec::new();
+        let mut complete = true;
+        for pass in &lowered {
+            match linker.pass(&pass.name, pass.kind, &pass.steps) {
+                Some(linked) => passes.push(linked),
+                None => complete = false,
+            }
+            for capture in request.captures.iter().filter(|capture| capture.after.as_deref() == Some(pass.name.as_str())) {
+                passes.extend(linker.capture(capture, self));
+            }
+        }
+        let layouts = std::mem::take(&mut linker.layouts);
+        layouts.settle(&mut resources, &request.limits, &mut diagnostics);
+        self.check_captures(request, &mut diagnostics);
+        // Versions mean nothing while passes are missing.
+        if !complete || diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {
+            return Err(Diagnostics::new(diagnostics));
+        }
+        let order = order(&passes, &resources, &mut diagnostics);
+        let readable = self.readable(request, &mut resources, &order, &mut diagnostics);
+        if diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {
+            return Err(Diagnostics::new(diagnostics));
+        }
+        let roots: BTreeSet<usize> = readable.iter().flat_map(|(_, target)| order.final_writers(target.id)).collect();
+        let live = cull::live(&order, roots);
+        let schedule = schedule(&order, &live);
+        let mut lifetimes = lifetimes(&passes, &schedule);
+        for (_, target) in &readable {
+            let Some(lifetime) = lifetimes.get_mut(&target.id) else { continue };
+            lifetime.last = schedule.len();
+            lifetime.textures |= wgpu::TextureUsages::COPY_SRC;
+            lifetime.buffers |= wgpu::BufferUsages::COPY_SRC;
+        }
+        let culled = passes
+            .iter()
+            .zip(&live)
+            .filter(|(_, live)| !**live)
+            .map(|(pass, _)| CulledPass { name: pass.name.value.clone(), reason: reason(pass, &resources.list) })
+            .collect();
+        Ok(Plan {
+            path: self.path().to_owned(),
+            resources: resources.list,
+            passes,
+            schedule,
+            lifetimes,
+            readable,
+            culled,
+            warnings: diagnostics,
+        })
+    }
+
+    fn check_params(&self, params: &BTreeMap<String, ParamValue>, diagnostics: &mut Vec<Diagnostic>) {
+        for (name, value) in params {
+            let problem = match self.param(name) {
+                Ok(param) => param.check(value).err().map(|why| {
+                    Diagnostic::error(Code::ParamValue, format!("param `{name}` = {value}: {why}"))
+                        .at(param.name.span.clone(), "declared here")
+                }),
+                Err(error) => Some(Diagnostic::error(Code::UnknownParam, error.to_string())),
+            };
+            diagnostics.extend(problem);
+        }
+    }
+
+    fn check_captures(&self, request: &PlanRequest<'_>, diagnostics: &mut Vec<Diagnostic>) {
+        let passes: Vec<&str> = self.document.passes.iter().map(|pass| pass.name.as_str()).collect();
+        for pass in request.captures.iter().filter_map(|capture| capture.after.as_deref()) {
+            if !passes.contains(&pass) {
+                diagnostics.push(
+                    Diagnostic::error(Code::Output, format!("there is no pass `{pass}` to read a material after"))
+                        .suggest(pass, passes.iter().copied()),
+                );
+            }
+        }
+    }
+
+    /// The targets of all outputs and captures that are wanted.
+    fn readable(
+        &self,
+        request: &PlanRequest<'_>,
+        resources: &mut crate::resolve::Resources<'_>,
+        order: &Order,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Vec<(String, Target)> {
+        let mut readable = Vec::new();
+        let declared = self.outputs();
+        for wanted in request.outputs.iter().flatten() {
+            if !declared.contains(&wanted.as_str()) {
+                diagnostics.push(
+                    Diagnostic::error(Code::Output, format!("`{}` has no output `{wanted}`", self.path()))
+                        .suggest(wanted, declared.iter().copied()),
+                );
+            }
+        }
+        for output in &self.document.outputs {
+            let wanted = request.outputs.as_ref().is_none_or(|wanted| wanted.contains(&output.name.value));
+            let material = output.material.as_ref().unwrap_or(&output.name);
+            match resources.expect(material) {
+                Ok(target) if order.final_writers(target.id).is_empty() => diagnostics.push(
+                    Diagnostic::error(Code::ReadBeforeWrite, format!("no pass writes the output `{}`", *output.name))
+                        .at(material.span.clone(), ""),
+                ),
+                Ok(target) if wanted => readable.push((output.name.value.clone(), target)),
+                Ok(_) => {}
+                Err(error) => diagnostics.push(error),
+            }
+        }
+        for capture in &request.captures {
+            let name = capture.name();
+            // Those after a pass were entered as resources of their own; an output of that name is there already.
+            let found = resources.find(&name);
+            match found {
+                Some(target) if order.final_writers(target.id).is_empty() => diagnostics
+                    .push(Diagnostic::error(Code::Output, format!("`{name}` cannot be read back: no pass writes it"))),
+                Some(target) if readable.iter().all(|(known, _)| *known != name) => readable.push((name, target)),
+                Some(_) => {}
+                None if capture.after.is_some() => {}
+                None => {
+                    let known = resources.known();
+                    diagnostics.push(
+                        Diagnostic::error(Code::Output, format!("`{}` has no output or material `{name}`", self.path()))
+                            .suggest(&name, known.iter().map(String::as_str)),
+                    );
+                }
+            }
+        }
+        readable
+    }
+}
+
+impl Linker<'_, '_> {
+    /// A copy of a material as it stands after the pass that was linked last.
+    fn capture(&mut self, capture: &Capture, graph: &Graph) -> Option<LinkedPass> {
+        let name = Located::new(capture.name(), graph.place());
+        let from = Located::new(capture.material.clone(), graph.place());
+        let target = self.expect(&from)?;
+        let kind = match &self.resources.get(target.id).kind {
+            ResourceKind::Texture(texture) => {
+                let mut copy = texture.clone();
+                let Part { mips, layers } = &target.part;
+                copy.size = copy.size.map(|edge| (edge >> mips.start).max(1));
+                (copy.mips, copy.layers) = (mips.len() as u32, layers.len() as u32);
+                ResourceKind::Texture(copy)
+            }
+            ResourceKind::Buffer(buffer) => ResourceKind::Buffer(buffer.clone()),
+            ResourceKind::Provided(_) => ResourceKind::Buffer(Buffer::default()),
+            ResourceKind::Sampler(_) => {
+                self.diagnostics.push(Diagnostic::error(Code::Output, format!("`{}` is a sampler and has no content", from.value)));
+                return None;
+            }
+        };
+        self.resources.add(name.value.clone(), None, kind);
+        self.pass(&name, "Capture", &[Step::Copy { from, to: name.clone() }])
+    }
+}
+
+fn reason(pass: &LinkedPass, resources: &[Resource]) -> String {
+    let written: BTreeSet<&str> =
+        pass.accesses.iter().filter(|access| access.writes).map(|access| resources[access.resource.0].name.as_str()).collect();
+    let names: Vec<String> = written.iter().map(|name| format!("`{name}`")).collect();
+    match names.is_empty() {
+        true => "it writes nothing".to_owned(),
+        false => format!("nothing that an output needs reads what it writes ({})", names.join(", ")),
+    }
+}
+
+impl Plan {
+    /// The live passes in the order in which they run.
+    pub fn passes(&self) -> Vec<PassSummary> {
+        let summary = |&pass: &usize| PassSummary { name: self.passes[pass].name.value.clone(), kind: self.passes[pass].kind.to_owned() };
+        self.schedule.iter().map(summary).collect()
+    }
+
+    /// The passes that do not run.
+    pub fn culled(&self) -> &[CulledPass] {
+        &self.culled
+    }
+
+    /// The provided resources that live passes bind; only these are built.
+    pub fn provided(&self) -> Vec<&str> {
+        self.lifetimes
+            .keys()
+            .map(|id| &self.resources[id.0])
+            .filter(|resource| matches!(resource.kind, ResourceKind::Provided(_)))
+            .map(|resource| resource.name.as_str())
+            .collect()
+    }
+
+    /// What can be read back after a frame.
+    pub fn outputs(&self) -> Vec<OutputSummary> {
+        let summary = |(name, target): &(String, Target)| {
+            let (format, size) = match &self.resources[target.id.0].kind {
+                ResourceKind::Texture(texture) => {
+                    (Some(texture.format), texture.size.map(|edge| (edge >> target.part.mips.start).max(1)))
+                }
+                ResourceKind::Buffer(buffer) => (None, [u32::try_from(buffer.bytes).unwrap_or(u32::MAX), 1]),
+                _ => (None, [0, 0]),
+            };
+            OutputSummary { name: name.clone(), format, size }
+        };
+        self.readable.iter().map(summary).collect()
+    }
+
+    /// Bytes of the graph's own textures and buffers.
+    pub fn memory_bytes(&self) -> u64 {
+        let bytes = |id: &ResourceId| match &self.resources[id.0].kind {
+            ResourceKind::Texture(texture) => texture.bytes(),
+            ResourceKind::Buffer(buffer) => buffer.bytes,
+            _ => 0,
+        };
+        self.lifetimes.keys().map(bytes).sum()
+    }
+
+    /// Bytes saved by resources that share memory. None do so far.
+    pub fn saved_bytes(&self) -> u64 {
+        0
+    }
+
+    /// What is suspicious.
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.warnings
+    }
+}

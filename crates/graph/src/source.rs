@@ -1,0 +1,166 @@
+//! Where documents and shaders come from, and places in them.
+
+use std::{
+    fmt,
+    ops::Range,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+/// A store of RON documents and WGSL files: a folder, embedded files, or a host's own.
+///
+/// Paths have forward slashes and are relative to the store (`pipelines/nsm.ron`, `shaders/shared/camera.wgsl`), or absolute.
+pub trait Sources: Send + Sync {
+    /// The text at `path`; `Ok(None)` if the store has no such file.
+    ///
+    /// # Errors
+    /// The reason, if the file is there but cannot be read.
+    fn read(&self, path: &str) -> Result<Option<Arc<str>>, String>;
+
+    /// Names of the files that stand directly in `folder`, sorted; for listings and for suggestions on misspelt names.
+    fn list(&self, folder: &str) -> Vec<String>;
+}
+
+/// Files below a folder on disk. Absolute paths are read as they are.
+#[derive(Clone, Debug)]
+pub struct FolderSources {
+    /// The folder that relative paths start from.
+    pub root: PathBuf,
+}
+
+impl Sources for FolderSources {
+    fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
+        let path = self.root.join(path);
+        if !path.is_file() {
+            return Ok(None);
+        }
+        std::fs::read_to_string(&path)
+            .map(|text| Some(text.into()))
+            .map_err(|error| error.to_string())
+    }
+
+    fn list(&self, folder: &str) -> Vec<String> {
+        let Ok(entries) = std::fs::read_dir(self.root.join(folder)) else {
+            return Vec::new();
+        };
+        let mut names: Vec<String> = entries
+            .flatten()
+            .filter(|entry| entry.path().is_file())
+            .filter_map(|entry| entry.file_name().into_string().ok())
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+/// Several stores; the first that has a file wins.
+#[derive(Default)]
+pub struct LayeredSources(
+    /// The stores, in order of precedence.
+    pub Vec<Box<dyn Sources>>,
+);
+
+impl Sources for LayeredSources {
+    fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
+        for layer in &self.0 {
+            if let Some(text) = layer.read(path)? {
+                return Ok(Some(text));
+            }
+        }
+        Ok(None)
+    }
+
+    fn list(&self, folder: &str) -> Vec<String> {
+        let mut names: Vec<String> = self.0.iter().flat_map(|layer| layer.list(folder)).collect();
+        names.sort();
+        names.dedup();
+        names
+    }
+}
+
+/// A file that was read: its name as the author knows it, and its text. Cheap to clone.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SourceFile {
+    /// Path as given to [`Sources::read`].
+    pub name: Arc<str>,
+    /// Whole text.
+    pub text: Arc<str>,
+}
+
+impl SourceFile {
+    /// A file of that name and text.
+    pub fn new(name: impl Into<Arc<str>>, text: impl Into<Arc<str>>) -> Self {
+        Self { name: name.into(), text: text.into() }
+    }
+
+    /// The place of `range` (bytes) in this file.
+    pub fn span(&self, range: Range<usize>) -> Span {
+        Span { file: self.clone(), range }
+    }
+}
+
+/// A place in a file.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Span {
+    /// The file.
+    pub file: SourceFile,
+    /// Bytes of its text.
+    pub range: Range<usize>,
+}
+
+impl Span {
+    /// Line and column of the start, counted from 1, columns in characters.
+    pub fn line_column(&self) -> (usize, usize) {
+        let before = self.file.text.get(..self.range.start).unwrap_or(&self.file.text);
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
+        (line, column)
+    }
+}
+
+impl fmt::Display for Span {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (line, column) = self.line_column();
+        write!(f, "{}:{line}:{column}", self.file.name)
+    }
+}
+
+impl fmt::Debug for Span {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")
+    }
+}
+
+/// Where the shader called `name` may stand for a document at `document`, in the order in which it is looked for: beside
+/// the document, in the `shaders` folder beside the document's folder, in the store's `shaders` folder.
+pub(crate) fn shader_candidates(document: &str, name: &str) -> Vec<String> {
+    let folder = Path::new(document).parent().unwrap_or(Path::new(""));
+    let file = format!("{name}.wgsl");
+    let mut candidates = vec![join(folder, &file)];
+    if let Some(parent) = folder.parent() {
+        candidates.push(join(parent, &format!("shaders/{file}")));
+        // A document in a sub-folder of pipelines (a shared sub-graph) finds the shaders of its house too.
+        if let Some(grandparent) = parent.parent() {
+            candidates.push(join(grandparent, &format!("shaders/{file}")));
+        }
+    }
+    candidates.push(format!("shaders/{file}"));
+    candidates.dedup();
+    candidates
+}
+
+/// Where `#import "path"` of the file `importer` may stand: beside the importer, above it, and in the store's `shaders`.
+pub(crate) fn import_candidates(importer: &str, path: &str) -> Vec<String> {
+    let folder = Path::new(importer).parent().unwrap_or(Path::new(""));
+    let mut candidates = vec![join(folder, path)];
+    if let Some(parent) = folder.parent() {
+        candidates.push(join(parent, path));
+    }
+    candidates.push(format!("shaders/{path}"));
+    candidates.dedup();
+    candidates
+}
+
+fn join(folder: &Path, file: &str) -> String {
+    folder.join(file).to_string_lossy().replace('\\', "/")
+}

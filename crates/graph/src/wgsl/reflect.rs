@@ -1,0 +1,410 @@
+//! What a WGSL module binds and how: every resource global with its type, place, binding number and use per entry point.
+
+use super::Expanded;
+use crate::{
+    diagnostics::{Code, Diagnostic},
+    document::located::Located,
+    source::Span,
+};
+use naga::{
+    AddressSpace, Handle, ImageClass, ShaderStage, TypeInner,
+    proc::{GlobalCtx, Layouter},
+    valid::{GlobalUse, ModuleInfo, ValidationFlags, Validator},
+};
+use std::{collections::BTreeSet, fmt};
+
+/// A parsed, validated shader whose resource globals all have binding numbers.
+#[derive(Debug)]
+pub(crate) struct Shader {
+    pub source: Expanded,
+    pub module: naga::Module,
+    info: ModuleInfo,
+    layouter: Layouter,
+}
+
+/// A resource global.
+#[derive(Clone, Debug)]
+pub(crate) struct Global {
+    pub handle: Handle<naga::GlobalVariable>,
+    pub name: String,
+    pub span: Span,
+    pub group: u32,
+    pub binding: u32,
+    pub class: Class,
+    pub reads: bool,
+    pub writes: bool,
+}
+
+/// What a global is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Class {
+    Uniform { size: u64, members: Vec<Member> },
+    /// `fixed`: bytes before the runtime-sized array (or of the whole type); `stride`: bytes per item of that array.
+    Storage { fixed: u64, stride: Option<u64>, read_only: bool, layout: String },
+    Texture(TextureClass),
+    Sampler { comparison: bool },
+    Unsupported(&'static str),
+}
+
+/// A texture global, sampled or storage.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum TextureClass {
+    Sampled { scalar: ScalarClass, dimension: wgpu::TextureViewDimension, depth: bool },
+    Storage { format: String, dimension: wgpu::TextureViewDimension, access: wgpu::StorageTextureAccess },
+}
+
+/// What one channel of a texture is to a shader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ScalarClass {
+    Float,
+    Uint,
+    Sint,
+}
+
+impl fmt::Display for ScalarClass {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Float => "f32",
+            Self::Uint => "u32",
+            Self::Sint => "i32",
+        })
+    }
+}
+
+impl ScalarClass {
+    fn of(kind: naga::ScalarKind) -> Option<Self> {
+        match kind {
+            naga::ScalarKind::Float => Some(Self::Float),
+            naga::ScalarKind::Uint => Some(Self::Uint),
+            naga::ScalarKind::Sint => Some(Self::Sint),
+            _ => None,
+        }
+    }
+}
+
+/// A member of a uniform struct.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Member {
+    pub name: String,
+    pub offset: u64,
+    /// Scalar class and number of components; `None` for matrices, arrays and structs.
+    pub vector: Option<(ScalarClass, u32)>,
+}
+
+impl Shader {
+    /// Parses and validates. Globals without `@group`/`@binding` get free numbers: group 0 those of imported modules,
+    /// group 1 the shader's own.
+    pub fn new(source: Expanded) -> Result<Self, Diagnostic> {
+        let mut module = naga::front::wgsl::parse_str(&source.text).map_err(|error| parse_error(&error, &source))?;
+        assign_bindings(&mut module, &source);
+        // What a device lacks is said when the pipeline is made for it; a document is checked against the language.
+        let mut validator = Validator::new(ValidationFlags::all(), naga::valid::Capabilities::all());
+        let info = validator.validate(&module).map_err(|error| validation_error(&error, &source))?;
+        let mut layouter = Layouter::default();
+        layouter
+            .update(GlobalCtx {
+                types: &module.types,
+                constants: &module.constants,
+                overrides: &module.overrides,
+                global_expressions: &module.global_expressions,
+            })
+            .map_err(|error| {
+                Diagnostic::error(Code::Shader, format!("a type has no layout: {error}")).at(source.file.span(0..0), "")
+            })?;
+        Ok(Self { source, module, info, layouter })
+    }
+
+    /// The entry point of `stage`: the one called `name`, or the only one of the stage. `wanted` is where it is asked for.
+    pub fn entry(&self, stage: ShaderStage, name: Option<&Located<String>>, wanted: &Span) -> Result<usize, Diagnostic> {
+        let of_stage: Vec<(usize, &str)> = self
+            .module
+            .entry_points
+            .iter()
+            .enumerate()
+            .filter(|(_, entry)| entry.stage == stage)
+            .map(|(index, entry)| (index, entry.name.as_str()))
+            .collect();
+        let stage_name = format!("{stage:?}").to_lowercase();
+        let file = &self.source.file.name;
+        match (name, of_stage.as_slice()) {
+            (Some(name), _) => of_stage.iter().find(|(_, known)| *known == name.as_str()).map(|(index, _)| *index).ok_or_else(|| {
+                Diagnostic::error(Code::EntryPoint, format!("`{file}` has no {stage_name} entry point `{}`", name.value))
+                    .at(name.span.clone(), "")
+                    .suggest(name, of_stage.iter().map(|(_, known)| *known))
+            }),
+            (None, [(index, _)]) => Ok(*index),
+            (None, []) => Err(Diagnostic::error(Code::EntryPoint, format!("`{file}` has no {stage_name} entry point"))
+                .at(wanted.clone(), "this pass needs one")
+                .help(format!("write a function with the attribute @{stage_name}"))),
+            (None, several) => {
+                let names: Vec<String> = several.iter().map(|(_, name)| format!("`{name}`")).collect();
+                Err(Diagnostic::error(Code::EntryPoint, format!("`{file}` has several {stage_name} entry points"))
+                    .at(wanted.clone(), "it is not clear which one this pass runs")
+                    .help(format!("name one of {}", names.join(", "))))
+            }
+        }
+    }
+
+    pub fn entry_name(&self, entry: usize) -> &str {
+        &self.module.entry_points[entry].name
+    }
+
+    pub fn workgroup_size(&self, entry: usize) -> [u32; 3] {
+        self.module.entry_points[entry].workgroup_size
+    }
+
+    /// The place of an entry point, as well as naga knows it: its first statement's file.
+    pub fn entry_span(&self, entry: usize) -> Span {
+        let name = self.entry_name(entry);
+        let at = self.source.text.find(&format!("fn {name}")).map_or(0, |at| at + 3);
+        self.source.locate(at..at + name.len())
+    }
+
+    /// Resource globals that the entry points use, in declaration order, with their use in any of them.
+    pub fn globals(&self, entries: &[usize]) -> Vec<Global> {
+        let mut globals = Vec::new();
+        for (handle, variable) in self.module.global_variables.iter() {
+            let Some(binding) = variable.binding else { continue };
+            let mut usage = GlobalUse::empty();
+            for &entry in entries {
+                usage |= self.info.get_entry_point(entry)[handle];
+            }
+            if usage.is_empty() {
+                continue;
+            }
+            let class = self.class(variable);
+            let storage_texture = match &class {
+                Class::Texture(TextureClass::Storage { access, .. }) => Some(*access),
+                _ => None,
+            };
+            // Atomics read what they add to; a storage texture's declared access is what the device is told.
+            let atomic = usage.contains(GlobalUse::ATOMIC);
+            let reads = match storage_texture {
+                Some(wgpu::StorageTextureAccess::WriteOnly) => false,
+                Some(_) => true,
+                None => usage.contains(GlobalUse::READ) || atomic,
+            };
+            globals.push(Global {
+                handle,
+                name: variable.name.clone().unwrap_or_default(),
+                span: self.global_span(handle, variable),
+                group: binding.group,
+                binding: binding.binding,
+                class,
+                reads,
+                writes: usage.contains(GlobalUse::WRITE) || atomic,
+            });
+        }
+        globals
+    }
+
+    fn global_span(&self, handle: Handle<naga::GlobalVariable>, variable: &naga::GlobalVariable) -> Span {
+        let range = self.module.global_variables.get_span(handle).to_range().unwrap_or(0..0);
+        let name = variable.name.as_deref().unwrap_or("");
+        // The declaration begins with its attributes; the name is what matters.
+        let declaration = self.source.text.get(range.clone()).unwrap_or("");
+        let at = range.start + declaration.find(name).unwrap_or(0);
+        self.source.locate(at..at + name.len())
+    }
+
+    /// Whether a use of `entry` samples the texture global through a filtering (non-comparison) sampler.
+    pub fn samplers_of(&self, entries: &[usize], texture: Handle<naga::GlobalVariable>) -> BTreeSet<String> {
+        entries
+            .iter()
+            .flat_map(|&entry| &self.info.get_entry_point(entry).sampling_set)
+            .filter(|key| key.image == texture)
+            .filter_map(|key| self.module.global_variables[key.sampler].name.clone())
+            .collect()
+    }
+
+    /// Overridable constants by name with the index of their type's scalar: those that a param may fill.
+    pub fn overrides(&self) -> impl Iterator<Item = &str> {
+        self.module.overrides.iter().filter_map(|(_, constant)| constant.name.as_deref())
+    }
+
+    /// Scalar class and component count of each colour output of a fragment entry point, by location.
+    pub fn fragment_outputs(&self, entry: usize) -> Vec<(u32, ScalarClass, u32)> {
+        let Some(result) = &self.module.entry_points[entry].function.result else { return Vec::new() };
+        let mut outputs = Vec::new();
+        let mut add = |binding: &Option<naga::Binding>, ty: Handle<naga::Type>| {
+            if let (Some(naga::Binding::Location { location, .. }), Some((scalar, width))) = (binding, self.vector(ty)) {
+                outputs.push((*location, scalar, width));
+            }
+        };
+        match &self.module.types[result.ty].inner {
+            TypeInner::Struct { members, .. } => members.iter().for_each(|member| add(&member.binding, member.ty)),
+            _ => add(&result.binding, result.ty),
+        }
+        outputs.sort_by_key(|(location, ..)| *location);
+        outputs
+    }
+
+    fn vector(&self, ty: Handle<naga::Type>) -> Option<(ScalarClass, u32)> {
+        match self.module.types[ty].inner {
+            TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => Some((ScalarClass::of(scalar.kind)?, 1)),
+            TypeInner::Vector { size, scalar } => Some((ScalarClass::of(scalar.kind)?, size as u32)),
+            _ => None,
+        }
+    }
+
+    fn class(&self, variable: &naga::GlobalVariable) -> Class {
+        let inner = &self.module.types[variable.ty].inner;
+        let size = u64::from(self.layouter[variable.ty].size);
+        match (variable.space, inner) {
+            (AddressSpace::Uniform, _) => {
+                let members = match inner {
+                    TypeInner::Struct { members, .. } => members
+                        .iter()
+                        .map(|member| Member {
+                            name: member.name.clone().unwrap_or_default(),
+                            offset: u64::from(member.offset),
+                            vector: self.vector(member.ty),
+                        })
+                        .collect(),
+                    _ => Vec::new(),
+                };
+                Class::Uniform { size, members }
+            }
+            (AddressSpace::Storage { access }, _) => {
+                let (fixed, stride) = self.storage_size(variable.ty, size);
+                let read_only = !access.contains(naga::StorageAccess::STORE);
+                Class::Storage { fixed, stride, read_only, layout: self.layout(variable.ty) }
+            }
+            (AddressSpace::Handle, TypeInner::Image { dim, arrayed, class }) => self.image(*dim, *arrayed, class),
+            (AddressSpace::Handle, TypeInner::Sampler { comparison }) => Class::Sampler { comparison: *comparison },
+            (AddressSpace::Handle, TypeInner::AccelerationStructure { .. }) => Class::Unsupported("an acceleration structure"),
+            (AddressSpace::Handle, TypeInner::BindingArray { .. }) => Class::Unsupported("a binding array"),
+            _ => Class::Unsupported("a global of this address space"),
+        }
+    }
+
+    fn image(&self, dim: naga::ImageDimension, arrayed: bool, class: &ImageClass) -> Class {
+        let dimension = match (dim, arrayed) {
+            (naga::ImageDimension::D2, false) => wgpu::TextureViewDimension::D2,
+            (naga::ImageDimension::D2, true) => wgpu::TextureViewDimension::D2Array,
+            (naga::ImageDimension::Cube, false) => wgpu::TextureViewDimension::Cube,
+            (naga::ImageDimension::Cube, true) => wgpu::TextureViewDimension::CubeArray,
+            _ => return Class::Unsupported("a 1D or 3D texture"),
+        };
+        match class {
+            ImageClass::Sampled { multi: true, .. } | ImageClass::Depth { multi: true } => {
+                Class::Unsupported("a multisampled texture")
+            }
+            ImageClass::Sampled { kind, .. } => match ScalarClass::of(*kind) {
+                Some(scalar) => Class::Texture(TextureClass::Sampled { scalar, dimension, depth: false }),
+                None => Class::Unsupported("a texture of this scalar type"),
+            },
+            ImageClass::Depth { .. } => {
+                Class::Texture(TextureClass::Sampled { scalar: ScalarClass::Float, dimension, depth: true })
+            }
+            ImageClass::Storage { format, access } => {
+                let load = access.contains(naga::StorageAccess::LOAD);
+                let store = access.contains(naga::StorageAccess::STORE);
+                let access = match (load, store) {
+                    _ if access.contains(naga::StorageAccess::ATOMIC) => wgpu::StorageTextureAccess::Atomic,
+                    (true, true) => wgpu::StorageTextureAccess::ReadWrite,
+                    (true, false) => wgpu::StorageTextureAccess::ReadOnly,
+                    _ => wgpu::StorageTextureAccess::WriteOnly,
+                };
+                Class::Texture(TextureClass::Storage { format: format!("{format:?}"), dimension, access })
+            }
+            _ => Class::Unsupported("an external texture"),
+        }
+    }
+
+    /// Bytes before the runtime-sized array and its stride, or the whole size.
+    fn storage_size(&self, ty: Handle<naga::Type>, size: u64) -> (u64, Option<u64>) {
+        match &self.module.types[ty].inner {
+            TypeInner::Array { size: naga::ArraySize::Dynamic, stride, .. } => (0, Some(u64::from(*stride))),
+            TypeInner::Struct { members, .. } => match members.last() {
+                Some(last) => match self.module.types[last.ty].inner {
+                    TypeInner::Array { size: naga::ArraySize::Dynamic, stride, .. } => {
+                        (u64::from(last.offset), Some(u64::from(stride)))
+                    }
+                    _ => (size, None),
+                },
+                None => (size, None),
+            },
+            _ => (size, None),
+        }
+    }
+
+    /// A type's memory layout in words, equal for equal layouts: `{0: vec3<f32>, 12: f32}[]`. Names do not count.
+    fn layout(&self, ty: Handle<naga::Type>) -> String {
+        let scalar = |scalar: naga::Scalar| match scalar.kind {
+            naga::ScalarKind::Float => format!("f{}", scalar.width * 8),
+            naga::ScalarKind::Sint => format!("i{}", scalar.width * 8),
+            _ => format!("u{}", scalar.width * 8),
+        };
+        match &self.module.types[ty].inner {
+            TypeInner::Scalar(kind) | TypeInner::Atomic(kind) => scalar(*kind),
+            TypeInner::Vector { size, scalar: kind } => format!("vec{}<{}>", *size as u32, scalar(*kind)),
+            TypeInner::Matrix { columns, rows, scalar: kind } => {
+                format!("mat{}x{}<{}>", *columns as u32, *rows as u32, scalar(*kind))
+            }
+            TypeInner::Array { base, size, stride } => {
+                let count = match size {
+                    naga::ArraySize::Constant(count) => count.to_string(),
+                    _ => String::new(),
+                };
+                format!("{}[{count}]/{stride}", self.layout(*base))
+            }
+            TypeInner::Struct { members, .. } => {
+                let parts: Vec<String> =
+                    members.iter().map(|member| format!("{}: {}", member.offset, self.layout(member.ty))).collect();
+                format!("{{{}}}", parts.join(", "))
+            }
+            other => format!("{other:?}"),
+        }
+    }
+}
+
+/// Gives every resource global without numbers the next free ones of its group.
+fn assign_bindings(module: &mut naga::Module, source: &Expanded) {
+    let mut taken: BTreeSet<(u32, u32)> =
+        module.global_variables.iter().filter_map(|(_, v)| v.binding.map(|b| (b.group, b.binding))).collect();
+    let handles: Vec<_> = module.global_variables.iter().map(|(handle, _)| handle).collect();
+    for handle in handles {
+        let at = module.global_variables.get_span(handle).to_range().map_or(0, |range| range.start);
+        let variable = module.global_variables.get_mut(handle);
+        let is_resource = matches!(variable.space, AddressSpace::Uniform | AddressSpace::Storage { .. } | AddressSpace::Handle);
+        if !is_resource || variable.binding.is_some() {
+            continue;
+        }
+        let group = u32::from(!source.is_imported(at));
+        let binding = (0..).find(|&binding| !taken.contains(&(group, binding))).unwrap_or(0);
+        taken.insert((group, binding));
+        variable.binding = Some(naga::ResourceBinding { group, binding });
+    }
+}
+
+fn parse_error(error: &naga::front::wgsl::ParseError, source: &Expanded) -> Diagnostic {
+    let mut diagnostic = Diagnostic::error(Code::Shader, format!("`{}` does not compile: {}", source.file.name, error.message()));
+    for (span, text) in error.labels() {
+        if let Some(range) = span.to_range() {
+            diagnostic = diagnostic.at(source.locate(range), text);
+        }
+    }
+    let notes: Vec<&str> = error.notes().collect();
+    if notes.is_empty() { diagnostic } else { diagnostic.help(notes.join("\n")) }
+}
+
+fn validation_error(error: &naga::WithSpan<naga::valid::ValidationError>, source: &Expanded) -> Diagnostic {
+    // The causes say what is wrong; the outermost one only which function.
+    let mut message = format!("`{}` is not valid: {}", source.file.name, error.as_inner());
+    let mut cause = std::error::Error::source(error.as_inner());
+    while let Some(inner) = cause {
+        message.push_str(&format!(": {inner}"));
+        cause = inner.source();
+    }
+    let mut diagnostic = Diagnostic::error(Code::Shader, message);
+    for (span, text) in error.spans() {
+        if let Some(range) = span.to_range() {
+            diagnostic = diagnostic.at(source.locate(range), text.clone());
+        }
+    }
+    if diagnostic.labels.is_empty() {
+        diagnostic = diagnostic.at(source.file.span(0..0), "");
+    }
+    diagnostic
+}

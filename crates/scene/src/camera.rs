@@ -52,7 +52,17 @@ impl View {
         let up = right.cross(forward);
         let half_height = (self.fov_y_degrees.to_radians() * 0.5).tan();
         let half_width = half_height * f64::from(viewport[0]) / f64::from(viewport[1]);
-        Camera { eye: self.eye, right, up, forward, half_width, half_height, near: self.near, far: self.far, viewport }
+        Camera {
+            eye: self.eye,
+            right,
+            up,
+            forward,
+            half_width,
+            half_height,
+            near: self.near,
+            far: self.far,
+            viewport,
+        }
     }
 }
 
@@ -75,10 +85,22 @@ impl Camera {
         .transpose();
         let range = self.far / (self.near - self.far);
         let projection = DMat4::from_cols_array(&[
-            1.0 / self.half_width, 0.0, 0.0, 0.0,
-            0.0, 1.0 / self.half_height, 0.0, 0.0,
-            0.0, 0.0, range, -1.0,
-            0.0, 0.0, self.near * range, 0.0,
+            1.0 / self.half_width,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            1.0 / self.half_height,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            range,
+            -1.0,
+            0.0,
+            0.0,
+            self.near * range,
+            0.0,
         ]);
         projection * rotation * DMat4::from_translation(-self.eye)
     }

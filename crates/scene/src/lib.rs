@@ -5,13 +5,25 @@
 
 pub mod bvh;
 pub mod camera;
+pub mod error;
+pub mod generate;
+pub mod library;
 pub mod light;
 pub mod mesh;
+pub mod obj;
+pub mod report;
+pub mod scene_file;
+mod weld;
 
 pub use bvh::{Bvh, BvhNode};
 pub use camera::{Camera, View};
+pub use error::SceneError;
+pub use library::{ObjSetup, SceneLibrary, SceneListing, SceneRequest};
 pub use light::{DirectionalLight, LightFit};
 pub use mesh::{Group, Mesh};
+pub use obj::{ObjOptions, QuadDiagonal, load_obj};
+pub use report::ImportReport;
+pub use scene_file::{MeshSource, SceneFile};
 
 /// A mesh with the views and the light under which it is drawn.
 #[derive(Clone, Debug)]

@@ -47,7 +47,11 @@ impl Mesh {
 
     /// Smallest box around all positions that a triangle uses, or `None` for an empty mesh.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
-        let mut used = self.triangles.iter().flatten().map(|&index| self.positions[index as usize]);
+        let mut used = self
+            .triangles
+            .iter()
+            .flatten()
+            .map(|&index| self.positions[index as usize]);
         let first = used.next()?;
         Some(used.fold((first, first), |(min, max), p| (min.min(p), max.max(p))))
     }

@@ -1,0 +1,253 @@
+//! Everything that can go wrong between a scene's name and its triangles.
+
+use std::{fmt, io, path::PathBuf};
+use thiserror::Error;
+
+/// How many faces an error or a warning spells out before it only counts.
+pub const FACES_SHOWN: usize = 5;
+
+/// Why a scene could not be loaded. Every message names the file and what to do about it.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// A file that exists could not be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system said.
+        source: io::Error,
+    },
+    /// A line of an OBJ file could not be understood.
+    #[error("{}:{line}: {reason}", path.display())]
+    ObjLine {
+        /// The OBJ file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: u32,
+        /// What was found and what was expected.
+        reason: String,
+    },
+    /// Faces of an OBJ file that name vertices which do not exist or are not finite.
+    #[error("{}: {}", path.display(), list_faults(faults, *total))]
+    ObjFaces {
+        /// The OBJ file.
+        path: PathBuf,
+        /// The first faults, in file order.
+        faults: Vec<FaceFault>,
+        /// Number of faulty faces.
+        total: usize,
+    },
+    /// A group to be left out is not in the OBJ file.
+    #[error("{}: there is no group {name:?} to leave out; the file's groups are {}", path.display(), shorten(groups))]
+    NoSuchGroup {
+        /// The OBJ file.
+        path: PathBuf,
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        groups: Vec<String>,
+    },
+    /// An OBJ file without a single face.
+    #[error("{}: no triangles: the file holds {faces} faces, {lines} lines and {points} points", path.display())]
+    NoTriangles {
+        /// The OBJ file.
+        path: PathBuf,
+        /// Faces read, those left out not counted.
+        faces: usize,
+        /// `l` records.
+        lines: usize,
+        /// `p` records.
+        points: usize,
+    },
+    /// A mesh too large for 32-bit indices.
+    #[error("{}: more than {} triangles or vertices", path.display(), u32::MAX)]
+    TooLarge {
+        /// The OBJ file.
+        path: PathBuf,
+    },
+    /// A scene file is not valid RON, or its content makes no scene.
+    #[error("{file}:{line}:{column}: {reason}")]
+    SceneFile {
+        /// The scene file, or `<built-in NAME>`.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+        /// What is wrong.
+        reason: String,
+    },
+    /// The mesh of a scene file is in none of the places searched.
+    #[error(
+        "the mesh {file:?} of scene {scene:?} was not found; searched\n{}it can be downloaded: {source_text}\nput it at {file:?} below a folder that the environment variable SKIAGRAPH_ASSETS names",
+        list_places(searched)
+    )]
+    MeshNotFound {
+        /// The scene's name.
+        scene: String,
+        /// The file as the scene names it.
+        file: String,
+        /// Every path tried, in order.
+        searched: Vec<PathBuf>,
+        /// Where the scene file says it can be had.
+        source_text: String,
+    },
+    /// No scene of that name, and no file of that path.
+    #[error("no scene {argument:?}: neither a file, nor a file in {}, nor one of the built-in scenes {}", folder.display(), builtin.join(", "))]
+    UnknownScene {
+        /// What was asked for.
+        argument: String,
+        /// The folder of scene files that was searched.
+        folder: PathBuf,
+        /// Names of the built-in scenes.
+        builtin: Vec<&'static str>,
+    },
+    /// A bare `.obj` came without the view and the light that a scene file would hold.
+    #[error("{}: an .obj file holds no view and no light: give --eye x,y,z --look x,y,z (direction) and --light x,y,z (the direction in which the light travels); --fov DEGREES, --near and --far if the defaults do not suit it", path.display())]
+    ObjNeedsView {
+        /// The OBJ file.
+        path: PathBuf,
+    },
+    /// A view was given for a scene that brings its own views.
+    #[error(
+        "scene {argument:?} has its own views and light: a view and a light (--eye, --look, --light …) can only be given with a bare .obj file"
+    )]
+    ViewNotWanted {
+        /// What was asked for.
+        argument: String,
+    },
+    /// A view or a light given by the caller makes no camera or no light.
+    #[error("{}: {reason}", path.display())]
+    BadView {
+        /// The OBJ file it was given for.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+}
+
+/// Where a face stands in an OBJ file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FaceRef {
+    /// Name of its group.
+    pub group: String,
+    /// Number of the face within that run of the group, in file order, from 1.
+    pub number: u32,
+    /// Line in the file, from 1.
+    pub line: u32,
+}
+
+impl fmt::Display for FaceRef {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "face {} of group {:?} (line {})",
+            self.number, self.group, self.line
+        )
+    }
+}
+
+/// A face that cannot be used, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FaceFault {
+    /// The face.
+    pub face: FaceRef,
+    /// What is wrong with it.
+    pub problem: FaceProblem,
+}
+
+/// What is wrong with a face.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum FaceProblem {
+    /// A vertex number that is 0 or beyond the vertices above the face.
+    NoSuchVertex {
+        /// The number as written.
+        written: String,
+        /// Vertices above the face.
+        available: usize,
+    },
+    /// A normal number that is 0 or beyond the normals above the face.
+    NoSuchNormal {
+        /// The number as written.
+        written: String,
+        /// Normals above the face.
+        available: usize,
+    },
+    /// A corner that is not `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+    NotACorner(
+        /// The corner as written.
+        String,
+    ),
+    /// A corner at NaN or infinity.
+    NotFinite {
+        /// Corner within the face, from 1.
+        corner: usize,
+        /// The coordinates read, as text (NaN equals nothing, not even itself).
+        position: String,
+    },
+}
+
+impl fmt::Display for FaceProblem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoSuchVertex { written, available } => {
+                write!(
+                    f,
+                    "names vertex {written}, but {available} vertices stand above it"
+                )
+            }
+            Self::NoSuchNormal { written, available } => {
+                write!(
+                    f,
+                    "names normal {written}, but {available} normals stand above it"
+                )
+            }
+            Self::NotACorner(text) => {
+                write!(
+                    f,
+                    "has the corner {text:?}; expected v, v/vt, v//vn or v/vt/vn"
+                )
+            }
+            Self::NotFinite { corner, position } => {
+                write!(
+                    f,
+                    "has its corner {corner} at {position}, which is not finite"
+                )
+            }
+        }
+    }
+}
+
+fn list_faults(faults: &[FaceFault], total: usize) -> String {
+    let mut text: Vec<String> = faults
+        .iter()
+        .map(|fault| format!("{} {}", fault.face, fault.problem))
+        .collect();
+    if total > faults.len() {
+        text.push(format!("and {} more faces", total - faults.len()));
+    }
+    text.join("; ")
+}
+
+fn list_places(places: &[PathBuf]) -> String {
+    places
+        .iter()
+        .map(|place| format!("  {}\n", place.display()))
+        .collect()
+}
+
+fn shorten(names: &[String]) -> String {
+    const SHOWN: usize = 12;
+    let mut text = names
+        .iter()
+        .take(SHOWN)
+        .map(String::as_str)
+        .collect::<Vec<_>>()
+        .join(", ");
+    if names.len() > SHOWN {
+        text += &format!(", … ({} in all)", names.len());
+    }
+    text
+}

@@ -1,0 +1,21 @@
+//! Meshes made by the program itself: the same bits on every machine.
+//!
+//! Only operations that IEEE 754 rounds correctly are used (`+ − × ÷ √`): angles go through [`numbers::turn`], not
+//! through the platform's `sin`.
+
+mod numbers;
+mod park;
+mod solid;
+
+use crate::Mesh;
+
+/// Names that [`by_name`] knows.
+pub const NAMES: [&str; 1] = ["park"];
+
+/// The generated mesh of that name.
+pub fn by_name(name: &str) -> Option<Mesh> {
+    match name {
+        "park" => Some(park::build()),
+        _ => None,
+    }
+}

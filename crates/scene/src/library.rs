@@ -1,0 +1,284 @@
+//! Finds scenes by name or path, and the meshes that they name.
+
+use crate::{
+    DirectionalLight, ImportReport, MeshSource, ObjOptions, QuadDiagonal, Scene, SceneError,
+    SceneFile, View, generate, load_obj,
+};
+use std::path::{Path, PathBuf};
+
+/// The environment variable that lists folders of meshes, separated as in `PATH`.
+pub const ASSETS_VARIABLE: &str = "SKIAGRAPH_ASSETS";
+
+/// Scene files that are part of the program: name and text.
+const BUILT_IN: [(&str, &str); 2] = [
+    ("park", include_str!("../../../scenes/park.ron")),
+    ("sponza", include_str!("../../../scenes/sponza.ron")),
+];
+
+/// What a user asked for.
+#[derive(Clone, Debug, Default)]
+pub struct SceneRequest {
+    /// A built-in name, a name in `scenes/`, the path of a `.ron` file, or the path of an `.obj` file.
+    pub argument: String,
+    /// View and light of a bare `.obj` file; must be absent for any other scene, which brings its own.
+    pub obj: Option<ObjSetup>,
+}
+
+/// What an `.obj` file lacks to be a scene.
+#[derive(Clone, Debug)]
+pub struct ObjSetup {
+    /// The only view.
+    pub view: View,
+    /// The light.
+    pub light: DirectionalLight,
+    /// How polygons are split.
+    pub quads: QuadDiagonal,
+}
+
+/// One row of `skiagraph scenes`.
+#[derive(Clone, Debug)]
+pub struct SceneListing {
+    /// Name on the command line.
+    pub name: String,
+    /// One line, or why the scene file cannot be read.
+    pub description: String,
+    /// Names of its views; none if the scene file cannot be read.
+    pub views: Vec<String>,
+    /// Whether its mesh is at hand: generated, or found on disk.
+    pub mesh_found: bool,
+    /// The scene file, or `None` for a built-in scene.
+    pub file: Option<PathBuf>,
+}
+
+/// Where scenes and meshes are looked for.
+#[derive(Clone, Debug, Default)]
+pub struct SceneLibrary {
+    /// Folder of scene files that win over the built-in ones.
+    pub scenes: PathBuf,
+    /// Folders of meshes, searched in order after the scene file's own.
+    pub assets: Vec<PathBuf>,
+}
+
+impl SceneLibrary {
+    /// `scenes/` below the working directory; the folders of `SKIAGRAPH_ASSETS`, then the user's cache folder.
+    pub fn from_environment() -> Self {
+        let variable = std::env::var_os(ASSETS_VARIABLE).unwrap_or_default();
+        let mut assets: Vec<PathBuf> = std::env::split_paths(&variable)
+            .filter(|path| !path.as_os_str().is_empty())
+            .collect();
+        assets.extend(
+            directories::ProjectDirs::from("", "", "skiagraph")
+                .map(|folders| folders.cache_dir().to_owned()),
+        );
+        Self {
+            scenes: PathBuf::from("scenes"),
+            assets,
+        }
+    }
+
+    /// Loads a scene with its mesh.
+    ///
+    /// # Errors
+    /// [`SceneError`]: no such scene, a broken scene file or mesh, a mesh that is nowhere to be found (with every place
+    /// searched), a bare `.obj` without view and light.
+    pub fn load(&self, request: &SceneRequest) -> Result<(Scene, ImportReport), SceneError> {
+        let path = Path::new(&request.argument);
+        if has_extension(path, "obj") {
+            return load_bare_obj(path, request.obj.as_ref());
+        }
+        if request.obj.is_some() {
+            return Err(SceneError::ViewNotWanted {
+                argument: request.argument.clone(),
+            });
+        }
+        let (file, text) = self.locate(&request.argument)?;
+        let name = file.as_ref().map_or_else(
+            || built_in_file(&request.argument),
+            |file| file.display().to_string(),
+        );
+        self.assemble(SceneFile::parse(&text, &name)?, file.as_deref())
+    }
+
+    /// Every scene that can be named: files of the scenes folder and built-in ones, by name.
+    pub fn list(&self) -> Vec<SceneListing> {
+        let mut names: Vec<String> = BUILT_IN
+            .iter()
+            .map(|(name, _)| (*name).to_owned())
+            .collect();
+        // A folder that is not there, or cannot be listed, holds no scenes.
+        for entry in std::fs::read_dir(&self.scenes)
+            .into_iter()
+            .flatten()
+            .flatten()
+        {
+            let path = entry.path();
+            if let (true, Some(stem)) = (has_extension(&path, "ron"), path.file_stem()) {
+                names.push(stem.to_string_lossy().into_owned());
+            }
+        }
+        names.sort();
+        names.dedup();
+        names.into_iter().map(|name| self.describe(name)).collect()
+    }
+
+    fn describe(&self, name: String) -> SceneListing {
+        let (file, scene) = match self.locate(&name) {
+            Ok((file, text)) => (file, SceneFile::parse(&text, &name)),
+            Err(error) => (None, Err(error)),
+        };
+        match scene {
+            Ok(scene) => SceneListing {
+                name,
+                views: scene.views.iter().map(|view| view.name.clone()).collect(),
+                mesh_found: match &scene.mesh {
+                    MeshSource::Generated(_) => true,
+                    MeshSource::Obj { file: mesh, .. } => self
+                        .mesh_places(mesh, file.as_deref())
+                        .iter()
+                        .any(|place| place.is_file()),
+                },
+                description: scene.description,
+                file,
+            },
+            Err(error) => SceneListing {
+                name,
+                description: error.to_string(),
+                views: Vec::new(),
+                mesh_found: false,
+                file,
+            },
+        }
+    }
+
+    /// The scene file of that name or path (`None` if built in) and its text.
+    fn locate(&self, argument: &str) -> Result<(Option<PathBuf>, String), SceneError> {
+        let path = Path::new(argument);
+        let by_name = self.scenes.join(format!("{argument}.ron"));
+        let file = if has_extension(path, "ron") {
+            Some(path)
+        } else if by_name.is_file() {
+            Some(by_name.as_path())
+        } else {
+            None
+        };
+        if let Some(file) = file {
+            let text = std::fs::read_to_string(file).map_err(|source| SceneError::Read {
+                path: file.to_owned(),
+                source,
+            })?;
+            return Ok((Some(file.to_owned()), text));
+        }
+        match BUILT_IN.iter().find(|(name, _)| *name == argument) {
+            Some((_, text)) => Ok((None, (*text).to_owned())),
+            None => Err(SceneError::UnknownScene {
+                argument: argument.to_owned(),
+                folder: self.scenes.clone(),
+                builtin: BUILT_IN.iter().map(|(name, _)| *name).collect(),
+            }),
+        }
+    }
+
+    fn mesh_places(&self, mesh: &str, scene_file: Option<&Path>) -> Vec<PathBuf> {
+        let beside = scene_file.map(|file| file.parent().unwrap_or(Path::new("")).to_owned());
+        beside
+            .iter()
+            .chain(&self.assets)
+            .map(|folder| folder.join(mesh))
+            .collect()
+    }
+
+    fn assemble(
+        &self,
+        scene: SceneFile,
+        file: Option<&Path>,
+    ) -> Result<(Scene, ImportReport), SceneError> {
+        let (mesh, report) = match &scene.mesh {
+            MeshSource::Generated(name) => {
+                // The scene file was refused where no generator has that name.
+                (
+                    generate::by_name(name).unwrap_or_default(),
+                    ImportReport::default(),
+                )
+            }
+            MeshSource::Obj {
+                file: mesh,
+                leave_out,
+                quads,
+                source,
+            } => {
+                let places = self.mesh_places(mesh, file);
+                let Some(place) = places.iter().find(|place| place.is_file()) else {
+                    return Err(SceneError::MeshNotFound {
+                        scene: scene.name,
+                        file: mesh.clone(),
+                        searched: places,
+                        source_text: source.clone(),
+                    });
+                };
+                load_obj(
+                    place,
+                    &ObjOptions {
+                        leave_out: leave_out.clone(),
+                        quads: *quads,
+                    },
+                )?
+            }
+        };
+        Ok((
+            Scene {
+                name: scene.name,
+                mesh,
+                views: scene.views,
+                light: scene.light,
+            },
+            report,
+        ))
+    }
+}
+
+fn load_bare_obj(
+    path: &Path,
+    setup: Option<&ObjSetup>,
+) -> Result<(Scene, ImportReport), SceneError> {
+    let Some(setup) = setup else {
+        return Err(SceneError::ObjNeedsView {
+            path: path.to_owned(),
+        });
+    };
+    setup
+        .view
+        .check()
+        .and_then(|()| setup.light.check())
+        .map_err(|reason| SceneError::BadView {
+            path: path.to_owned(),
+            reason,
+        })?;
+    let (mesh, report) = load_obj(
+        path,
+        &ObjOptions {
+            quads: setup.quads,
+            ..ObjOptions::default()
+        },
+    )?;
+    let name = path
+        .file_stem()
+        .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    Ok((
+        Scene {
+            name,
+            mesh,
+            views: vec![setup.view.clone()],
+            light: setup.light,
+        },
+        report,
+    ))
+}
+
+fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension()
+        .is_some_and(|found| found.eq_ignore_ascii_case(extension))
+}
+
+fn built_in_file(name: &str) -> String {
+    format!("<built-in {name}>")
+}

@@ -1,0 +1,104 @@
+//! What an import did to a mesh, for those who want to know what they are looking at.
+
+use crate::error::{FACES_SHOWN, FaceRef};
+use std::{fmt, path::PathBuf};
+
+/// Counts and warnings of an import. A generated mesh has an empty report.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ImportReport {
+    /// The mesh file, if there was one.
+    pub file: Option<PathBuf>,
+    /// Faces (triangles and larger polygons) read, those of groups left out not counted.
+    pub faces: usize,
+    /// Faces of groups left out by name.
+    pub faces_left_out: usize,
+    /// `p` records and faces of one corner: not part of the mesh.
+    pub points: usize,
+    /// `l` records and faces of two corners: not part of the mesh.
+    pub lines: usize,
+    /// Vertices that became another's after welding.
+    pub vertices_welded: usize,
+    /// Faces without a normal at every corner: they got the geometric normal of each of their triangles.
+    pub faces_without_normals: usize,
+    /// Corners whose normal had no direction (zero or not finite) and was replaced by the geometric one.
+    pub normals_replaced: usize,
+    /// Triangles dropped because two of their corners are the same point.
+    pub dropped: Degenerate,
+    /// Triangles kept although their area is zero (three different points on a line).
+    pub zero_area: Degenerate,
+}
+
+/// Degenerate triangles: how many, and the faces they came from.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Degenerate {
+    /// Number of triangles.
+    pub triangles: usize,
+    /// The first faces that had one, in file order.
+    pub first: Vec<FaceRef>,
+}
+
+impl Degenerate {
+    pub(crate) fn add(&mut self, face: impl FnOnce() -> FaceRef) {
+        self.triangles += 1;
+        if self.first.len() < FACES_SHOWN {
+            let face = face();
+            if self.first.last() != Some(&face) {
+                self.first.push(face);
+            }
+        }
+    }
+
+    fn describe(&self, what: &str, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.triangles == 0 {
+            return Ok(());
+        }
+        let faces: Vec<String> = self.first.iter().map(FaceRef::to_string).collect();
+        writeln!(
+            f,
+            "{} {what}: {}{}",
+            self.triangles,
+            faces.join(", "),
+            if self.triangles > faces.len() {
+                ", …"
+            } else {
+                ""
+            }
+        )
+    }
+}
+
+impl ImportReport {
+    /// Whether the file held anything that a user may want to mend.
+    pub fn has_warnings(&self) -> bool {
+        self.dropped.triangles
+            + self.zero_area.triangles
+            + self.normals_replaced
+            + self.points
+            + self.lines
+            > 0
+    }
+}
+
+/// The warnings, one per line; nothing for a clean import.
+impl fmt::Display for ImportReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.dropped
+            .describe("triangles dropped, two corners being the same point", f)?;
+        self.zero_area.describe("triangles without area kept", f)?;
+        if self.normals_replaced > 0 {
+            writeln!(
+                f,
+                "{} corner normals without a direction replaced by the triangle's own",
+                self.normals_replaced
+            )?;
+        }
+        if self.points + self.lines > 0 {
+            writeln!(
+                f,
+                "{} points and {} lines left out",
+                self.points, self.lines
+            )?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,231 @@
+//! Scene files: mesh, light and named views in RON.
+//!
+//! ```
+//! let text = r#"(
+//!     format: 1,
+//!     name: "garden",
+//!     description: "a park bench in the evening",
+//!     mesh: Generated("park"),
+//!     light: (direction: (0.744, -0.408, 0.527)),
+//!     views: [(name: "bench", eye: (-23, 18, 30), direction: (0.4, -0.6, -0.7), fov_y_degrees: 60, near: 1, far: 400)],
+//! )"#;
+//! let scene = skiagraph_scene::SceneFile::parse(text, "garden.ron")?;
+//! assert_eq!(scene.views[0].name, "bench");
+//! # Ok::<(), skiagraph_scene::SceneError>(())
+//! ```
+
+use crate::{DirectionalLight, QuadDiagonal, SceneError, View};
+use glam::DVec3;
+use serde::{Deserialize, Deserializer, de::Error};
+
+/// What a scene file says. Everything in it is checked, but no mesh is loaded yet.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneFile {
+    /// Version of the format: 1.
+    #[serde(deserialize_with = "format")]
+    pub format: u32,
+    /// Name shown in tables and results.
+    pub name: String,
+    /// One line for `skiagraph scenes`.
+    #[serde(default)]
+    pub description: String,
+    /// Where the triangles come from.
+    pub mesh: MeshSource,
+    /// The light.
+    #[serde(deserialize_with = "light")]
+    pub light: DirectionalLight,
+    /// At least one view, no two of the same name.
+    #[serde(deserialize_with = "views")]
+    pub views: Vec<View>,
+}
+
+/// Where a scene's triangles come from.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum MeshSource {
+    /// A Wavefront OBJ file.
+    Obj {
+        /// Path with forward slashes, searched beside the scene file, in the assets folders and in the cache folder.
+        file: String,
+        /// Groups that are left out, by name.
+        #[serde(default)]
+        leave_out: Vec<String>,
+        /// How polygons are split.
+        #[serde(default)]
+        quads: QuadDiagonal,
+        /// Where the file can be downloaded, for the message that it is missing.
+        source: String,
+    },
+    /// A mesh that this crate generates, by name; see [`crate::generate`].
+    Generated(#[serde(deserialize_with = "generator")] String),
+}
+
+impl SceneFile {
+    /// Reads the text of a scene file; `file` only serves messages.
+    ///
+    /// # Errors
+    /// [`SceneError::SceneFile`] with line and column for anything that is not RON, not a scene's field, or makes no
+    /// camera or light.
+    pub fn parse(text: &str, file: &str) -> Result<Self, SceneError> {
+        let options = ron::Options::default();
+        options
+            .from_str(text)
+            .map_err(|error| SceneError::SceneFile {
+                file: file.to_owned(),
+                line: error.span.start.line,
+                column: error.span.start.col,
+                reason: error.code.to_string(),
+            })
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename = "View")]
+struct ViewText {
+    name: String,
+    eye: (f64, f64, f64),
+    direction: (f64, f64, f64),
+    #[serde(default = "y_axis")]
+    up: (f64, f64, f64),
+    fov_y_degrees: f64,
+    near: f64,
+    far: f64,
+}
+
+fn y_axis() -> (f64, f64, f64) {
+    (0.0, 1.0, 0.0)
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename = "Light")]
+struct LightText {
+    direction: (f64, f64, f64),
+}
+
+impl<'de> Deserialize<'de> for View {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = ViewText::deserialize(deserializer)?;
+        let view = Self {
+            name: text.name,
+            eye: text.eye.into(),
+            direction: text.direction.into(),
+            up: text.up.into(),
+            fov_y_degrees: text.fov_y_degrees,
+            near: text.near,
+            far: text.far,
+        };
+        view.check().map_err(D::Error::custom)?;
+        Ok(view)
+    }
+}
+
+fn format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
+    match u32::deserialize(deserializer)? {
+        1 => Ok(1),
+        other => Err(D::Error::custom(format!(
+            "format {other} is unknown; this program reads format 1"
+        ))),
+    }
+}
+
+fn generator<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    let name = String::deserialize(deserializer)?;
+    if crate::generate::NAMES.contains(&name.as_str()) {
+        return Ok(name);
+    }
+    let known = crate::generate::NAMES.join(", ");
+    Err(D::Error::custom(format!(
+        "no generated mesh is called {name:?}; there are: {known}"
+    )))
+}
+
+fn light<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DirectionalLight, D::Error> {
+    let light = DirectionalLight {
+        direction: LightText::deserialize(deserializer)?.direction.into(),
+    };
+    light.check().map_err(D::Error::custom)?;
+    Ok(light)
+}
+
+fn views<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<View>, D::Error> {
+    let views = Vec::<View>::deserialize(deserializer)?;
+    if views.is_empty() {
+        return Err(D::Error::custom("a scene needs at least one view"));
+    }
+    for (index, view) in views.iter().enumerate() {
+        if views[..index]
+            .iter()
+            .any(|earlier| earlier.name == view.name)
+        {
+            return Err(D::Error::custom(format!(
+                "two views are called {:?}",
+                view.name
+            )));
+        }
+    }
+    Ok(views)
+}
+
+impl View {
+    /// Whether a camera can be made of this view.
+    ///
+    /// # Errors
+    /// What is wrong with it, naming the view.
+    pub fn check(&self) -> Result<(), String> {
+        let name = &self.name;
+        if !self.eye.is_finite() {
+            return Err(format!("view {name:?}: the eye {} is not finite", self.eye));
+        }
+        let (Some(direction), Some(up)) = (unit(self.direction), unit(self.up)) else {
+            return Err(format!(
+                "view {name:?}: direction {} and up {} must be finite and longer than 0",
+                self.direction, self.up
+            ));
+        };
+        // Below this sine the right vector would be mostly rounding error.
+        if direction.cross(up).length() < 1e-9 {
+            return Err(format!(
+                "view {name:?}: up {} is parallel to the direction {}",
+                self.up, self.direction
+            ));
+        }
+        if !(self.fov_y_degrees > 0.0 && self.fov_y_degrees < 180.0) {
+            return Err(format!(
+                "view {name:?}: fov_y_degrees is {}, expected more than 0 and less than 180",
+                self.fov_y_degrees
+            ));
+        }
+        if !(self.near > 0.0 && self.near < self.far && self.far.is_finite()) {
+            return Err(format!(
+                "view {name:?}: near is {} and far is {}, expected 0 < near < far",
+                self.near, self.far
+            ));
+        }
+        Ok(())
+    }
+}
+
+impl DirectionalLight {
+    /// Whether the light has a direction.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn check(&self) -> Result<(), String> {
+        match unit(self.direction) {
+            Some(_) => Ok(()),
+            None => Err(format!(
+                "the light's direction {} must be finite and longer than 0",
+                self.direction
+            )),
+        }
+    }
+}
+
+fn unit(vector: DVec3) -> Option<DVec3> {
+    if vector.is_finite() {
+        vector.try_normalize()
+    } else {
+        None
+    }
+}

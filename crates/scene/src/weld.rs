@@ -1,0 +1,28 @@
+//! Gives bit-equal vectors one index.
+
+use glam::Vec3;
+use std::collections::HashMap;
+
+/// Vectors met so far, each once, in the order of their first appearance.
+#[derive(Default)]
+pub(crate) struct Welder {
+    /// The vectors.
+    pub values: Vec<Vec3>,
+    by_bits: HashMap<[u32; 3], u32>,
+}
+
+impl Welder {
+    /// Index of a vector; −0 counts (and is stored) as 0.
+    pub fn index(&mut self, value: Vec3) -> u32 {
+        let value = value + Vec3::ZERO; // −0 + 0 = 0
+        let next = self.values.len() as u32;
+        let index = *self
+            .by_bits
+            .entry(value.to_array().map(f32::to_bits))
+            .or_insert(next);
+        if index == next {
+            self.values.push(value);
+        }
+        index
+    }
+}

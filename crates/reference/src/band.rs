@@ -2,11 +2,13 @@
 //!
 //! A caster is *touched* when some admissible displacement of the receiver, or of the caster's corners, makes the shadow ray
 //! hit it, and *robust* when every one does. A lit pixel that touches no caster and a shadowed one with a robust caster are
-//! certain. A shadowed pixel without one (its ray meets an edge between two casters, say) is certain if displaced rays find it in shadow all around.
+//! certain. A shadowed pixel without one, whose ray meets an edge between two casters, is certain if displaced rays find it in shadow all around;
+//! but two triangles that merely abut, without a common edge, move each on its own, and a ray between them is in band.
 
 use crate::{
     ray::{Corners, Ray},
     receiver::F32_ROUNDING,
+    tree::Caster,
 };
 use glam::DVec3;
 
@@ -71,8 +73,13 @@ pub(crate) enum Contact {
     Miss,
     /// No hit, but some displacement makes it one.
     Touched,
-    /// A hit that some displacement undoes; with the caster's error.
-    Hit(f64),
+    /// A hit that some displacement undoes.
+    Hit {
+        /// The caster's own error, scene units.
+        error: f64,
+        /// Some displacement puts the ray across an edge that no other triangle has.
+        near_open_edge: bool,
+    },
     /// A hit under every displacement.
     Robust,
 }
@@ -107,7 +114,7 @@ impl<'a> FuzzyRay<'a> {
     }
 
     /// Classifies one caster.
-    pub(crate) fn contact(&self, corners: &Corners) -> Contact {
+    pub(crate) fn contact(&self, &Caster { corners, open, .. }: &Caster) -> Contact {
         let sheared = corners.map(|corner| self.ray.sheared(corner));
         let [a, b, c] = sheared;
         let [sx, sy, _] = self.ray.shear;
@@ -149,12 +156,18 @@ impl<'a> FuzzyRay<'a> {
                     * (side.x * side.x + side.y * side.y + (side.y * sx - side.x * sy).powi(2))
                         .sqrt()
         });
-        let (t, t_error) = self.distance(corners, ball);
+        let (t, t_error) = self.distance(&corners, ball);
         let inside =
             |sign: f64, margin: f64| (0..3).all(|i| sign * edges[i] >= margin * thresholds[i]);
         match Ray::hit_sheared(sheared, edges).filter(|hit| hit.t > 0.0) {
             Some(_) if t > t_error && (inside(1.0, 1.0) || inside(-1.0, 1.0)) => Contact::Robust,
-            Some(_) => Contact::Hit(caster),
+            Some(_) => {
+                let near_open_edge = (0..3).any(|i| open[i] && edges[i].abs() < thresholds[i]);
+                Contact::Hit {
+                    error: caster,
+                    near_open_edge,
+                }
+            }
             None if t > -t_error && (inside(1.0, -1.0) || inside(-1.0, -1.0)) => Contact::Touched,
             None => Contact::Miss,
         }

@@ -193,3 +193,83 @@ impl Reference {
 fn grey(linear: f32) -> Colour {
     [(linear.clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0).round() as u8; 3]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One pixel of each class, then a shadowed one in band.
+    fn reference() -> Reference {
+        Reference {
+            viewport: [5, 1],
+            classes: vec![
+                Class::Background,
+                Class::FacingAway,
+                Class::Lit,
+                Class::Shadow,
+                Class::Shadow,
+            ],
+            in_band: vec![false, false, false, false, true],
+            n_dot_l: vec![0.0, -0.5, 1.0, 1.0, 0.5],
+        }
+    }
+
+    fn colours(image: Image) -> Vec<Colour> {
+        assert_eq!(
+            image.rgb.len(),
+            (3 * image.size[0] * image.size[1]) as usize
+        );
+        image
+            .rgb
+            .chunks_exact(3)
+            .map(|pixel| [pixel[0], pixel[1], pixel[2]])
+            .collect()
+    }
+
+    #[test]
+    fn errors_are_blue_and_red() {
+        let reference = reference();
+        let right = colours(
+            Image::error(&reference.visibility(), &reference.status(), &reference)
+                .expect("its own"),
+        );
+        assert_eq!(
+            right,
+            [
+                DIM_BACKGROUND,
+                DIM_FACING_AWAY,
+                DIM_LIGHT,
+                DIM_SHADOW,
+                DIM_SHADOW
+            ]
+        );
+        let wrong = colours(
+            Image::error(&[0u8, 0, 0, 1, 1], &reference.status(), &reference).expect("valid"),
+        );
+        assert_eq!(
+            wrong[2..],
+            [WRONGLY_SHADOWED, WRONGLY_LIT, WRONGLY_LIT_IN_BAND]
+        );
+        assert!(Image::error(&[0u8; 4], &[0u8; 5], &reference).is_err());
+    }
+
+    #[test]
+    fn visibility_and_uncertainty_follow_the_method() {
+        let (visibility, status) = ([1u8, 1, 1, 0, 1], [0u8, 1, 2, 3, 4]);
+        let shown = colours(Image::visibility([5, 1], &visibility, &status).expect("same sizes"));
+        assert_eq!(shown, [BACKGROUND, FACING_AWAY, LIGHT, SHADOW, LIGHT]);
+        let shown = colours(Image::uncertain([5, 1], &visibility, &status).expect("same sizes"));
+        assert_eq!(shown, [BACKGROUND, FACING_AWAY, LIGHT, SHADOW, UNCERTAIN]);
+        assert!(Image::visibility([5, 2], &visibility, &status).is_err());
+    }
+
+    #[test]
+    fn shading_follows_the_cosine_and_the_visibility() {
+        let shaded = colours(Image::shaded(&[1u8, 1, 1, 0, 1], &reference()).expect("same size"));
+        assert_eq!(shaded[0], BACKGROUND);
+        assert_eq!(shaded[2], [255; 3]);
+        let level = |pixel: usize| shaded[pixel][0];
+        assert!(level(2) > level(4) && level(4) > level(3) && level(3) > level(1) && level(1) > 0);
+        assert!(Image::shaded(&[1u8; 6], &reference()).is_err());
+    }
+}

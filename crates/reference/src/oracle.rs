@@ -2,7 +2,7 @@
 
 use crate::{
     Error,
-    band::{Contact, FuzzyRay},
+    band::{Contact, FuzzyRay, Uncertainty},
     ray::Ray,
     receiver::Receiver,
     tree::Tree,
@@ -160,13 +160,13 @@ impl<'a> Oracle<'a> {
         per_pixel(camera.viewport, progress, |x, y, stack| {
             let ray = Ray::new(camera.eye, camera.pixel_direction(x, y), reach, 0.0);
             let mut nearest = (camera.far, BACKGROUND);
-            self.tree.walk(&ray, stack, |primitive, corners, t_max| {
-                if let Some(hit) = ray.hit(corners)
+            self.tree.walk(&ray, stack, |caster, t_max| {
+                if let Some(hit) = ray.hit(&caster.corners)
                     && hit.front
                     && hit.t >= camera.near
-                    && (hit.t, primitive) < nearest
+                    && (hit.t, caster.primitive) < nearest
                 {
-                    nearest = (hit.t, primitive);
+                    nearest = (hit.t, caster.primitive);
                     // Boxes err by rounding, and an equally near triangle of lower id still counts: a hair further.
                     *t_max = hit.t * (1.0 + 1e-12);
                 }
@@ -260,39 +260,8 @@ impl<'a> Oracle<'a> {
             OracleMode::Offset(length) => (receiver.position + towards * length, BACKGROUND),
         };
         let (shadow, in_band) = match &receiver.uncertainty {
+            Some(uncertainty) => self.visibility(origin, towards, uncertainty, excluded, stack),
             None => (self.occluded(origin, towards, excluded, stack), true),
-            Some(uncertainty) => {
-                let reach = self.tree.reach(origin);
-                let ray = Ray::new(origin, towards, reach, uncertainty.extent(reach));
-                let fuzzy = FuzzyRay::new(&ray, origin, towards, uncertainty);
-                let (mut touched, mut hit, mut robust) = (false, None, false);
-                self.tree.walk(&ray, stack, |primitive, corners, _| {
-                    if primitive == excluded {
-                        return ControlFlow::Continue(());
-                    }
-                    match fuzzy.contact(corners) {
-                        Contact::Miss => {}
-                        Contact::Touched => touched = true,
-                        Contact::Hit(error) => hit = Some(hit.unwrap_or(0f64).max(error)),
-                        Contact::Robust => {
-                            robust = true;
-                            return ControlFlow::Break(());
-                        }
-                    }
-                    ControlFlow::Continue(())
-                });
-                match hit {
-                    _ if robust => (true, false),
-                    None => (false, touched),
-                    Some(error) => {
-                        let displaced = uncertainty.displacements(towards, error);
-                        let mut lit = displaced
-                            .iter()
-                            .map(|&by| !self.occluded(origin + by, towards, excluded, stack));
-                        (true, lit.any(|lit| lit))
-                    }
-                }
-            }
         };
         let class = if shadow { Class::Shadow } else { Class::Lit };
         Answer {
@@ -302,12 +271,65 @@ impl<'a> Oracle<'a> {
         }
     }
 
+    /// Whether the receiver is in shadow, and whether that is in band.
+    fn visibility(
+        &self,
+        origin: DVec3,
+        towards: DVec3,
+        uncertainty: &Uncertainty,
+        excluded: u32,
+        stack: &mut Vec<u32>,
+    ) -> (bool, bool) {
+        let reach = self.tree.reach(origin);
+        let ray = Ray::new(origin, towards, reach, uncertainty.extent(reach));
+        let fuzzy = FuzzyRay::new(&ray, origin, towards, uncertainty);
+        let (mut touched, mut robust) = (false, false);
+        let mut blocked: Option<(f64, bool)> = None;
+        self.tree.walk(&ray, stack, |caster, _| {
+            if caster.primitive == excluded {
+                return ControlFlow::Continue(());
+            }
+            match fuzzy.contact(caster) {
+                Contact::Miss => {}
+                Contact::Touched => touched = true,
+                Contact::Hit {
+                    error,
+                    near_open_edge,
+                } => {
+                    let (largest, all_near_open_edges) = blocked.unwrap_or((0.0, true));
+                    blocked = Some((largest.max(error), all_near_open_edges && near_open_edge));
+                }
+                Contact::Robust => {
+                    robust = true;
+                    return ControlFlow::Break(());
+                }
+            }
+            ControlFlow::Continue(())
+        });
+        match blocked {
+            _ if robust => (true, false),
+            None => (false, touched),
+            Some((_, true)) => (true, true),
+            Some((error, false)) => {
+                let displaced = uncertainty.displacements(towards, error);
+                (
+                    true,
+                    !displaced
+                        .iter()
+                        .all(|&by| self.occluded(origin + by, towards, excluded, stack)),
+                )
+            }
+        }
+    }
+
     /// Whether any triangle but `excluded` stands between `origin` and the light.
     fn occluded(&self, origin: DVec3, towards: DVec3, excluded: u32, stack: &mut Vec<u32>) -> bool {
         let ray = Ray::new(origin, towards, self.tree.reach(origin), 0.0);
         let mut occluded = false;
-        self.tree.walk(&ray, stack, |primitive, corners, _| {
-            if primitive != excluded && ray.hit(corners).is_some_and(|hit| hit.t > 0.0) {
+        self.tree.walk(&ray, stack, |caster, _| {
+            if caster.primitive != excluded
+                && ray.hit(&caster.corners).is_some_and(|hit| hit.t > 0.0)
+            {
                 occluded = true;
                 return ControlFlow::Break(());
             }

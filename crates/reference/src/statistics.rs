@@ -219,3 +219,151 @@ where
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One row of pixels: class, whether in band.
+    fn reference(pixels: &[(Class, bool)]) -> Reference {
+        Reference {
+            viewport: [pixels.len() as u32, 1],
+            classes: pixels.iter().map(|pixel| pixel.0).collect(),
+            in_band: pixels.iter().map(|pixel| pixel.1).collect(),
+            n_dot_l: vec![0.5; pixels.len()],
+        }
+    }
+
+    #[test]
+    fn every_combination_is_counted_once() {
+        use Class::{Background, FacingAway, Lit, Shadow};
+        // Class, in band, visibility, status.
+        let pixels: [(Class, bool, u8, u8); 15] = [
+            (Background, false, 1, 0),
+            (FacingAway, false, 1, 1), // not judged
+            (FacingAway, false, 0, 3), // looks the same
+            (FacingAway, false, 1, 2), // wrongly lit, certain
+            (FacingAway, true, 1, 4),  // wrongly lit, in band
+            (Lit, false, 1, 2),
+            (Lit, true, 1, 4),
+            (Lit, false, 0, 3), // wrongly in shadow, certain
+            (Lit, false, 0, 4), // wrongly in shadow, uncertain
+            (Lit, false, 0, 1), // taken for facing away: wrongly in shadow
+            (Shadow, false, 0, 3),
+            (Shadow, false, 0, 1), // taken for facing away, looks the same
+            (Shadow, true, 1, 2),  // wrongly lit, in band
+            (Shadow, false, 1, 2), // wrongly lit, certain
+            (Shadow, false, 1, 0), // taken for background, shown lit
+        ];
+        let reference = reference(&pixels.map(|pixel| (pixel.0, pixel.1)));
+        let visibility = pixels.map(|pixel| pixel.2);
+        let status = pixels.map(|pixel| pixel.3);
+        let expected = Statistics {
+            pixels: PixelCounts {
+                background: 1,
+                facing_away: 4,
+                facing_light: 10,
+                lit: 5,
+                shadow: 5,
+            },
+            certain: CertainCounts { lit: 3, shadow: 2 },
+            uncertain: 2,
+            wrong: WrongCounts {
+                lit: 5,
+                shadow: 3,
+                total: 8,
+                certain: 3,
+                in_band: 2,
+            },
+            band: 2,
+            facing_mismatch: 6,
+        };
+        assert_eq!(
+            Statistics::judged(&visibility, &status, &reference),
+            Ok(expected)
+        );
+        // The same values as u32.
+        let (visibility, status) = (visibility.map(u32::from), status.map(u32::from));
+        assert_eq!(
+            Statistics::judged(&visibility, &status, &reference),
+            Ok(expected)
+        );
+        assert_eq!(expected.wrong_share(), 0.8);
+        assert_eq!(expected.uncertain_share(), 0.2);
+        assert_eq!(expected.band_share(), 0.2);
+    }
+
+    #[test]
+    fn the_names_in_json_are_the_contracts() {
+        let json = serde_json::to_value(Statistics::default()).expect("plain numbers");
+        let keys = |value: &serde_json::Value| {
+            let mut keys: Vec<String> = value
+                .as_object()
+                .expect("a struct")
+                .keys()
+                .cloned()
+                .collect();
+            keys.sort_unstable();
+            keys
+        };
+        assert_eq!(
+            keys(&json),
+            [
+                "band",
+                "certain",
+                "facing_mismatch",
+                "pixels",
+                "uncertain",
+                "wrong"
+            ]
+        );
+        assert_eq!(
+            keys(&json["pixels"]),
+            ["background", "facing_away", "facing_light", "lit", "shadow"]
+        );
+        assert_eq!(keys(&json["certain"]), ["lit", "shadow"]);
+        assert_eq!(
+            keys(&json["wrong"]),
+            ["certain", "in_band", "lit", "shadow", "total"]
+        );
+        assert_eq!(
+            serde_json::from_value::<Statistics>(json).expect("what was written"),
+            Statistics::default()
+        );
+    }
+
+    #[test]
+    fn foreign_values_and_sizes_are_errors() {
+        let reference = reference(&[(Class::Lit, false), (Class::Shadow, false)]);
+        let viewport = [2, 1];
+        let size = |name, actual| {
+            Err(Error::PixelCount {
+                name,
+                viewport,
+                expected: 2,
+                actual,
+            })
+        };
+        assert_eq!(
+            Statistics::judged(&[1u8], &[2u8, 3], &reference),
+            size("visibility", 1)
+        );
+        assert_eq!(
+            Statistics::judged(&[1u8, 0], &[2u8, 3, 3], &reference),
+            size("status", 3)
+        );
+        let named = |visibility: [u8; 2], status: [u8; 2]| match Statistics::judged(
+            &visibility,
+            &status,
+            &reference,
+        ) {
+            Err(Error::Value {
+                name, x, y, value, ..
+            }) => Some((name, x, y, value)),
+            _ => None,
+        };
+        assert_eq!(named([1, 255], [2, 3]), Some(("visibility", 1, 0, 255)));
+        assert_eq!(named([1, 0], [5, 3]), Some(("status", 0, 0, 5)));
+        assert_eq!(named([1, 0], [2, 3]), None);
+    }
+}

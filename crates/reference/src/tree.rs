@@ -5,13 +5,25 @@ use crate::{
     ray::{Corners, Ray},
 };
 use glam::DVec3;
+use rayon::prelude::*;
 use skiagraph_scene::{Bvh, Mesh};
 use std::{borrow::Cow, ops::ControlFlow};
 
-/// A hierarchy with its triangles' corners in leaf order.
+/// A triangle as a shadow ray meets it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Caster {
+    /// Primitive id.
+    pub(crate) primitive: u32,
+    /// Its corners.
+    pub(crate) corners: Corners,
+    /// For each edge, in the order of `Ray::edges`, whether no other triangle has it: it may be the rim of a crack.
+    pub(crate) open: [bool; 3],
+}
+
+/// A hierarchy with its triangles in leaf order.
 pub(crate) struct Tree<'a> {
     bvh: Cow<'a, Bvh>,
-    corners: Vec<Corners>,
+    casters: Vec<Caster>,
     bounds: Option<(DVec3, DVec3)>,
 }
 
@@ -51,12 +63,15 @@ impl<'a> Tree<'a> {
                 return Err(Error::Hierarchy("a leaf reaches beyond its triangles"));
             }
         }
-        let corners = bvh
+        let open = open_edges(mesh);
+        let casters = bvh
             .primitives
-            .iter()
-            .map(|&primitive| {
-                mesh.triangles[primitive as usize]
-                    .map(|index| mesh.positions[index as usize].to_array())
+            .par_iter()
+            .map(|&primitive| Caster {
+                primitive,
+                corners: mesh.triangles[primitive as usize]
+                    .map(|index| mesh.positions[index as usize].to_array()),
+                open: open[primitive as usize],
             })
             .collect();
         let bounds = mesh
@@ -64,7 +79,7 @@ impl<'a> Tree<'a> {
             .map(|(min, max)| (min.as_dvec3(), max.as_dvec3()));
         Ok(Self {
             bvh,
-            corners,
+            casters,
             bounds,
         })
     }
@@ -76,13 +91,13 @@ impl<'a> Tree<'a> {
         })
     }
 
-    /// Calls `visit` with primitive id, corners and the current end of the ray for every triangle whose box the ray enters,
+    /// Calls `visit` with the current end of the ray and every triangle whose box the ray enters,
     /// nearer boxes first. `visit` may shorten the ray, or end the walk by `Break`. `stack` is scratch memory.
     pub(crate) fn walk(
         &self,
         ray: &Ray,
         stack: &mut Vec<u32>,
-        mut visit: impl FnMut(u32, &Corners, &mut f64) -> ControlFlow<()>,
+        mut visit: impl FnMut(&Caster, &mut f64) -> ControlFlow<()>,
     ) {
         let nodes = &self.bvh.nodes;
         let mut t_max = f64::INFINITY;
@@ -97,9 +112,8 @@ impl<'a> Tree<'a> {
             let node = &nodes[index as usize];
             let first = node.first as usize;
             if node.count > 0 {
-                for slot in first..first + node.count as usize {
-                    if visit(self.bvh.primitives[slot], &self.corners[slot], &mut t_max).is_break()
-                    {
+                for caster in &self.casters[first..first + node.count as usize] {
+                    if visit(caster, &mut t_max).is_break() {
                         return;
                     }
                 }
@@ -117,6 +131,209 @@ impl<'a> Tree<'a> {
                 (None, Some(_)) => stack.push(node.first + 1),
                 (None, None) => {}
             }
+        }
+    }
+}
+
+/// For each triangle and each of its edges, in the order of `Ray::edges`, whether it is the only one to have it.
+fn open_edges(mesh: &Mesh) -> Vec<[bool; 3]> {
+    let keys = |&[a, b, c]: &[u32; 3]| [(b, c), (c, a), (a, b)].map(|(p, q)| (p.min(q), p.max(q)));
+    let mut all: Vec<(u32, u32)> = mesh.triangles.iter().flat_map(keys).collect();
+    all.par_sort_unstable();
+    let alone = |key| {
+        let first = all.partition_point(|other| *other < key);
+        all.get(first + 1) != Some(&key)
+    };
+    mesh.triangles
+        .par_iter()
+        .map(|triangle| keys(triangle).map(alone))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+    use proptest::prelude::*;
+    use std::collections::HashMap;
+
+    /// A sphere of 1,280 triangles: an icosahedron divided three times, its vertices shared by index.
+    fn sphere() -> Mesh {
+        let golden = (1.0 + 5f32.sqrt()) / 2.0;
+        let mut positions: Vec<Vec3> = [
+            (1.0, golden),
+            (-1.0, golden),
+            (1.0, -golden),
+            (-1.0, -golden),
+        ]
+        .iter()
+        .flat_map(|&(p, q)| {
+            [
+                Vec3::new(0.0, p, q),
+                Vec3::new(q, 0.0, p),
+                Vec3::new(p, q, 0.0),
+            ]
+        })
+        .map(Vec3::normalize)
+        .collect();
+        let near = |p: Vec3, q: Vec3| p != q && p.distance(q) < 1.1;
+        let mut triangles = Vec::new();
+        for (a, b, c) in
+            (0..12).flat_map(|a| (0..a).flat_map(move |b| (0..b).map(move |c| (a, b, c))))
+        {
+            let (pa, pb, pc) = (positions[a], positions[b], positions[c]);
+            if near(pa, pb) && near(pb, pc) && near(pc, pa) {
+                let outwards = (pb - pa).cross(pc - pa).dot(pa) > 0.0;
+                triangles.push(if outwards {
+                    [a as u32, b as u32, c as u32]
+                } else {
+                    [a as u32, c as u32, b as u32]
+                });
+            }
+        }
+        for _ in 0..3 {
+            let mut middles: HashMap<(u32, u32), u32> = HashMap::new();
+            let mut middle = |a: u32, b: u32| {
+                *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                    positions.push(
+                        positions[a as usize]
+                            .midpoint(positions[b as usize])
+                            .normalize(),
+                    );
+                    positions.len() as u32 - 1
+                })
+            };
+            triangles = triangles
+                .iter()
+                .flat_map(|&[a, b, c]| {
+                    let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+                    [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+                })
+                .collect();
+        }
+        Mesh {
+            positions,
+            triangles,
+            ..Mesh::default()
+        }
+    }
+
+    fn soup(corners: &[Corners]) -> Mesh {
+        let positions = corners
+            .iter()
+            .flatten()
+            .map(|&corner| Vec3::from(corner))
+            .collect();
+        let triangles = (0..corners.len() as u32)
+            .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
+            .collect();
+        Mesh {
+            positions,
+            triangles,
+            ..Mesh::default()
+        }
+    }
+
+    fn tree(mesh: &Mesh) -> Tree<'static> {
+        Tree::new(mesh, Cow::Owned(Bvh::build(mesh))).expect("built over it")
+    }
+
+    /// Ids of all triangles that the ray hits in front of its origin, sorted.
+    fn hits(tree: &Tree, origin: DVec3, direction: DVec3) -> Vec<u32> {
+        let ray = Ray::new(origin, direction, tree.reach(origin), 0.0);
+        let mut hits = Vec::new();
+        tree.walk(&ray, &mut Vec::new(), |caster, _| {
+            if ray.hit(&caster.corners).is_some_and(|hit| hit.t > 0.0) {
+                hits.push(caster.primitive);
+            }
+            ControlFlow::Continue(())
+        });
+        hits.sort_unstable();
+        hits
+    }
+
+    #[test]
+    fn nothing_leaves_a_sphere_through_its_vertices_or_edges() {
+        let mesh = sphere();
+        assert_eq!((mesh.triangles.len(), mesh.positions.len()), (1280, 642));
+        let tree = tree(&mesh);
+        let origins = [
+            DVec3::ZERO,
+            DVec3::new(0.3, -0.2, 0.1),
+            DVec3::new(0.0, 0.9, 0.0),
+            DVec3::splat(1e-17),
+        ];
+        for origin in origins {
+            for position in &mesh.positions {
+                assert!(
+                    !hits(&tree, origin, position.as_dvec3() - origin).is_empty(),
+                    "{origin} to {position}"
+                );
+            }
+            for (triangle, along) in mesh
+                .triangles
+                .iter()
+                .flat_map(|t| [0.5, 0.3, 1e-9].map(|along| (t, along)))
+            {
+                let [a, b, _] = triangle.map(|index| mesh.positions[index as usize].as_dvec3());
+                let target = a.lerp(b, along);
+                assert!(
+                    !hits(&tree, origin, target - origin).is_empty(),
+                    "{origin} to {target}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn only_rims_are_open() {
+        assert!(open_edges(&sphere()).iter().flatten().all(|open| !open));
+        let mut mesh = soup(&[[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]]);
+        mesh.positions.push(Vec3::ONE);
+        mesh.triangles.push([3, 2, 1]);
+        // The common edge (1, 2) lies opposite the first corner of both.
+        assert_eq!(open_edges(&mesh), [[false, true, true]; 2]);
+    }
+
+    #[test]
+    fn a_hierarchy_of_another_mesh_is_refused() {
+        let mesh = sphere();
+        let good = Bvh::build(&mesh);
+        let refused = |spoil: &dyn Fn(&mut Bvh)| {
+            let mut bvh = good.clone();
+            spoil(&mut bvh);
+            Tree::new(&mesh, Cow::Owned(bvh)).is_err()
+        };
+        assert!(!refused(&|_| ()));
+        assert!(refused(&|bvh| bvh.primitives[7] = 1280));
+        assert!(refused(&|bvh| bvh.primitives.truncate(1279)));
+        assert!(refused(&|bvh| bvh.nodes[0].first = 0));
+        assert!(refused(&|bvh| bvh.nodes[0].first = u32::MAX - 1));
+        assert!(refused(&|bvh| bvh
+            .nodes
+            .iter_mut()
+            .filter(|node| node.count > 0)
+            .for_each(|node| node.first = 1280)));
+    }
+
+    /// Coordinates that often coincide, so that rays run along box faces, edges and corners.
+    fn coordinate() -> impl Strategy<Value = f32> {
+        prop_oneof![(-4i8..=4).prop_map(|i| f32::from(i) * 0.25), -1.0f32..1.0]
+    }
+
+    proptest! {
+        #[test]
+        fn the_hierarchy_finds_what_brute_force_finds(
+            corners in prop::collection::vec(prop::array::uniform3(prop::array::uniform3(coordinate())), 1..60),
+            origin in prop::array::uniform3(coordinate()),
+            direction in prop::array::uniform3(coordinate()),
+        ) {
+            let (origin, direction) = (Vec3::from(origin).as_dvec3(), Vec3::from(direction).as_dvec3());
+            prop_assume!(direction != DVec3::ZERO);
+            let ray = Ray::new(origin, direction, 8.0, 0.0);
+            let hit = |corners: &Corners| ray.hit(corners).is_some_and(|hit| hit.t > 0.0);
+            let expected: Vec<u32> = (0..corners.len()).filter(|&i| hit(&corners[i])).map(|i| i as u32).collect();
+            prop_assert_eq!(hits(&tree(&soup(&corners)), origin, direction), expected);
         }
     }
 }

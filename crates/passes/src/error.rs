@@ -1,0 +1,36 @@
+//! Why a scene cannot be brought to the GPU.
+
+/// Errors of this crate. They reach the caller as the message of a graph's provider error.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The provider has nothing of that name.
+    #[error("the scene provides no `{name}`; it has {}", known.join(", "))]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: Vec<String>,
+    },
+    /// The hierarchy does not fit the traversal's stack.
+    #[error(
+        "the hierarchy over the scene is {depth} levels deep, but the tracer's stack holds {limit}; \
+         look for thousands of nested or coincident triangles"
+    )]
+    TooDeep {
+        /// Levels of the hierarchy.
+        depth: u32,
+        /// Levels that the tracer can walk.
+        limit: u32,
+    },
+    /// The device cannot bind a buffer of that size.
+    #[error("`{name}` needs a buffer of {bytes} bytes, but the device binds at most {limit}")]
+    TooLarge {
+        /// The resource.
+        name: String,
+        /// Its size.
+        bytes: u64,
+        /// The smaller of the device's buffer size and binding size limits.
+        limit: u64,
+    },
+}

@@ -1,0 +1,74 @@
+//! The presets and their shaders, embedded, and the registry of pass kinds that they need.
+
+use crate::Trace;
+use include_dir::{Dir, include_dir};
+use skiagraph_graph::{Registry, Sources};
+use std::sync::Arc;
+
+static PIPELINES: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../pipelines");
+static SHADERS: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../shaders");
+
+/// `pipelines/…` and `shaders/…` as they were when the crate was compiled. Put it below a
+/// `FolderSources` in a `LayeredSources` to let files on disk win.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct EmbeddedSources;
+
+impl EmbeddedSources {
+    /// The embedded folder that `path` begins with, and what follows.
+    fn root(path: &str) -> Option<(&'static Dir<'static>, &str)> {
+        let (root, rest) = path.split_once('/').unwrap_or((path, ""));
+        match root {
+            "pipelines" => Some((&PIPELINES, rest)),
+            "shaders" => Some((&SHADERS, rest)),
+            _ => None,
+        }
+    }
+}
+
+impl Sources for EmbeddedSources {
+    fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
+        let Some(file) = Self::root(path).and_then(|(root, rest)| root.get_file(rest)) else {
+            return Ok(None);
+        };
+        let text = file.contents_utf8().ok_or_else(|| format!("{path} is not UTF-8"))?;
+        Ok(Some(text.into()))
+    }
+
+    fn list(&self, folder: &str) -> Vec<String> {
+        let Some((root, rest)) = Self::root(folder.trim_end_matches('/')) else {
+            return Vec::new();
+        };
+        let folder = if rest.is_empty() { Some(root) } else { root.get_dir(rest) };
+        let files = folder.into_iter().flat_map(Dir::files);
+        let names = files.filter_map(|file| file.path().file_name()?.to_str());
+        names.map(str::to_owned).collect()
+    }
+}
+
+/// A preset: a document that can be named without its path.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Preset {
+    /// Name on the command line: the file's name without `.ron`.
+    pub name: String,
+    /// Path to hand to `Graph::load` with [`EmbeddedSources`] or a folder that holds the same files.
+    pub path: String,
+}
+
+/// The embedded presets by name: every document directly in `pipelines/`.
+pub fn presets() -> Vec<Preset> {
+    let mut presets: Vec<Preset> = EmbeddedSources
+        .list("pipelines")
+        .iter()
+        .filter_map(|file| file.strip_suffix(".ron"))
+        .map(|name| Preset { name: name.to_owned(), path: format!("pipelines/{name}.ron") })
+        .collect();
+    presets.sort_by(|a, b| a.name.cmp(&b.name));
+    presets
+}
+
+/// The standard pass kinds and [`Trace`].
+pub fn registry() -> Registry {
+    let mut registry = Registry::standard();
+    registry.register::<Trace>("Trace");
+    registry
+}

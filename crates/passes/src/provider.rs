@@ -1,0 +1,192 @@
+//! The scene as resources of a graph, each uploaded when a live pass first asks for it.
+
+use crate::{
+    Error,
+    uniforms::{CameraUniform, LightUniform},
+};
+use skiagraph_graph::{Provided, Provider, ProviderError};
+use skiagraph_scene::{Bvh, BvhNode, Scene, View};
+use std::{collections::BTreeMap, sync::Arc};
+use wgpu::util::DeviceExt;
+
+/// Levels of the hierarchy that `trace_rays.wgsl` can walk: its `STACK_SIZE`, one entry per level at most.
+pub const STACK_SIZE: u32 = 64;
+
+const POSITIONS: &str = "scene.positions";
+const INDICES: &str = "scene.indices";
+const NORMALS: &str = "scene.normals";
+const NORMAL_INDICES: &str = "scene.normal_indices";
+const BVH_NODES: &str = "scene.bvh_nodes";
+const BVH_PRIMITIVES: &str = "scene.bvh_primitives";
+const CAMERA: &str = "camera";
+const LIGHT: &str = "light";
+
+const NAMES: [&str; 8] =
+    [POSITIONS, INDICES, NORMALS, NORMAL_INDICES, BVH_NODES, BVH_PRIMITIVES, CAMERA, LIGHT];
+
+/// Provides one scene under one view, on one device.
+///
+/// | resource | content |
+/// |---|---|
+/// | `scene.positions` | `array<vec4<f32>>`, welded, w = 1 |
+/// | `scene.indices` | `array<u32>`, three per primitive |
+/// | `scene.normals` | `array<vec4<f32>>`, unit length, w = 0 |
+/// | `scene.normal_indices` | `array<u32>`, three per primitive |
+/// | `scene.bvh_nodes` | 32-byte [`BvhNode`]s, node 0 is the root |
+/// | `scene.bvh_primitives` | `array<u32>`, primitive ids in leaf order |
+/// | `camera` | [`CameraUniform`] |
+/// | `light` | [`LightUniform`] |
+///
+/// What was built stays and is shared by all graphs that are executed with the same provider, which therefore belongs to
+/// the device that it was first used with. wgpu binds no buffer of size zero: an array of an empty scene holds one zero
+/// item, its hierarchy one leaf around a triangle without area, which no ray hits; [`Provider::describe`] still says 0 items, so
+/// that nothing is drawn.
+pub struct SceneProvider {
+    scene: Arc<Scene>,
+    camera: CameraUniform,
+    buffers: BTreeMap<&'static str, wgpu::Buffer>,
+    built: Vec<&'static str>,
+}
+
+impl SceneProvider {
+    /// Provides `scene`. Builds nothing; until [`set_view`](Self::set_view) the `camera` is all zeros.
+    pub fn new(scene: Arc<Scene>) -> Self {
+        Self { scene, camera: CameraUniform::default(), buffers: BTreeMap::new(), built: Vec::new() }
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// The camera of executors made from now on; those made before keep the one they have.
+    pub fn set_view(&mut self, view: &View, viewport: [u32; 2]) {
+        self.camera = CameraUniform::from(&view.camera(viewport));
+        self.buffers.remove(CAMERA);
+    }
+
+    /// Names of the resources that were built, in the order in which they first were.
+    pub fn built(&self) -> &[&'static str] {
+        &self.built
+    }
+
+    fn upload(
+        &mut self,
+        name: &'static str,
+        content: &[u8],
+        device: &wgpu::Device,
+    ) -> Result<(), Error> {
+        let limits = device.limits();
+        let bytes = content.len() as u64;
+        let limit = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
+        if bytes > limit {
+            return Err(Error::TooLarge { name: name.to_owned(), bytes, limit });
+        }
+        let uniform = matches!(name, CAMERA | LIGHT);
+        let usage = if uniform { wgpu::BufferUsages::UNIFORM } else { wgpu::BufferUsages::STORAGE };
+        let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some(name),
+            contents: content,
+            usage: usage | wgpu::BufferUsages::COPY_SRC,
+        });
+        self.buffers.insert(name, buffer);
+        Ok(())
+    }
+
+    fn upload_items<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+        &mut self,
+        name: &'static str,
+        items: &[T],
+        device: &wgpu::Device,
+    ) -> Result<(), Error> {
+        let dummy = [T::zeroed()];
+        let items = if items.is_empty() { &dummy } else { items };
+        self.upload(name, bytemuck::cast_slice(items), device)
+    }
+
+    fn upload_hierarchy(&mut self, device: &wgpu::Device) -> Result<(), Error> {
+        let mut bvh = Bvh::build(&self.scene.mesh);
+        if bvh.depth > STACK_SIZE {
+            return Err(Error::TooDeep { depth: bvh.depth, limit: STACK_SIZE });
+        }
+        if bvh.nodes.is_empty() {
+            bvh.nodes.push(BvhNode { min: [0.0; 3], first: 0, max: [0.0; 3], count: 1 });
+        }
+        let nodes: Vec<[u32; 8]> = bvh.nodes.iter().map(node_words).collect();
+        self.upload_items(BVH_NODES, &nodes, device)?;
+        self.upload_items(BVH_PRIMITIVES, &bvh.primitives, device)
+    }
+
+    fn upload_named(&mut self, name: &'static str, device: &wgpu::Device) -> Result<(), Error> {
+        let scene = Arc::clone(&self.scene);
+        let mesh = &scene.mesh;
+        match name {
+            POSITIONS => {
+                let items: Vec<_> = mesh.positions.iter().map(|p| p.extend(1.0)).collect();
+                self.upload_items(name, &items, device)
+            }
+            NORMALS => {
+                let items: Vec<_> = mesh.normals.iter().map(|n| n.extend(0.0)).collect();
+                self.upload_items(name, &items, device)
+            }
+            INDICES => self.upload_items(name, mesh.triangles.as_flattened(), device),
+            NORMAL_INDICES => self.upload_items(name, mesh.normal_indices.as_flattened(), device),
+            CAMERA => self.upload_items(name, &[self.camera], device),
+            LIGHT => self.upload_items(name, &[LightUniform::new(&scene)], device),
+            _ => self.upload_hierarchy(device),
+        }
+    }
+}
+
+/// A node as the shader reads it: the floats' bits and the two counts, in the order of [`BvhNode`].
+fn node_words(node: &BvhNode) -> [u32; 8] {
+    let [low_x, low_y, low_z] = node.min.map(f32::to_bits);
+    let [high_x, high_y, high_z] = node.max.map(f32::to_bits);
+    [low_x, low_y, low_z, node.first, high_x, high_y, high_z, node.count]
+}
+
+impl Provider for SceneProvider {
+    fn names(&self) -> Vec<String> {
+        NAMES.map(str::to_owned).to_vec()
+    }
+
+    fn describe(&self, name: &str) -> Option<Provided> {
+        let mesh = &self.scene.mesh;
+        let corners = 3 * mesh.triangles.len();
+        let array = |items: Option<usize>, stride| {
+            Some(Provided { items: items.map(|items| items as u64), stride, uniform: false })
+        };
+        let uniform = |bytes: usize| {
+            Some(Provided { items: Some(1), stride: bytes as u64, uniform: true })
+        };
+        match name {
+            POSITIONS => array(Some(mesh.positions.len()), 16),
+            INDICES | NORMAL_INDICES => array(Some(corners), 4),
+            NORMALS => array(Some(mesh.normals.len()), 16),
+            // Known only once the hierarchy is built.
+            BVH_NODES => array(None, 32),
+            BVH_PRIMITIVES => array(Some(mesh.triangles.len()), 4),
+            CAMERA => uniform(size_of::<CameraUniform>()),
+            LIGHT => uniform(size_of::<LightUniform>()),
+            _ => None,
+        }
+    }
+
+    fn build(
+        &mut self,
+        name: &str,
+        device: &wgpu::Device,
+        _queue: &wgpu::Queue,
+    ) -> Result<wgpu::Buffer, ProviderError> {
+        let known = NAMES.into_iter().find(|&known| known == name);
+        let name = known.ok_or_else(|| Error::Unknown { name: name.to_owned(), known: self.names() });
+        let name = name.map_err(|error| error.to_string())?;
+        if !self.buffers.contains_key(name) {
+            self.upload_named(name, device).map_err(|error| error.to_string())?;
+        }
+        if !self.built.contains(&name) {
+            self.built.push(name);
+        }
+        Ok(self.buffers[name].clone())
+    }
+}

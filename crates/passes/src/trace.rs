@@ -1,0 +1,75 @@
+//! `Trace`: rays in, hits out, through the scene's hierarchy, on compute shaders. The number of rays stays on the GPU.
+
+use serde::Deserialize;
+use skiagraph_graph::{Dispatch, Groups, Located, Lowering, PassKind, Program, Step};
+
+/// Which hit of a ray is recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum Mode {
+    /// The first one found: enough to know that there is one.
+    Any,
+    /// The nearest one.
+    Closest,
+}
+
+/// Body of a `Trace` pass:
+///
+/// ```ron
+/// Trace(name: "trace_rays", rays: "rays", hits: "hits", count: "ray_count", skip: "ray_primitives", mode: Any)
+/// ```
+///
+/// - `rays`: buffer of 32-byte items `origin: vec3<f32>, t_min: f32, direction: vec3<f32>, t_max: f32`; a hit counts if
+///   t_min < t ≤ t_max, t in units of `direction`, which need not be of unit length.
+/// - `hits`: buffer of 16-byte items `t: f32, primitive: u32, u: f32, v: f32`; u and v are the weights of the primitive's second and
+///   third corner. A ray that hits nothing gets its t_max and the primitive `0xffffffff`.
+/// - `count`: buffer of one u32, the number of rays; rays beyond the end of `rays` or `hits` are left out.
+/// - `skip` (optional): buffer of one u32 per ray, the primitive that the ray does not see, such as its own.
+/// - `mode`: `Any` or `Closest`.
+///
+/// Triangles are two-sided; those without area are never hit.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Trace {
+    rays: Located<String>,
+    hits: Located<String>,
+    count: Located<String>,
+    #[serde(default)]
+    skip: Option<Located<String>>,
+    mode: Mode,
+}
+
+impl Trace {
+    fn entry_point(&self) -> &'static str {
+        match (self.mode, &self.skip) {
+            (Mode::Any, None) => "any_hit",
+            (Mode::Any, Some(_)) => "any_hit_skip",
+            (Mode::Closest, None) => "closest_hit",
+            (Mode::Closest, Some(_)) => "closest_hit_skip",
+        }
+    }
+}
+
+impl PassKind for Trace {
+    fn lower(&self, pass: &mut Lowering<'_>) {
+        // Two dispatches, because a buffer cannot be written and be the size of the dispatch that writes it.
+        let groups = pass.scratch("groups", 12);
+        let mut fold = pass.program_of("trace_fold");
+        bind(pass, &mut fold, "count", &self.count);
+        bind(pass, &mut fold, "groups", &groups);
+        pass.step(Step::Dispatch(Dispatch { program: fold, groups: Groups::Fixed([1; 3]) }));
+
+        let mut trace = pass.program_of("trace_rays");
+        trace.compute = Some(pass.named(self.entry_point()));
+        bind(pass, &mut trace, "count", &self.count);
+        bind(pass, &mut trace, "rays", &self.rays);
+        bind(pass, &mut trace, "hits", &self.hits);
+        if let Some(skip) = &self.skip {
+            bind(pass, &mut trace, "skip", skip);
+        }
+        pass.step(Step::Dispatch(Dispatch { program: trace, groups: Groups::Indirect(groups) }));
+    }
+}
+
+fn bind(pass: &Lowering<'_>, program: &mut Program, global: &str, resource: &Located<String>) {
+    program.bind.push((pass.named(global), resource.clone()));
+}

@@ -1,0 +1,94 @@
+//! What shaders know of the camera and the light. The WGSL twins are `shaders/shared/camera.wgsl` and `light.wgsl`; a
+//! test compares both layouts with what naga makes of them.
+
+use glam::{DVec3, Mat4, Vec3};
+use skiagraph_scene::{Camera, Scene};
+
+/// Twin of WGSL's `Camera`: a perspective camera, 80 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct CameraUniform {
+    /// Eye, world space, rounded to f32.
+    pub eye: Vec3,
+    /// Near plane distance.
+    pub near: f32,
+    /// What rounding the eye left over, so that corners far from the origin keep their distance to the eye.
+    pub eye_low: Vec3,
+    /// Far plane distance.
+    pub far: f32,
+    /// Unit vector to the right of the image.
+    pub right: Vec3,
+    /// Half the image's width at distance 1.
+    pub half_width: f32,
+    /// Unit vector to the top of the image.
+    pub up: Vec3,
+    /// Half the image's height at distance 1.
+    pub half_height: f32,
+    /// Unit viewing direction.
+    pub forward: Vec3,
+    /// far / (far − near): clip z per unit of distance beyond the near plane.
+    pub depth_scale: f32,
+}
+
+impl From<&Camera> for CameraUniform {
+    fn from(camera: &Camera) -> Self {
+        let eye = camera.eye.as_vec3();
+        Self {
+            eye,
+            near: camera.near as f32,
+            eye_low: (camera.eye - eye.as_dvec3()).as_vec3(),
+            far: camera.far as f32,
+            right: camera.right.as_vec3(),
+            half_width: camera.half_width as f32,
+            up: camera.up.as_vec3(),
+            half_height: camera.half_height as f32,
+            forward: camera.forward.as_vec3(),
+            depth_scale: (camera.far / (camera.far - camera.near)) as f32,
+        }
+    }
+}
+
+/// Twin of WGSL's `Light`: a directional light and the light space fitted to the scene's box, 112 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct LightUniform {
+    /// From a position relative to `centre` to the light's clip space (w stays 1; z in 0..1 grows away from the light).
+    pub clip_from_relative: Mat4,
+    /// Unit vector towards the light.
+    pub towards: Vec3,
+    /// A length beyond which nothing of the scene is met from any point in it.
+    pub reach: f32,
+    /// Centre of the scene's box, world space: a matrix on absolute positions would lose the detail of a far-off scene.
+    pub centre: Vec3,
+    /// Nothing; WGSL's `vec4`.
+    pub unused_centre: f32,
+    /// World units per unit of light-space clip x, y and z.
+    pub extent: Vec3,
+    /// Nothing; WGSL's `vec4`.
+    pub unused_extent: f32,
+}
+
+impl LightUniform {
+    /// The light of `scene` over the box of its mesh; an empty mesh counts as a point at the origin.
+    pub fn new(scene: &Scene) -> Self {
+        let (min, max) = scene.mesh.bounds().unwrap_or((Vec3::ZERO, Vec3::ZERO));
+        let fit = scene.light.fit_box(min, max);
+        let (min, max) = (min.as_dvec3(), max.as_dvec3());
+        let centre = ((min + max) * 0.5).as_vec3();
+        let to_relative = glam::DMat4::from_translation(centre.as_dvec3());
+        Self {
+            clip_from_relative: (fit.view_projection * to_relative).as_mat4(),
+            towards: scene.light.towards().as_vec3(),
+            reach: reach(min, max),
+            centre,
+            unused_centre: 0.0,
+            extent: fit.extent.as_vec3(),
+            unused_extent: 0.0,
+        }
+    }
+}
+
+/// The box's diagonal, doubled: receivers may lie a rounding outside of it, and the doubling costs nothing.
+fn reach(min: DVec3, max: DVec3) -> f32 {
+    (2.0 * min.distance(max)) as f32
+}

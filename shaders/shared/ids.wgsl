@@ -1,0 +1,15 @@
+// The primitive id of background pixels and missed rays, the pixel of rays that nobody asked for, and the meaning of `status`.
+
+const NO_PRIMITIVE: u32 = 0xffffffffu;
+const NO_PIXEL: u32 = 0xffffffffu;
+
+const STATUS_BACKGROUND: u32 = 0u;
+const STATUS_FACING_AWAY: u32 = 1u;
+const STATUS_LIGHT: u32 = 2u;
+const STATUS_SHADOW: u32 = 3u;
+const STATUS_UNCERTAIN: u32 = 4u;
+
+// What a pixel without a shadow question shows: nothing shades the background, a surface that faces away shades itself.
+fn base_visibility(status: u32) -> u32 {
+    return select(0u, 1u, status == STATUS_BACKGROUND);
+}

@@ -1,0 +1,204 @@
+// Stage to trace rays through the scene's binary hierarchy; one thread per ray, workgroups folded to two dimensions.
+// Triangles, and the padding of boxes that keeps traversal as watertight as they are: Woop, Benthin, Wald, "Watertight
+// Ray/Triangle Intersection", JCGT 2(1), 2013. Slabs after Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013.
+
+#import "shared/geometry.wgsl"
+#import "shared/ray.wgsl"
+#import "shared/ids.wgsl"
+
+struct Node {
+    low: vec3<f32>,
+    // Inner node: its first child, the second follows. Leaf: its first slot in scene_bvh_primitives.
+    first: u32,
+    high: vec3<f32>,
+    // Primitives of a leaf, 0 for an inner node.
+    primitives: u32,
+}
+
+var<storage, read> scene_bvh_nodes: array<Node>;
+var<storage, read> scene_bvh_primitives: array<u32>;
+var<storage, read> count: u32;
+var<storage, read> rays: array<Ray>;
+var<storage, read> skip: array<u32>;
+var<storage, read_write> hits: array<Hit>;
+
+// Both as in trace_fold.wgsl.
+const GROUP_SIZE: u32 = 64u;
+const GROUPS_PER_ROW: u32 = 65535u;
+// As `STACK_SIZE` in crates/passes/src/provider.rs, which refuses a deeper hierarchy.
+const STACK_SIZE: u32 = 64u;
+
+// Boxes are padded by this share of the distance to the scene's farthest side: 16 ulp, where Woop et al. prove 5 enough for
+// correctly rounded arithmetic; WGSL's division may err by 2.5 ulp, and the slab distances' own rounding (4 ulp, Ize) is in it.
+const PAD: f32 = 1.9073486e-6;
+// Longest to shortest component of a direction, as far as box tests are concerned: finite, so that no test makes inf or NaN
+// of a ray along an axis, and so large that a ray leaves a padded slab far beyond the scene.
+const STEEPEST: f32 = 1e18;
+
+@compute @workgroup_size(GROUP_SIZE)
+fn any_hit(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let ray = ray_index(group, lane);
+    if ray < ray_total() {
+        hits[ray] = trace(rays[ray], NO_PRIMITIVE, true);
+    }
+}
+
+@compute @workgroup_size(GROUP_SIZE)
+fn any_hit_skip(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let ray = ray_index(group, lane);
+    if ray < ray_total() {
+        hits[ray] = trace(rays[ray], skip[ray], true);
+    }
+}
+
+@compute @workgroup_size(GROUP_SIZE)
+fn closest_hit(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let ray = ray_index(group, lane);
+    if ray < ray_total() {
+        hits[ray] = trace(rays[ray], NO_PRIMITIVE, false);
+    }
+}
+
+@compute @workgroup_size(GROUP_SIZE)
+fn closest_hit_skip(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let ray = ray_index(group, lane);
+    if ray < ray_total() {
+        hits[ray] = trace(rays[ray], skip[ray], false);
+    }
+}
+
+fn ray_index(group: vec3<u32>, lane: u32) -> u32 {
+    return (group.y * GROUPS_PER_ROW + group.x) * GROUP_SIZE + lane;
+}
+
+fn ray_total() -> u32 {
+    return min(count, min(arrayLength(&rays), arrayLength(&hits)));
+}
+
+// What a ray's tests share: the axis permutation and shear that turn it into the z axis, and the padded slabs' terms.
+struct Prepared {
+    origin: vec3<f32>,
+    inverse: vec3<f32>,
+    pad: f32,
+    axes: vec3<u32>,
+    shear: vec3<f32>,
+}
+
+fn prepare(ray: Ray) -> Prepared {
+    var prepared: Prepared;
+    prepared.origin = ray.origin;
+
+    let size = abs(ray.direction);
+    var z = select(0u, 1u, size.y > size.x);
+    if size.z > size[z] {
+        z = 2u;
+    }
+    prepared.axes = vec3((z + 1u) % 3u, (z + 2u) % 3u, z);
+    let d = ray.direction;
+    prepared.shear = vec3(d[prepared.axes.x], d[prepared.axes.y], 1.0) / d[z];
+
+    let steep = size * STEEPEST <= vec3(size[z]);
+    prepared.inverse = vec3(1.0) / select(d, vec3(size[z] / STEEPEST), steep);
+    let root = scene_bvh_nodes[0];
+    let farthest = max(abs(root.low - ray.origin), abs(root.high - ray.origin));
+    prepared.pad = PAD * max(farthest.x, max(farthest.y, farthest.z));
+    return prepared;
+}
+
+// Where the ray enters the padded box, or MISSED.
+const MISSED: f32 = 3.0e38;
+
+fn enter(ray: Prepared, low: vec3<f32>, high: vec3<f32>, t_min: f32, t_max: f32) -> f32 {
+    // Padding the difference, not the box: a pad below one ulp of a far-off box's coordinates would be lost.
+    let to_low = ((low - ray.origin) - ray.pad) * ray.inverse;
+    let to_high = ((high - ray.origin) + ray.pad) * ray.inverse;
+    let near = min(to_low, to_high);
+    let far = max(to_low, to_high);
+    let entry = max(max(near.x, near.y), max(near.z, t_min));
+    let exit = min(min(far.x, far.y), min(far.z, t_max));
+    return select(MISSED, entry, entry <= exit);
+}
+
+fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
+    var hit = Hit(ray.t_max, NO_PRIMITIVE, 0.0, 0.0);
+    // No direction has no longest component to divide by.
+    if !(ray.t_min < ray.t_max) || all(ray.direction == vec3(0.0)) {
+        return hit;
+    }
+    let prepared = prepare(ray);
+    var stack: array<u32, STACK_SIZE>;
+    var height = 0u;
+    var node = 0u;
+    if enter(prepared, scene_bvh_nodes[0].low, scene_bvh_nodes[0].high, ray.t_min, hit.t) == MISSED {
+        return hit;
+    }
+    loop {
+        let first = scene_bvh_nodes[node].first;
+        let primitives = scene_bvh_nodes[node].primitives;
+        if primitives == 0u {
+            let here = enter(prepared, scene_bvh_nodes[first].low, scene_bvh_nodes[first].high, ray.t_min, hit.t);
+            let there = enter(prepared, scene_bvh_nodes[first + 1u].low, scene_bvh_nodes[first + 1u].high, ray.t_min, hit.t);
+            let swap = there < here;
+            if min(here, there) != MISSED {
+                node = select(first, first + 1u, swap);
+                if max(here, there) != MISSED {
+                    stack[height] = select(first + 1u, first, swap);
+                    height += 1u;
+                }
+                continue;
+            }
+        } else {
+            for (var slot = first; slot < first + primitives; slot++) {
+                let primitive = scene_bvh_primitives[slot];
+                if primitive != skipped && intersect(prepared, primitive, ray.t_min, &hit) && first_found {
+                    return hit;
+                }
+            }
+        }
+        if height == 0u {
+            break;
+        }
+        height -= 1u;
+        node = stack[height];
+    }
+    return hit;
+}
+
+// Tests one triangle, two-sided, edges and corners included; shortens `hit` to it.
+fn intersect(ray: Prepared, primitive: u32, t_min: f32, hit: ptr<function, Hit>) -> bool {
+    let a = shear(ray, corner_position(3u * primitive));
+    let b = shear(ray, corner_position(3u * primitive + 1u));
+    let c = shear(ray, corner_position(3u * primitive + 2u));
+    let weights = vec3(edge(b.xy, c.xy), edge(c.xy, a.xy), edge(a.xy, b.xy));
+    if any(weights < vec3(0.0)) && any(weights > vec3(0.0)) {
+        return false;
+    }
+    // Zero for triangles without area and for those that the ray meets edge-on: a neighbour is hit instead.
+    let sum = weights.x + weights.y + weights.z;
+    if sum == 0.0 {
+        return false;
+    }
+    let t = (weights.x * a.z + weights.y * b.z + weights.z * c.z) / sum;
+    if !(t > t_min && t <= (*hit).t) {
+        return false;
+    }
+    *hit = Hit(t, primitive, weights.y / sum, weights.z / sum);
+    return true;
+}
+
+// A corner in the space where the ray is the z axis, z in units of its direction.
+fn shear(ray: Prepared, corner: vec3<f32>) -> vec3<f32> {
+    let p = corner - ray.origin;
+    let z = p[ray.axes.z];
+    return vec3(p[ray.axes.x] - ray.shear.x * z, p[ray.axes.y] - ray.shear.y * z, ray.shear.z * z);
+}
+
+// Twice the signed area of the origin, p and q. Always evaluated from the lower corner to the higher: edge(p, q) is
+// -edge(q, p) to the bit even where a compiler fuses one of the products, so both triangles of an edge see the same sign.
+fn edge(p: vec2<f32>, q: vec2<f32>) -> f32 {
+    let swap = q.x < p.x || (q.x == p.x && q.y < p.y);
+    let lesser = select(p, q, swap);
+    let greater = select(q, p, swap);
+    let area = lesser.x * greater.y - lesser.y * greater.x;
+    return select(area, -area, swap);
+}

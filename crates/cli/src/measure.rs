@@ -9,7 +9,9 @@ use crate::{
     render::{self, Times},
     results::{Images, Measured, Run},
 };
-use skiagraph_graph::{ExecuteError, Executor, ParamValue, Plan, PlanRequest, Provider, gpu::Gpu};
+use skiagraph_graph::{
+    ExecuteError, Executor, Param, ParamValue, Plan, PlanRequest, Provider, gpu::Gpu,
+};
 use skiagraph_reference::{Image, Reference, Statistics};
 use std::{collections::BTreeMap, path::Path};
 
@@ -31,7 +33,7 @@ impl<'a> Method<'a> {
                 .graph
                 .params()
                 .iter()
-                .find(|param| param.name == preset::MAP_SIZE)
+                .find(|param| param.name.as_str() == preset::MAP_SIZE)
                 .map(|p| &p.default)
         };
         let map_size = match params.get(preset::MAP_SIZE).or_else(default) {
@@ -64,17 +66,31 @@ impl<'a> Method<'a> {
 
     /// All params with the values that it runs with.
     fn all_params(&self) -> BTreeMap<String, serde_json::Value> {
-        let value =
-            |value: &ParamValue| serde_json::to_value(value).unwrap_or(serde_json::Value::Null);
         let params = self.preset.graph.params().iter();
+        let value = |param: &Param| {
+            json(
+                self.params
+                    .get(param.name.as_str())
+                    .unwrap_or(&param.default),
+            )
+        };
         params
-            .map(|param| {
-                (
-                    param.name.clone(),
-                    value(self.params.get(&param.name).unwrap_or(&param.default)),
-                )
-            })
+            .map(|param| (param.name.to_string(), value(param)))
             .collect()
+    }
+}
+
+/// A param's value for `results.json`. An f32 is written as the short decimal that it was read from, not as the f64
+/// nearest to it.
+fn json(value: &ParamValue) -> serde_json::Value {
+    let float = |value: &f32| value.to_string().parse::<f64>().unwrap_or(f64::NAN);
+    match value {
+        ParamValue::F32(number) => float(number).into(),
+        ParamValue::Vec(numbers) => numbers.iter().map(float).collect(),
+        ParamValue::I32(number) => (*number).into(),
+        ParamValue::U32(number) => (*number).into(),
+        ParamValue::Bool(flag) => (*flag).into(),
+        ParamValue::Choice(word) => word.as_str().into(),
     }
 }
 

@@ -1,11 +1,11 @@
 //! From the arguments `nsm` or `my/method.ron` to loaded graphs.
 
 use crate::{
-    error::{CliError, colour, count_errors, note, style},
+    error::{CliError, colour, count_errors, note},
     parse::Assignment,
 };
 use skiagraph_graph::{
-    Diagnostic, Diagnostics, FolderSources, Graph, LayeredSources, ParamValue, Sources,
+    Diagnostic, Diagnostics, FolderSources, Graph, LayeredSources, ParamValue, Sources, diagnostics,
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -134,7 +134,11 @@ pub const MAP_SIZE: &str = "map_size";
 
 /// Whether the graph declares the param.
 pub fn has_param(preset: &Preset, name: &str) -> bool {
-    preset.graph.params().iter().any(|param| param.name == name)
+    preset
+        .graph
+        .params()
+        .iter()
+        .any(|param| param.name.as_str() == name)
 }
 
 /// Refuses an assignment that no preset has a param for.
@@ -222,16 +226,10 @@ impl Faults {
 }
 
 /// Prints the warnings of a graph and of its plan on standard error.
-pub fn warn(preset: &Preset, plan: &[Diagnostic]) {
-    for Diagnostic { message, help, .. } in preset.graph.warnings().iter().chain(plan) {
-        let help = help
-            .as_ref()
-            .map_or(String::new(), |help| format!(" ({help})"));
-        note(&format!(
-            "{} {}: {message}{help}",
-            style("warning:", "1;33"),
-            preset.name
-        ));
+pub fn warn(graph: &Graph, plan: &[Diagnostic]) {
+    let warnings: Vec<Diagnostic> = graph.warnings().iter().chain(plan).cloned().collect();
+    if !warnings.is_empty() {
+        note(diagnostics::render(&warnings, colour()).trim_end());
     }
 }
 

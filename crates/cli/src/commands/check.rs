@@ -3,10 +3,10 @@
 use crate::{
     args::CheckArgs,
     error::{CliError, note, print},
-    preset::{self, Faults, Preset},
+    preset::{self, Faults},
 };
 use glam::{DVec3, Vec3};
-use skiagraph_graph::PlanRequest;
+use skiagraph_graph::{Graph, PlanRequest};
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
 use std::sync::Arc;
@@ -32,17 +32,13 @@ pub fn check(args: &CheckArgs) -> Result<(), CliError> {
                 continue;
             }
         };
-        let planned = skiagraph_graph::Graph::load(&path, &registry, &sources).and_then(|graph| {
+        let planned = Graph::load(&path, &registry, &sources).and_then(|graph| {
             let plan = graph.plan(&PlanRequest::new(VIEWPORT, &provider))?;
             Ok((graph, plan))
         });
         match planned {
             Ok((graph, plan)) => {
-                let preset = Preset {
-                    name: argument.clone(),
-                    graph,
-                };
-                preset::warn(&preset, plan.warnings());
+                preset::warn(&graph, plan.warnings());
                 let passes = plan.passes().len();
                 fine.push(format!(
                     "{argument}: fine, {passes} {}\n",

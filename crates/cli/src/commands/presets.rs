@@ -37,7 +37,7 @@ fn describe(name: &str, graph: &Graph) -> String {
             (None, Some(max)) => format!(", to {max}"),
             (None, None) => String::new(),
         };
-        text.push_str(&format!("  {name} = {default}  ({ty}{range})"));
+        text.push_str(&format!("  {} = {default}  ({ty}{range})", name.as_str()));
         if !description.is_empty() {
             text.push_str(&format!("  {description}"));
         }

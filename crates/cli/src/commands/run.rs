@@ -50,7 +50,7 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
             .graph
             .plan(&request)
             .map_err(|diagnostics| Faults::of(&preset.name, &diagnostics))?;
-        preset::warn(preset, plan.warnings());
+        preset::warn(&preset.graph, plan.warnings());
         print(&format!(
             "{} on {}, view {}, {}\n{}",
             preset.name,

@@ -7,9 +7,12 @@
 //!
 //! The crate knows no scenes and no shadows: what a graph does not make itself comes from a [`Provider`].
 
+mod allocate;
 mod cull;
 pub mod diagnostics;
 pub mod document;
+mod execute;
+pub mod gpu;
 mod graph;
 mod lifetime;
 mod link;
@@ -17,11 +20,13 @@ mod order;
 mod passes;
 mod plan;
 mod provider;
+mod readback;
 pub mod registry;
 mod resolve;
 mod schedule;
 mod source;
 pub mod step;
+pub mod timing;
 mod wgsl;
 
 pub use diagnostics::{Code, Diagnostic, Diagnostics, Label, Severity};
@@ -29,8 +34,12 @@ pub use document::{
     located::Located,
     params::{Param, ParamType, ParamValue},
 };
+pub use execute::{ExecuteError, Executor, Frame, FrameReport};
 pub use graph::{Graph, ParamError};
 pub use plan::{Capture, CulledPass, OutputSummary, PassSummary, Plan, PlanRequest};
 pub use provider::{NoProvider, Provided, Provider, ProviderError};
+pub use readback::{Content, Readback};
 pub use registry::{Lowering, PassKind, Registry};
 pub use source::{FolderSources, LayeredSources, SourceFile, Sources, Span};
+pub use step::{Dispatch, Draw, Groups, Program, Step};
+pub use timing::{FrameTiming, PassTiming};

@@ -1,4 +1,4 @@
-//! Phase 8: what the live passes use each resource for, and from which to which pass.
+//! Phase 8: what the live passes use each resource for; what none of them uses is never made.
 
 use crate::{
     link::{LinkedPass, Usage},
@@ -11,23 +11,17 @@ use std::collections::BTreeMap;
 pub(crate) struct Lifetime {
     pub textures: wgpu::TextureUsages,
     pub buffers: wgpu::BufferUsages,
-    /// Positions in the schedule of the first and the last pass that touch it.
-    pub first: usize,
-    pub last: usize,
 }
 
 /// Only resources that a scheduled pass touches have a lifetime, and only those are made.
 pub(crate) fn lifetimes(passes: &[LinkedPass], schedule: &[usize]) -> BTreeMap<ResourceId, Lifetime> {
     let mut lifetimes: BTreeMap<ResourceId, Lifetime> = BTreeMap::new();
-    for (position, &pass) in schedule.iter().enumerate() {
+    for &pass in schedule {
         for access in &passes[pass].accesses {
             let lifetime = lifetimes.entry(access.resource).or_insert(Lifetime {
                 textures: wgpu::TextureUsages::empty(),
                 buffers: wgpu::BufferUsages::empty(),
-                first: position,
-                last: position,
             });
-            lifetime.last = position;
             match access.usage {
                 Usage::Texture(usage) => lifetime.textures |= usage,
                 Usage::Buffer(usage) => lifetime.buffers |= usage,

@@ -100,7 +100,6 @@ pub struct OutputSummary {
 /// A graph that is ready to be allocated: live passes in order, every resource with its size and uses.
 #[derive(Debug)]
 pub struct Plan {
-    pub(crate) path: String,
     pub(crate) resources: Vec<Resource>,
     pub(crate) passes: Vec<LinkedPass>,
     pub(crate) schedule: Vec<usize>,
@@ -163,7 +162,6 @@ impl Graph {
         let mut lifetimes = lifetimes(&passes, &schedule);
         for (_, target) in &readable {
             let Some(lifetime) = lifetimes.get_mut(&target.id) else { continue };
-            lifetime.last = schedule.len();
             lifetime.textures |= wgpu::TextureUsages::COPY_SRC;
             lifetime.buffers |= wgpu::BufferUsages::COPY_SRC;
         }
@@ -174,7 +172,6 @@ impl Graph {
             .map(|(pass, _)| CulledPass { name: pass.name.value.clone(), reason: reason(pass, &resources.list) })
             .collect();
         Ok(Plan {
-            path: self.path().to_owned(),
             resources: resources.list,
             passes,
             schedule,

@@ -68,13 +68,14 @@ impl Receiver {
         };
         let position = weighted(weights, world);
         let n_dot_l = weighted(weights, normals).dot(towards_light);
-        let position_error = POSITION_ROUNDINGS
-            * F32_ROUNDING
-            * weights
-                .iter()
-                .zip(world)
-                .map(|(w, p)| w.abs() * p.length())
-                .sum::<f64>();
+        // The larger of both lengths: a shader may sum corners relative to the eye and add the eye last.
+        let length = |corner: DVec3| corner.length().max((corner - eye).length());
+        let lengths: f64 = weights
+            .iter()
+            .zip(world)
+            .map(|(w, corner)| w.abs() * length(corner))
+            .sum();
+        let position_error = POSITION_ROUNDINGS * F32_ROUNDING * lengths;
         let facing_error = FACING_ROUNDINGS
             * F32_ROUNDING
             * weights

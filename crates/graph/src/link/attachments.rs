@@ -140,7 +140,7 @@ impl Linker<'_, '_> {
             stencil: wgpu::StencilState::default(),
             bias: depth.bias,
         };
-        Some(LinkedDepth { target, format, clear: depth.clear, state })
+        Some(LinkedDepth { target, clear: depth.clear, state })
     }
 
     fn attachment(&mut self, name: &Located<String>, pass: &LinkedPass) -> Option<(Target, Texture)> {

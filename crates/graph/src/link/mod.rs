@@ -14,7 +14,7 @@ use crate::{
     step::{Draw, DrawCall, Groups, Program, Step},
     wgsl::Shader,
 };
-pub(crate) use bindings::{BindTarget, LinkedBinding, LinkedProgram};
+pub(crate) use bindings::{BindTarget, LinkedProgram};
 use layouts::Layouts;
 use naga::ShaderStage;
 use std::{collections::HashMap, sync::Arc};
@@ -82,7 +82,6 @@ pub(crate) struct LinkedColor {
 #[derive(Clone, Debug)]
 pub(crate) struct LinkedDepth {
     pub target: Target,
-    pub format: wgpu::TextureFormat,
     pub clear: Option<f32>,
     pub state: wgpu::DepthStencilState,
 }

@@ -1,0 +1,178 @@
+//! Bringing outputs back to the host: asked for per frame, copied behind the frame, mapped after submission.
+
+use crate::{
+    allocate::Memory,
+    execute::ExecuteError,
+    plan::Plan,
+    resolve::{ResourceKind, Target},
+};
+use std::sync::mpsc::{Receiver, channel};
+
+/// An output or capture on the host.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Readback {
+    /// Its name.
+    pub name: String,
+    /// Its content.
+    pub content: Content,
+}
+
+/// Bytes of a texture or buffer.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Content {
+    /// Mip 0, layer 0 of the output's part.
+    Texture {
+        /// Format of the texels.
+        format: wgpu::TextureFormat,
+        /// Width and height in texels.
+        size: [u32; 2],
+        /// Rows from the top, tightly packed.
+        bytes: Vec<u8>,
+    },
+    /// The whole buffer.
+    Buffer(Vec<u8>),
+}
+
+impl Content {
+    /// The raw bytes.
+    pub fn bytes(&self) -> &[u8] {
+        match self {
+            Self::Texture { bytes, .. } | Self::Buffer(bytes) => bytes,
+        }
+    }
+
+    /// Texels of an R8Uint, R16Uint or R32Uint texture, or the words of a buffer.
+    pub fn as_u32(&self) -> Option<Vec<u32>> {
+        let words = |bytes: &[u8]| bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+        match self {
+            Self::Buffer(bytes) => Some(words(bytes)),
+            Self::Texture { format, bytes, .. } => match format {
+                wgpu::TextureFormat::R8Uint => Some(bytes.iter().map(|&b| u32::from(b)).collect()),
+                wgpu::TextureFormat::R16Uint => {
+                    Some(bytes.chunks_exact(2).map(|b| u32::from(u16::from_le_bytes([b[0], b[1]]))).collect())
+                }
+                wgpu::TextureFormat::R32Uint => Some(words(bytes)),
+                _ => None,
+            },
+        }
+    }
+
+    /// Channels of a texture of 32-bit floats or depths, of R8Unorm or R16Float, one after the other.
+    pub fn as_f32(&self) -> Option<Vec<f32>> {
+        let Self::Texture { format, bytes, .. } = self else { return None };
+        match format {
+            wgpu::TextureFormat::R32Float
+            | wgpu::TextureFormat::Rg32Float
+            | wgpu::TextureFormat::Rgba32Float
+            | wgpu::TextureFormat::Depth32Float => {
+                Some(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
+            }
+            wgpu::TextureFormat::R8Unorm => Some(bytes.iter().map(|&b| f32::from(b) / 255.0).collect()),
+            wgpu::TextureFormat::R16Float => {
+                Some(bytes.chunks_exact(2).map(|b| half_to_f32(u16::from_le_bytes([b[0], b[1]]))).collect())
+            }
+            _ => None,
+        }
+    }
+}
+
+/// IEEE 754 half to single precision.
+fn half_to_f32(half: u16) -> f32 {
+    let (sign, exponent, mantissa) = (half >> 15, (half >> 10) & 0x1f, half & 0x3ff);
+    let magnitude = match exponent {
+        0 => f32::from(mantissa) * 2f32.powi(-24),
+        31 if mantissa == 0 => f32::INFINITY,
+        31 => f32::NAN,
+        _ => (1.0 + f32::from(mantissa) / 1024.0) * 2f32.powi(i32::from(exponent) - 15),
+    };
+    if sign == 1 { -magnitude } else { magnitude }
+}
+
+/// A readback under way.
+pub(crate) struct Pending {
+    name: String,
+    staging: wgpu::Buffer,
+    texture: Option<(wgpu::TextureFormat, [u32; 2], u32)>,
+    mapped: Option<Receiver<Result<(), wgpu::BufferAsyncError>>>,
+}
+
+/// Encodes the copy of an output into a staging buffer.
+pub(crate) fn copy(
+    device: &wgpu::Device,
+    encoder: &mut wgpu::CommandEncoder,
+    plan: &Plan,
+    memory: &Memory,
+    name: &str,
+) -> Result<Pending, ExecuteError> {
+    let Some((_, target)) = plan.readable.iter().find(|(known, _)| known == name) else {
+        let known: Vec<&str> = plan.readable.iter().map(|(name, _)| name.as_str()).collect();
+        return Err(ExecuteError::NoSuchOutput { name: name.to_owned(), known: known.join(", ") });
+    };
+    let staging = |size: u64| {
+        device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("readback"),
+            size,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
+    };
+    let Target { id, part } = target;
+    let (staging, texture) = match &plan.resources[id.0].kind {
+        ResourceKind::Texture(texture) => {
+            let size = texture.size.map(|edge| (edge >> part.mips.start).max(1));
+            let texel = texture.format.block_copy_size(None).unwrap_or(4);
+            let row = (size[0] * texel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+            let staging = staging(u64::from(row) * u64::from(size[1]));
+            encoder.copy_texture_to_buffer(
+                wgpu::TexelCopyTextureInfo {
+                    texture: memory.texture(*id)?,
+                    mip_level: part.mips.start,
+                    origin: wgpu::Origin3d { x: 0, y: 0, z: part.layers.start },
+                    aspect: wgpu::TextureAspect::All,
+                },
+                wgpu::TexelCopyBufferInfo {
+                    buffer: &staging,
+                    layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None },
+                },
+                wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+            );
+            (staging, Some((texture.format, size, row)))
+        }
+        _ => {
+            let buffer = memory.buffer(*id)?;
+            let staging = staging(buffer.size());
+            encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, buffer.size());
+            (staging, None)
+        }
+    };
+    Ok(Pending { name: name.to_owned(), staging, texture, mapped: None })
+}
+
+impl Pending {
+    /// Starts the mapping; the frame must have been submitted.
+    pub fn map(&mut self) {
+        let (send, receive) = channel();
+        self.staging.map_async(wgpu::MapMode::Read, .., move |result| {
+            // The receiver is gone if the executor was dropped meanwhile; nobody wants the bytes then.
+            let _ = send.send(result);
+        });
+        self.mapped = Some(receive);
+    }
+
+    /// The content, after the device was polled until the mapping was done.
+    pub fn take(self) -> Result<Readback, ExecuteError> {
+        let failed = || ExecuteError::Readback { name: self.name.clone() };
+        let mapped = self.mapped.as_ref().ok_or_else(failed)?;
+        mapped.try_recv().map_err(|_| failed())?.map_err(|_| failed())?;
+        let bytes = self.staging.get_mapped_range(..).map_err(|_| failed())?.to_vec();
+        let content = match self.texture {
+            Some((format, size, row)) => {
+                let tight = (size[0] * format.block_copy_size(None).unwrap_or(4)) as usize;
+                let rows = bytes.chunks(row as usize).flat_map(|row| &row[..tight]).copied().collect();
+                Content::Texture { format, size, bytes: rows }
+            }
+            None => Content::Buffer(bytes),
+        };
+        Ok(Readback { name: self.name, content })
+    }
+}

@@ -1,0 +1,188 @@
+//! GPU timestamps that are true, or none.
+
+use crate::{
+    Graph, NoProvider, PlanRequest, Registry, SourceFile, Sources,
+    execute::{ExecuteError, Executor, Frame},
+    document::params::ParamValue,
+};
+use std::{collections::BTreeMap, sync::Arc, time::{Duration, Instant}};
+use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
+
+/// Times of one frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameTiming {
+    /// Times of the passes, in the order in which they ran.
+    pub passes: Vec<PassTiming>,
+    gpu: Option<Duration>,
+}
+
+/// Times of one pass.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PassTiming {
+    /// The pass.
+    pub name: String,
+    /// From the begin of its first step to the end of its last on the GPU; `None` where the adapter has no timestamps.
+    pub gpu: Option<Duration>,
+    /// Time that encoding it took on the CPU.
+    pub cpu: Duration,
+}
+
+impl FrameTiming {
+    /// From the first begin to the last end on the GPU. Not the sum of the passes: they may overlap, and there are gaps.
+    pub fn gpu(&self) -> Option<Duration> {
+        self.gpu
+    }
+
+    /// Time that encoding all passes took on the CPU.
+    pub fn cpu(&self) -> Duration {
+        self.passes.iter().map(|pass| pass.cpu).sum()
+    }
+}
+
+/// Writes and reads the timestamps of frames.
+pub(crate) struct Timer {
+    profiler: GpuProfiler,
+    /// One query that nobody reads. Mesa 22.3's lavapipe takes the begin timestamp of a compute pass that follows a render
+    /// pass only when the dispatch is over, unless the pass itself begins with a timestamp.
+    spare: Option<wgpu::QuerySet>,
+    period: f32,
+}
+
+impl Timer {
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, ExecuteError> {
+        let settings = GpuProfilerSettings { enable_debug_groups: false, ..GpuProfilerSettings::default() };
+        let profiler = GpuProfiler::new(device, settings).map_err(|error| ExecuteError::Timing(error.to_string()))?;
+        let inside = device.features().contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
+        let spare = inside.then(|| {
+            device.create_query_set(&wgpu::QuerySetDescriptor {
+                label: Some("spare timestamp"),
+                ty: wgpu::QueryType::Timestamp,
+                count: 1,
+            })
+        });
+        Ok(Self { profiler, spare, period: queue.get_timestamp_period() })
+    }
+
+    pub fn profiler(&self) -> &GpuProfiler {
+        &self.profiler
+    }
+
+    /// To be called first in every compute pass that is timed.
+    pub fn open_compute(&self, pass: &mut wgpu::ComputePass<'_>) {
+        if let Some(spare) = &self.spare {
+            pass.write_timestamp(spare, 0);
+        }
+    }
+
+    pub fn resolve(&mut self, encoder: &mut wgpu::CommandEncoder) {
+        self.profiler.resolve_queries(encoder);
+    }
+
+    pub fn submitted(&mut self) -> Result<(), ExecuteError> {
+        self.profiler.end_frame().map_err(|error| ExecuteError::Timing(error.to_string()))
+    }
+
+    /// The frame's times, after the device was polled; `passes` are names and CPU times in order.
+    pub fn take(&mut self, passes: &[(String, Duration)]) -> FrameTiming {
+        let results = self.profiler.process_finished_frame(self.period).unwrap_or_default();
+        let span = |queries: &[&GpuTimerQueryResult]| {
+            let times: Option<Vec<_>> = queries.iter().map(|query| query.time.clone()).collect();
+            let times = times.filter(|times| !times.is_empty())?;
+            let begin = times.iter().map(|time| time.start).fold(f64::INFINITY, f64::min);
+            let end = times.iter().map(|time| time.end).fold(f64::NEG_INFINITY, f64::max);
+            // Timestamps that run backwards are no measurement.
+            Duration::try_from_secs_f64(end - begin).ok()
+        };
+        let of_pass = |name: &str| results.iter().filter(|query| query.label == name).collect::<Vec<_>>();
+        FrameTiming {
+            passes: passes
+                .iter()
+                .map(|(name, cpu)| PassTiming { name: name.clone(), gpu: span(&of_pass(name)), cpu: *cpu })
+                .collect(),
+            gpu: span(&results.iter().collect::<Vec<_>>()),
+        }
+    }
+}
+
+/// Whether an adapter's timestamps can be believed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Trust {
+    /// They agree with wall time.
+    Trusted,
+    /// They do not, or there are none.
+    Untrusted {
+        /// Why.
+        reason: String,
+    },
+}
+
+/// The shortest dispatch, in wall time, that is compared: long against the cost of submitting and waiting.
+const LONG: Duration = Duration::from_millis(30);
+
+/// Compares the GPU time of a long dispatch that follows a raster pass with wall time, by the very means that time frames.
+///
+/// # Errors
+/// If the little graph that it runs fails on this device.
+pub fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, ExecuteError> {
+    let untrusted = |reason: String| Ok(Trust::Untrusted { reason });
+    if !device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
+        return untrusted("the adapter has no timestamp queries".to_owned());
+    }
+    let internal = |_| ExecuteError::Internal("the timestamp check's own graph is broken");
+    let graph = Graph::load("check.ron", &Registry::standard(), &CheckSources).map_err(internal)?;
+    let mut rounds = 64u32;
+    loop {
+        let mut request = PlanRequest::new([64, 64], &NoProvider);
+        request.params = BTreeMap::from([("rounds".to_owned(), ParamValue::U32(rounds))]);
+        let mut executor = Executor::new(device, queue, graph.plan(&request).map_err(internal)?, &mut NoProvider)?;
+        let mut walls = Vec::new();
+        let mut times = Vec::new();
+        // The first frame compiles shaders on some drivers.
+        for _ in 0..3 {
+            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            executor.encode(&mut encoder, &Frame { timing: true, read: &[] })?;
+            let start = Instant::now();
+            queue.submit([encoder.finish()]);
+            executor.submitted(queue)?;
+            let report = executor.finish()?;
+            walls.push(start.elapsed());
+            times.push(report.timing.and_then(|timing| timing.passes.last().and_then(|pass| pass.gpu)));
+        }
+        let (wall, gpu) = (walls[2], times[2]);
+        if wall < LONG && rounds < 1 << 30 {
+            rounds *= 4;
+            continue;
+        }
+        let Some(gpu) = gpu else { return untrusted("the adapter gave no timestamps for a timed pass".to_owned()) };
+        // Waiting adds to wall time, so the GPU's share may be smaller, but it cannot be small, nor above 1.
+        let share = gpu.as_secs_f64() / wall.as_secs_f64();
+        return if (0.5..=1.1).contains(&share) {
+            Ok(Trust::Trusted)
+        } else {
+            untrusted(format!(
+                "a dispatch that took {:.1} ms of wall time after a raster pass was timed as {:.1} ms",
+                wall.as_secs_f64() * 1e3,
+                gpu.as_secs_f64() * 1e3
+            ))
+        };
+    }
+}
+
+/// A raster pass and a long dispatch after it.
+struct CheckSources;
+
+impl Sources for CheckSources {
+    fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
+        let text = match path {
+            "check.ron" => include_str!("timing/check.ron"),
+            "draw.wgsl" => include_str!("timing/draw.wgsl"),
+            "work.wgsl" => include_str!("timing/work.wgsl"),
+            _ => return Ok(None),
+        };
+        Ok(Some(SourceFile::new(path, text).text))
+    }
+
+    fn list(&self, _: &str) -> Vec<String> {
+        Vec::new()
+    }
+}

@@ -1,0 +1,8 @@
+// Stage to fill the target, one triangle.
+@vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return vec4<f32>(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+@fragment fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) f32 {
+    return position.x;
+}

@@ -1,0 +1,36 @@
+//! What the tests share.
+#![allow(dead_code)]
+
+pub mod brute;
+pub mod graphs;
+pub mod meshes;
+pub mod random;
+
+use skiagraph_graph::Sources;
+use skiagraph_passes::EmbeddedSources;
+use std::collections::BTreeSet;
+
+/// The embedded shader at `shaders/<path>` with its imports put in.
+pub fn expanded(path: &str) -> String {
+    expand(path, &mut BTreeSet::new())
+}
+
+fn expand(path: &str, seen: &mut BTreeSet<String>) -> String {
+    let text = EmbeddedSources.read(&format!("shaders/{path}")).unwrap().unwrap_or_else(|| panic!("no shader {path}"));
+    let mut whole = String::new();
+    for line in text.lines() {
+        match line.strip_prefix("#import \"") {
+            Some(import) => {
+                let import = import.trim_end_matches('"');
+                if seen.insert(import.to_owned()) {
+                    whole += &expand(import, seen);
+                }
+            }
+            None => {
+                whole += line;
+                whole.push('\n');
+            }
+        }
+    }
+    whole
+}

@@ -48,7 +48,9 @@ pub fn driver(info: &wgpu::AdapterInfo) -> String {
 
 /// Whether this device's timestamps are true.
 pub fn trust(gpu: &Gpu) -> Trust {
-    timing::check(&gpu.device, &gpu.queue)
+    timing::check(&gpu.device, &gpu.queue).unwrap_or_else(|error| Trust::Untrusted {
+        reason: format!("the check of its timestamps failed: {}", chain(&error)),
+    })
 }
 
 /// Runs one frame to its end; returns what it reports and the time from the start of encoding until the GPU was done.

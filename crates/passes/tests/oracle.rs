@@ -2,12 +2,12 @@
 
 mod support;
 
-use skiagraph_graph::{Capture, ParamValue};
+use skiagraph_graph::{Capture, ParamValue, gpu::Gpu};
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Oracle, OracleMode, Progress, Statistics};
 use skiagraph_scene::{Scene, SceneLibrary, SceneRequest, View};
 use std::sync::Arc;
-use support::graphs::{plan, provider, run, values};
+use support::graphs::{open, plan, provider, run_on, values};
 
 fn load(name: &str) -> Arc<Scene> {
     let request = SceneRequest { argument: name.to_owned(), obj: None };
@@ -15,39 +15,62 @@ fn load(name: &str) -> Arc<Scene> {
     Arc::new(scene)
 }
 
-/// What the oracle says of a preset's outputs, for the primitives that the preset saw itself.
-fn judge(preset: &str, scene: &Scene, view: &View, viewport: [u32; 2], provider: &mut SceneProvider, map_size: Option<u32>) -> Statistics {
-    let plan = plan(&format!("pipelines/{preset}.ron"), provider, viewport, |request| {
-        request.captures.push(Capture { material: "primitive".into(), after: None });
-        if let Some(map_size) = map_size {
-            request.params.insert("map_size".into(), ParamValue::U32(map_size));
-        }
-    });
-    let report = run(plan, provider, &["visibility", "status", "primitive"], false);
-    let oracle = Oracle::new(&scene.mesh);
-    let camera = view.camera(viewport);
-    let primitives = values(&report, "primitive");
-    let reference = oracle.shade(&camera, &scene.light, &primitives, OracleMode::Exact, Progress::default()).unwrap();
-    let statistics =
-        Statistics::judged(&values(&report, "visibility"), &values(&report, "status"), &reference).unwrap();
-    println!("{preset} {} {} {viewport:?} {map_size:?}: {statistics:?}", scene.name, view.name);
-    statistics
+/// A scene under a view, its oracle, and what runs graphs on it.
+struct Bench<'a> {
+    scene: &'a Scene,
+    view: &'a View,
+    viewport: [u32; 2],
+    gpu: Gpu,
+    provider: SceneProvider,
+    oracle: Oracle<'a>,
 }
 
-fn rt_is_exact(scene: &Arc<Scene>, view: &View, viewport: [u32; 2]) {
-    let mut provider = provider(scene, view, viewport);
-    let counts = judge("rt", scene, view, viewport, &mut provider, None);
-    assert!(counts.pixels.lit > 0 && counts.pixels.shadow > 0, "{counts:?}");
-    assert_eq!(counts.wrong.total - counts.wrong.in_band, 0, "{} {}: {counts:?}", scene.name, view.name);
-    // A band that swallows a case proves nothing.
-    assert!(counts.band_share() < 3e-3, "{} {}: {counts:?}", scene.name, view.name);
+impl<'a> Bench<'a> {
+    fn new(scene: &'a Arc<Scene>, viewport: [u32; 2]) -> Self {
+        let view = &scene.views[0];
+        let provider = provider(scene, view, viewport);
+        Self { scene, view, viewport, gpu: open(), provider, oracle: Oracle::new(&scene.mesh) }
+    }
+
+    fn look(&mut self, view: &'a View) {
+        self.view = view;
+        self.provider.set_view(view, self.viewport);
+    }
+
+    /// What the oracle says of a preset's outputs, for the primitives that the preset saw itself.
+    fn judge(&mut self, preset: &str, params: &[(&str, ParamValue)]) -> Statistics {
+        let plan = plan(&format!("pipelines/{preset}.ron"), &self.provider, self.viewport, |request| {
+            request.captures.push(Capture { material: "primitive".into(), after: None });
+            request.params.extend(params.iter().map(|(name, value)| ((*name).to_owned(), value.clone())));
+        });
+        let report = run_on(&self.gpu, plan, &mut self.provider, &["visibility", "status", "primitive"]);
+        let primitives = values(&report, "primitive");
+        let camera = self.view.camera(self.viewport);
+        let light = &self.scene.light;
+        let reference = self.oracle.shade(&camera, light, &primitives, OracleMode::Exact, Progress::default()).unwrap();
+        let (visibility, status) = (values(&report, "visibility"), values(&report, "status"));
+        let counts = Statistics::judged(&visibility, &status, &reference).unwrap();
+        println!("{preset} {} {} {:?} {params:?}: {counts:?}", self.scene.name, self.view.name, self.viewport);
+        counts
+    }
+
+    fn rt_is_exact(&mut self) {
+        let counts = self.judge("rt", &[]);
+        assert!(counts.pixels.lit > 0 && counts.pixels.shadow > 0, "{counts:?}");
+        assert_eq!(counts.wrong.total - counts.wrong.in_band, 0, "{}: {counts:?}", self.view.name);
+        // A band that swallows a case proves nothing.
+        assert!(counts.band_share() < 3e-3, "{}: {counts:?}", self.view.name);
+    }
 }
 
 #[test]
 fn rt_on_park_is_exact() {
     let scene = load("park");
+    let mut bench = Bench::new(&scene, [192, 144]);
+    assert_eq!(scene.views.len(), 9);
     for view in &scene.views {
-        rt_is_exact(&scene, view, [192, 144]);
+        bench.look(view);
+        bench.rt_is_exact();
     }
 }
 
@@ -63,17 +86,15 @@ fn sponza() -> Option<Arc<Scene>> {
 #[test]
 fn rt_on_sponza_is_exact() {
     let Some(scene) = sponza() else { return };
-    rt_is_exact(&scene, &scene.views[0], [256, 256]);
+    Bench::new(&scene, [256, 256]).rt_is_exact();
 }
 
 /// The dissertation's table 12 has 7.9, 5.3, 3.8, 3.1 % wrong at maps of 512, 1024, 2048, 4096 texels' edge.
 #[test]
 fn nsm_on_sponza_is_as_wrong_as_the_dissertation_says_and_less_so_on_a_finer_map() {
     let Some(scene) = sponza() else { return };
-    let (view, viewport) = (&scene.views[0], [256, 256]);
-    let mut provider = provider(&scene, view, viewport);
-    let shares = [512, 1024, 2048, 4096]
-        .map(|map_size| judge("nsm", &scene, view, viewport, &mut provider, Some(map_size)).wrong_share());
+    let mut bench = Bench::new(&scene, [256, 256]);
+    let shares = [512, 1024, 2048, 4096].map(|size| bench.judge("nsm", &[("map_size", ParamValue::U32(size))]).wrong_share());
     assert!(shares.is_sorted_by(|coarser, finer| coarser > finer), "{shares:?}");
     assert!((0.03..0.08).contains(&shares[1]), "{shares:?}");
 }

@@ -3,13 +3,13 @@
 mod support;
 
 use glam::{DVec3, Vec3};
-use skiagraph_graph::{Executor, ParamValue, gpu};
+use skiagraph_graph::{Executor, ParamValue};
 use skiagraph_passes::presets;
 use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
 use std::sync::Arc;
 use support::{
     brute::{self, MISS, Ray},
-    graphs::{plan, provider, run, values},
+    graphs::{open, plan, provider, run, values},
 };
 
 const VIEWPORT: [u32; 2] = [96, 64];
@@ -113,7 +113,7 @@ fn rt_agrees_with_rays_traced_by_hand() {
         let plan = plan("pipelines/rt.ron", &provider, VIEWPORT, |request| {
             request.params.insert("per_pixel".into(), ParamValue::Bool(per_pixel));
         });
-        let report = run(plan, &mut provider, &["visibility", "status", "ray_count"], false);
+        let report = run(plan, &mut provider, &["visibility", "status", "ray_count"]);
         let (visibility, status) = (values(&report, "visibility"), values(&report, "status"));
         for (index, &truth) in truth.iter().enumerate().filter(|(_, truth)| truth.is_settled()) {
             let expected = match truth {
@@ -142,7 +142,7 @@ fn nsm_is_wrong_at_contours_only_and_less_so_on_a_finer_map() {
         let plan = plan("pipelines/nsm.ron", &provider, VIEWPORT, |request| {
             request.params.insert("map_size".into(), ParamValue::U32(map_size));
         });
-        let report = run(plan, &mut provider, &["visibility", "status"], false);
+        let report = run(plan, &mut provider, &["visibility", "status"]);
         let (visibility, status) = (values(&report, "visibility"), values(&report, "status"));
         let expected = |truth| match truth {
             Truth::Background => (1, 0),
@@ -166,7 +166,7 @@ fn only_a_traced_graph_builds_a_hierarchy() {
         let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
         let plan = plan(&format!("pipelines/{preset}.ron"), &provider, VIEWPORT, |_| ());
         assert_eq!(plan.provided().iter().any(|name| name.contains("bvh")), traces, "{preset}");
-        run(plan, &mut provider, &[], false);
+        run(plan, &mut provider, &[]);
         assert_eq!(provider.built().iter().any(|name| name.contains("bvh")), traces, "{preset}: {:?}", provider.built());
     }
 }
@@ -177,7 +177,7 @@ fn an_empty_scene_is_all_background() {
         let scene = Arc::new(Scene { mesh: Mesh::default(), ..Scene::clone(&scene()) });
         let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
         let plan = plan(&preset.path, &provider, VIEWPORT, |_| ());
-        let report = run(plan, &mut provider, &["visibility", "status"], false);
+        let report = run(plan, &mut provider, &["visibility", "status"]);
         assert!(values(&report, "visibility").iter().all(|&visibility| visibility == 1), "{}", preset.name);
         assert!(values(&report, "status").iter().all(|&status| status == 0), "{}", preset.name);
     }
@@ -185,7 +185,7 @@ fn an_empty_scene_is_all_background() {
 
 #[test]
 fn two_graphs_share_what_the_provider_built() {
-    let gpu = gpu::open(None).unwrap_or_else(|error| panic!("{error}"));
+    let gpu = open();
     let scene = scene();
         let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
     let executors: Vec<Executor> = ["rt", "nsm"]

@@ -64,7 +64,7 @@ pub fn run_text(document: &str, provider: &mut dyn Provider, output: &str) -> Ve
     let sources = LayeredSources(vec![Box::new(Document(document.to_owned())), Box::new(EmbeddedSources)]);
     let graph = Graph::load("test.ron", &registry(), &sources).unwrap_or_else(|error| panic!("{error}"));
     let plan = graph.plan(&PlanRequest::new([1, 1], provider)).unwrap_or_else(|error| panic!("{error}"));
-    let report = run(plan, provider, &[output], false);
+    let report = run(plan, provider, &[output]);
     match report.readbacks.into_iter().next().unwrap().content {
         Content::Buffer(bytes) | Content::Texture { bytes, .. } => bytes,
     }
@@ -86,11 +86,20 @@ pub fn provider(scene: &Arc<Scene>, view: &View, viewport: [u32; 2]) -> ScenePro
 }
 
 /// Runs one frame of a plan on a device of its own.
-pub fn run(plan: Plan, provider: &mut dyn Provider, read: &[&str], timing: bool) -> FrameReport {
-    let gpu = gpu::open(None).unwrap_or_else(|error| panic!("{error}"));
+pub fn run(plan: Plan, provider: &mut dyn Provider, read: &[&str]) -> FrameReport {
+    run_on(&open(), plan, provider, read)
+}
+
+/// A device; a machine without an adapter fails the test with the way out.
+pub fn open() -> gpu::Gpu {
+    gpu::open(None).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Runs one frame of a plan.
+pub fn run_on(gpu: &gpu::Gpu, plan: Plan, provider: &mut dyn Provider, read: &[&str]) -> FrameReport {
     let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, provider).unwrap_or_else(|error| panic!("{error}"));
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    executor.encode(&mut encoder, &Frame { timing, read }).unwrap();
+    executor.encode(&mut encoder, &Frame { read, ..Frame::default() }).unwrap();
     gpu.queue.submit([encoder.finish()]);
     executor.submitted(&gpu.queue).unwrap();
     executor.finish().unwrap()

@@ -19,11 +19,20 @@ fn plan(path: &str, outputs: Option<&[&str]>) -> Plan {
         normal_indices: vec![[0; 3]],
         groups: vec![],
     };
-    let light = DirectionalLight { direction: DVec3::NEG_Z };
-    let provider = SceneProvider::new(Arc::new(Scene { name: "one".into(), mesh, views: vec![], light }));
+    let light = DirectionalLight {
+        direction: DVec3::NEG_Z,
+    };
+    let provider = SceneProvider::new(Arc::new(Scene {
+        name: "one".into(),
+        mesh,
+        views: vec![],
+        light,
+    }));
     let mut request = PlanRequest::new([640, 480], &provider);
     request.outputs = outputs.map(|names| names.iter().map(|&name| name.to_owned()).collect());
-    load(path).plan(&request).unwrap_or_else(|errors| panic!("{errors}"))
+    load(path)
+        .plan(&request)
+        .unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 fn live(plan: &Plan) -> Vec<String> {
@@ -42,11 +51,29 @@ fn presets_keep_the_contract() {
         let graph = load(&preset.path);
         assert!(!graph.description().is_empty(), "{}", preset.name);
         let outputs = graph.outputs();
-        assert!(outputs.contains(&"visibility") && outputs.contains(&"status"), "{}: {outputs:?}", preset.name);
-        assert!(graph.warnings().is_empty(), "{}: {:?}", preset.name, graph.warnings());
+        assert!(
+            outputs.contains(&"visibility") && outputs.contains(&"status"),
+            "{}: {outputs:?}",
+            preset.name
+        );
+        assert!(
+            graph.warnings().is_empty(),
+            "{}: {:?}",
+            preset.name,
+            graph.warnings()
+        );
         let plan = plan(&preset.path, None);
-        assert!(plan.warnings().is_empty() && plan.culled().is_empty(), "{}: {:?}", preset.name, plan.warnings());
-        for output in plan.outputs().iter().filter(|output| output.name != "ray_count") {
+        assert!(
+            plan.warnings().is_empty() && plan.culled().is_empty(),
+            "{}: {:?}",
+            preset.name,
+            plan.warnings()
+        );
+        for output in plan
+            .outputs()
+            .iter()
+            .filter(|output| output.name != "ray_count")
+        {
             assert_eq!(output.size, [640, 480], "{} {}", preset.name, output.name);
         }
     }
@@ -54,16 +81,31 @@ fn presets_keep_the_contract() {
 
 #[test]
 fn the_steps_of_a_frame_are_passes() {
-    let rt = ["primitive", "surface", "clear_ray_count", "fill_rays", "trace_rays", "fix_pixels"];
+    let rt = [
+        "primitive",
+        "surface",
+        "clear_ray_count",
+        "fill_rays",
+        "trace_rays",
+        "fix_pixels",
+    ];
     assert_eq!(live(&plan("pipelines/rt.ron", None)), rt);
     let nsm = ["create_shadow_map", "primitive", "surface", "shadow_lookup"];
     assert_eq!(live(&plan("pipelines/nsm.ron", None)), nsm);
-    assert_eq!(live(&plan("pipelines/shared/primitive.ron", None)), ["primitive"]);
+    assert_eq!(
+        live(&plan("pipelines/shared/primitive.ron", None)),
+        ["primitive"]
+    );
 }
 
 #[test]
 fn only_a_traced_graph_needs_a_hierarchy() {
-    let needs = |path, outputs| plan(path, outputs).provided().iter().any(|name| name.contains("bvh"));
+    let needs = |path, outputs| {
+        plan(path, outputs)
+            .provided()
+            .iter()
+            .any(|name| name.contains("bvh"))
+    };
     assert!(needs("pipelines/rt.ron", None));
     assert!(!needs("pipelines/nsm.ron", None));
     assert!(!needs("pipelines/rt.ron", Some(&["ray_count"])));
@@ -72,7 +114,14 @@ fn only_a_traced_graph_needs_a_hierarchy() {
 #[test]
 fn what_no_output_needs_is_culled() {
     let plan = plan("pipelines/rt.ron", Some(&["ray_count"]));
-    assert_eq!(live(&plan), ["primitive", "surface", "clear_ray_count", "fill_rays"]);
-    let culled: Vec<String> = plan.culled().into_iter().map(|pass| pass.name.clone()).collect();
+    assert_eq!(
+        live(&plan),
+        ["primitive", "surface", "clear_ray_count", "fill_rays"]
+    );
+    let culled: Vec<String> = plan
+        .culled()
+        .into_iter()
+        .map(|pass| pass.name.clone())
+        .collect();
     assert_eq!(culled, ["trace_rays", "fix_pixels"]);
 }

@@ -10,8 +10,13 @@ use std::sync::Arc;
 use support::graphs::{open, plan, provider, run_on, values};
 
 fn load(name: &str) -> Arc<Scene> {
-    let request = SceneRequest { argument: name.to_owned(), obj: None };
-    let (scene, _) = SceneLibrary::from_environment().load(&request).unwrap_or_else(|error| panic!("{error}"));
+    let request = SceneRequest {
+        argument: name.to_owned(),
+        obj: None,
+    };
+    let (scene, _) = SceneLibrary::from_environment()
+        .load(&request)
+        .unwrap_or_else(|error| panic!("{error}"));
     Arc::new(scene)
 }
 
@@ -29,7 +34,14 @@ impl<'a> Bench<'a> {
     fn new(scene: &'a Arc<Scene>, viewport: [u32; 2]) -> Self {
         let view = &scene.views[0];
         let provider = provider(scene, view, viewport);
-        Self { scene, view, viewport, gpu: open(), provider, oracle: Oracle::new(&scene.mesh) }
+        Self {
+            scene,
+            view,
+            viewport,
+            gpu: open(),
+            provider,
+            oracle: Oracle::new(&scene.mesh),
+        }
     }
 
     fn look(&mut self, view: &'a View) {
@@ -39,25 +51,62 @@ impl<'a> Bench<'a> {
 
     /// What the oracle says of a preset's outputs, for the primitives that the preset saw itself.
     fn judge(&mut self, preset: &str, params: &[(&str, ParamValue)]) -> Statistics {
-        let plan = plan(&format!("pipelines/{preset}.ron"), &self.provider, self.viewport, |request| {
-            request.captures.push(Capture { material: "primitive".into(), after: None });
-            request.params.extend(params.iter().map(|(name, value)| ((*name).to_owned(), value.clone())));
-        });
-        let report = run_on(&self.gpu, plan, &mut self.provider, &["visibility", "status", "primitive"]);
+        let plan = plan(
+            &format!("pipelines/{preset}.ron"),
+            &self.provider,
+            self.viewport,
+            |request| {
+                request.captures.push(Capture {
+                    material: "primitive".into(),
+                    after: None,
+                });
+                request.params.extend(
+                    params
+                        .iter()
+                        .map(|(name, value)| ((*name).to_owned(), value.clone())),
+                );
+            },
+        );
+        let report = run_on(
+            &self.gpu,
+            plan,
+            &mut self.provider,
+            &["visibility", "status", "primitive"],
+        );
         let primitives = values(&report, "primitive");
         let camera = self.view.camera(self.viewport);
         let light = &self.scene.light;
-        let reference = self.oracle.shade(&camera, light, &primitives, OracleMode::Exact, Progress::default()).unwrap();
+        let reference = self
+            .oracle
+            .shade(
+                &camera,
+                light,
+                &primitives,
+                OracleMode::Exact,
+                Progress::default(),
+            )
+            .unwrap();
         let (visibility, status) = (values(&report, "visibility"), values(&report, "status"));
         let counts = Statistics::judged(&visibility, &status, &reference).unwrap();
-        println!("{preset} {} {} {:?} {params:?}: {counts:?}", self.scene.name, self.view.name, self.viewport);
+        println!(
+            "{preset} {} {} {:?} {params:?}: {counts:?}",
+            self.scene.name, self.view.name, self.viewport
+        );
         counts
     }
 
     fn rt_is_exact(&mut self) {
         let counts = self.judge("rt", &[]);
-        assert!(counts.pixels.lit > 0 && counts.pixels.shadow > 0, "{counts:?}");
-        assert_eq!(counts.wrong.total - counts.wrong.in_band, 0, "{}: {counts:?}", self.view.name);
+        assert!(
+            counts.pixels.lit > 0 && counts.pixels.shadow > 0,
+            "{counts:?}"
+        );
+        assert_eq!(
+            counts.wrong.total - counts.wrong.in_band,
+            0,
+            "{}: {counts:?}",
+            self.view.name
+        );
         // A band that swallows a case proves nothing.
         assert!(counts.band_share() < 3e-3, "{}: {counts:?}", self.view.name);
     }
@@ -94,7 +143,14 @@ fn rt_on_sponza_is_exact() {
 fn nsm_on_sponza_is_as_wrong_as_the_dissertation_says_and_less_so_on_a_finer_map() {
     let Some(scene) = sponza() else { return };
     let mut bench = Bench::new(&scene, [256, 256]);
-    let shares = [512, 1024, 2048, 4096].map(|size| bench.judge("nsm", &[("map_size", ParamValue::U32(size))]).wrong_share());
-    assert!(shares.is_sorted_by(|coarser, finer| coarser > finer), "{shares:?}");
+    let shares = [512, 1024, 2048, 4096].map(|size| {
+        bench
+            .judge("nsm", &[("map_size", ParamValue::U32(size))])
+            .wrong_share()
+    });
+    assert!(
+        shares.is_sorted_by(|coarser, finer| coarser > finer),
+        "{shares:?}"
+    );
     assert!((0.03..0.08).contains(&shares[1]), "{shares:?}");
 }

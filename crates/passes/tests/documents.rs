@@ -118,10 +118,6 @@ fn what_no_output_needs_is_culled() {
         live(&plan),
         ["primitive", "surface", "clear_ray_count", "fill_rays"]
     );
-    let culled: Vec<String> = plan
-        .culled()
-        .into_iter()
-        .map(|pass| pass.name.clone())
-        .collect();
+    let culled: Vec<String> = plan.culled().iter().map(|pass| pass.name.clone()).collect();
     assert_eq!(culled, ["trace_rays", "fix_pixels"]);
 }

@@ -2,6 +2,7 @@
 
 mod support;
 
+use glam::Vec3;
 use skiagraph_graph::{Capture, ParamValue, gpu::Gpu};
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Oracle, OracleMode, Progress, Statistics};
@@ -153,4 +154,37 @@ fn nsm_on_sponza_is_as_wrong_as_the_dissertation_says_and_less_so_on_a_finer_map
         "{shares:?}"
     );
     assert!((0.03..0.08).contains(&shares[1]), "{shares:?}");
+}
+
+/// No length in the shaders is a constant: a model in tenths of millimetres, in thousands of kilometres, or far from the origin.
+#[test]
+fn rt_is_exact_at_any_scale_and_far_from_the_origin() {
+    let park = load("park");
+    for (scale, offset) in [
+        (1e-4, Vec3::ZERO),
+        (1e6, Vec3::ZERO),
+        (1.0, Vec3::new(3e3, -2e3, 5e3)),
+    ] {
+        let mut scene = Scene::clone(&park);
+        for position in &mut scene.mesh.positions {
+            *position = *position * scale + offset;
+        }
+        for view in &mut scene.views {
+            view.eye = view.eye * f64::from(scale) + offset.as_dvec3();
+            view.near *= f64::from(scale);
+            view.far *= f64::from(scale);
+        }
+        let scene = Arc::new(scene);
+        let mut bench = Bench::new(&scene, [128, 96]);
+        let counts = bench.judge("rt", &[]);
+        assert!(counts.pixels.lit > 0 && counts.pixels.shadow > 0);
+        assert_eq!(
+            counts.wrong.total - counts.wrong.in_band,
+            0,
+            "{scale} {offset}: {counts:?}"
+        );
+        // Wrong shadow-map pixels are the model's, not the scale's.
+        let share = bench.judge("nsm", &[]).wrong_share();
+        assert!(share < 0.1, "{scale} {offset}: {share}");
+    }
 }

@@ -105,3 +105,55 @@ impl Camera {
         projection * rotation * DMat4::from_translation(-self.eye)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera() -> Camera {
+        let view = View {
+            name: "main".into(),
+            eye: DVec3::new(-83.7, 222.0, -2.9),
+            direction: DVec3::new(0.81, -0.27, 0.52) * 3.0,
+            up: DVec3::Y * 2.0,
+            fov_y_degrees: 60.0,
+            near: 1.0,
+            far: 2800.0,
+        };
+        view.camera([40, 20])
+    }
+
+    #[test]
+    fn a_pixels_direction_projects_to_its_centre() {
+        let camera = camera();
+        for (x, y) in [(0, 0), (39, 19), (0, 19), (13, 7)] {
+            for distance in [camera.near, 50.0, camera.far] {
+                let clip = camera
+                    .view_projection()
+                    .project_point3(camera.eye + camera.pixel_direction(x, y) * distance);
+                let pixel = ((clip.x + 1.0) * 20.0, (1.0 - clip.y) * 10.0);
+                assert!(
+                    (pixel.0 - f64::from(x) - 0.5).abs() < 1e-9
+                        && (pixel.1 - f64::from(y) - 0.5).abs() < 1e-9
+                );
+                let depth =
+                    camera.far / (camera.far - camera.near) * (1.0 - camera.near / distance);
+                assert!(
+                    (clip.z - depth).abs() < 1e-12,
+                    "{} instead of {depth}",
+                    clip.z
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_field_of_view_is_vertical_and_the_frame_is_right_handed() {
+        let camera = camera();
+        let top = camera.forward + camera.up * camera.half_height;
+        assert!((top.angle_between(camera.forward).to_degrees() - 30.0).abs() < 1e-9);
+        assert!((camera.half_width - 2.0 * camera.half_height).abs() < 1e-15);
+        assert!((camera.right.cross(camera.up) + camera.forward).length() < 1e-12);
+        assert!(camera.up.y > 0.0);
+    }
+}

@@ -94,7 +94,7 @@ pub enum SceneError {
         source_text: String,
     },
     /// No scene of that name, and no file of that path.
-    #[error("no scene {argument:?}: neither a file, nor a file in {}, nor one of the built-in scenes {}", folder.display(), builtin.join(", "))]
+    #[error("no scene {argument:?}: it is neither the path of a .ron or .obj file, nor the name of a .ron file in {}, nor one of the built-in scenes {}", folder.display(), builtin.join(", "))]
     UnknownScene {
         /// What was asked for.
         argument: String,
@@ -221,17 +221,24 @@ impl fmt::Display for FaceProblem {
 }
 
 fn list_faults(faults: &[FaceFault], total: usize) -> String {
-    let mut text: Vec<String> = faults
-        .iter()
-        .map(|fault| format!("{} {}", fault.face, fault.problem))
-        .collect();
-    if total > faults.len() {
-        text.push(format!("and {} more faces", total - faults.len()));
+    let mut text = format!(
+        "{total} {} cannot be used",
+        if total == 1 { "face" } else { "faces" }
+    );
+    for fault in faults {
+        text += &format!("\n  {} {}", fault.face, fault.problem);
     }
-    text.join("; ")
+    if total > faults.len() {
+        text += &format!("\n  and {} more", total - faults.len());
+    }
+    text
 }
 
 fn list_places(places: &[PathBuf]) -> String {
+    if places.is_empty() {
+        return "  no folder at all (the environment variable SKIAGRAPH_ASSETS is not set)\n"
+            .to_owned();
+    }
     places
         .iter()
         .map(|place| format!("  {}\n", place.display()))

@@ -75,6 +75,15 @@ impl<'a> Guard<'a> {
         }
     }
 
+    /// What `tobj` was last given to read, shortened to what fits a message.
+    pub fn current_line(&self) -> String {
+        String::from_utf8_lossy(&self.handed_on)
+            .trim_end()
+            .chars()
+            .take(60)
+            .collect()
+    }
+
     pub fn face_ref(&self, record: &FaceRecord) -> FaceRef {
         FaceRef {
             group: self.groups[record.group as usize].clone(),
@@ -116,7 +125,9 @@ impl<'a> Guard<'a> {
             };
             let mut joined = String::new();
             let mut line = line;
-            while let Some(start) = line.strip_suffix('\\') {
+            // A name or a comment may end in a backslash (a Windows folder); only numbers are continued.
+            let numbers = line.starts_with(['v', 'f', 'l', 'p']);
+            while let Some(start) = line.strip_suffix('\\').filter(|_| numbers) {
                 joined.push_str(start);
                 joined.push(' ');
                 let Some((next, next_ended)) = self.next_line()? else {
@@ -136,22 +147,20 @@ impl<'a> Guard<'a> {
 
     fn take(&mut self, line: &str, ended: bool) -> Result<(), String> {
         let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+        let numbers = rest.split('#').next().unwrap_or("");
         match keyword {
             "v" => {
                 self.vertices += 1;
                 // Six numbers are a position with a colour: the colour is not ours, and tobj fails where only some have one.
-                let numbers = if rest.split_whitespace().count() >= 6 {
-                    3
-                } else {
-                    usize::MAX
-                };
-                self.hand_on("v", rest.split_whitespace().take(numbers));
+                let count = numbers.split_whitespace().count();
+                let taken = if count >= 6 { 3 } else { count };
+                self.hand_on("v", numbers.split_whitespace().take(taken));
             }
             "vn" => {
                 self.normals += 1;
-                self.hand_on("vn", rest.split_whitespace());
+                self.hand_on("vn", numbers.split_whitespace());
             }
-            "f" => self.take_face(rest, ended)?,
+            "f" => self.take_face(numbers, ended)?,
             "g" | "o" => {
                 let name = if rest.trim().is_empty() {
                     UNNAMED

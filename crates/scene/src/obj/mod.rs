@@ -1,4 +1,4 @@
-//! Wavefront OBJ files, read by `tobj` behind a [`guard`] and welded into a [`Mesh`].
+//! Wavefront OBJ files, read by `tobj` behind a guard and welded into a [`Mesh`].
 //!
 //! Conventions: `o` and `g` both begin a group; a polygon is fanned from the corner that [`QuadDiagonal`] names; a face
 //! without a normal at every corner is *flat*: each of its triangles takes its own geometric normal. (A smooth guess
@@ -74,7 +74,10 @@ pub fn parse_obj(
     let (models, _) = loaded.map_err(|error| SceneError::ObjLine {
         path: path.to_owned(),
         line: guard.line,
-        reason: guard.fatal.take().unwrap_or_else(|| error.to_string()),
+        reason: guard
+            .fatal
+            .take()
+            .unwrap_or_else(|| format!("{error} in {:?}", guard.current_line())),
     })?;
     if guard.fault_count > 0 {
         return Err(SceneError::ObjFaces {

@@ -11,6 +11,8 @@ struct Tree {
     across: f64,
     up: f64,
     leaves: usize,
+    /// Smallest and largest half length of a leaf.
+    leaf: (f64, f64),
     seed: u64,
 }
 
@@ -19,11 +21,12 @@ pub(super) fn trees(builder: &mut Builder) {
         (
             "tree 1",
             Tree {
-                foot: DVec3::new(-15.0, 0.0, -22.0),
-                crown: 47.0,
+                foot: DVec3::new(-40.0, 0.0, -36.0),
+                crown: 58.0,
                 across: 24.0,
-                up: 22.0,
-                leaves: 480,
+                up: 30.0,
+                leaves: 560,
+                leaf: (1.8, 3.4),
                 seed: 7,
             },
         ),
@@ -35,6 +38,7 @@ pub(super) fn trees(builder: &mut Builder) {
                 across: 14.0,
                 up: 13.0,
                 leaves: 210,
+                leaf: (1.5, 2.6),
                 seed: 11,
             },
         ),
@@ -70,7 +74,10 @@ fn grow(builder: &mut Builder, tree: &Tree) {
         if leaves.len() == tree.leaves {
             break;
         }
-        let (position, radius) = (centre + random.in_ball() * half, random.range(1.6, 3.0));
+        let (position, radius) = (
+            centre + random.in_ball() * half,
+            random.range(tree.leaf.0, tree.leaf.1),
+        );
         let free = leaves
             .iter()
             .all(|(other, r)| position.distance(*other) > radius + r + GAP)

@@ -1,0 +1,241 @@
+//! Scene files, and how scenes and their meshes are found.
+
+use insta::assert_snapshot;
+use skiagraph_scene::{
+    DirectionalLight, ObjSetup, QuadDiagonal, SceneError, SceneFile, SceneLibrary, SceneRequest,
+    View,
+};
+use std::{fs, path::Path};
+
+const GOOD: &str = r#"(
+    format: 1,
+    name: "garden",
+    mesh: Generated("park"),
+    light: (direction: (0, -1, 0)),
+    views: [
+        (name: "a", eye: (0, 5, 0), direction: (0, 0, 1), fov_y_degrees: 60, near: 1, far: 100),
+    ],
+)"#;
+
+fn error(from: &str, to: &str) -> String {
+    assert!(GOOD.contains(from), "{from}");
+    SceneFile::parse(&GOOD.replace(from, to), "garden.ron")
+        .unwrap_err()
+        .to_string()
+}
+
+#[test]
+fn a_good_file() {
+    let scene = SceneFile::parse(GOOD, "garden.ron").unwrap();
+    assert_eq!(
+        (scene.name.as_str(), scene.description.as_str()),
+        ("garden", "")
+    );
+    assert_eq!(scene.views[0].up, glam::DVec3::Y);
+    assert_eq!(scene.light.towards(), glam::DVec3::Y);
+}
+
+#[test]
+fn broken_files_are_explained_with_line_and_column() {
+    assert_snapshot!(error("near: 1", "naer: 1"), @"garden.ron:7:78: Unexpected field named `naer` in `View`, expected one of `name`, `eye`, `direction`, `up`, `fov_y_degrees`, `near`, or `far` instead");
+    assert_snapshot!(error("name: \"garden\",", ""), @"garden.ron:9:1: Unexpected missing field named `name` in `SceneFile`");
+    assert_snapshot!(error("format: 1", "format: 2"), @"garden.ron:2:13: format 2 is unknown; this program reads format 1");
+    assert_snapshot!(error("\"park\"", "\"parc\""), @r#"garden.ron:4:22: no generated mesh is called "parc"; there are: park"#);
+    assert_snapshot!(error("Generated(", "Made("), @"garden.ron:4:11: Unexpected variant named `Made` in enum `MeshSource`, expected either `Obj` or `Generated` instead");
+    assert_snapshot!(error("(0, -1, 0)", "(0, -1)"), @"garden.ron:5:30: Expected a tuple of size 3 but found 2 elements instead");
+    assert_snapshot!(error("(0, -1, 0)", "(0, 0, 0)"), @"garden.ron:5:33: the light's direction [0, 0, 0] must be finite and longer than 0");
+    assert_snapshot!(error("direction: (0, 0, 1)", "direction: (0, NaN, 1)"), @r#"garden.ron:7:97: view "a": direction [0, NaN, 1] and up [0, 1, 0] must be finite and longer than 0"#);
+    assert_snapshot!(error("direction: (0, 0, 1)", "direction: (0, -2, 0)"), @r#"garden.ron:7:96: view "a": up [0, 1, 0] is parallel to the direction [0, -2, 0]"#);
+    assert_snapshot!(error("fov_y_degrees: 60", "fov_y_degrees: 180"), @r#"garden.ron:7:96: view "a": fov_y_degrees is 180, expected more than 0 and less than 180"#);
+    assert_snapshot!(error("near: 1,", "near: 0,"), @r#"garden.ron:7:95: view "a": near is 0 and far is 100, expected 0 < near < far"#);
+    assert_snapshot!(error("far: 100", "far: 1"), @r#"garden.ron:7:93: view "a": near is 1 and far is 1, expected 0 < near < far"#);
+    assert_snapshot!(error("(0, 5, 0)", "(0, inf, 0)"), @r#"garden.ron:7:97: view "a": the eye [0, inf, 0] is not finite"#);
+    assert_snapshot!(error("    ],\n)", "    ],"), @"garden.ron:8:6: Unexpected end of RON");
+    let view = GOOD.lines().nth(6).unwrap();
+    assert_snapshot!(error(view, ""), @"garden.ron:8:5: a scene needs at least one view");
+    assert_snapshot!(error(view, &format!("{view}\n{view}")), @r#"garden.ron:9:5: two views are called "a""#);
+}
+
+fn request(argument: impl AsRef<Path>) -> SceneRequest {
+    SceneRequest {
+        argument: argument.as_ref().to_string_lossy().into_owned(),
+        obj: None,
+    }
+}
+
+fn setup() -> ObjSetup {
+    let view = SceneFile::parse(GOOD, "garden.ron")
+        .unwrap()
+        .views
+        .remove(0);
+    ObjSetup {
+        view,
+        light: DirectionalLight {
+            direction: glam::DVec3::NEG_Y,
+        },
+        quads: QuadDiagonal::FirstThird,
+    }
+}
+
+#[test]
+fn the_park_is_built_in() {
+    let (scene, _) = SceneLibrary::default().load(&request("park")).unwrap();
+    assert_eq!(scene.name, "park");
+    let names: Vec<&str> = scene.views.iter().map(|view| view.name.as_str()).collect();
+    let expected: Vec<String> = ["bench", "flowers", "trees"]
+        .iter()
+        .flat_map(|place| ["side", "with", "against"].map(|way| format!("{place}_{way}")))
+        .collect();
+    assert_eq!(names, expected);
+    assert!(scene.view("trees_with").is_some() && scene.view("trees").is_none());
+}
+
+#[test]
+fn a_file_in_the_scenes_folder_wins_over_the_built_in_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("park.ron"), GOOD).unwrap();
+    let library = SceneLibrary {
+        scenes: folder.path().to_owned(),
+        assets: Vec::new(),
+    };
+    assert_eq!(library.load(&request("park")).unwrap().0.name, "garden");
+    assert_eq!(
+        library
+            .load(&request(folder.path().join("park.ron")))
+            .unwrap()
+            .0
+            .name,
+        "garden"
+    );
+    let listed: Vec<_> = library
+        .list()
+        .into_iter()
+        .map(|row| (row.name, row.mesh_found, row.file.is_some()))
+        .collect();
+    assert_eq!(
+        listed,
+        [
+            ("park".to_owned(), true, true),
+            ("sponza".to_owned(), false, false)
+        ]
+    );
+}
+
+#[test]
+fn a_broken_file_is_listed_with_its_fault() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("bad.ron"), "(format: 7)").unwrap();
+    let library = SceneLibrary {
+        scenes: folder.path().to_owned(),
+        assets: Vec::new(),
+    };
+    assert_snapshot!(library.list()[0].description, @"bad:1:10: format 7 is unknown; this program reads format 1");
+}
+
+#[test]
+fn unknown_scenes_and_missing_files() {
+    let library = SceneLibrary {
+        scenes: "scenes".into(),
+        assets: Vec::new(),
+    };
+    assert_snapshot!(library.load(&request("parc")).unwrap_err(), @r#"no scene "parc": it is neither the path of a .ron or .obj file, nor the name of a .ron file in scenes, nor one of the built-in scenes park, sponza"#);
+    assert!(matches!(
+        library.load(&request("nowhere/parc.ron")),
+        Err(SceneError::Read { .. })
+    ));
+}
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+const WITH_MESH: &str = r#"Obj(file: "m/t.obj", source: "the attic")"#;
+
+#[test]
+fn meshes_are_searched_beside_the_scene_file_first() {
+    let (own, assets) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let scene = own.path().join("s.ron");
+    fs::write(&scene, GOOD.replace(r#"Generated("park")"#, WITH_MESH)).unwrap();
+    let library = SceneLibrary {
+        scenes: own.path().to_owned(),
+        assets: vec!["nowhere".into(), assets.path().to_owned()],
+    };
+
+    let missing = library.load(&request(&scene)).unwrap_err().to_string();
+    let missing = missing
+        .replace(&own.path().display().to_string(), "OWN")
+        .replace(&assets.path().display().to_string(), "ASSETS");
+    assert_snapshot!(missing.replace('\\', "/"), @r#"
+    the mesh "m/t.obj" of scene "garden" was not found; searched
+      OWN/m/t.obj
+      nowhere/m/t.obj
+      ASSETS/m/t.obj
+    it can be downloaded: the attic
+    put it at "m/t.obj" below a folder that the environment variable SKIAGRAPH_ASSETS names
+    "#);
+    assert!(
+        !library
+            .list()
+            .iter()
+            .any(|row| row.name == "s" && row.mesh_found)
+    );
+
+    for (folder, rows) in [(&assets, 1), (&own, 2)] {
+        fs::create_dir(folder.path().join("m")).unwrap();
+        fs::write(
+            folder.path().join("m/t.obj"),
+            format!("{TRIANGLE}{}", "f 3 2 1\n".repeat(rows - 1)),
+        )
+        .unwrap();
+        assert_eq!(
+            library
+                .load(&request(&scene))
+                .unwrap()
+                .0
+                .mesh
+                .triangles
+                .len(),
+            rows
+        );
+    }
+    assert!(
+        library
+            .list()
+            .iter()
+            .any(|row| row.name == "s" && row.mesh_found)
+    );
+}
+
+#[test]
+fn a_bare_obj_needs_a_view_and_a_light() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("T.OBJ");
+    fs::write(&path, TRIANGLE).unwrap();
+    let library = SceneLibrary::default();
+    assert_snapshot!(library.load(&request("t.obj")).unwrap_err(), @"t.obj: an .obj file holds no view and no light: give --eye x,y,z --look x,y,z (direction) and --light x,y,z (the direction in which the light travels); --fov DEGREES, --near and --far if the defaults do not suit it");
+    let (scene, report) = library
+        .load(&SceneRequest {
+            obj: Some(setup()),
+            ..request(&path)
+        })
+        .unwrap();
+    assert_eq!(
+        (scene.name.as_str(), scene.views.len(), report.faces),
+        ("T", 1, 1)
+    );
+
+    let flat = View {
+        direction: glam::DVec3::ZERO,
+        ..setup().view
+    };
+    let bad = SceneRequest {
+        obj: Some(ObjSetup {
+            view: flat,
+            ..setup()
+        }),
+        ..request("t.obj")
+    };
+    assert_snapshot!(library.load(&bad).unwrap_err(), @r#"t.obj: view "a": direction [0, 0, 0] and up [0, 1, 0] must be finite and longer than 0"#);
+    let unwanted = SceneRequest {
+        obj: Some(setup()),
+        ..request("park")
+    };
+    assert_snapshot!(library.load(&unwanted).unwrap_err(), @r#"scene "park" has its own views and light: a view and a light (--eye, --look, --light …) can only be given with a bare .obj file"#);
+}

@@ -25,7 +25,7 @@ var<storage, read_write> hits: array<Hit>;
 // Both as in trace_fold.wgsl.
 const GROUP_SIZE: u32 = 64u;
 const GROUPS_PER_ROW: u32 = 65535u;
-// As `STACK_SIZE` in crates/passes/src/provider.rs, which refuses a deeper hierarchy.
+// As `MAX_DEPTH` in crates/scene/src/bvh.rs, which builds no deeper hierarchy: a level adds one entry at most.
 const STACK_SIZE: u32 = 64u;
 
 // Boxes are padded by this share of the distance to the scene's farthest side: 16 ulp, where Woop et al. prove 5 enough for
@@ -180,11 +180,13 @@ fn intersect(ray: Prepared, primitive: u32, t_min: f32, hit: ptr<function, Hit>)
     if sum == 0.0 {
         return false;
     }
-    let t = (weights.x * a.z + weights.y * b.z + weights.z * c.z) / sum;
+    // Divided first: the product of a small area and a small distance would underflow.
+    let barycentric = weights / sum;
+    let t = dot(barycentric, vec3(a.z, b.z, c.z));
     if !(t > t_min && t <= (*hit).t) {
         return false;
     }
-    *hit = Hit(t, primitive, weights.y / sum, weights.z / sum);
+    *hit = Hit(t, primitive, barycentric.y, barycentric.z);
     return true;
 }
 

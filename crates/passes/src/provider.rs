@@ -9,9 +9,6 @@ use skiagraph_scene::{Bvh, BvhNode, Scene, View};
 use std::{collections::BTreeMap, sync::Arc};
 use wgpu::util::DeviceExt;
 
-/// Levels of the hierarchy that `trace_rays.wgsl` can walk: its `STACK_SIZE`, one entry per level at most.
-pub const STACK_SIZE: u32 = 64;
-
 const POSITIONS: &str = "scene.positions";
 const INDICES: &str = "scene.indices";
 const NORMALS: &str = "scene.normals";
@@ -129,12 +126,6 @@ impl SceneProvider {
 
     fn upload_hierarchy(&mut self, device: &wgpu::Device) -> Result<(), Error> {
         let mut bvh = Bvh::build(&self.scene.mesh);
-        if bvh.depth > STACK_SIZE {
-            return Err(Error::TooDeep {
-                depth: bvh.depth,
-                limit: STACK_SIZE,
-            });
-        }
         if bvh.nodes.is_empty() {
             bvh.nodes.push(BvhNode {
                 min: [0.0; 3],

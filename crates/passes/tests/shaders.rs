@@ -128,8 +128,6 @@ fn constants_that_two_files_share_are_equal() {
             constant("trace_rays.wgsl", name)
         );
     }
-    assert_eq!(
-        constant("trace_rays.wgsl", "STACK_SIZE"),
-        skiagraph_passes::provider::STACK_SIZE
-    );
+    // One entry per level at most: an inner node pushes one child and goes on with the other.
+    assert!(constant("trace_rays.wgsl", "STACK_SIZE") >= skiagraph_scene::bvh::MAX_DEPTH);
 }

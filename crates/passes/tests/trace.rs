@@ -371,3 +371,35 @@ fn the_dispatch_is_folded_to_two_dimensions() {
         assert!(u64::from(groups[0]) * u64::from(groups[1]) * 64 >= u64::from(count));
     }
 }
+
+#[test]
+fn nested_triangles_of_all_sizes_are_told_apart() {
+    // Each is twice as large and twice as far as the one before: the least balanced of trees.
+    let (mut positions, mut triangles) = (vec![], vec![]);
+    for level in 0..120u32 {
+        let size = 2f32.powi(level as i32 - 60);
+        positions.extend(
+            [
+                Vec3::new(-1.0, -1.0, 1.0),
+                Vec3::new(1.0, -1.0, 1.0),
+                Vec3::new(0.0, 1.0, 1.0),
+            ]
+            .map(|p| p * size),
+        );
+        triangles.push([3 * level, 3 * level + 1, 3 * level + 2]);
+    }
+    let mesh = meshes::mesh(positions, triangles);
+    let from = |level: i32| Ray {
+        origin: Vec3::ZERO,
+        t_min: 2f32.powi(level - 60),
+        direction: Vec3::Z,
+        t_max: 1e30,
+    };
+    let rays: Vec<Ray> = (-1..119).map(from).collect();
+    for (level, hit) in trace_all(&mesh, &rays, "Closest").iter().enumerate() {
+        assert_eq!(
+            (hit.primitive, hit.t),
+            (level as u32, 2f32.powi(level as i32 - 60))
+        );
+    }
+}

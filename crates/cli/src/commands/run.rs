@@ -3,11 +3,11 @@
 use crate::{
     args::RunArgs,
     error::{CliError, print},
+    files::write_whole,
     parse::{Encoding, Save},
     picture::{self, Picture},
     preset::{self, Faults, Preset},
     render,
-    results::write_whole,
     stage::Stage,
     table::bytes,
 };

@@ -90,7 +90,7 @@ impl CliError {
         let code = self.exit_code();
         if code != 0 {
             let mut text = match self {
-                Self::Diagnostics { .. } => self.to_string(),
+                Self::Diagnostics { .. } | Self::Interrupted { .. } => self.to_string(),
                 _ => format!("{} {self}", style("error:", "1;31")),
             };
             let mut cause = self.source();

@@ -6,7 +6,9 @@
 mod args;
 mod commands;
 mod contract;
+mod csv_table;
 mod error;
+mod files;
 mod interrupt;
 mod measure;
 mod parse;

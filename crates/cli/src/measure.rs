@@ -4,13 +4,14 @@ use crate::{
     contract::Outputs,
     error::CliError,
     picture,
-    preset::{self, Faults, Preset},
+    preset::{self, Preset},
     progress::Step,
     render::{self, Times},
     results::{Images, Measured, Run},
 };
 use skiagraph_graph::{
-    ExecuteError, Executor, Param, ParamValue, Plan, PlanRequest, Provider, gpu::Gpu,
+    Diagnostic, Diagnostics, ExecuteError, Executor, Param, ParamValue, Plan, PlanRequest,
+    Provider, Severity, gpu::Gpu,
 };
 use skiagraph_reference::{Image, Reference, Statistics};
 use std::{collections::BTreeMap, path::Path};
@@ -47,20 +48,20 @@ impl<'a> Method<'a> {
         }
     }
 
-    /// The plan on a viewport.
+    /// The plan on a viewport for an adapter with these limits and features.
     ///
     /// # Errors
     /// Everything that is wrong with it.
     pub fn plan(
         &self,
-        gpu: &Gpu,
         viewport: [u32; 2],
+        (limits, features): (wgpu::Limits, wgpu::Features),
         provider: &dyn Provider,
-    ) -> Result<Plan, skiagraph_graph::Diagnostics> {
+    ) -> Result<Plan, Diagnostics> {
         let mut request = PlanRequest::new(viewport, provider);
         request.params = self.params.clone();
-        request.limits = gpu.device.limits();
-        request.features = gpu.device.features();
+        request.limits = limits;
+        request.features = features;
         self.preset.graph.plan(&request)
     }
 
@@ -118,14 +119,19 @@ impl Setting<'_> {
     /// # Errors
     /// Ctrl-C, a lost device, outputs that break the contract, a picture that cannot be written.
     pub fn measure(&self, method: &Method, provider: &mut dyn Provider) -> Result<Run, CliError> {
+        let mut run = self.empty(method);
         let viewport = self.reference.viewport;
-        let plan = method
-            .plan(self.gpu, viewport, provider)
-            .map_err(|diagnostics| Faults::of(&method.preset.name, &diagnostics))?;
+        let plan = match method.plan(viewport, render::abilities(self.gpu), provider) {
+            Ok(plan) => plan,
+            // The graph itself is sound: that was checked before anything ran.
+            Err(diagnostics) => {
+                run.unavailable = Some(reasons(&diagnostics));
+                return Ok(run);
+            }
+        };
         let what = format!("{}, {}", method.preset.name, self.where_(method));
         let step = Step::begin(what, (self.warmup + self.frames).into(), "frames");
         let executed = self.execute(method, plan, provider, &step);
-        let mut run = self.empty(method);
         match executed {
             Ok(Some(executed)) => run.measured = Some(self.judge(method, executed)?),
             Ok(None) => {
@@ -264,6 +270,20 @@ impl Setting<'_> {
             .map_or(String::new(), |size| format!(" map{size}"));
         format!("{} {width}x{height}{map}", slug(self.view))
     }
+}
+
+/// The errors in one line each, for a table's footnote.
+fn reasons(diagnostics: &Diagnostics) -> String {
+    let errors = diagnostics
+        .iter()
+        .filter(|diagnostic| diagnostic.severity == Severity::Error);
+    let lines: Vec<String> = errors
+        .map(|Diagnostic { message, help, .. }| match help {
+            Some(help) => format!("{message} ({help})"),
+            None => message.clone(),
+        })
+        .collect();
+    lines.join("; ")
 }
 
 struct Executed {

@@ -1,6 +1,6 @@
 //! Pictures: PNG encoding, and what any material of a graph looks like.
 
-use crate::{error::CliError, results::write_whole};
+use crate::{error::CliError, files::write_whole};
 use image::{ImageEncoder, codecs::png::PngEncoder};
 use skiagraph_graph::Content;
 use skiagraph_reference::{BACKGROUND, Image};

@@ -1,7 +1,7 @@
 //! The right answer for one view and viewport: the GPU's primitive ids, judged by the oracle.
 
 use crate::{error::CliError, interrupt, preset::Faults, progress::Step, render};
-use skiagraph_graph::{Content, Executor, Graph, PlanRequest, Provider, Sources, gpu::Gpu};
+use skiagraph_graph::{Content, Executor, Graph, Plan, PlanRequest, Provider, Sources, gpu::Gpu};
 use skiagraph_reference::{Error, Oracle, OracleMode, Progress, Reference};
 use skiagraph_scene::{Camera, DirectionalLight};
 
@@ -9,35 +9,63 @@ use skiagraph_scene::{Camera, DirectionalLight};
 const PRIMITIVE: &str = "pipelines/shared/primitive.ron";
 
 /// Renders primitive ids as every method's G-buffer does, so that all are judged on the surface that they saw.
-///
-/// # Errors
-/// The graph is faulty (it may be one on disk) or cannot run.
-pub fn primitives(
-    gpu: &Gpu,
-    sources: &dyn Sources,
-    viewport: [u32; 2],
-    provider: &mut impl Provider,
-) -> Result<Vec<u32>, CliError> {
-    let faulty = |diagnostics| Faults::of(PRIMITIVE, &diagnostics);
-    let graph = Graph::load(PRIMITIVE, &skiagraph_passes::registry(), sources).map_err(faulty)?;
-    let mut request = PlanRequest::new(viewport, provider);
-    request.limits = gpu.device.limits();
-    request.features = gpu.device.features();
-    let plan = graph.plan(&request).map_err(faulty)?;
-    let read = || {
-        let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, provider)?;
-        render::read(gpu, &mut executor, &["primitive"])
-    };
-    let contents = read().map_err(|error| CliError::Gpu {
-        graph: PRIMITIVE.into(),
-        source: Box::new(error),
-    })?;
-    contents
-        .get("primitive")
-        .and_then(Content::as_u32)
-        .ok_or_else(|| {
-            CliError::Input(format!("{PRIMITIVE} has no output `primitive` of integers"))
-        })
+pub struct Primary(Graph);
+
+impl Primary {
+    /// Loads the graph.
+    ///
+    /// # Errors
+    /// It is faulty: it may be one on disk.
+    pub fn load(sources: &dyn Sources) -> Result<Self, CliError> {
+        Graph::load(PRIMITIVE, &skiagraph_passes::registry(), sources)
+            .map(Self)
+            .map_err(|diagnostics| Faults::of(PRIMITIVE, &diagnostics))
+    }
+
+    /// The plan on a viewport.
+    ///
+    /// # Errors
+    /// The viewport is too large for this adapter.
+    pub fn plan(
+        &self,
+        gpu: &Gpu,
+        viewport: [u32; 2],
+        provider: &dyn Provider,
+    ) -> Result<Plan, CliError> {
+        let mut request = PlanRequest::new(viewport, provider);
+        request.limits = gpu.device.limits();
+        request.features = gpu.device.features();
+        self.0
+            .plan(&request)
+            .map_err(|diagnostics| Faults::of(PRIMITIVE, &diagnostics))
+    }
+
+    /// The primitive that each pixel shows.
+    ///
+    /// # Errors
+    /// The graph cannot run, or has no such output.
+    pub fn ids(
+        &self,
+        gpu: &Gpu,
+        viewport: [u32; 2],
+        provider: &mut dyn Provider,
+    ) -> Result<Vec<u32>, CliError> {
+        let plan = self.plan(gpu, viewport, provider)?;
+        let read = || {
+            let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, provider)?;
+            render::read(gpu, &mut executor, &["primitive"])
+        };
+        let contents = read().map_err(|error| CliError::Gpu {
+            graph: PRIMITIVE.into(),
+            source: Box::new(error),
+        })?;
+        contents
+            .get("primitive")
+            .and_then(Content::as_u32)
+            .ok_or_else(|| {
+                CliError::Input(format!("{PRIMITIVE} has no output `primitive` of integers"))
+            })
+    }
 }
 
 /// Runs the oracle with a progress bar.

@@ -24,6 +24,22 @@ pub fn open(name: Option<&str>) -> Result<Gpu, CliError> {
     gpu::open(name).map_err(|error: GpuError| CliError::NoGpu(error.to_string()))
 }
 
+/// What the opened device can do.
+pub fn abilities(gpu: &Gpu) -> (wgpu::Limits, wgpu::Features) {
+    (gpu.device.limits(), gpu.device.features())
+}
+
+/// What the most able adapters of today can do: a graph that cannot be planned for them is at fault itself.
+pub fn greatest_abilities() -> (wgpu::Limits, wgpu::Features) {
+    let limits = wgpu::Limits {
+        max_texture_dimension_2d: 32768,
+        max_texture_array_layers: 2048,
+        max_compute_invocations_per_workgroup: 2048,
+        ..wgpu::Limits::unlimited()
+    };
+    (limits, wgpu::Features::all())
+}
+
 /// How results name the adapter; `trust` says whether its timestamps are true.
 pub fn describe(gpu: &Gpu, trust: &Trust) -> Adapter {
     let info = gpu.adapter.get_info();

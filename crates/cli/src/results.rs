@@ -1,9 +1,9 @@
 //! The schema of `results.json` and `results.csv`, version 1. Scripts rely on it: extend it, rename nothing.
 
-use crate::error::CliError;
+use crate::{error::CliError, files::write_whole};
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{CertainCounts, PixelCounts, WrongCounts};
-use std::{collections::BTreeMap, io::Write, path::Path, time::Duration};
+use std::{collections::BTreeMap, path::Path, time::Duration};
 
 /// Everything that one `compare` measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -186,65 +186,6 @@ impl Results {
         text
     }
 
-    /// The contents of `results.csv`: one line per run, times are medians, empty cells are nulls.
-    pub fn to_csv(&self) -> Result<String, csv::Error> {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(COLUMNS)?;
-        for run in &self.runs {
-            writer.write_record(self.record(run))?;
-        }
-        let bytes = writer.into_inner().map_err(|error| error.into_error())?;
-        Ok(String::from_utf8_lossy(&bytes).into_owned())
-    }
-
-    fn record(&self, run: &Run) -> Vec<String> {
-        let measured = run.measured.as_ref();
-        let count =
-            |pick: fn(&Measured) -> u64| measured.map(|m| pick(m).to_string()).unwrap_or_default();
-        let ms = |spread: Option<Spread>| {
-            spread
-                .map(|s| format!("{:.6}", s.median))
-                .unwrap_or_default()
-        };
-        vec![
-            self.adapter.name.clone(),
-            self.scene.name.clone(),
-            self.scene.triangles.to_string(),
-            self.oracle.clone(),
-            run.preset.clone(),
-            run.view.clone(),
-            run.viewport[0].to_string(),
-            run.viewport[1].to_string(),
-            run.map_size
-                .map(|size| size.to_string())
-                .unwrap_or_default(),
-            run.pixels.background.to_string(),
-            run.pixels.facing_away.to_string(),
-            run.pixels.facing_light.to_string(),
-            run.pixels.lit.to_string(),
-            run.pixels.shadow.to_string(),
-            run.band.to_string(),
-            count(|m| m.certain.lit),
-            count(|m| m.certain.shadow),
-            count(|m| m.uncertain),
-            measured
-                .and_then(|m| m.rays)
-                .map(|rays| rays.to_string())
-                .unwrap_or_default(),
-            count(|m| m.wrong.lit),
-            count(|m| m.wrong.shadow),
-            count(|m| m.wrong.total),
-            count(|m| m.wrong.certain),
-            count(|m| m.wrong.in_band),
-            count(|m| m.facing_mismatch),
-            ms(measured.and_then(|m| m.frame.gpu_ms)),
-            ms(measured.map(|m| m.frame.wall_ms)),
-            count(|m| m.memory_bytes),
-            count(|m| m.saved_bytes),
-            run.unavailable.clone().unwrap_or_default(),
-        ]
-    }
-
     /// Writes `results.json` and `results.csv` into `folder`; each is replaced whole or not at all.
     pub fn save(&self, folder: &Path) -> Result<(), CliError> {
         write_whole(&folder.join("results.json"), self.to_json().as_bytes())?;
@@ -254,58 +195,6 @@ impl Results {
             .map_err(|error| CliError::write(&path, error))?;
         write_whole(&path, csv.as_bytes())
     }
-}
-
-const COLUMNS: [&str; 30] = [
-    "adapter",
-    "scene",
-    "triangles",
-    "oracle",
-    "preset",
-    "view",
-    "width",
-    "height",
-    "map_size",
-    "background",
-    "facing_away",
-    "facing_light",
-    "lit",
-    "shadow",
-    "band",
-    "certain_lit",
-    "certain_shadow",
-    "uncertain",
-    "rays",
-    "wrong_lit",
-    "wrong_shadow",
-    "wrong_total",
-    "wrong_certain",
-    "wrong_in_band",
-    "facing_mismatch",
-    "gpu_ms",
-    "wall_ms",
-    "memory_bytes",
-    "saved_bytes",
-    "unavailable",
-];
-
-/// Writes a file whole or not at all: beside it first, then renamed over it, so that an interrupt keeps the old one.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
-    let folder = match path.parent() {
-        Some(parent) if parent != Path::new("") => parent,
-        _ => Path::new("."),
-    };
-    let write = || -> std::io::Result<()> {
-        let mut builder = tempfile::Builder::new();
-        // Temporary files are private by default; a result should be as readable as any file the user makes.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let mut file = builder.prefix(".skiagraph-").tempfile_in(folder)?;
-        file.write_all(bytes)?;
-        file.persist(path)?;
-        Ok(())
-    };
-    write().map_err(|error| CliError::write(path, error))
 }
 
 #[cfg(test)]
@@ -416,20 +305,6 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn csv_has_a_line_per_run_and_as_many_cells_as_columns() {
-        let csv = sample().to_csv().unwrap();
-        insta::assert_snapshot!(csv);
-        let mut reader = csv::Reader::from_reader(csv.as_bytes());
-        assert_eq!(
-            reader
-                .records()
-                .map(|record| record.unwrap().len())
-                .collect::<Vec<_>>(),
-            [COLUMNS.len(); 3]
-        );
-    }
-
-    #[test]
     fn spreads_are_order_statistics() {
         let ms = |list: &[u64]| {
             Spread::of(
@@ -466,26 +341,5 @@ pub(crate) mod tests {
             })
         );
         assert_eq!(Spread::of_all(&[Some(Duration::ZERO), None]), None);
-    }
-
-    #[test]
-    fn a_file_is_replaced_whole_and_a_bad_path_is_named() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.txt");
-        write_whole(&path, b"old and long").unwrap();
-        write_whole(&path, b"new").unwrap();
-        assert_eq!(std::fs::read(&path).unwrap(), b"new");
-        assert_eq!(
-            std::fs::read_dir(folder.path()).unwrap().count(),
-            1,
-            "no temporary file stays"
-        );
-        let missing = folder.path().join("missing").join("a.txt");
-        assert!(
-            write_whole(&missing, b"x")
-                .unwrap_err()
-                .to_string()
-                .contains("a.txt")
-        );
     }
 }

@@ -63,7 +63,7 @@ fn heading(results: &Results, run: &Run, look: Look) -> String {
             adapter.name, adapter.backend, adapter.driver
         ),
         format!(
-            "{} after {} to warm up · oracle {}",
+            "medians of {} after {} to warm up · oracle {}",
             frames(results.frames),
             results.warmup,
             results.oracle
@@ -266,7 +266,7 @@ pub fn thousands(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index) % 3 == 0 {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
             text.push(',');
         }
         text.push(digit);

@@ -195,7 +195,7 @@ fn lists_are_printed_and_a_closed_pipe_is_no_failure() {
     let presets = skiagraph(folder.path(), &["presets"]);
     assert_exit(&presets, 0);
     assert!(
-        stdout(&presets).contains("map_size = 1024"),
+        stdout(&presets).contains("--set map_size=1024"),
         "{}",
         stdout(&presets)
     );

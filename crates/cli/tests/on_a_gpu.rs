@@ -226,3 +226,60 @@ fn an_unwritable_file_is_named() {
         "{text}"
     );
 }
+
+#[test]
+fn a_buffer_has_no_picture_but_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let save = |file: &str| {
+        Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+            .args(["run", "rt", "--size", "8x8", "--save"])
+            .arg(format!("ray_count={file}"))
+            .current_dir(folder.path())
+            .output()
+            .unwrap()
+    };
+    let picture = save("count.png");
+    assert_eq!(picture.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&picture.stderr).contains("save it as .bin"));
+    assert_eq!(save("count.bin").status.code(), Some(0));
+    let count = fs::read(folder.path().join("count.bin")).unwrap();
+    let count = u32::from_le_bytes(count.try_into().unwrap());
+    assert!(count > 0 && count <= 64, "{count} rays for 64 pixels");
+}
+
+/// Ctrl-C after the first run: its results stay, the exit code is the shell's for an interrupt.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_keeps_what_was_measured() {
+    use std::io::{BufRead, BufReader, Read};
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+        .args("compare nsm rt --size 16x16 --map-size 16 --frames 200 --out .".split(' '))
+        .current_dir(folder.path())
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut progress = BufReader::new(child.stderr.take().unwrap());
+    let mut line = String::new();
+    while !line.starts_with("nsm,") {
+        line.clear();
+        assert_ne!(
+            progress.read_line(&mut line).unwrap(),
+            0,
+            "it ended before the first run"
+        );
+    }
+    let sent = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(sent.success());
+    let mut rest = String::new();
+    progress.read_to_string(&mut rest).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130), "{rest}");
+    assert!(rest.contains("1 of 2 runs are kept"), "{rest}");
+    let results = fs::read_to_string(folder.path().join("results.json")).unwrap();
+    let results: Value = serde_json::from_str(&results).unwrap();
+    assert_eq!(results["runs"].as_array().unwrap().len(), 1);
+}

@@ -4,10 +4,13 @@ use crate::{
     args::{CompareArgs, Format},
     contract,
     error::{CliError, note, print},
+    interrupt,
     measure::{Method, Setting, slug},
+    parse::Size,
     picture,
     preset::{self, Faults, Preset},
-    reference, render,
+    reference::{self, Primary},
+    render,
     results::{Results, Scene as SceneResult},
     stage::Stage,
     table::{Look, group},
@@ -32,23 +35,16 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
     } else {
         args.presets.clone()
     };
-    let presets = preset::load_all(&names, &sources)?;
-    let incomplete: Vec<String> = presets
-        .iter()
-        .filter_map(contract::missing_outputs)
-        .collect();
-    if !incomplete.is_empty() {
-        return Err(CliError::Input(incomplete.join("\n")));
-    }
+    let presets = load(&names, &sources)?;
     let methods = methods(&presets, args)?;
+    let primary = Primary::load(&sources)?;
     let gpu = render::open(adapter)?;
     let Stage { scene, views } = Stage::load(&args.scene)?;
     let scene = Arc::new(scene);
-    let mut provider = SceneProvider::new(scene.clone());
-    provider.set_view(&views[0], args.size[0].0);
-    check_plans(&gpu, &methods, args, &provider)?;
+    let provider = SceneProvider::new(scene.clone());
+    check_plans(&gpu, &primary, &methods, args, &provider)?;
     fs::create_dir_all(&args.out).map_err(|error| CliError::write(&args.out, error))?;
-    crate::interrupt::install()?;
+    interrupt::install()?;
 
     let trust = render::trust(&gpu);
     let results = Results {
@@ -68,7 +64,7 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
     let planned = views.len() * unique(&args.size).len() * methods.len();
     let mut comparison = Comparison {
         args,
-        sources,
+        primary,
         gpu,
         light: scene.light,
         provider,
@@ -79,9 +75,23 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
     comparison.finish(outcome, planned)
 }
 
+/// Loads the graphs and refuses those that are no shadow methods.
+fn load(names: &[String], sources: &LayeredSources) -> Result<Vec<Preset>, CliError> {
+    let presets = preset::load_all(names, sources)?;
+    let incomplete: Vec<String> = presets
+        .iter()
+        .filter_map(contract::missing_outputs)
+        .collect();
+    if incomplete.is_empty() {
+        Ok(presets)
+    } else {
+        Err(CliError::Input(incomplete.join("\nerror: ")))
+    }
+}
+
 struct Comparison<'a> {
     args: &'a CompareArgs,
-    sources: LayeredSources,
+    primary: Primary,
     gpu: Gpu,
     light: DirectionalLight,
     provider: SceneProvider,
@@ -119,7 +129,7 @@ impl Comparison<'_> {
     ) -> Result<(), CliError> {
         let camera = view.camera(viewport);
         self.provider.set_view(view, viewport);
-        let ids = reference::primitives(&self.gpu, &self.sources, viewport, &mut self.provider)?;
+        let ids = self.primary.ids(&self.gpu, viewport, &mut self.provider)?;
         let [width, height] = viewport;
         let what = format!("{} {width}x{height}", view.name);
         let reference = reference::judge(
@@ -204,20 +214,22 @@ fn methods<'a>(presets: &'a [Preset], args: &CompareArgs) -> Result<Vec<Method<'
     Ok(methods)
 }
 
-/// Plans everything before anything runs: nobody should wait for an hour to read that the last file has a mistake.
-/// What a provider describes is the same for every view.
+/// Plans everything before anything runs: nobody should wait for an hour to read that the last file has a mistake. A graph
+/// that only this adapter cannot run is no mistake. What a provider describes is the same for every view.
 fn check_plans(
     gpu: &Gpu,
+    primary: &Primary,
     methods: &[Method],
     args: &CompareArgs,
     provider: &SceneProvider,
 ) -> Result<(), CliError> {
     let mut faults = Faults::default();
     let mut misfits = BTreeSet::new();
-    for viewport in unique(&args.size) {
+    for Size(viewport) in unique(&args.size) {
+        primary.plan(gpu, viewport, provider)?;
         for method in methods {
-            match method.plan(gpu, viewport.0, provider) {
-                Ok(plan) => misfits.extend(contract::misfit(method.preset, &plan, viewport.0)),
+            match method.plan(viewport, render::greatest_abilities(), provider) {
+                Ok(plan) => misfits.extend(contract::misfit(method.preset, &plan, viewport)),
                 Err(diagnostics) => faults.add(&method.preset.name, &diagnostics),
             }
         }

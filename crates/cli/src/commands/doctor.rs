@@ -51,11 +51,11 @@ fn chosen(gpu: &gpu::Gpu) -> String {
     );
     let edge = limits.max_texture_dimension_2d;
     // 32 bytes per ray, as the ray buffer holds them.
-    let rays = limits.max_storage_buffer_binding_size as u64 / 32;
+    let rays = limits.max_storage_buffer_binding_size / 32;
     text.push_str(&format!("  textures: up to {edge}x{edge}\n"));
     text.push_str(&format!(
         "  storage buffer binding: up to {} (rays of {} million pixels)\n",
-        bytes(limits.max_storage_buffer_binding_size as u64),
+        bytes(limits.max_storage_buffer_binding_size),
         rays / 1_000_000
     ));
     text.push_str(&format!(

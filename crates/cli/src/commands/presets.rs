@@ -22,26 +22,21 @@ pub fn presets() -> Result<(), CliError> {
 
 fn describe(name: &str, graph: &Graph) -> String {
     let mut text = format!("{name}: {}\n", graph.description());
-    for Param {
-        name,
-        ty,
-        default,
-        min,
-        max,
-        description,
-    } in graph.params()
-    {
-        let range = match (min, max) {
-            (Some(min), Some(max)) => format!(", {min} to {max}"),
-            (Some(min), None) => format!(", from {min}"),
-            (None, Some(max)) => format!(", to {max}"),
-            (None, None) => String::new(),
-        };
-        text.push_str(&format!("  {} = {default}  ({ty}{range})", name.as_str()));
-        if !description.is_empty() {
-            text.push_str(&format!("  {description}"));
+    for param in graph.params() {
+        let setting = format!("--set {}={}", param.name.as_str(), param.default);
+        text.push_str(&format!("  {setting:<24} {}{}\n", param.ty, range(param)));
+        if !param.description.is_empty() {
+            text.push_str(&format!("      {}\n", param.description));
         }
-        text.push('\n');
     }
     text
+}
+
+fn range(param: &Param) -> String {
+    match (param.min, param.max) {
+        (Some(min), Some(max)) => format!(", {min} to {max}"),
+        (Some(min), None) => format!(", from {min}"),
+        (None, Some(max)) => format!(", to {max}"),
+        (None, None) => String::new(),
+    }
 }

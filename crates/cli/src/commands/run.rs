@@ -3,11 +3,11 @@
 use crate::{
     args::RunArgs,
     error::{CliError, print},
+    files::write_whole,
     parse::{Encoding, Save},
     picture::{self, Picture},
     preset::{self, Faults, Preset},
     render,
-    results::write_whole,
     stage::Stage,
     table::bytes,
 };
@@ -51,6 +51,7 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
             .plan(&request)
             .map_err(|diagnostics| Faults::of(&preset.name, &diagnostics))?;
         preset::warn(&preset.graph, plan.warnings());
+        check_pictures(&plan, &args.save)?;
         print(&format!(
             "{} on {}, view {}, {}\n{}",
             preset.name,
@@ -79,6 +80,23 @@ fn capture(save: &Save) -> Capture {
         material: save.material.clone(),
         after: save.after.clone(),
     }
+}
+
+/// Refuses the picture of a buffer before anything is rendered.
+fn check_pictures(plan: &Plan, saves: &[Save]) -> Result<(), CliError> {
+    let outputs = plan.outputs();
+    for save in saves.iter().filter(|save| save.encoding == Encoding::Png) {
+        let name = capture(save).name();
+        if outputs
+            .iter()
+            .any(|output| output.name == name && output.format.is_none())
+        {
+            return Err(CliError::Input(format!(
+                "`{name}` is a buffer and has no picture; save it as .bin"
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// What of the saves the graph does not hand out anyway.

@@ -121,3 +121,26 @@ fn what_no_output_needs_is_culled() {
     let culled: Vec<String> = plan.culled().iter().map(|pass| pass.name.clone()).collect();
     assert_eq!(culled, ["trace_rays", "fix_pixels"]);
 }
+
+#[test]
+fn more_rays_than_a_device_binds_are_refused_by_name() {
+    let light = DirectionalLight {
+        direction: DVec3::NEG_Z,
+    };
+    let scene = Scene {
+        name: "none".into(),
+        mesh: Mesh::default(),
+        views: vec![],
+        light,
+    };
+    let provider = SceneProvider::new(Arc::new(scene));
+    // 8.3 million rays of 32 bytes; the request's default limits bind 128 MiB.
+    let errors = load("pipelines/rt.ron")
+        .plan(&PlanRequest::new([3840, 2160], &provider))
+        .err();
+    let errors = errors.expect("a plan of 265 MB in one binding").to_string();
+    assert!(
+        errors.contains("rays") && errors.contains("pipelines/rt.ron"),
+        "{errors}"
+    );
+}

@@ -129,7 +129,8 @@ pub(crate) struct MadeDraw {
     pub pipeline: wgpu::RenderPipeline,
     pub groups: Vec<Option<wgpu::BindGroup>>,
     pub colors: Vec<(wgpu::TextureView, Option<[f64; 4]>)>,
-    pub depth: Option<(wgpu::TextureView, Option<f32>)>,
+    /// View, value it is cleared to, whether the draw writes it.
+    pub depth: Option<(wgpu::TextureView, Option<f32>, bool)>,
     pub call: MadeCall,
 }
 
@@ -267,7 +268,10 @@ impl<'a> Maker<'a> {
             .map(|color| Ok((self.memory.view(&color.target, wgpu::TextureViewDimension::D2)?, color.clear)))
             .collect::<Result<_, ExecuteError>>()?;
         let depth = match &draw.depth {
-            Some(depth) => Some((self.memory.view(&depth.target, wgpu::TextureViewDimension::D2)?, depth.clear)),
+            Some(depth) => {
+                let view = self.memory.view(&depth.target, wgpu::TextureViewDimension::D2)?;
+                Some((view, depth.clear, depth.state.depth_write_enabled == Some(true)))
+            }
             None => None,
         };
         let call = match &draw.call {

@@ -225,6 +225,8 @@ struct Report<'a> {
     source: Option<NamedSource<String>>,
     labels: Vec<LabeledSpan>,
     related: Vec<Report<'a>>,
+    /// Says only where else to look: code and help stand in the main report.
+    is_note: bool,
 }
 
 impl<'a> Report<'a> {
@@ -232,9 +234,11 @@ impl<'a> Report<'a> {
         let first = diagnostic.labels.first().map(|label| label.span.file.clone());
         let mut report = Self::of_file(diagnostic, diagnostic.message.clone(), first.as_ref());
         let mut files: Vec<_> = diagnostic.labels.iter().map(|label| label.span.file.clone()).collect();
+        files.sort_by(|a, b| a.name.cmp(&b.name));
         files.dedup();
         for file in files.into_iter().filter(|file| Some(file) != first.as_ref()) {
-            report.related.push(Self::of_file(diagnostic, format!("see also {}", file.name), Some(&file)));
+            let note = Self::of_file(diagnostic, format!("and in {}", file.name), Some(&file));
+            report.related.push(Self { is_note: true, ..note });
         }
         report
     }
@@ -251,7 +255,7 @@ impl<'a> Report<'a> {
             })
             .collect();
         let source = file.map(|file| NamedSource::new(&*file.name, file.text.to_string()));
-        Self { diagnostic, message, source, labels, related: Vec::new() }
+        Self { diagnostic, message, source, labels, related: Vec::new(), is_note: false }
     }
 }
 
@@ -279,18 +283,19 @@ impl std::error::Error for Report<'_> {}
 
 impl miette::Diagnostic for Report<'_> {
     fn code<'b>(&'b self) -> Option<Box<dyn fmt::Display + 'b>> {
-        Some(Box::new(self.diagnostic.code.as_str()))
+        (!self.is_note).then(|| Box::new(self.diagnostic.code.as_str()) as Box<dyn fmt::Display>)
     }
 
     fn severity(&self) -> Option<miette::Severity> {
         Some(match self.diagnostic.severity {
+            _ if self.is_note => miette::Severity::Advice,
             Severity::Error => miette::Severity::Error,
             Severity::Warning => miette::Severity::Warning,
         })
     }
 
     fn help<'b>(&'b self) -> Option<Box<dyn fmt::Display + 'b>> {
-        self.diagnostic.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
+        self.diagnostic.help.as_ref().filter(|_| !self.is_note).map(|help| Box::new(help) as Box<dyn fmt::Display>)
     }
 
     fn source_code(&self) -> Option<&dyn miette::SourceCode> {

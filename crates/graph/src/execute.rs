@@ -140,7 +140,8 @@ impl Executor {
     /// Encodes a frame. The host submits the encoder and then calls [`Executor::submitted`].
     ///
     /// # Errors
-    /// If an output is asked for that the plan does not have. Nothing has been encoded then.
+    /// If an output is asked for that the plan does not have (nothing has been encoded then), or there is no memory to read
+    /// one back.
     pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &Frame<'_>) -> Result<(), ExecuteError> {
         let readable = &self.plan.readable;
         if let Some(name) = frame.read.iter().find(|name| readable.iter().all(|(known, _)| known != *name)) {
@@ -159,11 +160,13 @@ impl Executor {
         if frame.timing {
             self.timer.resolve(encoder);
         }
-        self.pending = frame
-            .read
-            .iter()
-            .map(|name| readback::copy(&self.device, encoder, &self.plan, &self.memory, name))
-            .collect::<Result<_, _>>()?;
+        self.pending.clear();
+        for name in frame.read {
+            // The staging buffer is made here, so there may be no memory for it.
+            let pending =
+                scoped(&self.device, name, || readback::copy(&self.device, encoder, &self.plan, &self.memory, name))??;
+            self.pending.push(pending);
+        }
         Ok(())
     }
 
@@ -279,7 +282,7 @@ fn encode(step: &MadeStep, name: &str, encoder: &mut wgpu::CommandEncoder, timer
                 let query = timer.map(|timer| timer.profiler().begin_pass_query(name, encoder));
                 let color = (!depth).then(|| color_attachment(view, Some(*value)));
                 #[expect(clippy::cast_possible_truncation, reason = "a depth is f32")]
-                let depth = depth.then(|| depth_attachment(view, Some(value[0] as f32)));
+                let depth = depth.then(|| depth_attachment(view, Some(value[0] as f32), true));
                 render_pass(name, encoder, color.as_slice(), depth, query.as_ref());
                 end(timer, query, encoder);
             }
@@ -302,9 +305,11 @@ fn color_attachment(view: &wgpu::TextureView, clear: Option<[f64; 4]>) -> Option
     Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
 }
 
-fn depth_attachment(view: &wgpu::TextureView, clear: Option<f32>) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+fn depth_attachment(view: &wgpu::TextureView, clear: Option<f32>, write: bool) -> wgpu::RenderPassDepthStencilAttachment<'_> {
     let load = clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear);
-    let depth_ops = Some(wgpu::Operations { load, store: wgpu::StoreOp::Store });
+    // Without operations the attachment is read-only, and the pass may sample it too.
+    let is_written = write || clear.is_some();
+    let depth_ops = is_written.then_some(wgpu::Operations { load, store: wgpu::StoreOp::Store });
     wgpu::RenderPassDepthStencilAttachment { view, depth_ops, stencil_ops: None }
 }
 
@@ -328,7 +333,7 @@ fn render_pass<'e>(
 fn encode_draw(draw: &MadeDraw, name: &str, encoder: &mut wgpu::CommandEncoder, timer: Option<&Timer>) {
     let query = timer.map(|timer| timer.profiler().begin_pass_query(name, encoder));
     let colors: Vec<_> = draw.colors.iter().map(|(view, clear)| color_attachment(view, *clear)).collect();
-    let depth = draw.depth.as_ref().map(|(view, clear)| depth_attachment(view, *clear));
+    let depth = draw.depth.as_ref().map(|(view, clear, write)| depth_attachment(view, *clear, *write));
     {
         let mut pass = render_pass(name, encoder, &colors, depth, query.as_ref());
         pass.set_pipeline(&draw.pipeline);

@@ -3,9 +3,12 @@
 use crate::{
     diagnostics::{Code, Diagnostic},
     link::{Access, LinkedPass},
-    resolve::{ResourceId, ResourceKind, Resources},
+    resolve::{Part, ResourceId, ResourceKind, Resources, Target},
 };
-use petgraph::graph::{DiGraph, NodeIndex};
+use petgraph::{
+    graph::{DiGraph, NodeIndex},
+    visit::EdgeFiltered,
+};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Why one pass comes before another.
@@ -31,9 +34,9 @@ pub(crate) struct Order {
 }
 
 impl Order {
-    /// The passes whose versions of a resource are final.
-    pub fn final_writers(&self, resource: ResourceId) -> BTreeSet<usize> {
-        self.last.range((resource, 0, 0)..=(resource, u32::MAX, u32::MAX)).map(|(_, &pass)| pass).collect()
+    /// The passes whose versions of a part of a resource are final.
+    pub fn final_writers(&self, target: &Target) -> BTreeSet<usize> {
+        cells(target.id, &target.part).filter_map(|cell| self.last.get(&cell).copied()).collect()
     }
 }
 
@@ -43,9 +46,9 @@ struct State {
     readers: BTreeSet<usize>,
 }
 
-fn cells(access: &Access) -> impl Iterator<Item = Cell> + '_ {
-    let layers = access.part.layers.clone();
-    access.part.mips.clone().flat_map(move |mip| layers.clone().map(move |layer| (access.resource, mip, layer)))
+fn cells(resource: ResourceId, part: &Part) -> impl Iterator<Item = Cell> + use<> {
+    let layers = part.layers.clone();
+    part.mips.clone().flat_map(move |mip| layers.clone().map(move |layer| (resource, mip, layer)))
 }
 
 pub(crate) fn order(passes: &[LinkedPass], resources: &Resources<'_>, diagnostics: &mut Vec<Diagnostic>) -> Order {
@@ -55,7 +58,7 @@ pub(crate) fn order(passes: &[LinkedPass], resources: &Resources<'_>, diagnostic
     for (index, pass) in passes.iter().enumerate() {
         for access in &pass.accesses {
             let provided = matches!(resources.get(access.resource).kind, ResourceKind::Provided(_) | ResourceKind::Sampler(_));
-            for cell in cells(access) {
+            for cell in cells(access.resource, &access.part) {
                 let state = states.entry(cell).or_default();
                 let mut edge = |from: usize, hazard| {
                     if from != index {
@@ -117,20 +120,19 @@ fn explain(reader: usize, access: &Access, passes: &[LinkedPass], resources: &Re
             "let a pass above write it, or name another material".to_owned()
         };
         let verb = if itself { "reads and changes" } else { "reads" };
-        return Diagnostic::error(Code::ReadBeforeWrite, format!("pass `{}` {verb} `{name}`, which no pass has written", *pass.name))
+        let part = passes[..reader].iter().any(|earlier| {
+            earlier.accesses.iter().any(|other| other.writes && other.resource == access.resource && other.part.overlaps(&access.part))
+        });
+        let what = if part { "a part of " } else { "" };
+        return Diagnostic::error(Code::ReadBeforeWrite, format!("pass `{}` {verb} {what}`{name}` that no pass has written", *pass.name))
             .at(access.span.clone(), "read here")
             .at(pass.name.span.clone(), "by this pass")
             .help(help);
     };
-    let path = petgraph::algo::astar(
-        &order.edges,
-        NodeIndex::new(reader),
-        |node| node.index() == writer,
-        // Only what a pass needs makes it depend on another; an overwrite could be moved.
-        |edge| if *edge.weight() == Hazard::ReadAfterWrite { 1 } else { 1_000_000 },
-        |_| 0,
-    )
-    .filter(|(cost, _)| *cost < 1_000_000);
+    // Only what a pass needs makes it depend on another; an overwrite could be moved.
+    let needs = EdgeFiltered::from_fn(&order.edges, |edge| *edge.weight() == Hazard::ReadAfterWrite);
+    let path =
+        petgraph::algo::astar(&needs, NodeIndex::new(reader), |node| node.index() == writer, |_| 1u64, |_| 0);
     let writer_name = &passes[writer].name;
     match path {
         Some((_, path)) => {

@@ -10,7 +10,7 @@ use crate::{
     order::{Order, order},
     provider::Provider,
     registry::Params,
-    resolve::{Buffer, Environment, Part, ResourceId, ResourceKind, Resource, Target, resolve},
+    resolve::{Buffer, Environment, Part, Resource, ResourceId, ResourceKind, Resources, Target, resolve},
     schedule::schedule,
     step::Step,
 };
@@ -50,7 +50,7 @@ impl<'a> PlanRequest<'a> {
 }
 
 /// A material to be read back.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Capture {
     /// Material, view or provided resource.
     pub material: String,
@@ -140,7 +140,9 @@ impl Graph {
                 Some(linked) => passes.push(linked),
                 None => complete = false,
             }
-            for capture in request.captures.iter().filter(|capture| capture.after.as_deref() == Some(pass.name.as_str())) {
+            let after = |capture: &&Capture| capture.after.as_deref() == Some(pass.name.as_str());
+            let captures: BTreeSet<&Capture> = request.captures.iter().filter(after).collect();
+            for capture in captures {
                 passes.extend(linker.capture(capture, self));
             }
         }
@@ -156,10 +158,14 @@ impl Graph {
         if diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {
             return Err(Diagnostics::new(diagnostics));
         }
-        let roots: BTreeSet<usize> = readable.iter().flat_map(|(_, target)| order.final_writers(target.id)).collect();
+        let roots: BTreeSet<usize> = readable.iter().flat_map(|(_, target)| order.final_writers(target)).collect();
         let live = cull::live(&order, roots);
         let schedule = schedule(&order, &live);
         let mut lifetimes = lifetimes(&passes, &schedule);
+        unsized_buffers(&lifetimes, &resources, &mut diagnostics);
+        if !diagnostics.is_empty() {
+            return Err(Diagnostics::new(diagnostics));
+        }
         for (_, target) in &readable {
             let Some(lifetime) = lifetimes.get_mut(&target.id) else { continue };
             lifetime.textures |= wgpu::TextureUsages::COPY_SRC;
@@ -211,7 +217,7 @@ impl Graph {
     fn readable(
         &self,
         request: &PlanRequest<'_>,
-        resources: &mut crate::resolve::Resources<'_>,
+        resources: &mut Resources<'_>,
         order: &Order,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Vec<(String, Target)> {
@@ -228,14 +234,21 @@ impl Graph {
         for output in &self.document.outputs {
             let wanted = request.outputs.as_ref().is_none_or(|wanted| wanted.contains(&output.name.value));
             let material = output.material.as_ref().unwrap_or(&output.name);
-            match resources.expect(material) {
-                Ok(target) if order.final_writers(target.id).is_empty() => diagnostics.push(
+            let Some(target) = resources.expect(material, diagnostics) else { continue };
+            if order.final_writers(&target).is_empty() {
+                diagnostics.push(
                     Diagnostic::error(Code::ReadBeforeWrite, format!("no pass writes the output `{}`", *output.name))
-                        .at(material.span.clone(), ""),
-                ),
-                Ok(target) if wanted => readable.push((output.name.value.clone(), target)),
-                Ok(_) => {}
-                Err(error) => diagnostics.push(error),
+                        .at(material.span.clone(), format!("`{}` is never written", material.value))
+                        .help("let a pass write it, or name another `material`"),
+                );
+            } else if let Some(why) = unreadable(resources, &target) {
+                diagnostics.push(
+                    Diagnostic::error(Code::FormatMismatch, format!("the output `{}` cannot be read back", *output.name))
+                        .at(material.span.clone(), why)
+                        .help("use Depth32Float or Depth16Unorm"),
+                );
+            } else if wanted {
+                readable.push((output.name.value.clone(), target));
             }
         }
         for capture in &request.captures {
@@ -243,8 +256,12 @@ impl Graph {
             // Those after a pass were entered as resources of their own; an output of that name is there already.
             let found = resources.find(&name);
             match found {
-                Some(target) if order.final_writers(target.id).is_empty() => diagnostics
+                Some(target) if order.final_writers(&target).is_empty() => diagnostics
                     .push(Diagnostic::error(Code::Output, format!("`{name}` cannot be read back: no pass writes it"))),
+                Some(target) if unreadable(resources, &target).is_some() => {
+                    let why = unreadable(resources, &target).unwrap_or_default();
+                    diagnostics.push(Diagnostic::error(Code::Output, format!("`{name}` cannot be read back: it is {why}")));
+                }
                 Some(target) if readable.iter().all(|(known, _)| *known != name) => readable.push((name, target)),
                 Some(_) => {}
                 None if capture.after.is_some() => {}
@@ -258,6 +275,29 @@ impl Graph {
             }
         }
         readable
+    }
+}
+
+/// A buffer that is only cleared or copied has no size: no shader says what its items are.
+fn unsized_buffers(lifetimes: &BTreeMap<ResourceId, Lifetime>, resources: &Resources<'_>, diagnostics: &mut Vec<Diagnostic>) {
+    for resource in lifetimes.keys().map(|id| resources.get(*id)) {
+        let ResourceKind::Buffer(Buffer { bytes: 0, .. }) = resource.kind else { continue };
+        let error = Diagnostic::error(Code::Size, format!("the size of `{}` is not known: no shader sees it", resource.name))
+            .help("let a pass bind it: the size of its items comes from the shader's type");
+        diagnostics.push(match &resource.declared {
+            Some(span) => error.at(span.clone(), ""),
+            None => error,
+        });
+    }
+}
+
+/// Why the content of a resource cannot come back to the host.
+fn unreadable(resources: &Resources<'_>, target: &Target) -> Option<String> {
+    match &resources.get(target.id).kind {
+        ResourceKind::Texture(texture) if texture.format.block_copy_size(None).is_none() => {
+            Some(format!("a texture of format {:?}, whose layout is the driver's own", texture.format))
+        }
+        _ => None,
     }
 }
 

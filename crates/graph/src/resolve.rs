@@ -4,13 +4,16 @@ use crate::{
     diagnostics::{Code, Diagnostic},
     document::{
         located::Located,
-        materials::{Count, Material, SamplerEntry, Size, TextureEntry},
+        materials::{BufferEntry, Count, Material, SamplerEntry, Size, TextureEntry},
     },
     provider::{Provided, Provider},
     registry::Params,
     source::Span,
 };
-use std::{collections::HashMap, ops::Range};
+use std::{
+    collections::{HashMap, HashSet},
+    ops::Range,
+};
 
 /// Index of a resource in [`Resources`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -104,6 +107,8 @@ pub(crate) struct Resources<'a> {
     names: HashMap<String, Target>,
     /// Names as a shader spells them.
     spelt: HashMap<String, String>,
+    /// Declared, but with a mistake that was reported; nothing more is said about them.
+    broken: HashSet<String>,
     provider: &'a dyn Provider,
     viewport: [u32; 2],
 }
@@ -125,46 +130,40 @@ pub(crate) fn resolve<'a>(
         list: Vec::new(),
         names: HashMap::new(),
         spelt: HashMap::new(),
+        broken: HashSet::new(),
         provider: environment.provider,
         viewport: environment.viewport,
     };
     for name in environment.provider.names() {
         resources.spelt.insert(spelling(&name), name);
     }
-    let mut sizes = Sizes { materials, params, environment, open: Vec::new(), done: HashMap::new() };
-    // Textures first: buffers may be counted by them, and by buffers above.
+    let textures = materials.iter().filter_map(|material| match material {
+        Material::Texture(entry) => Some((entry.name.as_str(), entry)),
+        _ => None,
+    });
+    let mut sizes = Sizes { textures: textures.collect(), params, environment, done: HashMap::new() };
+    // Textures first: buffers may be counted by them.
     for material in materials {
         let name = material.name();
         let declared = Some(name.span.clone());
         match material {
-            Material::Texture(entry) => {
-                if let Some(texture) = sizes.texture(entry, diagnostics) {
+            Material::Texture(entry) => match sizes.texture(entry, diagnostics) {
+                Some(texture) => {
                     let id = resources.add(name.value.clone(), declared, ResourceKind::Texture(texture));
                     resources.add_views(entry, id, diagnostics);
                 }
-            }
+                None => {
+                    resources.spoil(name);
+                    entry.views.iter().for_each(|view| resources.spoil(&view.name));
+                }
+            },
             Material::Sampler(entry) => {
                 resources.add(name.value.clone(), declared, ResourceKind::Sampler(entry.clone()));
             }
             Material::Buffer(_) => {}
         }
     }
-    for material in materials {
-        let Material::Buffer(entry) = material else { continue };
-        let count = match &entry.count {
-            None => None,
-            Some(written) => match resources.count(written, params, diagnostics) {
-                Some(0) => {
-                    diagnostics.push(size_error(&entry.name, &written.span, "a buffer of no items", "give it one at least"));
-                    continue;
-                }
-                Some(count) => Some(count),
-                None => continue,
-            },
-        };
-        let kind = ResourceKind::Buffer(Buffer { count, bytes: 0 });
-        resources.add(entry.name.value.clone(), Some(entry.name.span.clone()), kind);
-    }
+    resources.add_buffers(materials, params, diagnostics);
     resources
 }
 
@@ -191,6 +190,66 @@ impl Resources<'_> {
         id
     }
 
+    /// Marks a name as declared with a mistake.
+    fn spoil(&mut self, name: &str) {
+        self.broken.insert(name.to_owned());
+        self.broken.insert(spelling(name));
+    }
+
+    /// Whether a name, or a shader's spelling of one, is that of a material with a mistake that was reported.
+    pub fn is_broken(&self, name: &str) -> bool {
+        self.broken.contains(name)
+    }
+
+    /// Adds the buffers, each after those that its count refers to.
+    fn add_buffers(&mut self, materials: &[Material], params: &Params<'_>, diagnostics: &mut Vec<Diagnostic>) {
+        let mut waiting: Vec<&BufferEntry> = materials
+            .iter()
+            .filter_map(|material| match material {
+                Material::Buffer(entry) => Some(entry),
+                _ => None,
+            })
+            .collect();
+        while !waiting.is_empty() {
+            let names: HashSet<&str> = waiting.iter().map(|entry| entry.name.as_str()).collect();
+            let is_ready = |entry: &&BufferEntry| entry.count.as_ref().is_none_or(|count| !count.refers_to(&names));
+            let (ready, others): (Vec<_>, Vec<_>) = waiting.iter().copied().partition(is_ready);
+            if ready.is_empty() {
+                for entry in others {
+                    let place = entry.count.as_ref().map_or(&entry.name.span, |count| &count.span);
+                    diagnostics.push(size_error(
+                        &entry.name,
+                        place,
+                        "its count is that of itself",
+                        "give one of these buffers a count of its own",
+                    ));
+                    self.spoil(&entry.name);
+                }
+                return;
+            }
+            for entry in ready {
+                self.add_buffer(entry, params, diagnostics);
+            }
+            waiting = others;
+        }
+    }
+
+    fn add_buffer(&mut self, entry: &BufferEntry, params: &Params<'_>, diagnostics: &mut Vec<Diagnostic>) {
+        let count = match &entry.count {
+            None => None,
+            Some(written) => match self.count(written, params, diagnostics) {
+                Some(0) => {
+                    diagnostics.push(size_error(&entry.name, &written.span, "a buffer of no items", "give it one at least"));
+                    return self.spoil(&entry.name);
+                }
+                Some(count) => Some(count),
+                None => return self.spoil(&entry.name),
+            },
+        };
+        let kind = ResourceKind::Buffer(Buffer { count, bytes: 0 });
+        self.add(entry.name.value.clone(), Some(entry.name.span.clone()), kind);
+    }
+
     fn add_views(&mut self, entry: &TextureEntry, id: ResourceId, diagnostics: &mut Vec<Diagnostic>) {
         let ResourceKind::Texture(texture) = &self.list[id.0].kind else { return };
         let (mips, layers) = (texture.mips, texture.layers);
@@ -204,11 +263,14 @@ impl Resources<'_> {
                     self.names.insert(view.name.value.clone(), Target { id, part: Part { mips, layers } });
                     self.spelt.insert(spelling(&view.name), view.name.value.clone());
                 }
-                _ => diagnostics.push(
-                    Diagnostic::error(Code::Size, format!("the view `{}` lies outside its texture", *view.name))
-                        .at(view.name.span.clone(), "")
-                        .help(format!("`{}` has {mips} mips and {layers} layers", *entry.name)),
-                ),
+                _ => {
+                    self.spoil(&view.name);
+                    diagnostics.push(
+                        Diagnostic::error(Code::Size, format!("the view `{}` lies outside its texture", *view.name))
+                            .at(view.name.span.clone(), "")
+                            .help(format!("`{}` has {mips} mips and {layers} layers, counted from 0", *entry.name)),
+                    );
+                }
             }
         }
     }
@@ -236,14 +298,18 @@ impl Resources<'_> {
         self.find(&name)
     }
 
-    /// What a name in the document stands for, or a diagnostic.
-    pub fn expect(&mut self, name: &Located<String>) -> Result<Target, Diagnostic> {
-        self.find(name).ok_or_else(|| {
+    /// What a name in the document stands for; an unknown one is reported.
+    pub fn expect(&mut self, name: &Located<String>, diagnostics: &mut Vec<Diagnostic>) -> Option<Target> {
+        let found = self.find(name);
+        if found.is_none() && !self.is_broken(name) {
             let known = self.known();
-            Diagnostic::error(Code::UnknownResource, format!("nothing is called `{}`", name.value))
-                .at(name.span.clone(), "no material or provided resource has this name")
-                .suggest(name, known.iter().map(String::as_str))
-        })
+            diagnostics.push(
+                Diagnostic::error(Code::UnknownResource, format!("nothing is called `{}`", name.value))
+                    .at(name.span.clone(), "no material or provided resource has this name")
+                    .suggest(name, known.iter().map(String::as_str)),
+            );
+        }
+        found
     }
 
     /// Every name there is, materials first.
@@ -265,13 +331,7 @@ impl Resources<'_> {
                 Some(a.saturating_mul(b))
             }
             Count::PixelsOf(name) | Count::CountOf(name) => {
-                let target = match self.expect(name) {
-                    Ok(target) => target,
-                    Err(error) => {
-                        diagnostics.push(error);
-                        return None;
-                    }
-                };
+                let target = self.expect(name, diagnostics)?;
                 let items = match &self.get(target.id).kind {
                     ResourceKind::Texture(texture) => Some(u64::from(texture.size[0]) * u64::from(texture.size[1])),
                     ResourceKind::Buffer(buffer) => buffer.count,
@@ -293,15 +353,14 @@ impl Resources<'_> {
 
 /// Resolves sizes that may refer to each other.
 struct Sizes<'a> {
-    materials: &'a [Material],
+    textures: HashMap<&'a str, &'a TextureEntry>,
     params: &'a Params<'a>,
     environment: &'a Environment<'a>,
-    open: Vec<String>,
-    done: HashMap<String, Option<[u32; 2]>>,
+    done: HashMap<&'a str, Option<[u32; 2]>>,
 }
 
-impl Sizes<'_> {
-    fn texture(&mut self, entry: &TextureEntry, diagnostics: &mut Vec<Diagnostic>) -> Option<Texture> {
+impl<'a> Sizes<'a> {
+    fn texture(&mut self, entry: &'a TextureEntry, diagnostics: &mut Vec<Diagnostic>) -> Option<Texture> {
         let size = self.size(entry, diagnostics)?;
         let mips = self.params.value(&entry.mips, diagnostics)?;
         let layers = self.params.value(&entry.layers, diagnostics)?;
@@ -334,20 +393,50 @@ impl Sizes<'_> {
         Some(Texture { format: entry.format.0, size, mips, layers })
     }
 
-    fn size(&mut self, entry: &TextureEntry, diagnostics: &mut Vec<Diagnostic>) -> Option<[u32; 2]> {
-        let name = entry.name.value.clone();
-        if let Some(known) = self.done.get(&name) {
-            return *known;
-        }
-        if self.open.contains(&name) {
-            diagnostics.push(size_error(&entry.name, &entry.size.span, "its size is that of itself", "give one of these textures a size of its own"));
-            self.done.insert(name, None);
-            return None;
-        }
-        self.open.push(name.clone());
+    /// Follows `Like` from texture to texture to one that has a size of its own.
+    fn size(&mut self, entry: &'a TextureEntry, diagnostics: &mut Vec<Diagnostic>) -> Option<[u32; 2]> {
+        let mut chain: Vec<&'a str> = Vec::new();
+        let mut seen: HashSet<&'a str> = HashSet::new();
+        let mut last = entry;
+        let size = loop {
+            if let Some(known) = self.done.get(last.name.as_str()) {
+                break *known;
+            }
+            chain.push(&last.name);
+            seen.insert(&last.name);
+            let Size::Like(other) = &last.size.value else { break self.own_size(&last.size.value, diagnostics) };
+            match self.textures.get(other.as_str()) {
+                Some(texture) if seen.contains(texture.name.as_str()) => {
+                    let error = size_error(
+                        &last.name,
+                        &last.size.span,
+                        "its size is that of itself",
+                        "give one of these textures a size of its own",
+                    );
+                    diagnostics.push(error);
+                    break None;
+                }
+                Some(texture) => last = texture,
+                None => {
+                    let mut known: Vec<&str> = self.textures.keys().copied().filter(|name| *name != last.name.as_str()).collect();
+                    known.sort_unstable();
+                    diagnostics.push(
+                        Diagnostic::error(Code::UnknownResource, format!("no texture is called `{}`", other.value))
+                            .at(other.span.clone(), "")
+                            .suggest(other, known),
+                    );
+                    break None;
+                }
+            }
+        };
+        self.done.extend(chain.into_iter().map(|name| (name, size)));
+        size
+    }
+
+    fn own_size(&self, size: &Size, diagnostics: &mut Vec<Diagnostic>) -> Option<[u32; 2]> {
         let [width, height] = self.environment.viewport;
-        let size = match &entry.size.value {
-            Size::Viewport => Some([width, height]),
+        match size {
+            Size::Viewport | Size::Like(_) => Some([width, height]),
             Size::ViewportTimes(factor) => self.params.value(factor, diagnostics).map(|factor| {
                 // Saturates, NaN becomes 0: both are caught as sizes that cannot be.
                 [width, height].map(|edge| (f64::from(edge) * f64::from(factor)).ceil() as u32)
@@ -356,33 +445,6 @@ impl Sizes<'_> {
             Size::Texels(width, height) => {
                 let (width, height) = (self.params.value(width, diagnostics), self.params.value(height, diagnostics));
                 width.zip(height).map(|(width, height)| [width, height])
-            }
-            Size::Like(other) => self.like(other, diagnostics),
-        };
-        self.open.pop();
-        self.done.entry(name).or_insert(size);
-        size
-    }
-
-    fn like(&mut self, other: &Located<String>, diagnostics: &mut Vec<Diagnostic>) -> Option<[u32; 2]> {
-        let materials = self.materials;
-        let found = materials.iter().find_map(|material| match material {
-            Material::Texture(texture) if texture.name.value == other.value => Some(texture),
-            _ => None,
-        });
-        match found {
-            Some(texture) => self.size(texture, diagnostics),
-            None => {
-                let textures = materials.iter().filter_map(|material| match material {
-                    Material::Texture(texture) => Some(texture.name.as_str()),
-                    _ => None,
-                });
-                diagnostics.push(
-                    Diagnostic::error(Code::UnknownResource, format!("no texture is called `{}`", other.value))
-                        .at(other.span.clone(), "")
-                        .suggest(other, textures),
-                );
-                None
             }
         }
     }

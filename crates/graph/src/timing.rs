@@ -84,7 +84,8 @@ impl Timer {
 
     /// The frame's times, after the device was polled; `passes` are names and CPU times in order.
     pub fn take(&mut self, passes: &[(String, Duration)]) -> FrameTiming {
-        let results = self.profiler.process_finished_frame(self.period).unwrap_or_default();
+        // A host that submitted several frames before it asks wants the last one.
+        let results = std::iter::from_fn(|| self.profiler.process_finished_frame(self.period)).last().unwrap_or_default();
         let span = |queries: &[&GpuTimerQueryResult]| {
             let times: Option<Vec<_>> = queries.iter().map(|query| query.time.clone()).collect();
             let times = times.filter(|times| !times.is_empty())?;

@@ -43,10 +43,22 @@ impl<T: fmt::Debug> fmt::Debug for Located<T> {
     }
 }
 
-/// The text that is being deserialised on this thread, and the innermost place where it went wrong.
+/// The text that is being deserialised on this thread, and the innermost place where it went wrong with what ron said
+/// there (outer levels only see a text).
 struct Reading {
     file: SourceFile,
-    failed: Option<Range<usize>>,
+    failed: Option<(Range<usize>, ron::Error)>,
+}
+
+/// Remembers a failure, unless one further inside is remembered already.
+fn fail(error: &ron::Error, place: impl FnOnce(&SourceFile) -> Option<Range<usize>>) {
+    READING.with_borrow_mut(|reading| {
+        if let Some(reading) = reading
+            && reading.failed.is_none()
+        {
+            reading.failed = place(&reading.file).map(|range| (range, error.clone()));
+        }
+    });
 }
 
 thread_local! {
@@ -67,19 +79,20 @@ fn range_in(text: &str, part: &str) -> Option<Range<usize>> {
 /// Deserialises `text`, a part of the file being read, and remembers the innermost place of a failure.
 fn read_part<T: DeserializeOwned>(text: &str) -> Result<T, ron::Error> {
     options().from_str(text).map_err(|error| {
-        READING.with_borrow_mut(|reading| {
-            if let Some(reading) = reading
-                && reading.failed.is_none()
-                && let Some(whole) = range_in(&reading.file.text, text)
-            {
-                let at = offset(text, error.span.start.line, error.span.start.col);
-                let end = offset(text, error.span.end.line, error.span.end.col).max(at);
-                // ron reports the end of a bad word as its place; a word is what the reader wants to see.
-                reading.failed = Some(word_around(text, at, end, whole.start));
-            }
+        fail(&error.code, |file| {
+            let whole = range_in(&file.text, text)?;
+            Some(place_of(text, &error, whole.start))
         });
         error.code
     })
+}
+
+/// What a ron error is about, in bytes: `text` begins at `base`.
+fn place_of(text: &str, error: &ron::error::SpannedError, base: usize) -> Range<usize> {
+    let start = offset(text, error.span.start.line, error.span.start.col);
+    let end = offset(text, error.span.end.line, error.span.end.col).max(start);
+    // ron reports the end of a bad word as its place; a word is what the reader wants to see.
+    word_around(text, start, end, base)
 }
 
 fn offset(text: &str, line: usize, column: usize) -> usize {
@@ -168,7 +181,10 @@ impl Node {
         READING.set(Some(Reading { file: self.span.file.clone(), failed: None }));
         let result = read();
         let failed = READING.take().and_then(|reading| reading.failed);
-        result.map_err(|error| explain(&error, self.span.file.span(failed.unwrap_or(self.span.range.clone()))))
+        result.map_err(|error| {
+            let (range, error) = failed.unwrap_or((self.span.range.clone(), error));
+            explain(&error, self.span.file.span(range))
+        })
     }
 
     /// The entries of a list, `[…]`.
@@ -252,9 +268,7 @@ impl Node {
 
     fn borrowed<'a, T: Deserialize<'a>>(&'a self) -> Result<T, Diagnostic> {
         options().from_str(self.text()).map_err(|error| {
-            let base = self.span.range.start;
-            let at = offset(self.text(), error.span.start.line, error.span.start.col);
-            let range = word_around(self.text(), at, at, base);
+            let range = place_of(self.text(), &error, self.span.range.start);
             explain(&error.code, self.span.file.span(range))
         })
     }
@@ -293,30 +307,23 @@ pub fn from_fields<T: DeserializeOwned>(fields: &[Field], whole: &Span) -> Resul
             let Some(field) = self.fields.next() else { return Ok(None) };
             self.value = Some(field);
             let name: &str = &field.name.value;
-            seed.deserialize(IntoDeserializer::<ron::Error>::into_deserializer(name)).map(Some).inspect_err(|_| {
-                READING.with_borrow_mut(|reading| {
-                    if let Some(reading) = reading {
-                        reading.failed = Some(field.name.span.range.clone());
-                    }
-                });
-            })
+            seed.deserialize(IntoDeserializer::<ron::Error>::into_deserializer(name))
+                .map(Some)
+                .inspect_err(|error| fail(error, |_| Some(field.name.span.range.clone())))
         }
         fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, ron::Error> {
             let field = self.value.take().ok_or_else(|| ron::Error::custom("a value without its key"))?;
             let text = field.node.text();
             options().from_str_seed(text, seed).map_err(|error| {
-                READING.with_borrow_mut(|reading| {
-                    if let Some(reading) = reading
-                        && reading.failed.is_none()
-                    {
-                        let start = offset(text, error.span.start.line, error.span.start.col);
-                        let end = offset(text, error.span.end.line, error.span.end.col).max(start);
-                        reading.failed = Some(word_around(text, start, end, field.node.span.range.start));
-                    }
-                });
+                fail(&error.code, |_| Some(place_of(text, &error, field.node.span.range.start)));
                 error.code
             })
         }
+    }
+    // ron would report it before it has the place of the second one.
+    let repeats = |(index, field): &(usize, &Field)| fields[..*index].iter().any(|earlier| earlier.name.value == field.name.value);
+    if let Some((_, field)) = fields.iter().enumerate().find(repeats) {
+        return Err(twice(&field.name, field.name.span.clone()));
     }
     let node = Node { span: whole.clone() };
     node.reading(|| {
@@ -343,11 +350,19 @@ fn explain(error: &ron::Error, span: Span) -> Diagnostic {
             Diagnostic::error(Code::MissingField, format!("the field `{field}` is missing"))
                 .at(span, "it must be given here")
         }
-        R::DuplicateStructField { field, .. } => {
-            Diagnostic::error(Code::DuplicateName, format!("the field `{field}` is given twice")).at(span, "")
+        R::DuplicateStructField { field, .. } => twice(field, span),
+        R::Eof => Diagnostic::error(Code::Syntax, "the text ends too early")
+            .at(span, "something is not closed")
+            .help("check that every bracket and quote is closed"),
+        R::ExceededRecursionLimit => {
+            Diagnostic::error(Code::Syntax, "values are nested too deep").at(span, "").help("128 levels can be read")
         }
         other => Diagnostic::error(Code::Syntax, lower_first(&other.to_string())).at(span, "here"),
     }
+}
+
+fn twice(field: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(Code::DuplicateName, format!("the field `{field}` is given twice")).at(span, "the second one")
 }
 
 fn lower_first(text: &str) -> String {

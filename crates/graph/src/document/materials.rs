@@ -189,6 +189,17 @@ pub enum Count {
     Times(Box<Count>, Box<Count>),
 }
 
+impl Count {
+    /// Whether it is that of one of `names`.
+    pub(crate) fn refers_to(&self, names: &std::collections::HashSet<&str>) -> bool {
+        match self {
+            Self::Number(_) | Self::Pixels => false,
+            Self::PixelsOf(name) | Self::CountOf(name) => names.contains(name.as_str()),
+            Self::Times(a, b) => a.refers_to(names) || b.refers_to(names),
+        }
+    }
+}
+
 impl<'de> Deserialize<'de> for Count {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         #[derive(Deserialize)]

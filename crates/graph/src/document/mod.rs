@@ -55,6 +55,13 @@ const SECTIONS: [&str; 6] = ["format", "description", "params", "materials", "pa
 /// Reads a document. Whatever is wrong is pushed to `diagnostics`; what could be read is returned all the same, so that
 /// later phases find more mistakes in one go.
 pub(crate) fn parse(file: SourceFile, registry: &Registry, diagnostics: &mut Vec<Diagnostic>) -> Option<Document> {
+    if file.text.trim().is_empty() {
+        diagnostics.push(
+            Diagnostic::error(Code::Syntax, format!("the document `{}` is empty", file.name))
+                .help(format!("begin with `(format: {FORMAT}, …)`")),
+        );
+        return None;
+    }
     let fields = match Node::root(&file).fields() {
         Ok(fields) => fields,
         Err(error) => {

@@ -157,6 +157,17 @@ impl Param {
             max: entry.max,
             description: entry.description,
         };
+        if let ParamType::Choice(words) = &param.ty {
+            let repeated = words.iter().enumerate().any(|(index, word)| words[..index].contains(word));
+            if words.is_empty() || repeated {
+                return Err((place, "a Choice has at least one word, and each only once".to_owned()));
+            }
+        }
+        if let (Some(min), Some(max)) = (param.min, param.max)
+            && !(min <= max)
+        {
+            return Err((place, format!("no value can lie in {min}..{max}")));
+        }
         match param.value_of(&entry.default.value).and_then(|value| param.check(&value).map(|()| value)) {
             Ok(value) => {
                 param.default = value;

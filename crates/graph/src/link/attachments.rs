@@ -59,6 +59,9 @@ impl Linker<'_, '_> {
                 self.check_output(location, &color.target, format, outputs, span);
             }
             let clear = color.clear;
+            if let Some(value) = clear {
+                self.clear_value(&color.target, format, value);
+            }
             pass.accesses.push(Access {
                 resource: target.id,
                 part: target.part.clone(),
@@ -123,6 +126,9 @@ impl Linker<'_, '_> {
             );
             return None;
         }
+        if let Some(value) = depth.clear {
+            self.clear_value(&depth.target, format, [value.into(), 0.0, 0.0, 0.0]);
+        }
         pass.accesses.push(Access {
             resource: target.id,
             part: target.part.clone(),
@@ -141,6 +147,25 @@ impl Linker<'_, '_> {
             bias: depth.bias,
         };
         Some(LinkedDepth { target, clear: depth.clear, state })
+    }
+
+    /// A clear value that the format can hold.
+    pub(super) fn clear_value(&mut self, target: &Located<String>, format: wgpu::TextureFormat, value: [f64; 4]) {
+        let channels = &value[..usize::from(format.components()).min(4)];
+        let (fits, expected): (fn(&f64) -> bool, _) = match scalar_of(format) {
+            _ if format.is_depth_stencil_format() => (|v| (0.0..=1.0).contains(v), "a depth from 0 to 1"),
+            Some(ScalarClass::Uint) => (|v| v.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(v), "whole numbers from 0"),
+            Some(ScalarClass::Sint) => {
+                (|v| v.fract() == 0.0 && (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(v), "whole numbers of 32 bits")
+            }
+            _ => (|v| v.is_finite(), "finite numbers"),
+        };
+        if let Some(wrong) = channels.iter().find(|value| !fits(value)) {
+            self.report(
+                Diagnostic::error(Code::FormatMismatch, format!("`{}` cannot be cleared to {wrong}", target.value))
+                    .at(target.span.clone(), format!("a texture of format {format:?}, which takes {expected}")),
+            );
+        }
     }
 
     fn attachment(&mut self, name: &Located<String>, pass: &LinkedPass) -> Option<(Target, Texture)> {

@@ -73,7 +73,7 @@ impl Linker<'_, '_> {
                 );
             }
         }
-        self.clashes(&globals, &shader);
+        self.groups_exist(&globals);
         let mut linked =
             LinkedProgram { constants: self.constants(program, &shader), bindings: Vec::new(), shader, entries, stages: stages.to_vec() };
         let mut complete = true;
@@ -87,28 +87,14 @@ impl Linker<'_, '_> {
         complete.then_some(linked)
     }
 
-    /// Two used globals with one number.
-    fn clashes(&mut self, globals: &[Global], shader: &Shader) {
-        for (index, global) in globals.iter().enumerate() {
-            let same = |other: &&Global| (other.group, other.binding) == (global.group, global.binding);
-            if let Some(other) = globals[..index].iter().find(same) {
-                self.report(
-                    Diagnostic::error(
-                        Code::Binding,
-                        format!("`{}` and `{}` of `{}` have one binding number", other.name, global.name, shader.source.file.name),
-                    )
-                    .at(global.span.clone(), format!("@group({}) @binding({})", global.group, global.binding))
-                    .at(other.span.clone(), "the same")
+    /// Group numbers that the adapter does not have. (One number for two globals is found when the shader is validated.)
+    fn groups_exist(&mut self, globals: &[Global]) {
+        for global in globals.iter().filter(|global| global.group >= self.limits.max_bind_groups) {
+            self.report(
+                Diagnostic::error(Code::Limit, format!("`{}` is in @group({}), which the adapter does not have", global.name, global.group))
+                    .at(global.span.clone(), format!("its groups are 0 to {}", self.limits.max_bind_groups.saturating_sub(1)))
                     .help("leave the numbers out: the graph gives them"),
-                );
-            }
-            if global.group >= self.limits.max_bind_groups {
-                self.report(
-                    Diagnostic::error(Code::Binding, format!("@group({}) is more than the adapter has", global.group))
-                        .at(global.span.clone(), "")
-                        .help("leave the numbers out: the graph gives them"),
-                );
-            }
+            );
         }
     }
 
@@ -151,11 +137,22 @@ impl Linker<'_, '_> {
         if let (Class::Uniform { size, members }, None) = (&global.class, &bound)
             && global.name == "params"
         {
+            let most = u64::from(self.limits.max_uniform_buffer_binding_size);
+            if *size > most || members.is_empty() {
+                let what = if members.is_empty() { "is no struct" } else { "is too large for the adapter" };
+                self.report(
+                    Diagnostic::error(Code::Binding, format!("the uniform `params` {what}"))
+                        .at(global.span.clone(), format!("{size} bytes"))
+                        .help("write `struct Params { … }` with the params that the shader reads, and `var<uniform> params: Params;`"),
+                );
+                return None;
+            }
             let block = self.params_block(global, *size, members)?;
             return finish(BindTarget::Params(block), uniform(*size));
         }
         let target = match &bound {
             Some(name) => self.expect(name)?,
+            None if self.resources.is_broken(&global.name) => return None,
             None => match self.resources.find_spelt(&global.name) {
                 Some(target) => target,
                 None => {
@@ -205,7 +202,7 @@ impl Linker<'_, '_> {
                 (BindTarget::Buffer(target.id), ty, Usage::Buffer(wgpu::BufferUsages::STORAGE))
             }
             (Class::Texture(class), ResourceKind::Texture(texture)) => {
-                let (ty, usage) = self.texture(global, class, (texture.format, &target.part), linked, &resource.name)?;
+                let (ty, usage) = self.texture(global, class, (texture.format, &target.part), (linked, program), &resource.name)?;
                 let dimension = match class {
                     TextureClass::Sampled { dimension, .. } | TextureClass::Storage { dimension, .. } => *dimension,
                 };
@@ -271,7 +268,7 @@ impl Linker<'_, '_> {
         global: &Global,
         class: &TextureClass,
         (format, part): (wgpu::TextureFormat, &Part),
-        linked: &LinkedProgram,
+        (linked, program): (&LinkedProgram, &Program),
         name: &str,
     ) -> Option<(wgpu::BindingType, wgpu::TextureUsages)> {
         let features = format.guaranteed_format_features(self.features);
@@ -286,6 +283,14 @@ impl Linker<'_, '_> {
             self.report(
                 Diagnostic::error(Code::ResourceKind, format!("`{name}` has {} layers, the shader sees one", part.layers.len()))
                     .at(global.span.clone(), "declare an array texture, or bind a view of one layer"),
+            );
+            return None;
+        }
+        let cube = matches!(dimension, wgpu::TextureViewDimension::Cube | wgpu::TextureViewDimension::CubeArray);
+        if cube && (part.layers.len() % 6 != 0 || dimension == wgpu::TextureViewDimension::Cube && part.layers.len() != 6) {
+            self.report(
+                Diagnostic::error(Code::ResourceKind, format!("`{name}` has {} layers, a cube has six", part.layers.len()))
+                    .at(global.span.clone(), "the shader sees a cube"),
             );
             return None;
         }
@@ -305,7 +310,8 @@ impl Linker<'_, '_> {
                 let is_depth = format.is_depth_stencil_format();
                 if !filterable || is_depth {
                     for sampler in linked.shader.samplers_of(&linked.entries, global.handle) {
-                        let target = self.resources.find_spelt(&sampler);
+                        let bound = program.bind.iter().find(|(global, _)| global.value == sampler);
+                        let target = self.resources.find_spelt(bound.map_or(&sampler, |(_, name)| &name.value));
                         let linear = target.is_some_and(|target| {
                             matches!(&self.resources.get(target.id).kind, ResourceKind::Sampler(entry)
                                 if entry.filter == Filter::Linear && entry.compare.is_none())

@@ -2,6 +2,7 @@
 
 use crate::{
     diagnostics::{Code, Diagnostic},
+    document::located::Located,
     resolve::{ResourceId, ResourceKind, Resources},
     source::Span,
     wgsl::{Class, Global},
@@ -13,7 +14,7 @@ use std::collections::BTreeMap;
 pub(crate) struct Layouts {
     seen: BTreeMap<ResourceId, Vec<Seen>>,
     least: BTreeMap<ResourceId, (u64, Span)>,
-    same: Vec<(ResourceId, ResourceId)>,
+    same: Vec<[(ResourceId, Located<String>); 2]>,
 }
 
 struct Seen {
@@ -38,9 +39,9 @@ impl Layouts {
         entry.0 = entry.0.max(bytes);
     }
 
-    /// Two buffers that are copied onto each other.
-    pub fn same(&mut self, a: ResourceId, b: ResourceId) {
-        self.same.push((a, b));
+    /// The first buffer is copied onto the second: they have one size.
+    pub fn same(&mut self, from: (ResourceId, &Located<String>), to: (ResourceId, &Located<String>)) {
+        self.same.push([from, to].map(|(id, name)| (id, name.clone())));
     }
 
     /// Gives every buffer its size, or says why it has none.
@@ -58,7 +59,7 @@ impl Layouts {
                     for view in seen {
                         let fits = match view.stride {
                             Some(stride) => view.fixed == 0 && stride == provided.stride,
-                            None => provided.items.is_none_or(|items| view.fixed <= items * provided.stride),
+                            None => provided.items.is_none_or(|items| view.fixed <= items.saturating_mul(provided.stride)),
                         };
                         if !fits {
                             diagnostics.push(
@@ -91,17 +92,37 @@ impl Layouts {
                 _ => {}
             }
         }
-        for (a, b) in &self.same {
-            let bytes = |id: &ResourceId| match &resources.list[id.0].kind {
-                ResourceKind::Buffer(buffer) => buffer.bytes,
-                ResourceKind::Provided(provided) => provided.items.unwrap_or(0) * provided.stride,
-                _ => 0,
-            };
-            let size = bytes(a).max(bytes(b));
-            for id in [a, b] {
-                if let ResourceKind::Buffer(buffer) = &mut resources.list[id.0].kind {
-                    buffer.bytes = size;
+        self.equal_sizes(resources, diagnostics);
+    }
+
+    /// A buffer that no shader sees has the size of what it is copied from or to; others must agree.
+    fn equal_sizes(&self, resources: &mut Resources<'_>, diagnostics: &mut Vec<Diagnostic>) {
+        let bytes = |resources: &Resources<'_>, id: ResourceId| match &resources.list[id.0].kind {
+            ResourceKind::Buffer(buffer) => buffer.bytes,
+            ResourceKind::Provided(provided) => provided.items.unwrap_or(0).saturating_mul(provided.stride),
+            _ => 0,
+        };
+        // Copies of copies: each round sizes one more link at least.
+        for _ in 0..self.same.len() {
+            for [(a, _), (b, _)] in &self.same {
+                for (id, size) in [(a, bytes(resources, *b)), (b, bytes(resources, *a))] {
+                    if let ResourceKind::Buffer(buffer) = &mut resources.list[id.0].kind
+                        && buffer.bytes == 0
+                    {
+                        buffer.bytes = size;
+                    }
                 }
+            }
+        }
+        for [(a, from), (b, to)] in &self.same {
+            let (from_bytes, to_bytes) = (bytes(resources, *a), bytes(resources, *b));
+            if from_bytes != to_bytes {
+                diagnostics.push(
+                    Diagnostic::error(Code::Size, format!("`{}` cannot be copied onto `{}`: they differ in size", from.value, to.value))
+                        .at(from.span.clone(), format!("{from_bytes} bytes"))
+                        .at(to.span.clone(), format!("{to_bytes} bytes"))
+                        .help("give both the same `count`"),
+                );
             }
         }
     }
@@ -133,7 +154,7 @@ impl Layouts {
             bytes = Some(bytes.unwrap_or(0).max(size));
         }
         // wgpu copies and clears in fours.
-        bytes.map(|bytes| bytes.next_multiple_of(4).max(4)).ok_or(None)
+        bytes.map(|bytes| bytes.checked_next_multiple_of(4).unwrap_or(u64::MAX).max(4)).ok_or(None)
     }
 }
 

@@ -157,7 +157,7 @@ impl<'a, 'p> Linker<'a, 'p> {
     }
 
     pub(super) fn expect(&mut self, name: &Located<String>) -> Option<Target> {
-        self.resources.expect(name).map_err(|error| self.report(error)).ok()
+        self.resources.expect(name, self.diagnostics)
     }
 
     fn draw(&mut self, draw: &Draw, pass: &mut LinkedPass) -> Option<LinkedDraw> {
@@ -222,7 +222,15 @@ impl<'a, 'p> Linker<'a, 'p> {
 
     fn workgroup_size(&mut self, program: &LinkedProgram, pass: &Located<String>) -> Option<[u32; 3]> {
         let entry = *program.entries.first()?;
-        let size = program.shader.workgroup_size(entry);
+        let Some(size) = program.shader.workgroup_size(entry) else {
+            self.report(
+                Diagnostic::error(Code::Shader, "a workgroup size that is an override is not supported")
+                    .at(program.shader.entry_span(entry), "")
+                    .at(pass.span.clone(), "run by this pass")
+                    .help("write the size as a number or `const`"),
+            );
+            return None;
+        };
         let limits = self.limits;
         let most = [limits.max_compute_workgroup_size_x, limits.max_compute_workgroup_size_y, limits.max_compute_workgroup_size_z];
         let total: u64 = size.iter().map(|&edge| u64::from(edge)).product();
@@ -298,22 +306,27 @@ impl<'a, 'p> Linker<'a, 'p> {
         let resources = (self.resources.get(source.id).clone(), self.resources.get(target.id).clone());
         let (usages, step) = match (&resources.0.kind, &resources.1.kind) {
             (ResourceKind::Texture(a), ResourceKind::Texture(b)) => {
-                let size = |t: &crate::resolve::Texture, part: &Part| {
-                    [t.size[0] >> part.mips.start, t.size[1] >> part.mips.start, part.layers.len() as u32, part.mips.len() as u32]
+                let size = |texture: &crate::resolve::Texture, part: &Part| {
+                    let [width, height] = texture.size.map(|edge| (edge >> part.mips.start).max(1));
+                    (width, height, part.layers.len(), part.mips.len())
                 };
                 if a.format != b.format {
                     self.report(mismatch(format!("{:?} is not {:?}", b.format, a.format)));
                     return None;
                 }
-                if size(a, &source.part) != size(b, &target.part) {
-                    self.report(mismatch("its size differs".to_owned()));
+                let (from_size, to_size) = (size(a, &source.part), size(b, &target.part));
+                if from_size != to_size {
+                    let words = |(width, height, layers, mips)| format!("{width}×{height} texels, {layers} layers, {mips} mips");
+                    self.report(
+                        mismatch(words(to_size)).help(format!("it must be as large as `{}`: {}", from.value, words(from_size))),
+                    );
                     return None;
                 }
                 let usage = (Usage::Texture(wgpu::TextureUsages::COPY_SRC), Usage::Texture(wgpu::TextureUsages::COPY_DST));
                 (usage, LinkedStep::CopyTexture { from: source.clone(), to: target.clone() })
             }
             (ResourceKind::Buffer(_) | ResourceKind::Provided(_), ResourceKind::Buffer(_)) => {
-                self.layouts.same(source.id, target.id);
+                self.layouts.same((source.id, from), (target.id, to));
                 let usage = (Usage::Buffer(wgpu::BufferUsages::COPY_SRC), Usage::Buffer(wgpu::BufferUsages::COPY_DST));
                 (usage, LinkedStep::CopyBuffer { from: source.id, to: target.id })
             }
@@ -354,11 +367,16 @@ impl<'a, 'p> Linker<'a, 'p> {
                     );
                     return None;
                 }
+                self.clear_value(name, format, value);
                 (Usage::Texture(usages), LinkedStep::ClearTexture { target: target.clone(), value })
             }
             ResourceKind::Buffer(_) => {
                 if value != [0.0; 4] {
-                    self.report(Diagnostic::error(Code::ResourceKind, "a buffer can only be cleared to zero").at(name.span.clone(), ""));
+                    self.report(
+                        Diagnostic::error(Code::ResourceKind, format!("the buffer `{}` can only be cleared to zero", name.value))
+                            .at(name.span.clone(), "")
+                            .help("leave `value` out, or write the buffer by a Compute pass"),
+                    );
                     return None;
                 }
                 (Usage::Buffer(wgpu::BufferUsages::COPY_DST), LinkedStep::ClearBuffer(target.id))
@@ -408,9 +426,16 @@ impl<'a, 'p> Linker<'a, 'p> {
     }
 
     pub(super) fn shader(&mut self, program: &Program) -> Option<Arc<Shader>> {
-        // A shader that could not be loaded was reported when the document was.
         let name = program.shader.as_ref()?;
-        self.shaders.get(&name.value).cloned()
+        let shader = self.shaders.get(&name.value).cloned();
+        if shader.is_none() {
+            // Those that the document names were loaded with it; this is a kind that names another one for other params.
+            self.report(
+                Diagnostic::error(Code::MissingFile, format!("the shader `{}` was not loaded with the document", name.value))
+                    .at(name.span.clone(), "a pass kind must not choose its shaders by params"),
+            );
+        }
+        shader
     }
 }
 

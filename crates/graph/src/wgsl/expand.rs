@@ -40,6 +40,11 @@ impl Expanded {
     }
 }
 
+/// Whether a path leads out of the folder it is looked for in (backslashes and drives: on Windows).
+fn escapes(path: &str) -> bool {
+    path.split('/').any(|part| part == "..") || path.starts_with('/') || path.contains(['\\', ':'])
+}
+
 /// Reads shaders for one document, each file once.
 pub(crate) struct ShaderFiles<'a> {
     sources: &'a dyn Sources,
@@ -69,6 +74,10 @@ impl<'a> ShaderFiles<'a> {
     pub fn expand(&mut self, name: &str, wanted: &Span) -> Result<Expanded, Diagnostic> {
         let candidates = shader_candidates(self.document, name);
         let missing = |message: String| Diagnostic::error(Code::MissingFile, message).at(wanted.clone(), "asked for here");
+        if escapes(name) {
+            return Err(missing(format!("the shader `{name}` lies outside the shader folders"))
+                .help("shaders stand beside the document or in shaders/, and are named without folder signs like `..`"));
+        }
         let file = match self.find(&candidates) {
             Ok(Some(file)) => file,
             Ok(None) => {
@@ -113,7 +122,7 @@ impl<'a> ShaderFiles<'a> {
                     .at(file.span(range), "")
                     .help("write #import \"shared/camera.wgsl\""));
             };
-            if path.split('/').any(|part| part == "..") || path.starts_with('/') {
+            if escapes(path) {
                 return Err(Diagnostic::error(Code::Shader, format!("the import `{path}` leaves the shader folder"))
                     .at(file.span(range), "")
                     .help("imports name files in the importing file's folder or in shaders/"));

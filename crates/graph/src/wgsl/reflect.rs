@@ -9,7 +9,7 @@ use crate::{
 use naga::{
     AddressSpace, Handle, ImageClass, ShaderStage, TypeInner,
     proc::{GlobalCtx, Layouter},
-    valid::{GlobalUse, ModuleInfo, ValidationFlags, Validator},
+    valid::{EntryPointError, GlobalUse, ModuleInfo, ValidationError, ValidationFlags, Validator},
 };
 use std::{collections::BTreeSet, fmt};
 
@@ -99,7 +99,7 @@ impl Shader {
         assign_bindings(&mut module, &source);
         // What a device lacks is said when the pipeline is made for it; a document is checked against the language.
         let mut validator = Validator::new(ValidationFlags::all(), naga::valid::Capabilities::all());
-        let info = validator.validate(&module).map_err(|error| validation_error(&error, &source))?;
+        let info = validator.validate(&module).map_err(|error| validation_error(&error, &module, &source))?;
         let mut layouter = Layouter::default();
         layouter
             .update(GlobalCtx {
@@ -149,14 +149,17 @@ impl Shader {
         &self.module.entry_points[entry].name
     }
 
-    pub fn workgroup_size(&self, entry: usize) -> [u32; 3] {
-        self.module.entry_points[entry].workgroup_size
+    /// `None` if it depends on an override.
+    pub fn workgroup_size(&self, entry: usize) -> Option<[u32; 3]> {
+        let entry = &self.module.entry_points[entry];
+        entry.workgroup_size_overrides.is_none().then_some(entry.workgroup_size)
     }
 
-    /// The place of an entry point, as well as naga knows it: its first statement's file.
+    /// The place of an entry point's name; naga keeps none.
     pub fn entry_span(&self, entry: usize) -> Span {
         let name = self.entry_name(entry);
-        let at = self.source.text.find(&format!("fn {name}")).map_or(0, |at| at + 3);
+        let text = &self.source.text;
+        let at = words(text, name).find(|&at| text[..at].trim_end().ends_with("fn")).unwrap_or(0);
         self.source.locate(at..at + name.len())
     }
 
@@ -201,9 +204,10 @@ impl Shader {
     fn global_span(&self, handle: Handle<naga::GlobalVariable>, variable: &naga::GlobalVariable) -> Span {
         let range = self.module.global_variables.get_span(handle).to_range().unwrap_or(0..0);
         let name = variable.name.as_deref().unwrap_or("");
-        // The declaration begins with its attributes; the name is what matters.
+        // The declaration begins with its attributes; the name is what matters, and the type follows it.
         let declaration = self.source.text.get(range.clone()).unwrap_or("");
-        let at = range.start + declaration.find(name).unwrap_or(0);
+        let declaration = declaration.split(':').next().unwrap_or("");
+        let at = range.start + words(declaration, name).last().unwrap_or(0);
         self.source.locate(at..at + name.len())
     }
 
@@ -359,6 +363,14 @@ impl Shader {
     }
 }
 
+/// Where `word` stands in `text` as a whole word.
+fn words<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = usize> + 'a {
+    let is_part = |c: char| c.is_alphanumeric() || c == '_';
+    text.match_indices(word).map(|(at, _)| at).filter(move |&at| {
+        !text[..at].ends_with(is_part) && !text[at + word.len()..].starts_with(is_part)
+    })
+}
+
 /// Gives every resource global without numbers the next free ones of its group.
 fn assign_bindings(module: &mut naga::Module, source: &Expanded) {
     let mut taken: BTreeSet<(u32, u32)> =
@@ -378,6 +390,21 @@ fn assign_bindings(module: &mut naga::Module, source: &Expanded) {
     }
 }
 
+/// Two globals that one entry point uses under one number.
+fn collision(handle: Handle<naga::GlobalVariable>, module: &naga::Module, source: &Expanded) -> Diagnostic {
+    let binding = module.global_variables[handle].binding;
+    let place = |handle| module.global_variables.get_span(handle).to_range().unwrap_or(0..0);
+    let name = |handle: Handle<naga::GlobalVariable>| module.global_variables[handle].name.clone().unwrap_or_default();
+    let number = binding.map_or(String::new(), |binding| format!("@group({}) @binding({})", binding.group, binding.binding));
+    let message = format!("`{}` of `{}` has a binding number that is taken: {number}", name(handle), source.file.name);
+    let others = module.global_variables.iter().filter(|(other, variable)| *other != handle && variable.binding == binding);
+    others
+        .fold(Diagnostic::error(Code::Binding, message).at(source.locate(place(handle)), "this one"), |diagnostic, (other, _)| {
+            diagnostic.at(source.locate(place(other)), format!("`{}` has it too", name(other)))
+        })
+        .help("leave the numbers out: the graph gives them")
+}
+
 fn parse_error(error: &naga::front::wgsl::ParseError, source: &Expanded) -> Diagnostic {
     let mut diagnostic = Diagnostic::error(Code::Shader, format!("`{}` does not compile: {}", source.file.name, error.message()));
     for (span, text) in error.labels() {
@@ -389,7 +416,10 @@ fn parse_error(error: &naga::front::wgsl::ParseError, source: &Expanded) -> Diag
     if notes.is_empty() { diagnostic } else { diagnostic.help(notes.join("\n")) }
 }
 
-fn validation_error(error: &naga::WithSpan<naga::valid::ValidationError>, source: &Expanded) -> Diagnostic {
+fn validation_error(error: &naga::WithSpan<ValidationError>, module: &naga::Module, source: &Expanded) -> Diagnostic {
+    if let ValidationError::EntryPoint { source: EntryPointError::BindingCollision(handle), .. } = error.as_inner() {
+        return collision(*handle, module, source);
+    }
     // The causes say what is wrong; the outermost one only which function.
     let mut message = format!("`{}` is not valid: {}", source.file.name, error.as_inner());
     let mut cause = std::error::Error::source(error.as_inner());
@@ -400,7 +430,9 @@ fn validation_error(error: &naga::WithSpan<naga::valid::ValidationError>, source
     let mut diagnostic = Diagnostic::error(Code::Shader, message);
     for (span, text) in error.spans() {
         if let Some(range) = span.to_range() {
-            diagnostic = diagnostic.at(source.locate(range), text.clone());
+            // Some spans are labelled with a handle of naga's, which tells an author nothing.
+            let text = if text.starts_with("naga::") { "" } else { text };
+            diagnostic = diagnostic.at(source.locate(range), text);
         }
     }
     if diagnostic.labels.is_empty() {

@@ -1,0 +1,5 @@
+#import shared/camera.wgsl
+
+@fragment fn fragment() -> @location(0) f32 {
+    return 1.0;
+}

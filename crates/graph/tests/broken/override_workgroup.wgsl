@@ -1,0 +1,6 @@
+override size: u32 = 64;
+var<storage, read_write> items: array<u32>;
+
+@compute @workgroup_size(size) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    items[id.x] = id.x;
+}

@@ -1,0 +1,4 @@
+// A good module.
+fn focal() -> f32 {
+    return 1.5;
+}

@@ -1,0 +1,8 @@
+// Stage to draw one triangle over everything.
+@vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return vec4<f32>(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.5, 1.0);
+}
+
+@fragment fn fragment() -> @location(0) f32 {
+    return 1.0;
+}

@@ -34,6 +34,9 @@ pub enum CliError {
         /// Why.
         source: Box<dyn Error + Send + Sync>,
     },
+    /// Graphs that ran, but whose outputs do not hold what a shadow method's must.
+    #[error("{0}")]
+    Contract(String),
     /// No adapter to run on.
     #[error("{0}")]
     NoGpu(String),

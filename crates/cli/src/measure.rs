@@ -117,23 +117,22 @@ impl Setting<'_> {
     /// Runs a method. One that this adapter cannot run yields a [`Run`] that says why.
     ///
     /// # Errors
-    /// Ctrl-C, a lost device, outputs that break the contract, a picture that cannot be written.
+    /// Ctrl-C, a lost device, outputs that break the contract ([`CliError::Contract`]), a picture that cannot be written.
     pub fn measure(&self, method: &Method, provider: &mut dyn Provider) -> Result<Run, CliError> {
-        let mut run = self.empty(method);
         let viewport = self.reference.viewport;
         let plan = match method.plan(viewport, render::abilities(self.gpu), provider) {
             Ok(plan) => plan,
             // The graph itself is sound: that was checked before anything ran.
-            Err(diagnostics) => {
-                run.unavailable = Some(reasons(&diagnostics));
-                return Ok(run);
-            }
+            Err(diagnostics) => return Ok(self.unavailable(method, reasons(&diagnostics))),
         };
         let what = format!("{}, {}", method.preset.name, self.where_(method));
         let step = Step::begin(what, (self.warmup + self.frames).into(), "frames");
         let executed = self.execute(method, plan, provider, &step);
-        match executed {
-            Ok(Some(executed)) => run.measured = Some(self.judge(method, executed)?),
+        let run = match executed {
+            Ok(Some(executed)) => Run {
+                measured: Some(self.judge(method, executed)?),
+                ..self.empty(method)
+            },
             Ok(None) => {
                 return Err(CliError::Interrupted {
                     kept: String::new(),
@@ -145,10 +144,18 @@ impl Setting<'_> {
                     source: Box::new(error),
                 });
             }
-            Err(error) => run.unavailable = Some(render::chain(&error)),
-        }
+            Err(error) => self.unavailable(method, render::chain(&error)),
+        };
         step.end();
         Ok(run)
+    }
+
+    /// A run that says why there are no measurements.
+    pub fn unavailable(&self, method: &Method, reason: String) -> Run {
+        Run {
+            unavailable: Some(reason),
+            ..self.empty(method)
+        }
     }
 
     fn execute(
@@ -183,8 +190,10 @@ impl Setting<'_> {
             outputs,
             memory: (memory_bytes, saved_bytes),
         } = executed;
-        let broken =
-            |reason: String| CliError::Input(format!("`{}`: {reason}", method.preset.name));
+        let broken = |reason: String| {
+            let name = &method.preset.name;
+            CliError::Contract(format!("`{name}` breaks the contract of outputs: {reason}"))
+        };
         let Outputs {
             visibility,
             status,

@@ -115,7 +115,7 @@ pub fn params(
     let mut params = BTreeMap::new();
     let mut set = |name: &str, value: &str| match preset.graph.parse_param(name, value) {
         Ok(value) => Ok(params.insert(name.into(), value)),
-        Err(error) => Err(CliError::Input(format!("`{}`: {error}", preset.name))),
+        Err(error) => Err(CliError::Input(error.to_string())),
     };
     for Assignment { name, value } in assignments
         .iter()

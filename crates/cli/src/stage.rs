@@ -29,19 +29,9 @@ impl Stage {
             argument: args.scene.clone(),
             obj: obj_setup(args)?,
         };
-        let (mut scene, report) =
-            SceneLibrary::from_environment()
-                .load(&request)
-                .map_err(|error| match error {
-                    // Which flags to add or to leave out is a matter of usage.
-                    SceneError::ObjNeedsView { .. }
-                    | SceneError::ViewNotWanted { .. }
-                    | SceneError::BadView { .. } => CliError::Usage(error.to_string()),
-                    error => CliError::Scene {
-                        name: args.scene.clone(),
-                        source: Box::new(error),
-                    },
-                })?;
+        let library = SceneLibrary::from_environment();
+        let loaded = library.load(&request);
+        let (mut scene, report) = loaded.map_err(|error| explain(error, args, &library))?;
         if report.has_warnings() {
             note(&format!(
                 "{}: {}",
@@ -54,6 +44,25 @@ impl Stage {
         }
         let views = choose(&scene, args.view.as_deref())?;
         Ok(Self { scene, views })
+    }
+}
+
+fn explain(error: SceneError, args: &SceneArgs, library: &SceneLibrary) -> CliError {
+    match error {
+        // Which flags to add or to leave out is a matter of usage.
+        SceneError::ObjNeedsView { .. }
+        | SceneError::ViewNotWanted { .. }
+        | SceneError::BadView { .. } => CliError::Usage(error.to_string()),
+        SceneError::UnknownScene { .. } => {
+            let known = library.list();
+            let hint = closest(&args.scene, known.iter().map(|scene| scene.name.as_str()))
+                .map_or(String::new(), |name| format!("; did you mean `{name}`?"));
+            CliError::Input(format!("{error}{hint}"))
+        }
+        error => CliError::Scene {
+            name: args.scene.clone(),
+            source: Box::new(error),
+        },
     }
 }
 

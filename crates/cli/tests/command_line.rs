@@ -217,7 +217,7 @@ fn a_scene_or_view_that_is_not_there_is_named() {
     let scene = skiagraph(folder.path(), &["run", "rt", "--scene", "prak"]);
     assert_exit(&scene, 1);
     assert!(
-        stderr(&scene).contains("prak") && stderr(&scene).contains("park"),
+        stderr(&scene).contains("did you mean `park`?"),
         "{}",
         stderr(&scene)
     );

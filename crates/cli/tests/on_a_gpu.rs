@@ -7,6 +7,21 @@ use std::{
     process::{Command, Output},
 };
 
+/// A graph that clears two textures and calls them a shadow method.
+const LIT: &str = r#"(
+    format: 1,
+    description: "everything is lit",
+    materials: [
+        Texture(name: "visibility", format: R8Uint, size: Viewport),
+        Texture(name: "status", format: R8Uint, size: Viewport),
+    ],
+    passes: [
+        Clear(name: "light", target: "visibility", value: (1, 0, 0, 0)),
+        Clear(name: "certain", target: "status", value: (2, 0, 0, 0)),
+    ],
+    outputs: [(name: "visibility"), (name: "status")],
+)"#;
+
 #[track_caller]
 fn skiagraph(folder: &Path, line: &str) -> Output {
     let output = Command::new(env!("CARGO_BIN_EXE_skiagraph"))
@@ -113,22 +128,9 @@ fn compare_measures_judges_and_pictures_every_run() {
 #[test]
 fn a_file_on_disk_stands_beside_the_presets_and_wins_over_one_of_its_path() {
     let folder = tempfile::tempdir().unwrap();
-    let lit = r#"(
-        format: 1,
-        description: "everything is lit",
-        materials: [
-            Texture(name: "visibility", format: R8Uint, size: Viewport),
-            Texture(name: "status", format: R8Uint, size: Viewport),
-        ],
-        passes: [
-            Clear(name: "light", target: "visibility", value: (1, 0, 0, 0)),
-            Clear(name: "certain", target: "status", value: (2, 0, 0, 0)),
-        ],
-        outputs: [(name: "visibility"), (name: "status")],
-    )"#;
     fs::create_dir(folder.path().join("pipelines")).unwrap();
-    fs::write(folder.path().join("pipelines/nsm.ron"), lit).unwrap();
-    fs::write(folder.path().join("all_lit.ron"), lit).unwrap();
+    fs::write(folder.path().join("pipelines/nsm.ron"), LIT).unwrap();
+    fs::write(folder.path().join("all_lit.ron"), LIT).unwrap();
     let output = skiagraph(
         folder.path(),
         "compare all_lit.ron nsm --size 32x32 --frames 1 --out . --format json",
@@ -225,6 +227,35 @@ fn an_unwritable_file_is_named() {
         text.contains("nowhere/v.png") || text.contains("nowhere\\v.png"),
         "{text}"
     );
+}
+
+#[test]
+fn outputs_that_break_the_contract_are_named_and_the_others_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("odd.ron"),
+        LIT.replace("value: (2,", "value: (7,"),
+    )
+    .unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+        .args("compare odd.ron nsm --size 16x16 --map-size 16 --frames 1 --out .".split(' '))
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        text.contains("`odd.ron`") && text.contains("status is 7"),
+        "{text}"
+    );
+    let results = fs::read_to_string(folder.path().join("results.json")).unwrap();
+    let results: Value = serde_json::from_str(&results).unwrap();
+    assert!(results["runs"][0]["unavailable"].is_string());
+    assert!(
+        results["runs"][0]["wrong"].is_null(),
+        "nothing was measured"
+    );
+    assert!(results["runs"][1]["wrong"]["total"].is_u64());
 }
 
 #[test]

@@ -70,6 +70,7 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
         provider,
         oracle,
         results,
+        broken: Vec::new(),
     };
     let outcome = comparison.views(&views, &methods);
     comparison.finish(outcome, planned)
@@ -97,6 +98,8 @@ struct Comparison<'a> {
     provider: SceneProvider,
     oracle: Oracle<'a>,
     results: Results,
+    /// Why graphs broke the contract of outputs.
+    broken: Vec<String>,
 }
 
 impl Comparison<'_> {
@@ -157,7 +160,15 @@ impl Comparison<'_> {
             out: &self.args.out,
         };
         for method in methods {
-            let run = setting.measure(method, &mut self.provider)?;
+            let run = match setting.measure(method, &mut self.provider) {
+                // The others are worth measuring all the same.
+                Err(CliError::Contract(reason)) => {
+                    let run = setting.unavailable(method, reason.clone());
+                    self.broken.push(reason);
+                    run
+                }
+                run => run?,
+            };
             self.results.runs.push(run);
             self.results.save(&self.args.out)?;
         }
@@ -165,7 +176,12 @@ impl Comparison<'_> {
     }
 
     fn finish(self, outcome: Result<(), CliError>, planned: usize) -> Result<(), CliError> {
-        let Self { args, results, .. } = self;
+        let Self {
+            args,
+            results,
+            broken,
+            ..
+        } = self;
         if args.format == Format::Json && !results.runs.is_empty() {
             print(&results.to_json())?;
         }
@@ -181,6 +197,9 @@ impl Comparison<'_> {
             return Err(CliError::Interrupted { kept });
         }
         outcome?;
+        if !broken.is_empty() {
+            return Err(CliError::Contract(broken.join("\nerror: ")));
+        }
         if results.runs.iter().all(|run| run.measured.is_none()) {
             return Err(CliError::Input(format!(
                 "no method can run on {}; the reasons stand above",
@@ -198,6 +217,12 @@ impl Comparison<'_> {
 /// Each preset with each map size; a preset without that param once.
 fn methods<'a>(presets: &'a [Preset], args: &CompareArgs) -> Result<Vec<Method<'a>>, CliError> {
     preset::check_names(presets, &args.params)?;
+    let mapless = presets
+        .iter()
+        .all(|preset| !preset::has_param(preset, preset::MAP_SIZE));
+    if mapless && !args.map_size.is_empty() {
+        note("--map-size has no effect: none of these graphs has the param `map_size`");
+    }
     let mut methods = Vec::new();
     for preset in presets {
         let mut sizes: Vec<Option<u32>> = unique(&args.map_size).into_iter().map(Some).collect();

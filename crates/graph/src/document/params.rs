@@ -130,6 +130,9 @@ impl<'de> Deserialize<'de> for Written {
             fn visit_f64<E>(self, value: f64) -> Result<Written, E> {
                 Ok(Written::Number(value))
             }
+            fn visit_unit<E: serde::de::Error>(self) -> Result<Written, E> {
+                Err(E::custom("a word stands in quotes: \"word\""))
+            }
             fn visit_str<E>(self, value: &str) -> Result<Written, E> {
                 Ok(Written::Word(value.to_owned()))
             }

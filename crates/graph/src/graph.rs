@@ -66,7 +66,17 @@ impl Graph {
         let missing = |message: String| Diagnostics::from(Diagnostic::error(Code::MissingFile, message));
         let text = match sources.read(path) {
             Ok(Some(text)) => text,
-            Ok(None) => return Err(missing(format!("there is no document `{path}`"))),
+            Ok(None) => {
+                let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
+                let listed: Vec<String> = sources.list(folder).into_iter().filter(|name| name.ends_with(".ron")).collect();
+                let hint = suggestion(name, listed.iter().map(String::as_str)).filter(|hint| hint.starts_with("did"));
+                let error = Diagnostic::error(Code::MissingFile, format!("there is no document `{path}`"));
+                return Err(match hint {
+                    Some(hint) => error.help(hint),
+                    None => error,
+                }
+                .into());
+            }
             Err(why) => return Err(missing(format!("the document `{path}` cannot be read: {why}"))),
         };
         let mut diagnostics = Vec::new();

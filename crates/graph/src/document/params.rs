@@ -250,8 +250,11 @@ impl Param {
                 return Err("the value must be finite".to_owned());
             }
             if self.min.is_some_and(|min| number < min) || self.max.is_some_and(|max| number > max) {
-                let bound = |bound: Option<f64>| bound.map_or("…".to_owned(), |b| b.to_string());
-                return Err(format!("must lie in {}..{}, not {number}", bound(self.min), bound(self.max)));
+                return Err(match (self.min, self.max) {
+                    (Some(min), Some(max)) => format!("must lie in {min}..{max}, not {number}"),
+                    (Some(min), None) => format!("must be at least {min}, not {number}"),
+                    (None, max) => format!("must be at most {}, not {number}", max.unwrap_or(f64::INFINITY)),
+                });
             }
         }
         Ok(())

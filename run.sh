@@ -8,6 +8,8 @@
 #   ./run.sh --scene sponza --out out/my-sponza
 set -euo pipefail
 cd "$(dirname "$0")"
+# Without a session (a container, say) Mesa asks for this folder and complains on stderr.
+export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-${TMPDIR:-/tmp}}"
 
 scene='' out='' previous=''
 for argument in "$@"; do

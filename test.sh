@@ -5,6 +5,8 @@
 # Tests on the real Sponza mesh look for it in $SKIAGRAPH_ASSETS and say so where that is not set.
 set -euo pipefail
 cd "$(dirname "$0")"
+# Without a session (a container, say) Mesa asks for this folder and complains on stderr.
+export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-${TMPDIR:-/tmp}}"
 
 scripts/setup.sh
 cargo test --workspace --locked "$@"

@@ -25,7 +25,7 @@ var<storage, read_write> hits: array<Hit>;
 // Both as in trace_fold.wgsl.
 const GROUP_SIZE: u32 = 64u;
 const GROUPS_PER_ROW: u32 = 65535u;
-// As `STACK_SIZE` in crates/passes/src/provider.rs, which refuses a deeper hierarchy.
+// As `MAX_DEPTH` in crates/scene/src/bvh.rs, which builds no deeper hierarchy: a level adds one entry at most.
 const STACK_SIZE: u32 = 64u;
 
 // Boxes are padded by this share of the distance to the scene's farthest side: 16 ulp, where Woop et al. prove 5 enough for
@@ -80,7 +80,8 @@ struct Prepared {
     origin: vec3<f32>,
     inverse: vec3<f32>,
     pad: f32,
-    axes: vec3<u32>,
+    // The direction's longest component.
+    longest: u32,
     shear: vec3<f32>,
 }
 
@@ -89,16 +90,13 @@ fn prepare(ray: Ray) -> Prepared {
     prepared.origin = ray.origin;
 
     let size = abs(ray.direction);
-    var z = select(0u, 1u, size.y > size.x);
-    if size.z > size[z] {
-        z = 2u;
-    }
-    prepared.axes = vec3((z + 1u) % 3u, (z + 2u) % 3u, z);
-    let d = ray.direction;
-    prepared.shear = vec3(d[prepared.axes.x], d[prepared.axes.y], 1.0) / d[z];
+    let largest = max(size.x, max(size.y, size.z));
+    prepared.longest = select(select(2u, 1u, size.y == largest), 0u, size.x == largest);
+    let d = permute(ray.direction, prepared.longest);
+    prepared.shear = vec3(d.xy, 1.0) / d.z;
 
-    let steep = size * STEEPEST <= vec3(size[z]);
-    prepared.inverse = vec3(1.0) / select(d, vec3(size[z] / STEEPEST), steep);
+    let steep = size * STEEPEST <= vec3(largest);
+    prepared.inverse = vec3(1.0) / select(ray.direction, vec3(largest / STEEPEST), steep);
     let root = scene_bvh_nodes[0];
     let farthest = max(abs(root.low - ray.origin), abs(root.high - ray.origin));
     prepared.pad = PAD * max(farthest.x, max(farthest.y, farthest.z));
@@ -108,10 +106,10 @@ fn prepare(ray: Ray) -> Prepared {
 // Where the ray enters the padded box, or MISSED.
 const MISSED: f32 = 3.0e38;
 
-fn enter(ray: Prepared, low: vec3<f32>, high: vec3<f32>, t_min: f32, t_max: f32) -> f32 {
+fn enter(ray: Prepared, box: Node, t_min: f32, t_max: f32) -> f32 {
     // Padding the difference, not the box: a pad below one ulp of a far-off box's coordinates would be lost.
-    let to_low = ((low - ray.origin) - ray.pad) * ray.inverse;
-    let to_high = ((high - ray.origin) + ray.pad) * ray.inverse;
+    let to_low = ((box.low - ray.origin) - ray.pad) * ray.inverse;
+    let to_high = ((box.high - ray.origin) + ray.pad) * ray.inverse;
     let near = min(to_low, to_high);
     let far = max(to_low, to_high);
     let entry = max(max(near.x, near.y), max(near.z, t_min));
@@ -128,27 +126,31 @@ fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
     let prepared = prepare(ray);
     var stack: array<u32, STACK_SIZE>;
     var height = 0u;
-    var node = 0u;
-    if enter(prepared, scene_bvh_nodes[0].low, scene_bvh_nodes[0].high, ray.t_min, hit.t) == MISSED {
+    var node = scene_bvh_nodes[0];
+    if enter(prepared, node, ray.t_min, hit.t) == MISSED {
         return hit;
     }
     loop {
-        let first = scene_bvh_nodes[node].first;
-        let primitives = scene_bvh_nodes[node].primitives;
-        if primitives == 0u {
-            let here = enter(prepared, scene_bvh_nodes[first].low, scene_bvh_nodes[first].high, ray.t_min, hit.t);
-            let there = enter(prepared, scene_bvh_nodes[first + 1u].low, scene_bvh_nodes[first + 1u].high, ray.t_min, hit.t);
-            let swap = there < here;
-            if min(here, there) != MISSED {
-                node = select(first, first + 1u, swap);
-                if max(here, there) != MISSED {
+        let first = node.first;
+        if node.primitives == 0u {
+            let left = scene_bvh_nodes[first];
+            let right = scene_bvh_nodes[first + 1u];
+            let to_left = enter(prepared, left, ray.t_min, hit.t);
+            let to_right = enter(prepared, right, ray.t_min, hit.t);
+            if min(to_left, to_right) != MISSED {
+                let swap = to_right < to_left;
+                if max(to_left, to_right) != MISSED {
                     stack[height] = select(first + 1u, first, swap);
                     height += 1u;
+                }
+                node = left;
+                if swap {
+                    node = right;
                 }
                 continue;
             }
         } else {
-            for (var slot = first; slot < first + primitives; slot++) {
+            for (var slot = first; slot < first + node.primitives; slot++) {
                 let primitive = scene_bvh_primitives[slot];
                 if primitive != skipped && intersect(prepared, primitive, ray.t_min, &hit) && first_found {
                     return hit;
@@ -159,7 +161,7 @@ fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
             break;
         }
         height -= 1u;
-        node = stack[height];
+        node = scene_bvh_nodes[stack[height]];
     }
     return hit;
 }
@@ -178,19 +180,25 @@ fn intersect(ray: Prepared, primitive: u32, t_min: f32, hit: ptr<function, Hit>)
     if sum == 0.0 {
         return false;
     }
-    let t = (weights.x * a.z + weights.y * b.z + weights.z * c.z) / sum;
+    // Divided first: the product of a small area and a small distance would underflow.
+    let barycentric = weights / sum;
+    let t = dot(barycentric, vec3(a.z, b.z, c.z));
     if !(t > t_min && t <= (*hit).t) {
         return false;
     }
-    *hit = Hit(t, primitive, weights.y / sum, weights.z / sum);
+    *hit = Hit(t, primitive, barycentric.y, barycentric.z);
     return true;
 }
 
 // A corner in the space where the ray is the z axis, z in units of its direction.
 fn shear(ray: Prepared, corner: vec3<f32>) -> vec3<f32> {
-    let p = corner - ray.origin;
-    let z = p[ray.axes.z];
-    return vec3(p[ray.axes.x] - ray.shear.x * z, p[ray.axes.y] - ray.shear.y * z, ray.shear.z * z);
+    let p = permute(corner - ray.origin, ray.longest);
+    return vec3(p.xy - ray.shear.xy * p.z, ray.shear.z * p.z);
+}
+
+// The axes in cyclic order, `last` last. Selects, because a vector that is indexed at run time lives in memory.
+fn permute(v: vec3<f32>, last: u32) -> vec3<f32> {
+    return select(select(v, v.zxy, last == 1u), v.yzx, last == 0u);
 }
 
 // Twice the signed area of the origin, p and q. Always evaluated from the lower corner to the higher: edge(p, q) is

@@ -1,3 +1,43 @@
-//! Skiagraph.
+//! `skiagraph`: runs, times and judges shadow methods that are written as RON graphs and WGSL shaders.
+//!
+//! The program is the first user of the graph's embedding interface and has no rights of its own: whatever it does, a
+//! host program can do as well.
 
-fn main() {}
+mod args;
+mod commands;
+mod contract;
+mod csv_table;
+mod error;
+mod files;
+mod interrupt;
+mod measure;
+mod parse;
+mod picture;
+mod preset;
+mod progress;
+mod reference;
+mod render;
+mod results;
+mod stage;
+mod table;
+
+use args::{Cli, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let adapter = cli.adapter.as_deref();
+    let outcome = match &cli.command {
+        Command::Compare(args) => commands::compare::compare(args, adapter),
+        Command::Run(args) => commands::run::run(args, adapter),
+        Command::Check(args) => commands::check::check(args),
+        Command::Presets => commands::presets::presets(),
+        Command::Scenes => commands::scenes::scenes(),
+        Command::Doctor => commands::doctor::doctor(adapter),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => error.report(),
+    }
+}

@@ -82,7 +82,7 @@ impl Memory {
                     memory.samplers.insert(id, sampler(device, &resource.name, entry));
                 }
                 ResourceKind::Provided(_) => {
-                    let built = provider.build(&resource.name, device, queue);
+                    let built = scoped(device, &resource.name, || provider.build(&resource.name, device, queue))?;
                     let buffer = built.map_err(|why| ExecuteError::Provider { name: resource.name.clone(), why: why.0 })?;
                     memory.buffers.insert(id, buffer);
                 }

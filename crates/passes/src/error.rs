@@ -12,17 +12,6 @@ pub enum Error {
         /// What there is.
         known: Vec<String>,
     },
-    /// The hierarchy does not fit the traversal's stack.
-    #[error(
-        "the hierarchy over the scene is {depth} levels deep, but the tracer's stack holds {limit}; \
-         look for thousands of nested or coincident triangles"
-    )]
-    TooDeep {
-        /// Levels of the hierarchy.
-        depth: u32,
-        /// Levels that the tracer can walk.
-        limit: u32,
-    },
     /// The device cannot bind a buffer of that size.
     #[error("`{name}` needs a buffer of {bytes} bytes, but the device binds at most {limit}")]
     TooLarge {

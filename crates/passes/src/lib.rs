@@ -2,7 +2,30 @@
 //!
 //! - [`SceneProvider`] uploads a [`skiagraph_scene::Scene`] piece by piece, as live passes ask for it.
 //! - [`registry`] knows the standard pass kinds and [`Trace`]: rays in, hits out, on compute shaders.
-//! - [`EmbeddedSources`] holds the presets and their shaders, [`presets`] lists them.
+//! - [`EmbeddedSources`] holds the presets and their shaders, [`presets()`] lists them.
+//!
+//! ```no_run
+//! use skiagraph_graph::{Executor, Frame, Graph, PlanRequest, gpu};
+//! use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
+//! # fn scene() -> skiagraph_scene::Scene { unimplemented!() }
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let (scene, viewport) = (std::sync::Arc::new(scene()), [1024, 1024]);
+//! let mut provider = SceneProvider::new(scene.clone());
+//! provider.set_view(&scene.views[0], viewport);
+//!
+//! let graph = Graph::load("pipelines/rt.ron", &registry(), &EmbeddedSources)?;
+//! let plan = graph.plan(&PlanRequest::new(viewport, &provider))?;
+//! let gpu = gpu::open(None)?;
+//! let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider)?;
+//! let mut encoder = gpu.device.create_command_encoder(&Default::default());
+//! executor.encode(&mut encoder, &Frame { read: &["visibility"], ..Frame::default() })?;
+//! gpu.queue.submit([encoder.finish()]);
+//! executor.submitted(&gpu.queue)?;
+//! let visibility = &executor.finish()?.readbacks[0];
+//! # let _ = visibility;
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod error;
 pub mod presets;
@@ -11,6 +34,6 @@ pub mod trace;
 pub mod uniforms;
 
 pub use error::Error;
-pub use presets::{EmbeddedSources, presets, registry};
+pub use presets::{EmbeddedSources, Preset, presets, registry};
 pub use provider::SceneProvider;
 pub use trace::Trace;

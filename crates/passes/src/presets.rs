@@ -30,7 +30,9 @@ impl Sources for EmbeddedSources {
         let Some(file) = Self::root(path).and_then(|(root, rest)| root.get_file(rest)) else {
             return Ok(None);
         };
-        let text = file.contents_utf8().ok_or_else(|| format!("{path} is not UTF-8"))?;
+        let text = file
+            .contents_utf8()
+            .ok_or_else(|| format!("{path} is not UTF-8"))?;
         Ok(Some(text.into()))
     }
 
@@ -38,7 +40,11 @@ impl Sources for EmbeddedSources {
         let Some((root, rest)) = Self::root(folder.trim_end_matches('/')) else {
             return Vec::new();
         };
-        let folder = if rest.is_empty() { Some(root) } else { root.get_dir(rest) };
+        let folder = if rest.is_empty() {
+            Some(root)
+        } else {
+            root.get_dir(rest)
+        };
         let files = folder.into_iter().flat_map(Dir::files);
         let names = files.filter_map(|file| file.path().file_name()?.to_str());
         names.map(str::to_owned).collect()
@@ -60,7 +66,10 @@ pub fn presets() -> Vec<Preset> {
         .list("pipelines")
         .iter()
         .filter_map(|file| file.strip_suffix(".ron"))
-        .map(|name| Preset { name: name.to_owned(), path: format!("pipelines/{name}.ron") })
+        .map(|name| Preset {
+            name: name.to_owned(),
+            path: format!("pipelines/{name}.ron"),
+        })
         .collect();
     presets.sort_by(|a, b| a.name.cmp(&b.name));
     presets

@@ -9,9 +9,6 @@ use skiagraph_scene::{Bvh, BvhNode, Scene, View};
 use std::{collections::BTreeMap, sync::Arc};
 use wgpu::util::DeviceExt;
 
-/// Levels of the hierarchy that `trace_rays.wgsl` can walk: its `STACK_SIZE`, one entry per level at most.
-pub const STACK_SIZE: u32 = 64;
-
 const POSITIONS: &str = "scene.positions";
 const INDICES: &str = "scene.indices";
 const NORMALS: &str = "scene.normals";
@@ -21,8 +18,16 @@ const BVH_PRIMITIVES: &str = "scene.bvh_primitives";
 const CAMERA: &str = "camera";
 const LIGHT: &str = "light";
 
-const NAMES: [&str; 8] =
-    [POSITIONS, INDICES, NORMALS, NORMAL_INDICES, BVH_NODES, BVH_PRIMITIVES, CAMERA, LIGHT];
+const NAMES: [&str; 8] = [
+    POSITIONS,
+    INDICES,
+    NORMALS,
+    NORMAL_INDICES,
+    BVH_NODES,
+    BVH_PRIMITIVES,
+    CAMERA,
+    LIGHT,
+];
 
 /// Provides one scene under one view, on one device.
 ///
@@ -51,7 +56,12 @@ pub struct SceneProvider {
 impl SceneProvider {
     /// Provides `scene`. Builds nothing; until [`set_view`](Self::set_view) the `camera` is all zeros.
     pub fn new(scene: Arc<Scene>) -> Self {
-        Self { scene, camera: CameraUniform::default(), buffers: BTreeMap::new(), built: Vec::new() }
+        Self {
+            scene,
+            camera: CameraUniform::default(),
+            buffers: BTreeMap::new(),
+            built: Vec::new(),
+        }
     }
 
     /// The scene.
@@ -78,12 +88,22 @@ impl SceneProvider {
     ) -> Result<(), Error> {
         let limits = device.limits();
         let bytes = content.len() as u64;
-        let limit = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
+        let limit = limits
+            .max_buffer_size
+            .min(limits.max_storage_buffer_binding_size);
         if bytes > limit {
-            return Err(Error::TooLarge { name: name.to_owned(), bytes, limit });
+            return Err(Error::TooLarge {
+                name: name.to_owned(),
+                bytes,
+                limit,
+            });
         }
         let uniform = matches!(name, CAMERA | LIGHT);
-        let usage = if uniform { wgpu::BufferUsages::UNIFORM } else { wgpu::BufferUsages::STORAGE };
+        let usage = if uniform {
+            wgpu::BufferUsages::UNIFORM
+        } else {
+            wgpu::BufferUsages::STORAGE
+        };
         let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some(name),
             contents: content,
@@ -106,11 +126,13 @@ impl SceneProvider {
 
     fn upload_hierarchy(&mut self, device: &wgpu::Device) -> Result<(), Error> {
         let mut bvh = Bvh::build(&self.scene.mesh);
-        if bvh.depth > STACK_SIZE {
-            return Err(Error::TooDeep { depth: bvh.depth, limit: STACK_SIZE });
-        }
         if bvh.nodes.is_empty() {
-            bvh.nodes.push(BvhNode { min: [0.0; 3], first: 0, max: [0.0; 3], count: 1 });
+            bvh.nodes.push(BvhNode {
+                min: [0.0; 3],
+                first: 0,
+                max: [0.0; 3],
+                count: 1,
+            });
         }
         let nodes: Vec<[u32; 8]> = bvh.nodes.iter().map(node_words).collect();
         self.upload_items(BVH_NODES, &nodes, device)?;
@@ -142,7 +164,9 @@ impl SceneProvider {
 fn node_words(node: &BvhNode) -> [u32; 8] {
     let [low_x, low_y, low_z] = node.min.map(f32::to_bits);
     let [high_x, high_y, high_z] = node.max.map(f32::to_bits);
-    [low_x, low_y, low_z, node.first, high_x, high_y, high_z, node.count]
+    [
+        low_x, low_y, low_z, node.first, high_x, high_y, high_z, node.count,
+    ]
 }
 
 impl Provider for SceneProvider {
@@ -154,10 +178,18 @@ impl Provider for SceneProvider {
         let mesh = &self.scene.mesh;
         let corners = 3 * mesh.triangles.len();
         let array = |items: Option<usize>, stride| {
-            Some(Provided { items: items.map(|items| items as u64), stride, uniform: false })
+            Some(Provided {
+                items: items.map(|items| items as u64),
+                stride,
+                uniform: false,
+            })
         };
         let uniform = |bytes: usize| {
-            Some(Provided { items: Some(1), stride: bytes as u64, uniform: true })
+            Some(Provided {
+                items: Some(1),
+                stride: bytes as u64,
+                uniform: true,
+            })
         };
         match name {
             POSITIONS => array(Some(mesh.positions.len()), 16),
@@ -179,10 +211,14 @@ impl Provider for SceneProvider {
         _queue: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
         let known = NAMES.into_iter().find(|&known| known == name);
-        let name = known.ok_or_else(|| Error::Unknown { name: name.to_owned(), known: self.names() });
+        let name = known.ok_or_else(|| Error::Unknown {
+            name: name.to_owned(),
+            known: self.names(),
+        });
         let name = name.map_err(|error| error.to_string())?;
         if !self.buffers.contains_key(name) {
-            self.upload_named(name, device).map_err(|error| error.to_string())?;
+            self.upload_named(name, device)
+                .map_err(|error| error.to_string())?;
         }
         if !self.built.contains(&name) {
             self.built.push(name);

@@ -1,7 +1,10 @@
 //! `Trace`: rays in, hits out, through the scene's hierarchy, on compute shaders. The number of rays stays on the GPU.
 
 use serde::Deserialize;
-use skiagraph_graph::{Dispatch, Groups, Located, Lowering, PassKind, Program, Step};
+use skiagraph_graph::{
+    Located, Lowering, PassKind,
+    step::{Dispatch, Groups, Program, Step},
+};
 
 /// Which hit of a ray is recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -56,7 +59,10 @@ impl PassKind for Trace {
         let mut fold = pass.program_of("trace_fold");
         bind(pass, &mut fold, "count", &self.count);
         bind(pass, &mut fold, "groups", &groups);
-        pass.step(Step::Dispatch(Dispatch { program: fold, groups: Groups::Fixed([1; 3]) }));
+        pass.step(Step::Dispatch(Dispatch {
+            program: fold,
+            groups: Groups::Fixed([1; 3]),
+        }));
 
         let mut trace = pass.program_of("trace_rays");
         trace.compute = Some(pass.named(self.entry_point()));
@@ -66,7 +72,10 @@ impl PassKind for Trace {
         if let Some(skip) = &self.skip {
             bind(pass, &mut trace, "skip", skip);
         }
-        pass.step(Step::Dispatch(Dispatch { program: trace, groups: Groups::Indirect(groups) }));
+        pass.step(Step::Dispatch(Dispatch {
+            program: trace,
+            groups: Groups::Indirect(groups),
+        }));
     }
 }
 

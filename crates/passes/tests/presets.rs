@@ -3,19 +3,19 @@
 mod support;
 
 use glam::{DVec3, Vec3};
-use skiagraph_graph::{Executor, Graph, ParamValue, Plan, PlanRequest, gpu};
-use skiagraph_passes::{EmbeddedSources, SceneProvider, presets, registry};
+use skiagraph_graph::{Executor, ParamValue};
+use skiagraph_passes::presets;
 use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
-use std::{collections::BTreeMap, sync::Arc};
+use std::sync::Arc;
 use support::{
     brute::{self, MISS, Ray},
-    graphs::{run, values},
+    graphs::{open, plan, provider, run, values},
 };
 
 const VIEWPORT: [u32; 2] = [96, 64];
 
 /// A floor, and a box that floats above it.
-fn scene() -> Scene {
+fn scene() -> Arc<Scene> {
     let mut positions = vec![];
     let mut triangles = vec![];
     let mut quad = |corners: [Vec3; 4]| {
@@ -26,10 +26,15 @@ fn scene() -> Scene {
     quad([(-4.0, 4.0), (4.0, 4.0), (4.0, -4.0), (-4.0, -4.0)].map(|(x, z)| Vec3::new(x, 0.0, z)));
     for axis in 0..3 {
         for side in [-1.0, 1.0] {
-            let (u, v) = (Vec3::AXES[(axis + 1) % 3] * side, Vec3::AXES[(axis + 2) % 3]);
+            let (u, v) = (
+                Vec3::AXES[(axis + 1) % 3] * side,
+                Vec3::AXES[(axis + 2) % 3],
+            );
             let face = Vec3::AXES[axis] * side;
-            quad([face - u - v, face + u - v, face + u + v, face - u + v]
-                .map(|p| p * Vec3::new(1.0, 0.4, 1.0) + Vec3::Y * 1.5));
+            quad(
+                [face - u - v, face + u - v, face + u + v, face - u + v]
+                    .map(|p| p * Vec3::new(1.0, 0.4, 1.0) + Vec3::Y * 1.5),
+            );
         }
     }
     let view = View {
@@ -41,27 +46,14 @@ fn scene() -> Scene {
         near: 0.5,
         far: 50.0,
     };
-    Scene {
+    Arc::new(Scene {
         name: "box".into(),
         mesh: support::meshes::mesh(positions, triangles),
         views: vec![view],
-        light: DirectionalLight { direction: DVec3::new(-0.4, -1.0, -0.3) },
-    }
-}
-
-fn plan(path: &str, provider: &SceneProvider, params: &[(&str, ParamValue)], outputs: &[&str]) -> Plan {
-    let graph = Graph::load(path, &registry(), &EmbeddedSources).unwrap_or_else(|error| panic!("{error}"));
-    let mut request = PlanRequest::new(VIEWPORT, provider);
-    request.params = params.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect::<BTreeMap<_, _>>();
-    request.outputs = (!outputs.is_empty()).then(|| outputs.iter().map(|&name| name.to_owned()).collect());
-    graph.plan(&request).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn provider(scene: Scene) -> SceneProvider {
-    let view = scene.views[0].clone();
-    let mut provider = SceneProvider::new(Arc::new(scene));
-    provider.set_view(&view, VIEWPORT);
-    provider
+        light: DirectionalLight {
+            direction: DVec3::new(-0.4, -1.0, 0.3),
+        },
+    })
 }
 
 /// What a pixel shows.
@@ -88,25 +80,43 @@ fn truth(scene: &Scene, border: f64) -> Vec<Truth> {
     let answer = |ray: &Ray, skip| {
         let outer = brute::hits(&scene.mesh, ray, skip, -border);
         let inner = brute::hits(&scene.mesh, ray, skip, border);
-        (outer.first().map(|hit| hit.primitive) == inner.first().map(|hit| hit.primitive)).then(|| inner.first().copied())
+        (outer.first().map(|hit| hit.primitive) == inner.first().map(|hit| hit.primitive))
+            .then(|| inner.first().copied())
     };
     let pixel = |x, y| {
         let direction = camera.pixel_direction(x, y);
-        let ray = Ray { origin: camera.eye.as_vec3(), t_min: 0.0, direction: direction.as_vec3(), t_max: 50.0 };
-        let Some(seen) = answer(&ray, MISS) else { return Truth::Unsure };
-        let Some(seen) = seen else { return Truth::Background };
+        let ray = Ray {
+            origin: camera.eye.as_vec3(),
+            t_min: 0.0,
+            direction: direction.as_vec3(),
+            t_max: 50.0,
+        };
+        let Some(seen) = answer(&ray, MISS) else {
+            return Truth::Unsure;
+        };
+        let Some(seen) = seen else {
+            return Truth::Background;
+        };
         if scene.mesh.corner_normals(seen.primitive)[0].dot(towards) <= 0.0 {
             return Truth::FacingAway;
         }
         let position = camera.eye + direction * seen.t;
-        let ray = Ray { origin: position.as_vec3(), t_min: 0.0, direction: towards.as_vec3(), t_max: 50.0 };
+        let ray = Ray {
+            origin: position.as_vec3(),
+            t_min: 0.0,
+            direction: towards.as_vec3(),
+            t_max: 50.0,
+        };
         match answer(&ray, seen.primitive) {
             None => Truth::Unsure,
             Some(None) => Truth::Lit,
             Some(Some(_)) => Truth::Shadow,
         }
     };
-    (0..VIEWPORT[1]).flat_map(|y| (0..VIEWPORT[0]).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect()
+    (0..VIEWPORT[1])
+        .flat_map(|y| (0..VIEWPORT[0]).map(move |x| (x, y)))
+        .map(|(x, y)| pixel(x, y))
+        .collect()
 }
 
 fn count(truth: &[Truth], which: Truth) -> usize {
@@ -117,24 +127,46 @@ fn count(truth: &[Truth], which: Truth) -> usize {
 fn rt_agrees_with_rays_traced_by_hand() {
     let truth = truth(&scene(), 1e-4);
     // All kinds of pixels occur, and nearly all are settled.
-    for kind in [Truth::Background, Truth::FacingAway, Truth::Lit, Truth::Shadow] {
-        assert!(count(&truth, kind) > 50, "{kind:?}: {}", count(&truth, kind));
+    for kind in [
+        Truth::Background,
+        Truth::FacingAway,
+        Truth::Lit,
+        Truth::Shadow,
+    ] {
+        assert!(
+            count(&truth, kind) > 50,
+            "{kind:?}: {}",
+            count(&truth, kind)
+        );
     }
     assert!(count(&truth, Truth::Unsure) < truth.len() / 50);
 
     for per_pixel in [false, true] {
-        let mut provider = provider(scene());
-        let plan = plan("pipelines/rt.ron", &provider, &[("per_pixel", ParamValue::Bool(per_pixel))], &[]);
-        let report = run(plan, &mut provider, &["visibility", "status", "ray_count"], false);
+        let scene = scene();
+        let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
+        let plan = plan("pipelines/rt.ron", &provider, VIEWPORT, |request| {
+            request
+                .params
+                .insert("per_pixel".into(), ParamValue::Bool(per_pixel));
+        });
+        let report = run(plan, &mut provider, &["visibility", "status", "ray_count"]);
         let (visibility, status) = (values(&report, "visibility"), values(&report, "status"));
-        for (index, &truth) in truth.iter().enumerate().filter(|(_, truth)| truth.is_settled()) {
+        for (index, &truth) in truth
+            .iter()
+            .enumerate()
+            .filter(|(_, truth)| truth.is_settled())
+        {
             let expected = match truth {
                 Truth::Background => (1, 0),
                 Truth::FacingAway => (0, 1),
                 Truth::Lit => (1, 4),
                 Truth::Shadow | Truth::Unsure => (0, 4),
             };
-            assert_eq!((visibility[index], status[index]), expected, "pixel {index}, {truth:?}, per pixel: {per_pixel}");
+            assert_eq!(
+                (visibility[index], status[index]),
+                expected,
+                "pixel {index}, {truth:?}, per pixel: {per_pixel}"
+            );
         }
         let asked = status.iter().filter(|&&status| status == 4).count();
         let rays = values(&report, "ray_count")[0] as usize;
@@ -144,14 +176,19 @@ fn rt_agrees_with_rays_traced_by_hand() {
 
 #[test]
 fn nsm_is_wrong_at_contours_only_and_less_so_on_a_finer_map() {
-    // A shadow may be off by about a texel: 2 % of the floor's quads at a map of 64 texels' edge.
-    let settled = truth(&scene(), 0.03);
+    // A contour may be off by a texel or so: 12 % of a face of the box at a map of 64 texels' edge.
+    let settled = truth(&scene(), 0.12);
     let all = truth(&scene(), 1e-4);
     let mut wrong = vec![];
     for map_size in [64, 1024] {
-        let mut provider = provider(scene());
-        let plan = plan("pipelines/nsm.ron", &provider, &[("map_size", ParamValue::U32(map_size))], &[]);
-        let report = run(plan, &mut provider, &["visibility", "status"], false);
+        let scene = scene();
+        let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
+        let plan = plan("pipelines/nsm.ron", &provider, VIEWPORT, |request| {
+            request
+                .params
+                .insert("map_size".into(), ParamValue::U32(map_size));
+        });
+        let report = run(plan, &mut provider, &["visibility", "status"]);
         let (visibility, status) = (values(&report, "visibility"), values(&report, "status"));
         let expected = |truth| match truth {
             Truth::Background => (1, 0),
@@ -159,67 +196,98 @@ fn nsm_is_wrong_at_contours_only_and_less_so_on_a_finer_map() {
             Truth::Lit => (1, 2),
             Truth::Shadow | Truth::Unsure => (0, 3),
         };
-        for (index, &truth) in settled.iter().enumerate().filter(|(_, truth)| truth.is_settled()) {
-            assert_eq!((visibility[index], status[index]), expected(truth), "pixel {index}, {truth:?}, map {map_size}");
+        for (index, &truth) in settled
+            .iter()
+            .enumerate()
+            .filter(|(_, truth)| truth.is_settled())
+        {
+            assert_eq!(
+                (visibility[index], status[index]),
+                expected(truth),
+                "pixel {index}, {truth:?}, map {map_size}"
+            );
         }
-        let pixels = all.iter().enumerate().filter(|(_, truth)| truth.is_settled());
-        wrong.push(pixels.filter(|(index, truth)| visibility[*index] != expected(**truth).0).count());
+        let pixels = all
+            .iter()
+            .enumerate()
+            .filter(|(_, truth)| truth.is_settled());
+        wrong.push(
+            pixels
+                .filter(|(index, truth)| visibility[*index] != expected(**truth).0)
+                .count(),
+        );
     }
-    assert!(wrong[0] > 0 && wrong[1] * 4 < wrong[0], "{wrong:?} wrong pixels");
+    assert!(
+        wrong[0] > 0 && wrong[1] * 4 < wrong[0],
+        "{wrong:?} wrong pixels"
+    );
 }
 
 #[test]
 fn only_a_traced_graph_builds_a_hierarchy() {
     for (preset, traces) in [("nsm", false), ("rt", true)] {
-        let mut provider = provider(scene());
-        let plan = plan(&format!("pipelines/{preset}.ron"), &provider, &[], &[]);
-        assert_eq!(plan.provided().iter().any(|name| name.contains("bvh")), traces, "{preset}");
-        run(plan, &mut provider, &[], false);
-        assert_eq!(provider.built().iter().any(|name| name.contains("bvh")), traces, "{preset}: {:?}", provider.built());
+        let scene = scene();
+        let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
+        let plan = plan(
+            &format!("pipelines/{preset}.ron"),
+            &provider,
+            VIEWPORT,
+            |_| (),
+        );
+        assert_eq!(
+            plan.provided().iter().any(|name| name.contains("bvh")),
+            traces,
+            "{preset}"
+        );
+        run(plan, &mut provider, &[]);
+        assert_eq!(
+            provider.built().iter().any(|name| name.contains("bvh")),
+            traces,
+            "{preset}: {:?}",
+            provider.built()
+        );
     }
-}
-
-#[test]
-fn what_no_output_needs_is_culled_and_not_built() {
-    let provider = provider(scene());
-    let plan = plan("pipelines/rt.ron", &provider, &[], &["ray_count"]);
-    let live: Vec<String> = plan.passes().into_iter().map(|pass| pass.name).collect();
-    assert_eq!(live, ["primitive", "surface", "clear_ray_count", "fill_rays"]);
-    let mut culled: Vec<String> = plan.culled().into_iter().map(|pass| pass.name).collect();
-    culled.sort();
-    assert_eq!(culled, ["fix_pixels", "trace_rays"]);
-    assert!(!plan.provided().iter().any(|name| name.contains("bvh")));
 }
 
 #[test]
 fn an_empty_scene_is_all_background() {
     for preset in presets() {
-        let mut provider = provider(Scene { mesh: Mesh::default(), ..scene() });
-        let plan = plan(&preset.path, &provider, &[], &[]);
-        let report = run(plan, &mut provider, &["visibility", "status"], false);
-        assert!(values(&report, "visibility").iter().all(|&visibility| visibility == 1), "{}", preset.name);
-        assert!(values(&report, "status").iter().all(|&status| status == 0), "{}", preset.name);
-    }
-}
-
-#[test]
-fn presets_are_listed_by_name() {
-    let names: Vec<String> = presets().into_iter().map(|preset| preset.name).collect();
-    assert_eq!(names, ["nsm", "rt"]);
-    for preset in presets() {
-        let graph = Graph::load(&preset.path, &registry(), &EmbeddedSources).unwrap_or_else(|error| panic!("{error}"));
-        assert!(!graph.description().is_empty());
-        assert!(graph.outputs().contains(&"visibility") && graph.outputs().contains(&"status"), "{}", preset.name);
-        assert!(graph.warnings().is_empty(), "{}: {:?}", preset.name, graph.warnings());
+        let scene = Arc::new(Scene {
+            mesh: Mesh::default(),
+            ..Scene::clone(&scene())
+        });
+        let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
+        let plan = plan(&preset.path, &provider, VIEWPORT, |_| ());
+        let report = run(plan, &mut provider, &["visibility", "status"]);
+        assert!(
+            values(&report, "visibility")
+                .iter()
+                .all(|&visibility| visibility == 1),
+            "{}",
+            preset.name
+        );
+        assert!(
+            values(&report, "status").iter().all(|&status| status == 0),
+            "{}",
+            preset.name
+        );
     }
 }
 
 #[test]
 fn two_graphs_share_what_the_provider_built() {
-    let gpu = gpu::open(None).unwrap_or_else(|error| panic!("{error}"));
-    let mut provider = provider(scene());
+    let gpu = open();
+    let scene = scene();
+    let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
     let executors: Vec<Executor> = ["rt", "nsm"]
-        .map(|preset| plan(&format!("pipelines/{preset}.ron"), &provider, &[], &[]))
+        .map(|preset| {
+            plan(
+                &format!("pipelines/{preset}.ron"),
+                &provider,
+                VIEWPORT,
+                |_| (),
+            )
+        })
         .into_iter()
         .map(|plan| Executor::new(&gpu.device, &gpu.queue, plan, &mut provider).unwrap())
         .collect();
@@ -227,5 +295,10 @@ fn two_graphs_share_what_the_provider_built() {
     let mut built = provider.built().to_vec();
     built.sort_unstable();
     built.dedup();
-    assert_eq!(built.len(), provider.built().len(), "{:?}", provider.built());
+    assert_eq!(
+        built.len(),
+        provider.built().len(),
+        "{:?}",
+        provider.built()
+    );
 }

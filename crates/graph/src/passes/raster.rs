@@ -78,13 +78,13 @@ pub struct ColorEntry {
 
 #[derive(Clone, Debug, Deserialize)]
 enum ColorLoad {
-    Clear([f64; 4]),
+    Clear(f64, f64, f64, f64),
     Load,
 }
 
 impl Default for ColorLoad {
     fn default() -> Self {
-        Self::Clear([0.0; 4])
+        Self::Clear(0.0, 0.0, 0.0, 0.0)
     }
 }
 
@@ -110,7 +110,7 @@ impl ColorEntry {
         ColorTarget {
             target: self.target.clone(),
             clear: match self.load {
-                ColorLoad::Clear(value) => Some(value),
+                ColorLoad::Clear(r, g, b, a) => Some([r, g, b, a]),
                 ColorLoad::Load => None,
             },
             blend: self.blend.map(|blend| match blend {

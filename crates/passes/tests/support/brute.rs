@@ -46,7 +46,11 @@ pub fn plane_hit(mesh: &Mesh, primitive: u32, ray: &Ray) -> Option<Exact> {
     let u = to.dot(normal) / determinant;
     let v = direction.dot(to.cross(ab)) / determinant;
     let t = ac.dot(to.cross(ab)) / determinant;
-    Some(Exact { t, primitive, weights: DVec3::new(1.0 - u - v, u, v) })
+    Some(Exact {
+        t,
+        primitive,
+        weights: DVec3::new(1.0 - u - v, u, v),
+    })
 }
 
 /// All hits whose smallest weight is at least `border` (negative: near misses too), nearest first.

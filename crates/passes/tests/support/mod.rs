@@ -16,7 +16,10 @@ pub fn expanded(path: &str) -> String {
 }
 
 fn expand(path: &str, seen: &mut BTreeSet<String>) -> String {
-    let text = EmbeddedSources.read(&format!("shaders/{path}")).unwrap().unwrap_or_else(|| panic!("no shader {path}"));
+    let text = EmbeddedSources
+        .read(&format!("shaders/{path}"))
+        .unwrap()
+        .unwrap_or_else(|| panic!("no shader {path}"));
     let mut whole = String::new();
     for line in text.lines() {
         match line.strip_prefix("#import \"") {

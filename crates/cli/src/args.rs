@@ -1,0 +1,254 @@
+//! The command line as clap reads it. Exit codes: 0 fine, 1 the input is wrong, 2 usage, 3 no usable GPU.
+
+use crate::parse::{self, Assignment, Save, Size};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use glam::DVec3;
+use skiagraph_reference::OracleMode;
+use std::path::PathBuf;
+
+/// Runs, times and judges shadow methods that are written as RON graphs and WGSL shaders.
+#[derive(Debug, Parser)]
+#[command(
+    name = "skiagraph",
+    version,
+    propagate_version = true,
+    after_help = "Example:\n  skiagraph compare rt nsm --scene park --size 512x512\n\n\
+        Exit codes: 0 fine, 1 the input is wrong, 2 wrong usage, 3 no usable GPU, 130 stopped by Ctrl-C."
+)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// GPU to use: part of its name, in any case. Without it: $WGPU_ADAPTER_NAME, else the best one found.
+    #[arg(long, global = true, value_name = "NAME")]
+    pub adapter: Option<String>,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene with several shadow methods: GPU time per pass and wrong pixels, side by side.
+    #[command(after_help = "Examples:\n  skiagraph compare\n  \
+        skiagraph compare rt nsm --scene park --view all --size 512x512,1024x1024 --map-size 1024,2048\n  \
+        skiagraph compare nsm --scene house.obj --eye 0,2,8 --look 0,0,-1 --light 0.3,-1,-0.2\n  \
+        skiagraph compare rt my_method.ron --oracle offset:0.03 --format markdown")]
+    Compare(CompareArgs),
+    /// Render one frame with one graph and save any of its materials.
+    #[command(
+        after_help = "Examples:\n  skiagraph run nsm --save visibility=shadow.png\n  \
+        skiagraph run nsm --save shadow_map@create_shadow_map=map.png --set map_size=512\n  \
+        skiagraph run my_method.ron --scene sponza --save status=status.bin"
+    )]
+    Run(RunArgs),
+    /// Check graphs and their shaders. Needs no GPU.
+    #[command(after_help = "Example:\n  skiagraph check my_method.ron pipelines/*.ron")]
+    Check(CheckArgs),
+    /// List the built-in shadow methods and their params.
+    #[command(after_help = "Example:\n  skiagraph presets")]
+    Presets,
+    /// List the scenes and their views.
+    #[command(after_help = "Example:\n  skiagraph scenes")]
+    Scenes,
+    /// Show the GPUs, what they can do, and where meshes are searched.
+    #[command(after_help = "Example:\n  skiagraph doctor --adapter llvmpipe")]
+    Doctor,
+}
+
+/// What is drawn, and from where.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Scene")]
+pub struct SceneArgs {
+    /// Built-in scene, scene file (.ron), name in scenes/, or a mesh (.obj) with --eye, --look and --light.
+    #[arg(long, default_value = "park", value_name = "SCENE")]
+    pub scene: String,
+    /// A view of the scene, or `all`. Without it: the scene's first view.
+    #[arg(long, value_name = "NAME")]
+    pub view: Option<String>,
+    /// Eye position, for an .obj.
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true)]
+    pub eye: Option<DVec3>,
+    /// Direction in which the eye looks, for an .obj.
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true)]
+    pub look: Option<DVec3>,
+    /// Direction in which the light travels, for an .obj.
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true)]
+    pub light: Option<DVec3>,
+    /// Up direction, for an .obj. Without it: 0,1,0.
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::direction, allow_hyphen_values = true)]
+    pub up: Option<DVec3>,
+    /// Vertical field of view in degrees, for an .obj. Without it: 60.
+    #[arg(long, value_name = "DEGREES", value_parser = parse::degrees)]
+    pub fov: Option<f64>,
+    /// Near plane distance, for an .obj. Without it: a ten-thousandth of --far.
+    #[arg(long, value_name = "LENGTH", value_parser = parse::positive)]
+    pub near: Option<f64>,
+    /// Far plane distance, for an .obj. Without it: just behind the whole mesh.
+    #[arg(long, value_name = "LENGTH", value_parser = parse::positive)]
+    pub far: Option<f64>,
+}
+
+/// `skiagraph compare`.
+#[derive(Args, Debug)]
+pub struct CompareArgs {
+    /// Presets by name, or graphs (.ron) with the outputs `visibility` and `status`. Without any: all presets.
+    #[arg(value_name = "PRESET|FILE.ron")]
+    pub presets: Vec<String>,
+    /// What is drawn.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Viewport sizes in pixels, separated by commas.
+    #[arg(
+        long,
+        value_name = "WxH,…",
+        value_delimiter = ',',
+        default_value = "1024x1024"
+    )]
+    pub size: Vec<Size>,
+    /// Shadow map sizes in texels, separated by commas: the param `map_size` of the graphs that have it.
+    #[arg(long, value_name = "N,…", value_delimiter = ',')]
+    pub map_size: Vec<u32>,
+    /// A param of the graphs that have it. May be repeated.
+    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub params: Vec<Assignment>,
+    /// Timed frames per run.
+    #[arg(long, default_value_t = 10, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub frames: u32,
+    /// Frames before the timed ones.
+    #[arg(long, default_value_t = 2, value_name = "N")]
+    pub warmup: u32,
+    /// What is right: `exact` (own primitive excluded, no offset) or `offset:LENGTH` (ray origin moved towards the light).
+    #[arg(long, default_value = "exact", value_name = "MODE")]
+    pub oracle: OracleMode,
+    /// Folder for results.json, results.csv and the pictures.
+    #[arg(long, default_value = "compare", value_name = "DIR")]
+    pub out: PathBuf,
+    /// What is printed on standard output.
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    pub format: Format,
+}
+
+/// How results are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// For a terminal.
+    Table,
+    /// For a document.
+    Markdown,
+    /// The contents of results.json.
+    Json,
+}
+
+/// `skiagraph run`.
+#[derive(Args, Debug)]
+pub struct RunArgs {
+    /// Preset by name, or a graph (.ron).
+    #[arg(value_name = "PRESET|FILE.ron")]
+    pub preset: String,
+    /// What is drawn.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Viewport size in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1024x1024")]
+    pub size: Size,
+    /// Shadow map size in texels: the param `map_size`.
+    #[arg(long, value_name = "N")]
+    pub map_size: Option<u32>,
+    /// A param of the graph. May be repeated.
+    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub params: Vec<Assignment>,
+    /// Save an output or a material, after a pass or at the end, as .png or raw .bin. May be repeated.
+    #[arg(long, value_name = "MATERIAL[@PASS]=FILE")]
+    pub save: Vec<Save>,
+}
+
+/// `skiagraph check`.
+#[derive(Args, Debug)]
+pub struct CheckArgs {
+    /// Graphs (.ron), or presets by name.
+    #[arg(value_name = "FILE.ron", required = true)]
+    pub graphs: Vec<String>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    fn parse(line: &str) -> Result<Cli, clap::Error> {
+        Cli::try_parse_from(line.split_whitespace())
+    }
+
+    #[test]
+    fn clap_finds_no_fault_in_the_definitions() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn every_command_shows_an_example() {
+        for command in Cli::command().get_subcommands() {
+            let help = command
+                .get_after_help()
+                .map(ToString::to_string)
+                .unwrap_or_default();
+            assert!(
+                help.contains(&format!("skiagraph {}", command.get_name())),
+                "{}",
+                command.get_name()
+            );
+        }
+    }
+
+    #[test]
+    fn lists_and_negative_vectors_are_read() {
+        let cli = parse(
+            "skiagraph compare rt a.ron --size 8x4,16x9 --map-size 512,1024 --eye -1,2,-3 --light -0.5,-1,0 --set bias=-2",
+        )
+        .unwrap();
+        let Command::Compare(args) = cli.command else {
+            panic!("not compare")
+        };
+        assert_eq!(args.presets, ["rt", "a.ron"]);
+        assert_eq!(args.size, [Size([8, 4]), Size([16, 9])]);
+        assert_eq!(args.map_size, [512, 1024]);
+        assert_eq!(args.scene.eye, Some(DVec3::new(-1.0, 2.0, -3.0)));
+        assert_eq!(args.scene.light, Some(DVec3::new(-0.5, -1.0, 0.0)));
+        assert_eq!(
+            args.params,
+            [Assignment {
+                name: "bias".into(),
+                value: "-2".into()
+            }]
+        );
+        assert_eq!(
+            (args.frames, args.warmup, args.oracle),
+            (10, 2, OracleMode::Exact)
+        );
+    }
+
+    #[test]
+    fn the_adapter_may_stand_on_either_side_of_the_command() {
+        for line in [
+            "skiagraph --adapter x doctor",
+            "skiagraph doctor --adapter x",
+        ] {
+            assert_eq!(parse(line).unwrap().adapter.as_deref(), Some("x"));
+        }
+    }
+
+    #[test]
+    fn usage_errors_have_exit_code_2() {
+        for line in [
+            "skiagraph",
+            "skiagraph check",
+            "skiagraph compare --size 10",
+            "skiagraph compare --frames 0",
+            "skiagraph run",
+            "skiagraph run rt --save visibility=a.gif",
+            "skiagraph compare --look 0,0,0",
+            "skiagraph compare --oracle offset:-1",
+            "skiagraph compare --oracle embree",
+        ] {
+            assert_eq!(parse(line).unwrap_err().exit_code(), 2, "{line}");
+        }
+    }
+}

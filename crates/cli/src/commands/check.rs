@@ -1,0 +1,98 @@
+//! `skiagraph check`: every diagnostic of some graphs, without a GPU.
+
+use crate::{
+    args::CheckArgs,
+    error::{CliError, note, print},
+    preset::{self, Faults},
+};
+use glam::{DVec3, Vec3};
+use skiagraph_graph::{Graph, PlanRequest};
+use skiagraph_passes::SceneProvider;
+use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
+use std::sync::Arc;
+
+/// Loads and plans each graph under default limits and says what is wrong with it.
+///
+/// # Errors
+/// Every fault of every graph together; warnings are printed and are no error.
+pub fn check(args: &CheckArgs) -> Result<(), CliError> {
+    let sources = preset::sources();
+    let registry = skiagraph_passes::registry();
+    let (scene, view) = one_triangle();
+    let mut provider = SceneProvider::new(Arc::new(scene));
+    provider.set_view(&view, VIEWPORT);
+    let mut faults = Faults::default();
+    let mut fine = Vec::new();
+    let mut missing = Vec::new();
+    for argument in &args.graphs {
+        let path = match preset::locate(argument, &sources) {
+            Ok(path) => path,
+            Err(error) => {
+                missing.push(error.to_string());
+                continue;
+            }
+        };
+        let planned = Graph::load(&path, &registry, &sources).and_then(|graph| {
+            let plan = graph.plan(&PlanRequest::new(VIEWPORT, &provider))?;
+            Ok((graph, plan))
+        });
+        match planned {
+            Ok((graph, plan)) => {
+                preset::warn(&graph, plan.warnings());
+                let passes = plan.passes().len();
+                fine.push(format!(
+                    "{argument}: fine, {passes} {}\n",
+                    if passes == 1 { "pass" } else { "passes" }
+                ));
+            }
+            Err(diagnostics) => faults.add(argument, &diagnostics),
+        }
+    }
+    print(&fine.concat())?;
+    let faulty = faults.none_or_error();
+    if missing.is_empty() {
+        return faulty;
+    }
+    if let Err(error) = faulty {
+        note(&error.to_string());
+    }
+    Err(CliError::Input(missing.join("\nerror: ")))
+}
+
+const VIEWPORT: [u32; 2] = [64, 64];
+
+/// The least scene that has all that a provider may be asked for.
+fn one_triangle() -> (Scene, View) {
+    let view = View {
+        name: "main".into(),
+        eye: DVec3::ZERO,
+        direction: DVec3::NEG_Z,
+        up: DVec3::Y,
+        fov_y_degrees: 60.0,
+        near: 0.1,
+        far: 10.0,
+    };
+    let mesh = Mesh {
+        positions: vec![
+            Vec3::new(0.0, 0.0, -1.0),
+            Vec3::new(1.0, 0.0, -1.0),
+            Vec3::new(0.0, 1.0, -1.0),
+        ],
+        triangles: vec![[0, 1, 2]],
+        normals: vec![Vec3::Z],
+        normal_indices: vec![[0, 0, 0]],
+        groups: Vec::new(),
+    };
+    let light = DirectionalLight {
+        direction: DVec3::NEG_Z,
+    };
+    (
+        Scene {
+            name: "check".into(),
+            mesh,
+            views: vec![view.clone()],
+            light,
+        },
+        view,
+    )
+}

@@ -1,0 +1,8 @@
+//! One file per command.
+
+pub mod check;
+pub mod compare;
+pub mod doctor;
+pub mod presets;
+pub mod run;
+pub mod scenes;

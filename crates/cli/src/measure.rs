@@ -1,0 +1,329 @@
+//! One method on one view: run it, time it, judge it, picture it.
+
+use crate::{
+    contract::Outputs,
+    error::CliError,
+    picture,
+    preset::{self, Preset},
+    progress::Step,
+    render::{self, Times},
+    results::{Images, Measured, Run},
+};
+use skiagraph_graph::{
+    Diagnostic, Diagnostics, ExecuteError, Executor, Param, ParamValue, Plan, PlanRequest,
+    Provider, Severity, gpu::Gpu,
+};
+use skiagraph_reference::{Image, Reference, Statistics};
+use std::{collections::BTreeMap, path::Path};
+
+/// A preset with the params that it runs with.
+pub struct Method<'a> {
+    /// The preset.
+    pub preset: &'a Preset,
+    /// Its params that are not at their defaults.
+    pub params: BTreeMap<String, ParamValue>,
+    /// The size of its shadow map, if it has that param.
+    pub map_size: Option<u32>,
+}
+
+impl<'a> Method<'a> {
+    /// Of a preset and what was set of its params.
+    pub fn new(preset: &'a Preset, params: BTreeMap<String, ParamValue>) -> Self {
+        let default = || {
+            preset
+                .graph
+                .params()
+                .iter()
+                .find(|param| param.name.as_str() == preset::MAP_SIZE)
+                .map(|p| &p.default)
+        };
+        let map_size = match params.get(preset::MAP_SIZE).or_else(default) {
+            Some(ParamValue::U32(size)) => Some(*size),
+            _ => None,
+        };
+        Self {
+            preset,
+            params,
+            map_size,
+        }
+    }
+
+    /// The plan on a viewport for an adapter with these limits and features.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn plan(
+        &self,
+        viewport: [u32; 2],
+        (limits, features): (wgpu::Limits, wgpu::Features),
+        provider: &dyn Provider,
+    ) -> Result<Plan, Diagnostics> {
+        let mut request = PlanRequest::new(viewport, provider);
+        request.params = self.params.clone();
+        request.limits = limits;
+        request.features = features;
+        self.preset.graph.plan(&request)
+    }
+
+    /// All params with the values that it runs with.
+    fn all_params(&self) -> BTreeMap<String, serde_json::Value> {
+        let params = self.preset.graph.params().iter();
+        let value = |param: &Param| {
+            json(
+                self.params
+                    .get(param.name.as_str())
+                    .unwrap_or(&param.default),
+            )
+        };
+        params
+            .map(|param| (param.name.to_string(), value(param)))
+            .collect()
+    }
+}
+
+/// A param's value for `results.json`. An f32 is written as the short decimal that it was read from, not as the f64
+/// nearest to it.
+fn json(value: &ParamValue) -> serde_json::Value {
+    let float = |value: &f32| value.to_string().parse::<f64>().unwrap_or(f64::NAN);
+    match value {
+        ParamValue::F32(number) => float(number).into(),
+        ParamValue::Vec(numbers) => numbers.iter().map(float).collect(),
+        ParamValue::I32(number) => (*number).into(),
+        ParamValue::U32(number) => (*number).into(),
+        ParamValue::Bool(flag) => (*flag).into(),
+        ParamValue::Choice(word) => word.as_str().into(),
+    }
+}
+
+/// What all methods on one view and viewport share.
+pub struct Setting<'a> {
+    /// The GPU.
+    pub gpu: &'a Gpu,
+    /// Whether its timestamps are true.
+    pub timestamps: bool,
+    /// Name of the view.
+    pub view: &'a str,
+    /// The right answer.
+    pub reference: &'a Reference,
+    /// Timed frames.
+    pub frames: u32,
+    /// Frames before them.
+    pub warmup: u32,
+    /// Folder for pictures.
+    pub out: &'a Path,
+}
+
+impl Setting<'_> {
+    /// Runs a method. One that this adapter cannot run yields a [`Run`] that says why.
+    ///
+    /// # Errors
+    /// Ctrl-C, a lost device, outputs that break the contract ([`CliError::Contract`]), a picture that cannot be written.
+    pub fn measure(&self, method: &Method, provider: &mut dyn Provider) -> Result<Run, CliError> {
+        let viewport = self.reference.viewport;
+        let plan = match method.plan(viewport, render::abilities(self.gpu), provider) {
+            Ok(plan) => plan,
+            // The graph itself is sound: that was checked before anything ran.
+            Err(diagnostics) => return Ok(self.unavailable(method, reasons(&diagnostics))),
+        };
+        let what = format!("{}, {}", method.preset.name, self.where_(method));
+        let step = Step::begin(what, (self.warmup + self.frames).into(), "frames");
+        let executed = self.execute(method, plan, provider, &step);
+        let run = match executed {
+            Ok(Some(executed)) => Run {
+                measured: Some(self.judge(method, executed)?),
+                ..self.empty(method)
+            },
+            Ok(None) => {
+                return Err(CliError::Interrupted {
+                    kept: String::new(),
+                });
+            }
+            Err(error @ ExecuteError::DeviceLost { .. }) => {
+                return Err(CliError::Gpu {
+                    graph: method.preset.name.clone(),
+                    source: Box::new(error),
+                });
+            }
+            Err(error) => self.unavailable(method, render::chain(&error)),
+        };
+        step.end();
+        Ok(run)
+    }
+
+    /// A run that says why there are no measurements.
+    pub fn unavailable(&self, method: &Method, reason: String) -> Run {
+        Run {
+            unavailable: Some(reason),
+            ..self.empty(method)
+        }
+    }
+
+    fn execute(
+        &self,
+        method: &Method,
+        plan: Plan,
+        provider: &mut dyn Provider,
+        step: &Step,
+    ) -> Result<Option<Executed>, ExecuteError> {
+        let memory = (plan.memory_bytes(), plan.saved_bytes());
+        let mut executor = Executor::new(&self.gpu.device, &self.gpu.queue, plan, provider)?;
+        let times = render::time(
+            self.gpu,
+            &mut executor,
+            self.warmup,
+            self.frames,
+            |frames| step.reach(frames),
+        )?;
+        let Some(times) = times else { return Ok(None) };
+        // Only now: a readback would be timed, too.
+        let contents = render::read(self.gpu, &mut executor, &Outputs::names(method.preset))?;
+        Ok(Some(Executed {
+            times,
+            outputs: Outputs::decode(&contents),
+            memory,
+        }))
+    }
+
+    fn judge(&self, method: &Method, executed: Executed) -> Result<Measured, CliError> {
+        let Executed {
+            mut times,
+            outputs,
+            memory: (memory_bytes, saved_bytes),
+        } = executed;
+        let broken = |reason: String| {
+            let name = &method.preset.name;
+            CliError::Contract(format!("`{name}` breaks the contract of outputs: {reason}"))
+        };
+        let Outputs {
+            visibility,
+            status,
+            rays,
+        } = outputs.map_err(broken)?;
+        let counts = Statistics::judged(&visibility, &status, self.reference)
+            .map_err(|error| broken(error.to_string()))?;
+        if !self.timestamps {
+            times.frame.gpu_ms = None;
+            times.passes.iter_mut().for_each(|pass| pass.gpu_ms = None);
+        }
+        Ok(Measured {
+            certain: counts.certain,
+            uncertain: counts.uncertain,
+            rays,
+            wrong: counts.wrong,
+            facing_mismatch: counts.facing_mismatch,
+            passes: times.passes,
+            frame: times.frame,
+            cached: None,
+            memory_bytes,
+            saved_bytes,
+            images: self.pictures(method, &visibility, &status)?,
+        })
+    }
+
+    fn pictures(
+        &self,
+        method: &Method,
+        visibility: &[u32],
+        status: &[u32],
+    ) -> Result<Images, CliError> {
+        let stem = format!(
+            "{}-{}",
+            slug(&method.preset.name),
+            self.where_(method).replace(' ', "-")
+        );
+        let reference = self.reference;
+        let save = |kind: &str, image: Result<Image, skiagraph_reference::Error>| {
+            let name = format!("{stem}-{kind}.png");
+            let image =
+                image.map_err(|error| CliError::Input(format!("no picture {name}: {error}")))?;
+            picture::save(&self.out.join(&name), &image)?;
+            Ok::<_, CliError>(name)
+        };
+        Ok(Images {
+            shaded: save("shaded", Image::shaded(visibility, reference))?,
+            visibility: save(
+                "visibility",
+                Image::visibility(reference.viewport, visibility, status),
+            )?,
+            error: save("error", Image::error(visibility, status, reference))?,
+        })
+    }
+
+    /// The run with nothing measured.
+    fn empty(&self, method: &Method) -> Run {
+        let counts = Statistics::judged(
+            &self.reference.visibility(),
+            &self.reference.status(),
+            self.reference,
+        );
+        // The reference's own buffers are as large as the reference and hold the contract's values.
+        let counts = counts.unwrap_or_default();
+        Run {
+            preset: method.preset.name.clone(),
+            view: self.view.into(),
+            viewport: self.reference.viewport,
+            map_size: method.map_size,
+            params: method.all_params(),
+            pixels: counts.pixels,
+            band: counts.band,
+            measured: None,
+            unavailable: None,
+        }
+    }
+
+    /// View, viewport and map size as in file names and progress lines.
+    fn where_(&self, method: &Method) -> String {
+        let [width, height] = self.reference.viewport;
+        let map = method
+            .map_size
+            .map_or(String::new(), |size| format!(" map{size}"));
+        format!("{} {width}x{height}{map}", slug(self.view))
+    }
+}
+
+/// The errors in one line each, for a table's footnote.
+fn reasons(diagnostics: &Diagnostics) -> String {
+    let errors = diagnostics
+        .iter()
+        .filter(|diagnostic| diagnostic.severity == Severity::Error);
+    let lines: Vec<String> = errors
+        .map(|Diagnostic { message, help, .. }| match help {
+            Some(help) => format!("{message} ({help})"),
+            None => message.clone(),
+        })
+        .collect();
+    lines.join("; ")
+}
+
+struct Executed {
+    times: Times,
+    outputs: Result<Outputs, String>,
+    memory: (u64, u64),
+}
+
+/// A name as part of a file name: `my/method.ron` becomes `my-method`.
+pub fn slug(name: &str) -> String {
+    let stem = name.strip_suffix(".ron").unwrap_or(name);
+    let text: String = stem
+        .chars()
+        .map(|c| {
+            if c.is_alphanumeric() || matches!(c, '_' | '.') {
+                c
+            } else {
+                '-'
+            }
+        })
+        .collect();
+    text.trim_matches(['-', '.']).replace("--", "-")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slugs_are_file_names() {
+        let slugs = ["nsm", "pipelines/nsm.ron", "/tmp/a b/../x.ron", "Größe 1"].map(slug);
+        assert_eq!(slugs, ["nsm", "pipelines-nsm", "tmp-a-b-..-x", "Größe-1"]);
+    }
+}

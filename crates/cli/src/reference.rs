@@ -1,0 +1,103 @@
+//! The right answer for one view and viewport: the GPU's primitive ids, judged by the oracle.
+
+use crate::{error::CliError, interrupt, preset::Faults, progress::Step, render};
+use skiagraph_graph::{Content, Executor, Graph, Plan, PlanRequest, Provider, Sources, gpu::Gpu};
+use skiagraph_reference::{Error, Oracle, OracleMode, Progress, Reference};
+use skiagraph_scene::{Camera, DirectionalLight};
+
+/// The graph that every comparison draws first: which primitive does each pixel show?
+const PRIMITIVE: &str = "pipelines/shared/primitive.ron";
+
+/// Renders primitive ids as every method's G-buffer does, so that all are judged on the surface that they saw.
+pub struct Primary(Graph);
+
+impl Primary {
+    /// Loads the graph.
+    ///
+    /// # Errors
+    /// It is faulty: it may be one on disk.
+    pub fn load(sources: &dyn Sources) -> Result<Self, CliError> {
+        Graph::load(PRIMITIVE, &skiagraph_passes::registry(), sources)
+            .map(Self)
+            .map_err(|diagnostics| Faults::of(PRIMITIVE, &diagnostics))
+    }
+
+    /// The plan on a viewport.
+    ///
+    /// # Errors
+    /// The viewport is too large for this adapter.
+    pub fn plan(
+        &self,
+        gpu: &Gpu,
+        viewport: [u32; 2],
+        provider: &dyn Provider,
+    ) -> Result<Plan, CliError> {
+        let mut request = PlanRequest::new(viewport, provider);
+        request.limits = gpu.device.limits();
+        request.features = gpu.device.features();
+        self.0
+            .plan(&request)
+            .map_err(|diagnostics| Faults::of(PRIMITIVE, &diagnostics))
+    }
+
+    /// The primitive that each pixel shows.
+    ///
+    /// # Errors
+    /// The graph cannot run, or has no such output.
+    pub fn ids(
+        &self,
+        gpu: &Gpu,
+        viewport: [u32; 2],
+        provider: &mut dyn Provider,
+    ) -> Result<Vec<u32>, CliError> {
+        let plan = self.plan(gpu, viewport, provider)?;
+        let read = || {
+            let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, provider)?;
+            render::read(gpu, &mut executor, &["primitive"])
+        };
+        let contents = read().map_err(|error| CliError::Gpu {
+            graph: PRIMITIVE.into(),
+            source: Box::new(error),
+        })?;
+        contents
+            .get("primitive")
+            .and_then(Content::as_u32)
+            .ok_or_else(|| {
+                CliError::Input(format!("{PRIMITIVE} has no output `primitive` of integers"))
+            })
+    }
+}
+
+/// Runs the oracle with a progress bar.
+///
+/// # Errors
+/// Ctrl-C, ids of another mesh, an impossible light.
+pub fn judge(
+    oracle: &Oracle,
+    camera: &Camera,
+    light: &DirectionalLight,
+    primitives: &[u32],
+    mode: OracleMode,
+    what: &str,
+) -> Result<Reference, CliError> {
+    let step = Step::begin(
+        format!("reference, {what}"),
+        camera.viewport[1].into(),
+        "rows",
+    );
+    let progress = Progress {
+        rows_done: &|rows| step.reach(rows),
+        interrupted: interrupt::flag(),
+    };
+    let reference = oracle.shade(camera, light, primitives, mode, progress);
+    match reference {
+        Ok(reference) => {
+            step.end();
+            Ok(reference)
+        }
+        Err(Error::Interrupted) => Err(CliError::Interrupted {
+            kept: String::new(),
+        }),
+        Err(error) => Err(CliError::Input(format!("no reference for {what}: {error}"))),
+    }
+}

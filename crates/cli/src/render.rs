@@ -1,0 +1,221 @@
+//! The only code of the program that talks to a GPU: opening one, running frames, reading outputs.
+
+use crate::{
+    error::CliError,
+    interrupt,
+    results::{Adapter, FrameTimes, Pass, Spread},
+};
+use skiagraph_graph::{
+    Content, ExecuteError, Executor, Frame, FrameReport,
+    gpu::{self, Gpu, GpuError},
+    timing::{self, Trust},
+};
+use std::{
+    collections::BTreeMap,
+    error::Error,
+    time::{Duration, Instant},
+};
+
+/// Opens the adapter asked for, or the best one.
+///
+/// # Errors
+/// [`CliError::NoGpu`] with the way out.
+pub fn open(name: Option<&str>) -> Result<Gpu, CliError> {
+    gpu::open(name).map_err(|error: GpuError| CliError::NoGpu(error.to_string()))
+}
+
+/// What the opened device can do.
+pub fn abilities(gpu: &Gpu) -> (wgpu::Limits, wgpu::Features) {
+    (gpu.device.limits(), gpu.device.features())
+}
+
+/// What the most able adapters of today can do: a graph that cannot be planned for them is at fault itself.
+pub fn greatest_abilities() -> (wgpu::Limits, wgpu::Features) {
+    let limits = wgpu::Limits {
+        max_texture_dimension_2d: 32768,
+        max_texture_array_layers: 2048,
+        max_compute_invocations_per_workgroup: 2048,
+        ..wgpu::Limits::unlimited()
+    };
+    (limits, wgpu::Features::all())
+}
+
+/// How results name the adapter; `trust` says whether its timestamps are true.
+pub fn describe(gpu: &Gpu, trust: &Trust) -> Adapter {
+    let info = gpu.adapter.get_info();
+    Adapter {
+        driver: driver(&info),
+        backend: info.backend.to_str().into(),
+        device_type: format!("{:?}", info.device_type),
+        name: info.name,
+        gpu_unavailable: match trust {
+            Trust::Trusted => None,
+            Trust::Untrusted { reason } => Some(reason.clone()),
+        },
+    }
+}
+
+/// Driver and version in one string.
+pub fn driver(info: &wgpu::AdapterInfo) -> String {
+    format!("{} {}", info.driver, info.driver_info)
+        .trim()
+        .into()
+}
+
+/// Whether this device's timestamps are true.
+pub fn trust(gpu: &Gpu) -> Trust {
+    timing::check(&gpu.device, &gpu.queue).unwrap_or_else(|error| Trust::Untrusted {
+        reason: format!("the check of its timestamps failed: {}", chain(&error)),
+    })
+}
+
+/// Runs one frame to its end; returns what it reports and the time from the start of encoding until the GPU was done.
+///
+/// # Errors
+/// Those of the executor.
+pub fn frame(
+    gpu: &Gpu,
+    executor: &mut Executor,
+    frame: &Frame,
+) -> Result<(FrameReport, Duration), ExecuteError> {
+    let began = Instant::now();
+    let mut encoder = gpu
+        .device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor {
+            label: Some("frame"),
+        });
+    executor.encode(&mut encoder, frame)?;
+    gpu.queue.submit([encoder.finish()]);
+    executor.submitted(&gpu.queue)?;
+    let report = executor.finish()?;
+    Ok((report, began.elapsed()))
+}
+
+/// Times of some frames, per pass and whole.
+pub struct Times {
+    /// Per pass.
+    pub passes: Vec<Pass>,
+    /// Whole frames.
+    pub frame: FrameTimes,
+}
+
+/// Runs `warmup` frames, then `frames` timed ones, every pass in every frame. `done` hears how many frames are over.
+/// `None` if Ctrl-C came first.
+///
+/// # Errors
+/// Those of the executor.
+pub fn time(
+    gpu: &Gpu,
+    executor: &mut Executor,
+    warmup: u32,
+    frames: u32,
+    done: impl Fn(u64),
+) -> Result<Option<Times>, ExecuteError> {
+    let mut samples = Samples::default();
+    for index in 0..warmup + frames {
+        if interrupt::raised() {
+            return Ok(None);
+        }
+        // Warm-up frames are timed too: they then do the same work, only nobody looks at the figures.
+        let (report, wall) = frame(
+            gpu,
+            executor,
+            &Frame {
+                timing: true,
+                ..Frame::default()
+            },
+        )?;
+        if index >= warmup {
+            samples.add(report, wall);
+        }
+        done(u64::from(index) + 1);
+    }
+    Ok(samples.times())
+}
+
+#[derive(Default)]
+struct Samples {
+    names: Vec<String>,
+    gpu: Vec<Vec<Option<Duration>>>,
+    cpu: Vec<Vec<Duration>>,
+    frame_gpu: Vec<Option<Duration>>,
+    frame_wall: Vec<Duration>,
+}
+
+impl Samples {
+    fn add(&mut self, report: FrameReport, wall: Duration) {
+        self.frame_wall.push(wall);
+        let Some(timing) = report.timing else {
+            self.frame_gpu.push(None);
+            return;
+        };
+        self.frame_gpu.push(timing.gpu());
+        for pass in timing.passes {
+            let index = self
+                .names
+                .iter()
+                .position(|name| *name == pass.name)
+                .unwrap_or_else(|| {
+                    self.names.push(pass.name.clone());
+                    self.gpu.push(Vec::new());
+                    self.cpu.push(Vec::new());
+                    self.names.len() - 1
+                });
+            self.gpu[index].push(pass.gpu);
+            self.cpu[index].push(pass.cpu);
+        }
+    }
+
+    fn times(self) -> Option<Times> {
+        let passes = self.names.into_iter().zip(self.gpu).zip(self.cpu);
+        let passes = passes
+            .map(|((name, gpu), cpu)| {
+                Some(Pass {
+                    name,
+                    gpu_ms: Spread::of_all(&gpu),
+                    cpu_ms: Spread::of(&cpu)?,
+                })
+            })
+            .collect::<Option<Vec<_>>>()?;
+        let frame = FrameTimes {
+            gpu_ms: Spread::of_all(&self.frame_gpu),
+            wall_ms: Spread::of(&self.frame_wall)?,
+        };
+        Some(Times { passes, frame })
+    }
+}
+
+/// Runs one frame and reads outputs and captures by name.
+///
+/// # Errors
+/// Those of the executor.
+pub fn read(
+    gpu: &Gpu,
+    executor: &mut Executor,
+    names: &[&str],
+) -> Result<BTreeMap<String, Content>, ExecuteError> {
+    let (report, _) = frame(
+        gpu,
+        executor,
+        &Frame {
+            read: names,
+            ..Frame::default()
+        },
+    )?;
+    Ok(report
+        .readbacks
+        .into_iter()
+        .map(|readback| (readback.name, readback.content))
+        .collect())
+}
+
+/// An error and its causes in one line.
+pub fn chain(error: &dyn Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        text.push_str(&format!(": {error}"));
+        cause = error.source();
+    }
+    text
+}

@@ -1,0 +1,345 @@
+//! The schema of `results.json` and `results.csv`, version 1. Scripts rely on it: extend it, rename nothing.
+
+use crate::{error::CliError, files::write_whole};
+use serde::{Deserialize, Serialize};
+use skiagraph_reference::{CertainCounts, PixelCounts, WrongCounts};
+use std::{collections::BTreeMap, path::Path, time::Duration};
+
+/// Everything that one `compare` measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Results {
+    /// Version of this schema: 1.
+    pub schema: u32,
+    /// The program that measured, `skiagraph 0.1.0`.
+    pub program: String,
+    /// Where it ran.
+    pub adapter: Adapter,
+    /// What was drawn.
+    pub scene: Scene,
+    /// The oracle's mode, `exact` or `offset:LENGTH`.
+    pub oracle: String,
+    /// Timed frames per run.
+    pub frames: u32,
+    /// Frames before the timed ones.
+    pub warmup: u32,
+    /// One entry per view, viewport, preset and map size, in this order.
+    pub runs: Vec<Run>,
+}
+
+/// The GPU.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Adapter {
+    /// Name by its driver.
+    pub name: String,
+    /// vulkan, metal or dx12.
+    pub backend: String,
+    /// Driver and its version.
+    pub driver: String,
+    /// DiscreteGpu, IntegratedGpu, VirtualGpu, Cpu or Other.
+    pub device_type: String,
+    /// Why all `gpu_ms` are null; absent where they are not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gpu_unavailable: Option<String>,
+}
+
+/// The scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scene {
+    /// Its name.
+    pub name: String,
+    /// Triangles in its mesh.
+    pub triangles: u64,
+}
+
+/// One preset on one view, viewport and map size.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// Name of the preset, or path of the graph.
+    pub preset: String,
+    /// Name of the view.
+    pub view: String,
+    /// Width and height in pixels.
+    pub viewport: [u32; 2],
+    /// Value of the param `map_size`; null where the graph has none.
+    pub map_size: Option<u32>,
+    /// All params of the graph with the values it ran with.
+    pub params: BTreeMap<String, serde_json::Value>,
+    /// The reference's pixels.
+    pub pixels: PixelCounts,
+    /// Of those facing the light, the ones whose answer flips within the rounding error of receiver and casters.
+    pub band: u64,
+    /// What was measured; absent where the preset is unavailable.
+    #[serde(flatten)]
+    pub measured: Option<Measured>,
+    /// Why the preset could not run on this adapter; absent where it did.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unavailable: Option<String>,
+}
+
+/// What a run measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// Pixels that the method decided by its map alone.
+    pub certain: CertainCounts,
+    /// Pixels that it left to rays, or all that it traced.
+    pub uncertain: u64,
+    /// Rays traced per frame; null where the graph does not count them.
+    pub rays: Option<u64>,
+    /// Pixels facing the light on which method and reference disagree.
+    pub wrong: WrongCounts,
+    /// Pixels that face the light by the reference but not by the method, or the other way round.
+    pub facing_mismatch: u64,
+    /// Times of each pass, in the order in which they ran.
+    pub passes: Vec<Pass>,
+    /// Times of whole frames.
+    pub frame: FrameTimes,
+    /// Times of a frame in which unchanged passes were skipped; null where nothing was.
+    pub cached: Option<Cached>,
+    /// Bytes of the graph's own materials.
+    pub memory_bytes: u64,
+    /// Bytes saved by letting materials share memory.
+    pub saved_bytes: u64,
+    /// The run's pictures, file names in the results' folder.
+    pub images: Images,
+}
+
+/// Times of one pass.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pass {
+    /// Its name in the graph.
+    pub name: String,
+    /// Between its GPU timestamps; null where they cannot be had or trusted.
+    pub gpu_ms: Option<Spread>,
+    /// Encoding on the CPU.
+    pub cpu_ms: Spread,
+}
+
+/// Times of frames.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrameTimes {
+    /// From the first pass's begin to the last one's end; null where timestamps cannot be had or trusted.
+    pub gpu_ms: Option<Spread>,
+    /// From the start of encoding until the GPU was done, by the CPU's clock.
+    pub wall_ms: Spread,
+}
+
+/// A frame in which unchanged passes did not run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Cached {
+    /// Its times.
+    pub frame: FrameTimes,
+    /// Names of the passes that did not run.
+    pub skipped: Vec<String>,
+}
+
+/// File names of a run's pictures.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Images {
+    /// The scene in the method's shadow.
+    pub shaded: String,
+    /// The output `visibility`.
+    pub visibility: String,
+    /// Blue where wrongly lit, red where wrongly in shadow.
+    pub error: String,
+}
+
+/// Least, median and 95th percentile over frames, milliseconds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// Least.
+    pub min: f64,
+    /// Middle one, or the mean of the two in the middle.
+    pub median: f64,
+    /// The smallest sample that at least 95 % of the samples do not exceed.
+    pub p95: f64,
+}
+
+impl Spread {
+    /// Of some samples; `None` if there are none.
+    pub fn of(samples: &[Duration]) -> Option<Self> {
+        let mut ms: Vec<f64> = samples
+            .iter()
+            .map(|sample| sample.as_secs_f64() * 1e3)
+            .collect();
+        ms.sort_by(f64::total_cmp);
+        let last = ms.len().checked_sub(1)?;
+        let rank = (ms.len() as f64 * 0.95).ceil() as usize;
+        Some(Self {
+            min: ms[0],
+            median: (ms[last / 2] + ms[ms.len() / 2]) * 0.5,
+            p95: ms[rank.clamp(1, ms.len()) - 1],
+        })
+    }
+
+    /// Of samples of which any may be missing; `None` if one is.
+    pub fn of_all(samples: &[Option<Duration>]) -> Option<Self> {
+        Self::of(&samples.iter().copied().collect::<Option<Vec<_>>>()?)
+    }
+}
+
+impl Results {
+    /// The contents of `results.json`.
+    pub fn to_json(&self) -> String {
+        let mut text = serde_json::to_string_pretty(self)
+            .expect("plain structs with string keys always serialise");
+        text.push('\n');
+        text
+    }
+
+    /// Writes `results.json` and `results.csv` into `folder`; each is replaced whole or not at all.
+    pub fn save(&self, folder: &Path) -> Result<(), CliError> {
+        write_whole(&folder.join("results.json"), self.to_json().as_bytes())?;
+        let path = folder.join("results.csv");
+        let csv = self
+            .to_csv()
+            .map_err(|error| CliError::write(&path, error))?;
+        write_whole(&path, csv.as_bytes())
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// Results with every field in use: one full run, one without a map or GPU times, one unavailable.
+    pub(crate) fn sample() -> Results {
+        let spread = |ms: f64| Spread {
+            min: ms,
+            median: ms * 1.5,
+            p95: ms * 2.0,
+        };
+        let run = |preset: &str, map_size| Run {
+            preset: preset.into(),
+            view: "main".into(),
+            viewport: [512, 256],
+            map_size,
+            params: BTreeMap::from([
+                ("slope_bias".into(), 1.5.into()),
+                ("cull".into(), "front".into()),
+            ]),
+            pixels: PixelCounts {
+                background: 72,
+                facing_away: 31_000,
+                facing_light: 100_000,
+                lit: 60_000,
+                shadow: 40_000,
+            },
+            band: 12,
+            measured: None,
+            unavailable: None,
+        };
+        let measured = |name: &str, gpu: bool, rays| Measured {
+            certain: CertainCounts {
+                lit: 59_000,
+                shadow: 41_000,
+            },
+            uncertain: 0,
+            rays,
+            wrong: WrongCounts {
+                lit: 1_000,
+                shadow: 2_500,
+                total: 3_500,
+                certain: 3_495,
+                in_band: 5,
+            },
+            facing_mismatch: 3,
+            passes: ["gbuffer", name]
+                .map(|name| Pass {
+                    name: name.into(),
+                    gpu_ms: gpu.then(|| spread(0.25)),
+                    cpu_ms: spread(0.01),
+                })
+                .into(),
+            frame: FrameTimes {
+                gpu_ms: gpu.then(|| spread(1.0)),
+                wall_ms: spread(2.0),
+            },
+            cached: None,
+            memory_bytes: 12_582_912,
+            saved_bytes: 1_048_576,
+            images: Images {
+                shaded: format!("{name}-shaded.png"),
+                visibility: format!("{name}-visibility.png"),
+                error: format!("{name}-error.png"),
+            },
+        };
+        Results {
+            schema: 1,
+            program: "skiagraph 0.1.0".into(),
+            adapter: Adapter {
+                name: "Some GPU".into(),
+                backend: "vulkan".into(),
+                driver: "driver 1.2".into(),
+                device_type: "Cpu".into(),
+                gpu_unavailable: None,
+            },
+            scene: Scene {
+                name: "park".into(),
+                triangles: 55_000,
+            },
+            oracle: "exact".into(),
+            frames: 10,
+            warmup: 2,
+            runs: vec![
+                Run {
+                    measured: Some(measured("create_shadow_map", true, None)),
+                    ..run("nsm", Some(1024))
+                },
+                Run {
+                    measured: Some(measured("trace_rays", false, Some(100_000))),
+                    ..run("rt", None)
+                },
+                Run {
+                    unavailable: Some("needs ray queries, \"not\" here".into()),
+                    ..run("rt_hw", None)
+                },
+            ],
+        }
+    }
+
+    #[test]
+    fn the_schema_is_pinned_and_reads_back() {
+        let json = sample().to_json();
+        insta::assert_snapshot!(json);
+        assert_eq!(serde_json::from_str::<Results>(&json).unwrap(), sample());
+    }
+
+    #[test]
+    fn spreads_are_order_statistics() {
+        let ms = |list: &[u64]| {
+            Spread::of(
+                &list
+                    .iter()
+                    .map(|&ms| Duration::from_millis(ms))
+                    .collect::<Vec<_>>(),
+            )
+        };
+        assert_eq!(ms(&[]), None);
+        assert_eq!(
+            ms(&[7]),
+            Some(Spread {
+                min: 7.0,
+                median: 7.0,
+                p95: 7.0
+            })
+        );
+        assert_eq!(
+            ms(&[4, 1, 2, 9]),
+            Some(Spread {
+                min: 1.0,
+                median: 3.0,
+                p95: 9.0
+            })
+        );
+        let hundred: Vec<u64> = (1..=100).rev().collect();
+        assert_eq!(
+            ms(&hundred),
+            Some(Spread {
+                min: 1.0,
+                median: 50.5,
+                p95: 95.0
+            })
+        );
+        assert_eq!(Spread::of_all(&[Some(Duration::ZERO), None]), None);
+    }
+}

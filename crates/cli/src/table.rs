@@ -1,0 +1,324 @@
+//! Results as tables: speed beside error, then the time of each pass.
+
+use crate::results::{Measured, Results, Run, Spread};
+use comfy_table::{Cell, CellAlignment, Table, presets};
+
+/// How a table is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// Box-drawing characters.
+    Terminal,
+    /// A Markdown table.
+    Markdown,
+}
+
+/// A heading and both tables for the runs of one view and viewport, which must stand together in `runs`.
+pub fn group(results: &Results, runs: &[Run], look: Look) -> String {
+    let Some(first) = runs.first() else {
+        return String::new();
+    };
+    let mut text = heading(results, first, look);
+    text.push_str(&comparison(runs, look));
+    text.push('\n');
+    if runs.iter().any(|run| run.measured.is_some()) {
+        text.push_str(&format!(
+            "\nEach pass, ms: least, median and 95th percentile of {}\n",
+            frames(results.frames)
+        ));
+        if look == Look::Markdown {
+            text.push('\n');
+        }
+        text.push_str(&passes(runs, look));
+        text.push('\n');
+    }
+    for (index, note) in footnotes(results, runs).iter().enumerate() {
+        text.push_str(if index == 0 || look == Look::Markdown {
+            "\n"
+        } else {
+            ""
+        });
+        text.push_str(note);
+        text.push('\n');
+    }
+    text
+}
+
+fn heading(results: &Results, run: &Run, look: Look) -> String {
+    let Run {
+        view,
+        viewport: [width, height],
+        pixels,
+        band,
+        ..
+    } = run;
+    let title = format!(
+        "{}, {} triangles · view {view} · {width}x{height}",
+        results.scene.name,
+        thousands(results.scene.triangles)
+    );
+    let adapter = &results.adapter;
+    let lines = [
+        format!(
+            "{} · {} · {}",
+            adapter.name, adapter.backend, adapter.driver
+        ),
+        format!(
+            "medians of {} after {} to warm up · oracle {}",
+            frames(results.frames),
+            results.warmup,
+            results.oracle
+        ),
+        format!(
+            "facing the light (PFL) {} = lit {} + shadow {} · facing away {} · background {}",
+            thousands(pixels.facing_light),
+            thousands(pixels.lit),
+            thousands(pixels.shadow),
+            thousands(pixels.facing_away),
+            thousands(pixels.background)
+        ),
+        format!(
+            "in the band, where the answer hangs on rounding: {} ({} of PFL)",
+            thousands(*band),
+            percent(*band, pixels.facing_light)
+        ),
+    ];
+    match look {
+        Look::Terminal => format!("{title}\n{}\n", lines.join("\n")),
+        Look::Markdown => format!(
+            "### {title}\n\n{}\n\n",
+            lines.map(|line| format!("- {line}")).join("\n")
+        ),
+    }
+}
+
+fn comparison(runs: &[Run], look: Look) -> String {
+    let maps = runs.iter().any(|run| run.map_size.is_some());
+    let mut header = vec!["method"];
+    if maps {
+        header.push("map");
+    }
+    header.extend([
+        "GPU ms",
+        "wall ms",
+        "wrong",
+        "wrong lit",
+        "wrong shadow",
+        "in band",
+        "uncertain",
+        "rays",
+    ]);
+    let mut table = new_table(look, &header, 1);
+    for run in runs {
+        let mut row = vec![run.preset.clone()];
+        if maps {
+            row.push(run.map_size.map_or("–".into(), |size| size.to_string()));
+        }
+        match &run.measured {
+            Some(measured) => row.extend(figures(measured, run.pixels.facing_light)),
+            None => {
+                row.push("n/a".into());
+                row.resize(header.len(), "–".into());
+            }
+        }
+        add_row(&mut table, row, 1);
+    }
+    table.to_string()
+}
+
+fn figures(measured: &Measured, facing_light: u64) -> [String; 8] {
+    [
+        measured
+            .frame
+            .gpu_ms
+            .map_or("–".into(), |spread| ms(spread.median)),
+        ms(measured.frame.wall_ms.median),
+        percent(measured.wrong.total, facing_light),
+        thousands(measured.wrong.lit),
+        thousands(measured.wrong.shadow),
+        thousands(measured.wrong.in_band),
+        percent(measured.uncertain, facing_light),
+        measured.rays.map_or("–".into(), thousands),
+    ]
+}
+
+fn passes(runs: &[Run], look: Look) -> String {
+    let header = [
+        "method",
+        "pass",
+        "GPU min",
+        "GPU median",
+        "GPU p95",
+        "CPU median",
+    ];
+    let mut table = new_table(look, &header, 2);
+    for run in runs {
+        let Some(measured) = &run.measured else {
+            continue;
+        };
+        let method = run
+            .map_size
+            .map_or(run.preset.clone(), |size| format!("{} {size}", run.preset));
+        let whole = ("whole frame", measured.frame.gpu_ms, None);
+        let rows = measured
+            .passes
+            .iter()
+            .map(|pass| (pass.name.as_str(), pass.gpu_ms, Some(pass.cpu_ms)));
+        for (index, (name, gpu, cpu)) in rows.chain([whole]).enumerate() {
+            let gpu = |pick: fn(Spread) -> f64| gpu.map_or("–".into(), |spread| ms(pick(spread)));
+            let row = vec![
+                // On a terminal the eye finds groups by their first line; a Markdown row may be quoted alone.
+                if index == 0 || look == Look::Markdown {
+                    method.clone()
+                } else {
+                    String::new()
+                },
+                name.into(),
+                gpu(|spread| spread.min),
+                gpu(|spread| spread.median),
+                gpu(|spread| spread.p95),
+                cpu.map_or(String::new(), |spread| ms(spread.median)),
+            ];
+            add_row(&mut table, row, 2);
+        }
+    }
+    table.to_string()
+}
+
+fn footnotes(results: &Results, runs: &[Run]) -> Vec<String> {
+    let mut notes = Vec::new();
+    if let Some(reason) = &results.adapter.gpu_unavailable {
+        notes.push(format!("No GPU times: {reason}"));
+    }
+    notes.extend(runs.iter().filter_map(|run| {
+        Some(format!(
+            "{} is unavailable: {}",
+            run.preset,
+            run.unavailable.as_ref()?
+        ))
+    }));
+    notes
+}
+
+/// An empty table whose first `left` columns hold words.
+pub fn new_table(look: Look, header: &[&str], left: usize) -> Table {
+    let mut table = Table::new();
+    table.load_style(match look {
+        Look::Terminal => presets::UTF8_FULL_CONDENSED,
+        Look::Markdown => presets::ASCII_MARKDOWN,
+    });
+    table.set_header(
+        header
+            .iter()
+            .enumerate()
+            .map(|(column, text)| cell(text, column, left)),
+    );
+    table
+}
+
+/// Adds a row to such a table.
+pub fn add_row(table: &mut Table, row: Vec<String>, left: usize) {
+    table.add_row(
+        row.iter()
+            .enumerate()
+            .map(|(column, text)| cell(text, column, left)),
+    );
+}
+
+fn cell(text: &str, column: usize, left: usize) -> Cell {
+    Cell::new(text).set_alignment(if column < left {
+        CellAlignment::Left
+    } else {
+        CellAlignment::Right
+    })
+}
+
+fn frames(count: u32) -> String {
+    if count == 1 {
+        "1 frame".into()
+    } else {
+        format!("{count} frames")
+    }
+}
+
+/// Three significant digits or milliseconds to the microsecond, whichever is shorter.
+pub fn ms(ms: f64) -> String {
+    match ms {
+        _ if ms >= 99.95 => format!("{ms:.0}"),
+        _ if ms >= 9.995 => format!("{ms:.1}"),
+        _ if ms >= 0.9995 => format!("{ms:.2}"),
+        _ => format!("{ms:.3}"),
+    }
+}
+
+/// A share in percent; a count that is not zero never shows as zero.
+pub fn percent(count: u64, whole: u64) -> String {
+    let share = count as f64 / whole as f64 * 100.0;
+    match (count, whole) {
+        (_, 0) => "–".into(),
+        (0, _) => "0 %".into(),
+        _ if share < 0.001 => "<0.001 %".into(),
+        _ => format!("{share:.3} %"),
+    }
+}
+
+/// 1234567 as 1,234,567.
+pub fn thousands(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A number of bytes with a binary prefix.
+pub fn bytes(bytes: u64) -> String {
+    match bytes {
+        0..1024 => format!("{bytes} bytes"),
+        1024..1_048_576 => format!("{:.1} KiB", bytes as f64 / 1024.0),
+        1_048_576..1_073_741_824 => format!("{:.1} MiB", bytes as f64 / 1_048_576.0),
+        _ => format!("{:.2} GiB", bytes as f64 / 1_073_741_824.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::tests::sample;
+
+    #[test]
+    fn the_terminal_shows_speed_beside_error() {
+        let mut results = sample();
+        results.adapter.gpu_unavailable = Some("the driver's timestamps are not true".into());
+        insta::assert_snapshot!(group(&results, &results.runs, Look::Terminal));
+    }
+
+    #[test]
+    fn markdown_holds_the_same() {
+        let results = sample();
+        insta::assert_snapshot!(group(&results, &results.runs, Look::Markdown));
+    }
+
+    #[test]
+    fn numbers_stay_readable_over_ten_orders_of_magnitude() {
+        assert_eq!(
+            [0.0, 0.00049, 1.234, 12.34, 123.4, 99999.0].map(ms),
+            ["0.000", "0.000", "1.23", "12.3", "123", "99999"]
+        );
+        assert_eq!(
+            [0, 999, 1000, 1_234_567].map(thousands),
+            ["0", "999", "1,000", "1,234,567"]
+        );
+        assert_eq!(
+            [512, 1536, 3 << 20].map(bytes),
+            ["512 bytes", "1.5 KiB", "3.0 MiB"]
+        );
+        assert_eq!(
+            [(0, 9), (1, 1_000_000), (1, 3), (0, 0)].map(|(n, d)| percent(n, d)),
+            ["0 %", "<0.001 %", "33.333 %", "–"]
+        );
+    }
+}

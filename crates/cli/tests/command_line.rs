@@ -1,0 +1,234 @@
+//! The program from outside: exit codes, messages, files.
+
+use std::{
+    ffi::OsStr,
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+/// Runs the program in `folder`, where nothing on disk stands before what is built in.
+fn skiagraph<A: AsRef<OsStr>>(folder: &Path, arguments: &[A]) -> Output {
+    program(folder, arguments)
+        .output()
+        .expect("the program was built for this test")
+}
+
+fn program<A: AsRef<OsStr>>(folder: &Path, arguments: &[A]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_skiagraph"));
+    command
+        .args(arguments)
+        .current_dir(folder)
+        .env("NO_COLOR", "1");
+    command
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[track_caller]
+fn assert_exit(output: &Output, code: i32) {
+    let status = output.status.code();
+    assert_eq!(
+        status,
+        Some(code),
+        "\nstdout:\n{}\nstderr:\n{}",
+        stdout(output),
+        stderr(output)
+    );
+}
+
+/// A graph that clears two textures and calls them a shadow method.
+const CLEARED: &str = r#"(
+    format: 1,
+    description: "everything is lit",
+    materials: [
+        Texture(name: "visibility", format: R8Uint, size: Viewport),
+        Texture(name: "status", format: R8Uint, size: Viewport),
+    ],
+    passes: [
+        Clear(name: "light", target: "visibility", value: (1, 0, 0, 0)),
+        Clear(name: "certain", target: "status", value: (2, 0, 0, 0)),
+    ],
+    outputs: [(name: "visibility"), (name: "status")],
+)"#;
+
+#[test]
+fn check_needs_no_gpu_and_shows_the_faults_of_all_files() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("good.ron"), CLEARED).unwrap();
+    fs::write(
+        folder.path().join("target.ron"),
+        CLEARED.replace("target: \"status\"", "target: \"satus\""),
+    )
+    .unwrap();
+    fs::write(
+        folder.path().join("field.ron"),
+        CLEARED.replace("value:", "valeu:"),
+    )
+    .unwrap();
+    let output = program(
+        folder.path(),
+        &["check", "good.ron", "target.ron", "field.ron"],
+    )
+    .env("VK_ICD_FILENAMES", "/nonexistent")
+    .env("VK_DRIVER_FILES", "/nonexistent")
+    .output()
+    .unwrap();
+    assert_exit(&output, 1);
+    assert!(
+        stdout(&output).contains("good.ron: fine"),
+        "{}",
+        stdout(&output)
+    );
+    let faults = stderr(&output);
+    for part in [
+        "target.ron:",
+        "`satus`",
+        "field.ron:",
+        "valeu",
+        "in 2 graphs",
+    ] {
+        assert!(faults.contains(part), "no {part:?} in\n{faults}");
+    }
+}
+
+#[test]
+fn check_takes_presets_and_all_of_ours_are_fine() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = skiagraph(
+        folder.path(),
+        &["check", "rt", "nsm", "pipelines/shared/primitive.ron"],
+    );
+    assert_exit(&output, 0);
+    assert_eq!(stdout(&output).lines().count(), 3);
+    assert_eq!(stderr(&output), "", "not even a warning");
+}
+
+#[test]
+fn check_names_missing_files_and_misspelt_presets() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = skiagraph(folder.path(), &["check", "nowhere.ron", "nms"]);
+    assert_exit(&output, 1);
+    let text = stderr(&output);
+    assert!(
+        text.contains("no file `nowhere.ron`") && text.contains("did you mean `nsm`?"),
+        "{text}"
+    );
+}
+
+#[test]
+fn wrong_usage_has_exit_code_2() {
+    let folder = tempfile::tempdir().unwrap();
+    for line in [
+        &["compare", "--size", "big"][..],
+        &["run", "rt", "--save", "visibility=shadow.jpg"],
+        &[
+            "run",
+            "rt",
+            "--view",
+            "all",
+            "--save",
+            "visibility=shadow.png",
+        ],
+        &["frobnicate"],
+    ] {
+        assert_exit(&skiagraph(folder.path(), line), 2);
+    }
+}
+
+#[test]
+fn wrong_input_has_exit_code_1_and_says_what_there_is() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("other.ron"),
+        CLEARED.replace("(name: \"visibility\"), ", ""),
+    )
+    .unwrap();
+    let faults = [
+        (&["compare", "other.ron"][..], "no output `visibility`"),
+        (&["compare", "rt", "--set", "map_sise=4"], "no such param"),
+        (
+            &["compare", "nsm", "--set", "map_sise=4"],
+            "did you mean `map_size`?",
+        ),
+        (&["compare", "nsm", "--map-size", "many"], "invalid value"),
+        (&["compare", "crsn"], "no preset `crsn`"),
+    ];
+    for (line, part) in faults {
+        let output = skiagraph(folder.path(), line);
+        assert!(
+            stderr(&output).contains(part),
+            "{line:?}\n{}",
+            stderr(&output)
+        );
+        assert!(matches!(output.status.code(), Some(1 | 2)), "{line:?}");
+    }
+}
+
+#[test]
+fn without_an_adapter_every_gpu_command_ends_with_3_and_the_way_out() {
+    let folder = tempfile::tempdir().unwrap();
+    for line in [&["compare", "rt"][..], &["run", "rt"], &["doctor"]] {
+        let output = program(folder.path(), line)
+            .env("VK_ICD_FILENAMES", "/nonexistent")
+            .env("VK_DRIVER_FILES", "/nonexistent")
+            .output()
+            .unwrap();
+        assert_exit(&output, 3);
+        assert!(
+            stderr(&output).contains("mesa-vulkan-drivers"),
+            "{line:?}: {}",
+            stderr(&output)
+        );
+    }
+}
+
+#[test]
+fn lists_are_printed_and_a_closed_pipe_is_no_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    let presets = skiagraph(folder.path(), &["presets"]);
+    assert_exit(&presets, 0);
+    assert!(
+        stdout(&presets).contains("--set map_size=1024"),
+        "{}",
+        stdout(&presets)
+    );
+    let scenes = skiagraph(folder.path(), &["scenes"]);
+    assert_exit(&scenes, 0);
+    assert!(stdout(&scenes).contains("park") && stdout(&scenes).contains("sponza"));
+
+    let mut child = program(folder.path(), &["presets"])
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+}
+
+#[test]
+fn a_scene_or_view_that_is_not_there_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = skiagraph(folder.path(), &["run", "rt", "--scene", "prak"]);
+    assert_exit(&scene, 1);
+    assert!(
+        stderr(&scene).contains("did you mean `park`?"),
+        "{}",
+        stderr(&scene)
+    );
+    let view = skiagraph(folder.path(), &["run", "rt", "--view", "bench_sid"]);
+    assert_exit(&view, 1);
+    assert!(
+        stderr(&view).contains("did you mean `bench_side`?"),
+        "{}",
+        stderr(&view)
+    );
+    let own = skiagraph(folder.path(), &["run", "rt", "--eye", "-1,2,3"]);
+    assert_exit(&own, 2);
+    assert!(stderr(&own).contains("--look"), "{}", stderr(&own));
+}

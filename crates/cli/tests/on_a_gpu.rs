@@ -1,0 +1,316 @@
+//! `compare` and `run` for real. They need an adapter; a machine without one fails here with the program's own advice.
+
+use serde_json::Value;
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+/// A graph that clears two textures and calls them a shadow method.
+const LIT: &str = r#"(
+    format: 1,
+    description: "everything is lit",
+    materials: [
+        Texture(name: "visibility", format: R8Uint, size: Viewport),
+        Texture(name: "status", format: R8Uint, size: Viewport),
+    ],
+    passes: [
+        Clear(name: "light", target: "visibility", value: (1, 0, 0, 0)),
+        Clear(name: "certain", target: "status", value: (2, 0, 0, 0)),
+    ],
+    outputs: [(name: "visibility"), (name: "status")],
+)"#;
+
+#[track_caller]
+fn skiagraph(folder: &Path, line: &str) -> Output {
+    let output = Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+        .args(line.split_whitespace())
+        .current_dir(folder)
+        .env("NO_COLOR", "1")
+        .output()
+        .expect("the program was built for this test");
+    assert!(
+        output.status.success(),
+        "{line}: {}\n{}\n{}",
+        output.status,
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr)
+    );
+    output
+}
+
+fn count(value: &Value) -> u64 {
+    value
+        .as_u64()
+        .unwrap_or_else(|| panic!("{value} is no count"))
+}
+
+fn png(path: &Path) -> image::RgbImage {
+    image::open(path)
+        .unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+        .to_rgb8()
+}
+
+#[test]
+fn compare_measures_judges_and_pictures_every_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "compare rt nsm --size 64x64,96x48 --map-size 64,256 --frames 2 --warmup 0 --out results --format json";
+    let output = skiagraph(folder.path(), line);
+    let out = folder.path().join("results");
+    let text = fs::read_to_string(out.join("results.json")).unwrap();
+    assert_eq!(
+        text,
+        String::from_utf8_lossy(&output.stdout),
+        "--format json prints the file"
+    );
+    let results: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(results["schema"], 1);
+    assert_eq!(results["scene"]["name"], "park");
+    let runs = results["runs"].as_array().unwrap();
+    let keys: Vec<_> = runs
+        .iter()
+        .map(|run| (run["preset"].as_str(), &run["viewport"], &run["map_size"]))
+        .collect();
+    assert_eq!(
+        keys.len(),
+        6,
+        "rt once and nsm twice, on two viewports: {keys:?}"
+    );
+
+    for run in runs {
+        let [width, height] = [0, 1].map(|axis| count(&run["viewport"][axis]));
+        let pixels = &run["pixels"];
+        let classes =
+            ["background", "facing_away", "facing_light"].map(|class| count(&pixels[class]));
+        assert_eq!(classes.iter().sum::<u64>(), width * height);
+        assert_eq!(
+            count(&pixels["lit"]) + count(&pixels["shadow"]),
+            count(&pixels["facing_light"])
+        );
+        let wrong = &run["wrong"];
+        assert_eq!(
+            count(&wrong["lit"]) + count(&wrong["shadow"]),
+            count(&wrong["total"])
+        );
+        assert_eq!(run["cached"], Value::Null);
+        assert!(run["frame"]["wall_ms"]["median"].as_f64().unwrap() > 0.0);
+        assert!(!run["passes"].as_array().unwrap().is_empty());
+        for kind in ["shaded", "visibility", "error"] {
+            let picture = png(&out.join(run["images"][kind].as_str().unwrap()));
+            assert_eq!(picture.dimensions(), (width as u32, height as u32));
+        }
+    }
+    let of = |preset| runs.iter().filter(move |run| run["preset"] == preset);
+    for run in of("rt") {
+        assert_eq!(
+            count(&run["wrong"]["total"]),
+            count(&run["wrong"]["in_band"]),
+            "rays are exact outside the band"
+        );
+        assert_eq!(run["map_size"], Value::Null);
+        assert!(count(&run["rays"]) > 0);
+    }
+    let wrong: Vec<u64> = of("nsm").map(|run| count(&run["wrong"]["total"])).collect();
+    assert!(
+        wrong[1] < wrong[0],
+        "a larger map is wrong less often: {wrong:?}"
+    );
+
+    let lines = fs::read_to_string(out.join("results.csv"))
+        .unwrap()
+        .lines()
+        .count();
+    assert_eq!(lines, 7, "a header and a line per run");
+    png(&out.join("reference-bench_side-64x64-visibility.png"));
+}
+
+#[test]
+fn a_file_on_disk_stands_beside_the_presets_and_wins_over_one_of_its_path() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("pipelines")).unwrap();
+    fs::write(folder.path().join("pipelines/nsm.ron"), LIT).unwrap();
+    fs::write(folder.path().join("all_lit.ron"), LIT).unwrap();
+    let output = skiagraph(
+        folder.path(),
+        "compare all_lit.ron nsm --size 32x32 --frames 1 --out . --format json",
+    );
+    let results: Value = serde_json::from_slice(&output.stdout).unwrap();
+    for run in results["runs"].as_array().unwrap() {
+        assert_eq!(run["wrong"]["shadow"], 0);
+        assert!(count(&run["wrong"]["lit"]) >= count(&run["pixels"]["shadow"]));
+        assert_eq!(run["certain"]["lit"], run["pixels"]["facing_light"]);
+    }
+    assert!(
+        folder
+            .path()
+            .join("all_lit-bench_side-32x32-error.png")
+            .is_file()
+    );
+}
+
+#[test]
+fn run_saves_outputs_and_materials_and_says_what_ran() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "run nsm --size 48x32 --map-size 64 --save visibility=v.png --save status=s.png \
+        --save shadow_map@create_shadow_map=map.png --save primitive=ids.bin --save primitive=ids.png";
+    let output = skiagraph(folder.path(), line);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains("create_shadow_map"), "{text}");
+    assert!(
+        !text.contains("scene.bvh"),
+        "no hierarchy is built for a shadow map:\n{text}"
+    );
+    for (name, size) in [
+        ("v.png", (48, 32)),
+        ("s.png", (48, 32)),
+        ("ids.png", (48, 32)),
+        ("map.png", (64, 64)),
+    ] {
+        assert_eq!(png(&folder.path().join(name)).dimensions(), size, "{name}");
+    }
+    let black_or_white = |pixel: &image::Rgb<u8>| pixel.0 == [0; 3] || pixel.0 == [255; 3];
+    assert!(
+        png(&folder.path().join("v.png"))
+            .pixels()
+            .all(black_or_white)
+    );
+    assert_eq!(
+        fs::read(folder.path().join("ids.bin")).unwrap().len(),
+        48 * 32 * 4
+    );
+}
+
+#[test]
+fn run_shows_a_mesh_of_ones_own() {
+    let folder = tempfile::tempdir().unwrap();
+    // A floor at y = 0 and a lid over its middle at y = 1, seen from above and lit from above.
+    let quad = |y: f32, half: f32| {
+        format!(
+            "v {0} {y} {0}\nv {1} {y} {0}\nv {1} {y} {1}\nv {0} {y} {1}\n",
+            -half, half
+        )
+    };
+    let mesh = format!("{}{}f 4 3 2 1\nf 8 7 6 5\n", quad(0.0, 2.0), quad(1.0, 0.5));
+    fs::write(folder.path().join("lid.obj"), mesh).unwrap();
+    let line = "run rt --scene lid.obj --eye -3,5,0 --look 3,-5,0 --light 0,-1,0 --size 64x64 --save visibility=v.png --save status=s.png";
+    skiagraph(folder.path(), line);
+    let picture = png(&folder.path().join("s.png"));
+    let statuses: std::collections::BTreeSet<_> = picture.pixels().map(|pixel| pixel.0).collect();
+    assert!(statuses.len() > 1, "floor and background: {statuses:?}");
+    let visibility = png(&folder.path().join("v.png"));
+    let lit = visibility
+        .pixels()
+        .filter(|pixel| pixel.0 == [255; 3])
+        .count();
+    assert!(lit > 100 && lit < 64 * 64, "{lit} lit pixels");
+}
+
+#[test]
+fn an_unwritable_file_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+        .args([
+            "run",
+            "nsm",
+            "--size",
+            "16x16",
+            "--save",
+            "visibility=nowhere/v.png",
+        ])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        text.contains("nowhere/v.png") || text.contains("nowhere\\v.png"),
+        "{text}"
+    );
+}
+
+#[test]
+fn outputs_that_break_the_contract_are_named_and_the_others_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("odd.ron"),
+        LIT.replace("value: (2,", "value: (7,"),
+    )
+    .unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+        .args("compare odd.ron nsm --size 16x16 --map-size 16 --frames 1 --out .".split(' '))
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        text.contains("`odd.ron`") && text.contains("status is 7"),
+        "{text}"
+    );
+    let results = fs::read_to_string(folder.path().join("results.json")).unwrap();
+    let results: Value = serde_json::from_str(&results).unwrap();
+    assert!(results["runs"][0]["unavailable"].is_string());
+    assert!(
+        results["runs"][0]["wrong"].is_null(),
+        "nothing was measured"
+    );
+    assert!(results["runs"][1]["wrong"]["total"].is_u64());
+}
+
+#[test]
+fn a_buffer_has_no_picture_but_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let save = |file: &str| {
+        Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+            .args(["run", "rt", "--size", "8x8", "--save"])
+            .arg(format!("ray_count={file}"))
+            .current_dir(folder.path())
+            .output()
+            .unwrap()
+    };
+    let picture = save("count.png");
+    assert_eq!(picture.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&picture.stderr).contains("save it as .bin"));
+    assert_eq!(save("count.bin").status.code(), Some(0));
+    let count = fs::read(folder.path().join("count.bin")).unwrap();
+    let count = u32::from_le_bytes(count.try_into().unwrap());
+    assert!(count > 0 && count <= 64, "{count} rays for 64 pixels");
+}
+
+/// Ctrl-C after the first run: its results stay, the exit code is the shell's for an interrupt.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_keeps_what_was_measured() {
+    use std::io::{BufRead, BufReader, Read};
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+        .args("compare nsm rt --size 16x16 --map-size 16 --frames 200 --out .".split(' '))
+        .current_dir(folder.path())
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut progress = BufReader::new(child.stderr.take().unwrap());
+    let mut line = String::new();
+    while !line.starts_with("nsm,") {
+        line.clear();
+        assert_ne!(
+            progress.read_line(&mut line).unwrap(),
+            0,
+            "it ended before the first run"
+        );
+    }
+    let sent = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(sent.success());
+    let mut rest = String::new();
+    progress.read_to_string(&mut rest).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130), "{rest}");
+    assert!(rest.contains("1 of 2 runs are kept"), "{rest}");
+    let results = fs::read_to_string(folder.path().join("results.json")).unwrap();
+    let results: Value = serde_json::from_str(&results).unwrap();
+    assert_eq!(results["runs"].as_array().unwrap().len(), 1);
+}

@@ -1,0 +1,146 @@
+//! The presets as documents: what they declare, and what a plan makes of them. No GPU.
+
+use glam::{DVec3, Vec3};
+use skiagraph_graph::{Graph, Plan, PlanRequest};
+use skiagraph_passes::{EmbeddedSources, SceneProvider, presets, registry};
+use skiagraph_scene::{DirectionalLight, Mesh, Scene};
+use std::sync::Arc;
+
+fn load(path: &str) -> Graph {
+    Graph::load(path, &registry(), &EmbeddedSources).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+/// Plans for a scene of one triangle; all declared outputs, or those given.
+fn plan(path: &str, outputs: Option<&[&str]>) -> Plan {
+    let mesh = Mesh {
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+        triangles: vec![[0, 1, 2]],
+        normals: vec![Vec3::Z],
+        normal_indices: vec![[0; 3]],
+        groups: vec![],
+    };
+    let light = DirectionalLight {
+        direction: DVec3::NEG_Z,
+    };
+    let provider = SceneProvider::new(Arc::new(Scene {
+        name: "one".into(),
+        mesh,
+        views: vec![],
+        light,
+    }));
+    let mut request = PlanRequest::new([640, 480], &provider);
+    request.outputs = outputs.map(|names| names.iter().map(|&name| name.to_owned()).collect());
+    load(path)
+        .plan(&request)
+        .unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn live(plan: &Plan) -> Vec<String> {
+    plan.passes().into_iter().map(|pass| pass.name).collect()
+}
+
+#[test]
+fn presets_are_listed_by_name() {
+    let names: Vec<String> = presets().into_iter().map(|preset| preset.name).collect();
+    assert_eq!(names, ["nsm", "rt"]);
+}
+
+#[test]
+fn presets_keep_the_contract() {
+    for preset in presets() {
+        let graph = load(&preset.path);
+        assert!(!graph.description().is_empty(), "{}", preset.name);
+        let outputs = graph.outputs();
+        assert!(
+            outputs.contains(&"visibility") && outputs.contains(&"status"),
+            "{}: {outputs:?}",
+            preset.name
+        );
+        assert!(
+            graph.warnings().is_empty(),
+            "{}: {:?}",
+            preset.name,
+            graph.warnings()
+        );
+        let plan = plan(&preset.path, None);
+        assert!(
+            plan.warnings().is_empty() && plan.culled().is_empty(),
+            "{}: {:?}",
+            preset.name,
+            plan.warnings()
+        );
+        for output in plan
+            .outputs()
+            .iter()
+            .filter(|output| output.name != "ray_count")
+        {
+            assert_eq!(output.size, [640, 480], "{} {}", preset.name, output.name);
+        }
+    }
+}
+
+#[test]
+fn the_steps_of_a_frame_are_passes() {
+    let rt = [
+        "primitive",
+        "surface",
+        "clear_ray_count",
+        "fill_rays",
+        "trace_rays",
+        "fix_pixels",
+    ];
+    assert_eq!(live(&plan("pipelines/rt.ron", None)), rt);
+    let nsm = ["create_shadow_map", "primitive", "surface", "shadow_lookup"];
+    assert_eq!(live(&plan("pipelines/nsm.ron", None)), nsm);
+    assert_eq!(
+        live(&plan("pipelines/shared/primitive.ron", None)),
+        ["primitive"]
+    );
+}
+
+#[test]
+fn only_a_traced_graph_needs_a_hierarchy() {
+    let needs = |path, outputs| {
+        plan(path, outputs)
+            .provided()
+            .iter()
+            .any(|name| name.contains("bvh"))
+    };
+    assert!(needs("pipelines/rt.ron", None));
+    assert!(!needs("pipelines/nsm.ron", None));
+    assert!(!needs("pipelines/rt.ron", Some(&["ray_count"])));
+}
+
+#[test]
+fn what_no_output_needs_is_culled() {
+    let plan = plan("pipelines/rt.ron", Some(&["ray_count"]));
+    assert_eq!(
+        live(&plan),
+        ["primitive", "surface", "clear_ray_count", "fill_rays"]
+    );
+    let culled: Vec<String> = plan.culled().iter().map(|pass| pass.name.clone()).collect();
+    assert_eq!(culled, ["trace_rays", "fix_pixels"]);
+}
+
+#[test]
+fn more_rays_than_a_device_binds_are_refused_by_name() {
+    let light = DirectionalLight {
+        direction: DVec3::NEG_Z,
+    };
+    let scene = Scene {
+        name: "none".into(),
+        mesh: Mesh::default(),
+        views: vec![],
+        light,
+    };
+    let provider = SceneProvider::new(Arc::new(scene));
+    // 8.3 million rays of 32 bytes; the request's default limits bind 128 MiB.
+    let errors = load("pipelines/rt.ron")
+        .plan(&PlanRequest::new([3840, 2160], &provider))
+        .err();
+    let errors = errors.expect("a plan of 265 MB in one binding").to_string();
+    assert!(
+        errors.contains("rays") && errors.contains("pipelines/rt.ron"),
+        "{errors}"
+    );
+}

@@ -21,6 +21,9 @@ macro_rules! codes {
         pub enum Code { $($(#[doc = $doc])+ $name,)+ }
 
         impl Code {
+            /// Every kind there is.
+            pub const ALL: &[Self] = &[$(Self::$name),+];
+
             /// The kebab-case name that is printed and written to machine-readable output.
             pub fn as_str(self) -> &'static str {
                 match self { $(Code::$name => $text,)+ }

@@ -5,7 +5,7 @@ use crate::{
     document::{
         self, Document,
         located::Located,
-        materials::Material,
+        materials::{BufferEntry, Count, Material, Size, TextureEntry},
         params::{Param, ParamValue},
     },
     registry::{Lowering, Params, Registry},
@@ -66,7 +66,17 @@ impl Graph {
         let missing = |message: String| Diagnostics::from(Diagnostic::error(Code::MissingFile, message));
         let text = match sources.read(path) {
             Ok(Some(text)) => text,
-            Ok(None) => return Err(missing(format!("there is no document `{path}`"))),
+            Ok(None) => {
+                let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
+                let listed: Vec<String> = sources.list(folder).into_iter().filter(|name| name.ends_with(".ron")).collect();
+                let hint = suggestion(name, listed.iter().map(String::as_str)).filter(|hint| hint.starts_with("did"));
+                let error = Diagnostic::error(Code::MissingFile, format!("there is no document `{path}`"));
+                return Err(match hint {
+                    Some(hint) => error.help(hint),
+                    None => error,
+                }
+                .into());
+            }
             Err(why) => return Err(missing(format!("the document `{path}` cannot be read: {why}"))),
         };
         let mut diagnostics = Vec::new();
@@ -192,6 +202,16 @@ impl Graph {
                 used.extend(shader.module.global_variables.iter().filter_map(|(_, global)| global.name.clone()));
             }
         }
+        for material in &self.document.materials {
+            let mut size = |name: &str| {
+                used.insert(name.to_owned());
+            };
+            match material {
+                Material::Texture(TextureEntry { size: Located { value: Size::Like(other), .. }, .. }) => size(other),
+                Material::Buffer(BufferEntry { count: Some(count), .. }) => names_in(count, &mut size),
+                _ => {}
+            }
+        }
         for output in &self.document.outputs {
             used.insert(output.material.as_ref().unwrap_or(&output.name).value.clone());
         }
@@ -226,27 +246,29 @@ fn program(step: &Step) -> Option<&Program> {
     }
 }
 
+/// Calls `each` with every resource that a count is derived from.
+fn names_in(count: &Count, each: &mut dyn FnMut(&str)) {
+    match count {
+        Count::PixelsOf(name) | Count::CountOf(name) => each(name),
+        Count::Times(a, b) => {
+            names_in(a, each);
+            names_in(b, each);
+        }
+        Count::Number(_) | Count::Pixels => {}
+    }
+}
+
 /// Calls `each` with every resource name that a step holds.
 fn names_of(step: &Step, each: &mut dyn FnMut(&str)) {
-    use crate::{document::materials::Count, step::{DrawCall, Groups}};
-    fn count(of: &Count, each: &mut dyn FnMut(&str)) {
-        match of {
-            Count::PixelsOf(name) | Count::CountOf(name) => each(name),
-            Count::Times(a, b) => {
-                count(a, each);
-                count(b, each);
-            }
-            _ => {}
-        }
-    }
+    use crate::step::{DrawCall, Groups};
     match step {
         Step::Draw(draw) => {
             draw.colors.iter().for_each(|color| each(&color.target));
             draw.depth.iter().for_each(|depth| each(&depth.target));
             match &draw.call {
                 DrawCall::Direct { count: vertices, instances } => {
-                    count(vertices, each);
-                    count(instances, each);
+                    names_in(vertices, each);
+                    names_in(instances, each);
                 }
                 DrawCall::Indirect(name) => each(name),
             }

@@ -17,6 +17,8 @@ mod graph;
 mod lifetime;
 mod link;
 mod order;
+#[cfg(test)]
+mod order_tests;
 mod passes;
 mod plan;
 mod provider;

@@ -41,7 +41,8 @@ impl ResourceKind {
         match self {
             Self::Texture(_) => "a texture",
             Self::Buffer(_) => "a buffer",
-            Self::Sampler(_) => "a sampler",
+            Self::Sampler(SamplerEntry { compare: Some(_), .. }) => "a sampler with `compare`",
+            Self::Sampler(_) => "a sampler without `compare`",
             Self::Provided(_) => "a provided buffer",
         }
     }
@@ -367,7 +368,8 @@ impl<'a> Sizes<'a> {
         let limits = self.environment.limits;
         let most = limits.max_texture_dimension_2d;
         if size.contains(&0) || mips == 0 || layers == 0 {
-            diagnostics.push(size_error(&entry.name, &entry.size.span, "a texture of no texels", "give it one at least"));
+            let what = format!("{}×{} texels, layers: {layers}, mips: {mips}: a texture of no texels", size[0], size[1]);
+            diagnostics.push(size_error(&entry.name, &entry.size.span, &what, "give it one at least"));
             return None;
         }
         if size.iter().any(|&edge| edge > most) {

@@ -36,7 +36,10 @@ impl Sources for FolderSources {
         }
         std::fs::read_to_string(&path)
             .map(|text| Some(text.into()))
-            .map_err(|error| error.to_string())
+            .map_err(|error| match error.kind() {
+                std::io::ErrorKind::InvalidData => "it is no text in UTF-8".to_owned(),
+                _ => error.to_string(),
+            })
     }
 
     fn list(&self, folder: &str) -> Vec<String> {

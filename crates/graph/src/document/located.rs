@@ -355,7 +355,7 @@ fn explain(error: &ron::Error, span: Span) -> Diagnostic {
             .at(span, "something is not closed")
             .help("check that every bracket and quote is closed"),
         R::ExceededRecursionLimit => {
-            Diagnostic::error(Code::Syntax, "values are nested too deep").at(span, "").help("128 levels can be read")
+            Diagnostic::error(Code::Syntax, "values are nested too deep").at(span, "").help("no document needs so many brackets in brackets: is one of them never closed?")
         }
         other => Diagnostic::error(Code::Syntax, lower_first(&other.to_string())).at(span, "here"),
     }

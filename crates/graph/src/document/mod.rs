@@ -55,9 +55,10 @@ const SECTIONS: [&str; 6] = ["format", "description", "params", "materials", "pa
 /// Reads a document. Whatever is wrong is pushed to `diagnostics`; what could be read is returned all the same, so that
 /// later phases find more mistakes in one go.
 pub(crate) fn parse(file: SourceFile, registry: &Registry, diagnostics: &mut Vec<Diagnostic>) -> Option<Document> {
-    if file.text.trim().is_empty() {
+    if !file.text.contains('(') {
         diagnostics.push(
-            Diagnostic::error(Code::Syntax, format!("the document `{}` is empty", file.name))
+            Diagnostic::error(Code::Syntax, format!("the file `{}` holds no document", file.name))
+                .at(file.span(0..file.text.lines().next().map_or(0, str::len)), "")
                 .help(format!("begin with `(format: {FORMAT}, …)`")),
         );
         return None;

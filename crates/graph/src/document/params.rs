@@ -130,6 +130,9 @@ impl<'de> Deserialize<'de> for Written {
             fn visit_f64<E>(self, value: f64) -> Result<Written, E> {
                 Ok(Written::Number(value))
             }
+            fn visit_unit<E: serde::de::Error>(self) -> Result<Written, E> {
+                Err(E::custom("a word stands in quotes: \"word\""))
+            }
             fn visit_str<E>(self, value: &str) -> Result<Written, E> {
                 Ok(Written::Word(value.to_owned()))
             }
@@ -247,8 +250,11 @@ impl Param {
                 return Err("the value must be finite".to_owned());
             }
             if self.min.is_some_and(|min| number < min) || self.max.is_some_and(|max| number > max) {
-                let bound = |bound: Option<f64>| bound.map_or("…".to_owned(), |b| b.to_string());
-                return Err(format!("must lie in {}..{}, not {number}", bound(self.min), bound(self.max)));
+                return Err(match (self.min, self.max) {
+                    (Some(min), Some(max)) => format!("must lie in {min}..{max}, not {number}"),
+                    (Some(min), None) => format!("must be at least {min}, not {number}"),
+                    (None, max) => format!("must be at most {}, not {number}", max.unwrap_or(f64::INFINITY)),
+                });
             }
         }
         Ok(())

@@ -5,7 +5,7 @@ use crate::{
     diagnostics::{Code, Diagnostic, suggestion},
     document::materials::Filter,
     document::params::{ParamType, ParamValue},
-    resolve::{Part, ResourceId, ResourceKind, Target},
+    resolve::{Part, Resource, ResourceId, ResourceKind, Target},
     step::Program,
     wgsl::{Class, Global, Member, ScalarClass, Shader, TextureClass},
 };
@@ -100,21 +100,28 @@ impl Linker<'_, '_> {
 
     /// Values of overridable constants: what the pass kind sets, else the param of that name.
     fn constants(&mut self, program: &Program, shader: &Shader) -> Vec<(String, f64)> {
-        shader
-            .overrides()
-            .filter_map(|name| {
-                let set = program.constants.iter().find(|(constant, _)| constant == name).map(|(_, value)| *value);
-                let value = set.or_else(|| {
-                    let (param, value) = self.params.get(name)?;
-                    match value {
-                        ParamValue::F32(value) => Some(f64::from(*value)),
-                        ParamValue::I32(value) => Some(f64::from(*value)),
-                        other => param.as_u32(other).map(f64::from),
-                    }
-                });
-                value.map(|value| (name.to_owned(), value))
-            })
-            .collect()
+        let mut constants = Vec::new();
+        for (name, key, has_default, span) in shader.overrides() {
+            let set = program.constants.iter().find(|(constant, _)| constant == name).map(|(_, value)| *value);
+            let value = set.or_else(|| {
+                let (param, value) = self.params.get(name)?;
+                match value {
+                    ParamValue::F32(value) => Some(f64::from(*value)),
+                    ParamValue::I32(value) => Some(f64::from(*value)),
+                    other => param.as_u32(other).map(f64::from),
+                }
+            });
+            match value {
+                Some(value) => constants.push((key, value)),
+                None if has_default => {}
+                None => self.report(
+                    Diagnostic::error(Code::UnknownParam, format!("the override `{name}` has no value"))
+                        .at(span, "no param of the document is called so")
+                        .help(format!("declare a param `{name}` with a single number, or write `override {name}: … = …;`")),
+                ),
+            }
+        }
+        constants
     }
 
     fn bind(&mut self, global: &Global, program: &Program, linked: &LinkedProgram, pass: &mut LinkedPass) -> Option<LinkedBinding> {
@@ -163,7 +170,7 @@ impl Linker<'_, '_> {
         };
         let resource = self.resources.get(target.id).clone();
         let wrong_kind = |this: &mut Self, needed: &str| {
-            let mut error = Diagnostic::error(Code::ResourceKind, format!("`{}` needs {needed}, `{}` is {}", global.name, resource.name, resource.kind.describe()))
+            let mut error = Diagnostic::error(Code::ResourceKind, format!("the shader's `{}` needs {needed}, but `{}` is {}", global.name, resource.name, resource.kind.describe()))
                 .at(global.span.clone(), format!("the shader declares {needed}"));
             if let Some(declared) = &resource.declared {
                 error = error.at(declared.clone(), resource.kind.describe());
@@ -202,7 +209,7 @@ impl Linker<'_, '_> {
                 (BindTarget::Buffer(target.id), ty, Usage::Buffer(wgpu::BufferUsages::STORAGE))
             }
             (Class::Texture(class), ResourceKind::Texture(texture)) => {
-                let (ty, usage) = self.texture(global, class, (texture.format, &target.part), (linked, program), &resource.name)?;
+                let (ty, usage) = self.texture(global, class, (texture.format, &target.part), (linked, program), &resource)?;
                 let dimension = match class {
                     TextureClass::Sampled { dimension, .. } | TextureClass::Storage { dimension, .. } => *dimension,
                 };
@@ -269,12 +276,17 @@ impl Linker<'_, '_> {
         class: &TextureClass,
         (format, part): (wgpu::TextureFormat, &Part),
         (linked, program): (&LinkedProgram, &Program),
-        name: &str,
+        resource: &Resource,
     ) -> Option<(wgpu::BindingType, wgpu::TextureUsages)> {
         let features = format.guaranteed_format_features(self.features);
+        let name = &resource.name;
         let mismatch = |expected: String| {
-            Diagnostic::error(Code::FormatMismatch, format!("`{name}` has the format {format:?}, which `{}` cannot be", global.name))
-                .at(global.span.clone(), expected)
+            let message = format!("the texture `{name}` has the format {format:?}, which the shader's `{}` cannot use", global.name);
+            let error = Diagnostic::error(Code::FormatMismatch, message).at(global.span.clone(), expected);
+            match &resource.declared {
+                Some(declared) => error.at(declared.clone(), format!("{format:?}")),
+                None => error,
+            }
         };
         let dimension = match class {
             TextureClass::Sampled { dimension, .. } | TextureClass::Storage { dimension, .. } => *dimension,
@@ -370,7 +382,10 @@ impl Linker<'_, '_> {
                 self.report(
                     Diagnostic::error(Code::UnknownParam, format!("no param is called `{}`, which the shader's `params` holds", member.name))
                         .at(global.span.clone(), "")
-                        .suggest(&member.name, known),
+                        .help(match suggestion(&member.name, known) {
+                            Some(hint) => hint,
+                            None => format!("declare it: `params: [(name: \"{}\", type: …, default: …)]`", member.name),
+                        }),
                 );
                 complete = false;
                 continue;

@@ -316,7 +316,10 @@ impl<'a, 'p> Linker<'a, 'p> {
                 }
                 let (from_size, to_size) = (size(a, &source.part), size(b, &target.part));
                 if from_size != to_size {
-                    let words = |(width, height, layers, mips)| format!("{width}×{height} texels, {layers} layers, {mips} mips");
+                    let words = |(width, height, layers, mips)| match (layers, mips) {
+                        (1, 1) => format!("{width}×{height} texels"),
+                        _ => format!("{width}×{height} texels, layers: {layers}, mips: {mips}"),
+                    };
                     self.report(
                         mismatch(words(to_size)).help(format!("it must be as large as `{}`: {}", from.value, words(from_size))),
                     );

@@ -94,8 +94,8 @@ impl<'a> ShaderFiles<'a> {
         let mut text = format!("looked for {}", candidates.join(", "));
         let known: Vec<String> = candidates
             .iter()
-            .filter_map(|path| path.rsplit_once('/'))
-            .flat_map(|(folder, _)| self.sources.list(folder))
+            .map(|path| path.rsplit_once('/').map_or("", |(folder, _)| folder))
+            .flat_map(|folder| self.sources.list(folder))
             .filter_map(|file| file.strip_suffix(".wgsl").map(str::to_owned))
             .collect();
         if let Some(hint) = suggestion(name, known.iter().map(String::as_str)).filter(|hint| hint.starts_with("did")) {

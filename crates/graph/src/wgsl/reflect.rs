@@ -157,10 +157,7 @@ impl Shader {
 
     /// The place of an entry point's name; naga keeps none.
     pub fn entry_span(&self, entry: usize) -> Span {
-        let name = self.entry_name(entry);
-        let text = &self.source.text;
-        let at = words(text, name).find(|&at| text[..at].trim_end().ends_with("fn")).unwrap_or(0);
-        self.source.locate(at..at + name.len())
+        function_span(&self.source, self.entry_name(entry))
     }
 
     /// Resource globals that the entry points use, in declaration order, with their use in any of them.
@@ -211,19 +208,27 @@ impl Shader {
         self.source.locate(at..at + name.len())
     }
 
-    /// Whether a use of `entry` samples the texture global through a filtering (non-comparison) sampler.
+    /// Names of the sampler globals (but those that compare) through which the entry points sample a texture global.
     pub fn samplers_of(&self, entries: &[usize], texture: Handle<naga::GlobalVariable>) -> BTreeSet<String> {
         entries
             .iter()
             .flat_map(|&entry| &self.info.get_entry_point(entry).sampling_set)
             .filter(|key| key.image == texture)
-            .filter_map(|key| self.module.global_variables[key.sampler].name.clone())
+            .map(|key| &self.module.global_variables[key.sampler])
+            .filter(|sampler| !matches!(self.module.types[sampler.ty].inner, TypeInner::Sampler { comparison: true }))
+            .filter_map(|sampler| sampler.name.clone())
             .collect()
     }
 
-    /// Overridable constants by name with the index of their type's scalar: those that a param may fill.
-    pub fn overrides(&self) -> impl Iterator<Item = &str> {
-        self.module.overrides.iter().filter_map(|(_, constant)| constant.name.as_deref())
+    /// Overridable constants: name, the key that wgpu knows it by (its `@id` if it has one), whether it has a value of its
+    /// own, and its place.
+    pub fn overrides(&self) -> impl Iterator<Item = (&str, String, bool, Span)> {
+        self.module.overrides.iter().filter_map(|(handle, constant)| {
+            let name = constant.name.as_deref()?;
+            let key = constant.id.map_or_else(|| name.to_owned(), |id| id.to_string());
+            let range = self.module.overrides.get_span(handle).to_range().unwrap_or(0..0);
+            Some((name, key, constant.init.is_some(), self.source.locate(range)))
+        })
     }
 
     /// Scalar class and component count of each colour output of a fragment entry point, by location.
@@ -333,34 +338,59 @@ impl Shader {
         }
     }
 
-    /// A type's memory layout in words, equal for equal layouts: `{0: vec3<f32>, 12: f32}[]`. Names do not count.
+    /// A type's memory layout in words, equal for equal layouts: `array<{0: vec3<f32>, 12: f32}, 16 bytes each>`. Names of
+    /// members do not count.
     fn layout(&self, ty: Handle<naga::Type>) -> String {
+        let mut text = String::new();
+        self.write_layout(ty, &mut text, 0);
+        text
+    }
+
+    fn write_layout(&self, ty: Handle<naga::Type>, text: &mut String, depth: usize) {
+        // A struct of structs of structs … doubles with every level; what is longer than this is the same for our purpose.
+        const LONGEST: usize = 4096;
+        const DEEPEST: usize = 32;
         let scalar = |scalar: naga::Scalar| match scalar.kind {
             naga::ScalarKind::Float => format!("f{}", scalar.width * 8),
             naga::ScalarKind::Sint => format!("i{}", scalar.width * 8),
             _ => format!("u{}", scalar.width * 8),
         };
+        if text.len() > LONGEST || depth > DEEPEST {
+            text.push('…');
+            return;
+        }
         match &self.module.types[ty].inner {
-            TypeInner::Scalar(kind) | TypeInner::Atomic(kind) => scalar(*kind),
-            TypeInner::Vector { size, scalar: kind } => format!("vec{}<{}>", *size as u32, scalar(*kind)),
+            TypeInner::Scalar(kind) | TypeInner::Atomic(kind) => text.push_str(&scalar(*kind)),
+            TypeInner::Vector { size, scalar: kind } => text.push_str(&format!("vec{}<{}>", *size as u32, scalar(*kind))),
             TypeInner::Matrix { columns, rows, scalar: kind } => {
-                format!("mat{}x{}<{}>", *columns as u32, *rows as u32, scalar(*kind))
+                text.push_str(&format!("mat{}x{}<{}>", *columns as u32, *rows as u32, scalar(*kind)));
             }
             TypeInner::Array { base, size, stride } => {
-                let count = match size {
-                    naga::ArraySize::Constant(count) => count.to_string(),
-                    _ => String::new(),
-                };
-                format!("{}[{count}]/{stride}", self.layout(*base))
+                text.push_str("array<");
+                self.write_layout(*base, text, depth + 1);
+                if let naga::ArraySize::Constant(count) = size {
+                    text.push_str(&format!(", {count}"));
+                }
+                text.push_str(&format!(", {stride} bytes each>"));
             }
             TypeInner::Struct { members, .. } => {
-                let parts: Vec<String> =
-                    members.iter().map(|member| format!("{}: {}", member.offset, self.layout(member.ty))).collect();
-                format!("{{{}}}", parts.join(", "))
+                for (index, member) in members.iter().enumerate() {
+                    let open = if index == 0 { "{" } else { ", " };
+                    text.push_str(&format!("{open}{}: ", member.offset));
+                    self.write_layout(member.ty, text, depth + 1);
+                }
+                text.push('}');
             }
-            other => format!("{other:?}"),
+            other => text.push_str(&format!("{other:?}")),
         }
     }
+}
+
+/// The place of the name of a function.
+fn function_span(source: &Expanded, name: &str) -> Span {
+    let text = &source.text;
+    let at = words(text, name).find(|&at| text[..at].trim_end().ends_with("fn")).unwrap_or(0);
+    source.locate(at..at + name.len())
 }
 
 /// Where `word` stands in `text` as a whole word.
@@ -436,7 +466,11 @@ fn validation_error(error: &naga::WithSpan<ValidationError>, module: &naga::Modu
         }
     }
     if diagnostic.labels.is_empty() {
-        diagnostic = diagnostic.at(source.file.span(0..0), "");
+        let place = match error.as_inner() {
+            ValidationError::EntryPoint { name, .. } => function_span(source, name),
+            _ => source.file.span(0..0),
+        };
+        diagnostic = diagnostic.at(place, "");
     }
     diagnostic
 }

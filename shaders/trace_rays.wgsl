@@ -131,8 +131,9 @@ fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
         return hit;
     }
     loop {
-        let first = node.first;
-        if node.primitives == 0u {
+        // Down to the next leaf, all threads of a group together: a thread that tests triangles here would hold up the others.
+        while node.primitives == 0u {
+            let first = node.first;
             let left = scene_bvh_nodes[first];
             let right = scene_bvh_nodes[first + 1u];
             let to_left = enter(prepared, left, ray.t_min, hit.t);
@@ -147,14 +148,18 @@ fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
                 if swap {
                     node = right;
                 }
-                continue;
-            }
-        } else {
-            for (var slot = first; slot < first + node.primitives; slot++) {
-                let primitive = scene_bvh_primitives[slot];
-                if primitive != skipped && intersect(prepared, primitive, ray.t_min, &hit) && first_found {
+            } else {
+                if height == 0u {
                     return hit;
                 }
+                height -= 1u;
+                node = scene_bvh_nodes[stack[height]];
+            }
+        }
+        for (var slot = node.first; slot < node.first + node.primitives; slot++) {
+            let primitive = scene_bvh_primitives[slot];
+            if primitive != skipped && intersect(prepared, primitive, ray.t_min, &hit) && first_found {
+                return hit;
             }
         }
         if height == 0u {

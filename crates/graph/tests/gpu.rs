@@ -9,7 +9,8 @@ use skiagraph_graph::{
 use std::sync::LazyLock;
 use support::{Files, Triangle, load};
 
-static GPU: LazyLock<gpu::Gpu> = LazyLock::new(|| gpu::open(None).unwrap_or_else(|error| panic!("{error}")));
+static GPU: LazyLock<gpu::Gpu> =
+    LazyLock::new(|| gpu::open(None).unwrap_or_else(|error| panic!("{error}")));
 
 const SIZE: [u32; 2] = [13, 7];
 
@@ -28,15 +29,23 @@ fn executor(files: &Files, captures: &[(&str, Option<&str>)]) -> Result<Executor
         after: after.map(str::to_owned),
     };
     request.captures = captures.iter().map(capture).collect();
-    let plan = graph.plan(&request).unwrap_or_else(|errors| panic!("{errors}"));
+    let plan = graph
+        .plan(&request)
+        .unwrap_or_else(|errors| panic!("{errors}"));
     Executor::new(&GPU.device, &GPU.queue, plan, &mut Triangle)
 }
 
 fn frame(executor: &mut Executor, timing: bool, read: &[&str]) -> FrameReport {
-    let mut encoder = GPU.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    executor.encode(&mut encoder, &Frame { timing, read }).unwrap_or_else(|error| panic!("{error}"));
+    let mut encoder = GPU
+        .device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    executor
+        .encode(&mut encoder, &Frame { timing, read })
+        .unwrap_or_else(|error| panic!("{error}"));
     GPU.queue.submit([encoder.finish()]);
-    executor.submitted(&GPU.queue).unwrap_or_else(|error| panic!("{error}"));
+    executor
+        .submitted(&GPU.queue)
+        .unwrap_or_else(|error| panic!("{error}"));
     executor.finish().unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -49,10 +58,21 @@ fn run_with(files: &Files, captures: &[(&str, Option<&str>)], read: &[&str]) -> 
     let mut executor = executor(files, captures).unwrap_or_else(|error| panic!("{error}"));
     let first = frame(&mut executor, false, read);
     let second = frame(&mut executor, true, read);
-    assert_eq!(first.readbacks, second.readbacks, "two frames of one graph differ");
-    let names: Vec<&str> = second.readbacks.iter().map(|readback| readback.name.as_str()).collect();
+    assert_eq!(
+        first.readbacks, second.readbacks,
+        "two frames of one graph differ"
+    );
+    let names: Vec<&str> = second
+        .readbacks
+        .iter()
+        .map(|readback| readback.name.as_str())
+        .collect();
     assert_eq!(names, read);
-    second.readbacks.into_iter().map(|readback| readback.content).collect()
+    second
+        .readbacks
+        .into_iter()
+        .map(|readback| readback.content)
+        .collect()
 }
 
 fn document(materials: &str, passes: &str, outputs: &str) -> String {
@@ -73,10 +93,14 @@ fn u32s(content: &Content) -> Vec<u32> {
 
 /// A value for each pixel, rows from the top.
 fn pixels<T>([width, height]: [u32; 2], value: impl Fn(u32, u32) -> T) -> Vec<T> {
-    (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| value(x, y)).collect()
+    (0..height)
+        .flat_map(|y| (0..width).map(move |x| (x, y)))
+        .map(|(x, y)| value(x, y))
+        .collect()
 }
 
-const NUMBER: &str = "@fragment fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) f32 {
+const NUMBER: &str =
+    "@fragment fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) f32 {
     return floor(position.x) + 100.0 * floor(position.y);
 }";
 
@@ -89,10 +113,18 @@ fn a_full_screen_pass_writes_every_pixel_once() {
     )
     .with("number.wgsl", NUMBER);
     // Additive blending on floats shows a pixel that is drawn twice; where the adapter cannot blend them, plain writing.
-    let blendable = wgpu::TextureFormat::R32Float.guaranteed_format_features(GPU.device.features()).flags;
+    let blendable = wgpu::TextureFormat::R32Float
+        .guaranteed_format_features(GPU.device.features())
+        .flags;
     let files = match blendable.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE) {
         true => files,
-        false => Files(files.0.into_iter().map(|(path, text)| (path, text.replace(", blend: Additive", ""))).collect()),
+        false => Files(
+            files
+                .0
+                .into_iter()
+                .map(|(path, text)| (path, text.replace(", blend: Additive", "")))
+                .collect(),
+        ),
     };
     let expected = pixels(SIZE, |x, y| x as f32 + 100.0 * y as f32);
     assert_eq!(f32s(&run(&files, &["image"])[0]), expected);
@@ -120,7 +152,11 @@ fn a_triangle_of_the_provider_with_depth() {
          @fragment fn other() -> @location(0) u32 { return 8u; }",
     );
     let contents = run(&files, &["image", "depth"]);
-    assert_eq!(u32s(&contents[0]), pixels(SIZE, |_, _| 7), "the second draw is as deep, so it is not nearer");
+    assert_eq!(
+        u32s(&contents[0]),
+        pixels(SIZE, |_, _| 7),
+        "the second draw is as deep, so it is not nearer"
+    );
     assert_eq!(f32s(&contents[1]), pixels(SIZE, |_, _| 0.25));
 }
 
@@ -152,16 +188,34 @@ fn depth_only_and_depth_read_while_tested() {
     );
     let contents = run(&files, &["image", "depth"]);
     assert_eq!(f32s(&contents[0]), pixels(SIZE, |_, _| 1.0));
-    assert_eq!(f32s(&contents[1]), pixels(SIZE, |_, _| 0.5), "the second pass writes no depth");
+    assert_eq!(
+        f32s(&contents[1]),
+        pixels(SIZE, |_, _| 0.5),
+        "the second pass writes no depth"
+    );
 }
 
 /// Several targets at once, of formats whose rows are padded in different ways when they are read back.
 #[test]
 fn several_targets_of_several_formats() {
-    let formats = ["R8Uint", "R32Uint", "R16Float", "R8Unorm", "Rgba8Unorm", "R16Uint", "Rg32Float"];
-    let materials: Vec<String> = formats.map(|format| format!("Texture(name: \"t{format}\", format: {format}, size: Viewport)")).to_vec();
-    let targets: Vec<String> = formats.map(|format| format!("(target: \"t{format}\")")).to_vec();
-    let outputs: Vec<String> = formats.map(|format| format!("(name: \"t{format}\")")).to_vec();
+    let formats = [
+        "R8Uint",
+        "R32Uint",
+        "R16Float",
+        "R8Unorm",
+        "Rgba8Unorm",
+        "R16Uint",
+        "Rg32Float",
+    ];
+    let materials: Vec<String> = formats
+        .map(|format| format!("Texture(name: \"t{format}\", format: {format}, size: Viewport)"))
+        .to_vec();
+    let targets: Vec<String> = formats
+        .map(|format| format!("(target: \"t{format}\")"))
+        .to_vec();
+    let outputs: Vec<String> = formats
+        .map(|format| format!("(name: \"t{format}\")"))
+        .to_vec();
     let pass = format!("Fullscreen(name: \"all\", color: [{}])", targets.join(", "));
     let files = files(&materials.join(", "), &pass, &outputs.join(", ")).with(
         "all.wgsl",
@@ -181,11 +235,20 @@ fn several_targets_of_several_formats() {
     let contents = run(&files, &names);
     assert_eq!(u32s(&contents[0]), pixels(SIZE, |x, y| x + 16 * y));
     assert_eq!(u32s(&contents[1]), pixels(SIZE, |x, _| 0xffff_fff0 + x));
-    assert_eq!(f32s(&contents[2]), pixels(SIZE, |x, _| x as f32 * 0.5 - 2.0));
+    assert_eq!(
+        f32s(&contents[2]),
+        pixels(SIZE, |x, _| x as f32 * 0.5 - 2.0)
+    );
     assert_eq!(f32s(&contents[3]), pixels(SIZE, |x, _| x as f32 / 255.0));
-    assert_eq!(contents[4].bytes(), pixels(SIZE, |x, y| [x as u8, y as u8, 255, 0]).concat());
+    assert_eq!(
+        contents[4].bytes(),
+        pixels(SIZE, |x, y| [x as u8, y as u8, 255, 0]).concat()
+    );
     assert_eq!(u32s(&contents[5]), pixels(SIZE, |x, _| 60_000 + x));
-    assert_eq!(f32s(&contents[6]), pixels(SIZE, |x, y| [x as f32, y as f32]).concat());
+    assert_eq!(
+        f32s(&contents[6]),
+        pixels(SIZE, |x, y| [x as f32, y as f32]).concat()
+    );
     assert_eq!(contents[4].as_u32(), None);
     assert_eq!(contents[0].as_f32(), None);
 }
@@ -230,7 +293,10 @@ fn compute_over_more_items_than_one_dimension_has_workgroups() {
              if item < arrayLength(&items) { atomicAdd(&items[item], item + 1u); }
          }",
     );
-    assert_eq!(u32s(&run(&files, &["items"])[0]), (1..=items).collect::<Vec<_>>());
+    assert_eq!(
+        u32s(&run(&files, &["items"])[0]),
+        (1..=items).collect::<Vec<_>>()
+    );
 }
 
 /// Sizes of a dispatch and of a draw that an earlier pass wrote.
@@ -272,12 +338,21 @@ fn indirect_dispatch_and_draw() {
 
 #[test]
 fn clears_and_copies() {
-    let textures = ["R32Uint", "R32Float", "Depth32Float", "R8Uint", "Rgba32Float"];
+    let textures = [
+        "R32Uint",
+        "R32Float",
+        "Depth32Float",
+        "R8Uint",
+        "Rgba32Float",
+    ];
     let texture = |format: &&str| {
-        format!("Texture(name: \"a{format}\", format: {format}, size: Viewport), Texture(name: \"b{format}\", format: {format}, size: Viewport)")
+        format!(
+            "Texture(name: \"a{format}\", format: {format}, size: Viewport), Texture(name: \"b{format}\", format: {format}, size: Viewport)"
+        )
     };
     let mut materials: Vec<String> = textures.iter().map(texture).collect();
-    materials.push("Buffer(name: \"items\", count: 5), Buffer(name: \"kept\", count: 5)".to_owned());
+    materials
+        .push("Buffer(name: \"items\", count: 5), Buffer(name: \"kept\", count: 5)".to_owned());
     let passes = "Clear(name: \"c0\", target: \"aR32Uint\", value: (4294967295, 0, 0, 0)),
         Clear(name: \"c1\", target: \"aR32Float\", value: (-0.5, 0, 0, 0)),
         Clear(name: \"c2\", target: \"aDepth32Float\", value: (0.75, 0, 0, 0)),
@@ -287,13 +362,23 @@ fn clears_and_copies() {
         Copy(name: \"keep\", from: \"items\", to: \"kept\"),
         Clear(name: \"wipe\", target: \"items\")"
         .to_owned();
-    let copies: Vec<String> =
-        textures.iter().map(|format| format!("Copy(name: \"copy{format}\", from: \"a{format}\", to: \"b{format}\")")).collect();
-    let outputs: Vec<String> = textures.iter().map(|format| format!("(name: \"b{format}\")")).collect();
+    let copies: Vec<String> = textures
+        .iter()
+        .map(|format| {
+            format!("Copy(name: \"copy{format}\", from: \"a{format}\", to: \"b{format}\")")
+        })
+        .collect();
+    let outputs: Vec<String> = textures
+        .iter()
+        .map(|format| format!("(name: \"b{format}\")"))
+        .collect();
     let files = files(
         &materials.join(", "),
         &format!("{passes}, {}", copies.join(", ")),
-        &format!("{}, (name: \"kept\"), (name: \"items\")", outputs.join(", ")),
+        &format!(
+            "{}, (name: \"kept\"), (name: \"items\")",
+            outputs.join(", ")
+        ),
     )
     .with(
         "number.wgsl",
@@ -302,12 +387,26 @@ fn clears_and_copies() {
              if id.x < arrayLength(&items) { items[id.x] = id.x + 1u; }
          }",
     );
-    let contents = run(&files, &["bR32Uint", "bR32Float", "bDepth32Float", "bR8Uint", "bRgba32Float", "kept", "items"]);
+    let contents = run(
+        &files,
+        &[
+            "bR32Uint",
+            "bR32Float",
+            "bDepth32Float",
+            "bR8Uint",
+            "bRgba32Float",
+            "kept",
+            "items",
+        ],
+    );
     assert_eq!(u32s(&contents[0]), pixels(SIZE, |_, _| u32::MAX));
     assert_eq!(f32s(&contents[1]), pixels(SIZE, |_, _| -0.5));
     assert_eq!(f32s(&contents[2]), pixels(SIZE, |_, _| 0.75));
     assert_eq!(u32s(&contents[3]), pixels(SIZE, |_, _| 255));
-    assert_eq!(f32s(&contents[4]), pixels(SIZE, |_, _| [1.0, 2.0, 3.0, 4.0]).concat());
+    assert_eq!(
+        f32s(&contents[4]),
+        pixels(SIZE, |_, _| [1.0, 2.0, 3.0, 4.0]).concat()
+    );
     assert_eq!(u32s(&contents[5]), [1, 2, 3, 4, 5]);
     assert_eq!(u32s(&contents[6]), [0; 5]);
 }
@@ -381,7 +480,11 @@ fn samplers() {
     );
     let sampled = f32s(&run(&files, &["image"])[0]);
     assert_eq!([sampled[0], sampled[2], sampled[3]], [1.0, 0.0, 1.0]);
-    assert!((sampled[1] - 0.5).abs() <= 1.0 / 255.0, "half way between 0 and 1 lies {}", sampled[1]);
+    assert!(
+        (sampled[1] - 0.5).abs() <= 1.0 / 255.0,
+        "half way between 0 and 1 lies {}",
+        sampled[1]
+    );
 }
 
 /// A material as it stood after each of the passes that change it.
@@ -400,14 +503,31 @@ fn captures() {
         "var<storage, read_write> total: u32;
          @compute @workgroup_size(1) fn main() { total = total + 1u; }",
     );
-    let captures =
-        [("total", Some("reset")), ("total", Some("add1")), ("total", Some("add1")), ("unused", None), ("total", None)];
+    let captures = [
+        ("total", Some("reset")),
+        ("total", Some("add1")),
+        ("total", Some("add1")),
+        ("unused", None),
+        ("total", None),
+    ];
     let read = ["total@reset", "total@add1", "total", "unused"];
-    let values: Vec<u32> = run_with(&files, &captures, &read).iter().map(|content| u32s(content)[0]).collect();
+    let values: Vec<u32> = run_with(&files, &captures, &read)
+        .iter()
+        .map(|content| u32s(content)[0])
+        .collect();
     assert_eq!(values, [0, 1, 2, 1]);
     let culled = executor(&files, &[]).unwrap_or_else(|error| panic!("{error}"));
-    let names: Vec<&str> = culled.plan().culled().iter().map(|pass| pass.name.as_str()).collect();
-    assert_eq!(names, ["wipe", "aside"], "without the capture nobody needs it");
+    let names: Vec<&str> = culled
+        .plan()
+        .culled()
+        .iter()
+        .map(|pass| pass.name.as_str())
+        .collect();
+    assert_eq!(
+        names,
+        ["wipe", "aside"],
+        "without the capture nobody needs it"
+    );
 }
 
 #[test]
@@ -433,7 +553,10 @@ fn every_pass_is_timed_or_the_reason_is_known() {
             }
         } else {
             let longest = times.passes.iter().filter_map(|pass| pass.gpu).max();
-            assert!(times.gpu() >= longest, "the frame is as long as its longest pass");
+            assert!(
+                times.gpu() >= longest,
+                "the frame is as long as its longest pass"
+            );
         }
     }
 }
@@ -449,19 +572,47 @@ fn frames_that_are_not_finished_one_by_one() {
     .with("number.wgsl", NUMBER);
     let mut executor = executor(&files, &[]).unwrap_or_else(|error| panic!("{error}"));
     for timing in [true, false, true] {
-        let mut dropped = GPU.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        executor.encode(&mut dropped, &Frame { timing: false, read: &["image"] }).unwrap_or_else(|error| panic!("{error}"));
+        let mut dropped = GPU
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        executor
+            .encode(
+                &mut dropped,
+                &Frame {
+                    timing: false,
+                    read: &["image"],
+                },
+            )
+            .unwrap_or_else(|error| panic!("{error}"));
         drop(dropped);
-        let mut encoder = GPU.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        executor.encode(&mut encoder, &Frame { timing, read: &["image"] }).unwrap_or_else(|error| panic!("{error}"));
+        let mut encoder = GPU
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        executor
+            .encode(
+                &mut encoder,
+                &Frame {
+                    timing,
+                    read: &["image"],
+                },
+            )
+            .unwrap_or_else(|error| panic!("{error}"));
         GPU.queue.submit([encoder.finish()]);
-        executor.submitted(&GPU.queue).unwrap_or_else(|error| panic!("{error}"));
+        executor
+            .submitted(&GPU.queue)
+            .unwrap_or_else(|error| panic!("{error}"));
     }
     let report = executor.finish().unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(report.readbacks.len(), 1);
     assert!(report.timing.is_some());
     // Nothing is under way now.
-    assert!(executor.finish().unwrap_or_else(|error| panic!("{error}")).readbacks.is_empty());
+    assert!(
+        executor
+            .finish()
+            .unwrap_or_else(|error| panic!("{error}"))
+            .readbacks
+            .is_empty()
+    );
 }
 
 #[test]
@@ -473,9 +624,22 @@ fn an_output_that_the_plan_does_not_have() {
     )
     .with("number.wgsl", NUMBER);
     let mut executor = executor(&files, &[]).unwrap_or_else(|error| panic!("{error}"));
-    let mut encoder = GPU.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let error = executor.encode(&mut encoder, &Frame { timing: false, read: &["imgae"] }).expect_err("there is none");
-    assert_eq!(error.to_string(), "the plan has no output `imgae`; it has image");
+    let mut encoder = GPU
+        .device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let error = executor
+        .encode(
+            &mut encoder,
+            &Frame {
+                timing: false,
+                read: &["imgae"],
+            },
+        )
+        .expect_err("there is none");
+    assert_eq!(
+        error.to_string(),
+        "the plan has no output `imgae`; it has image"
+    );
 }
 
 /// Right as WGSL, but this device was not opened with what it needs: an error that names the pass, and no panic.
@@ -492,7 +656,11 @@ fn a_shader_that_the_device_refuses() {
          @compute @workgroup_size(1) fn main() { var sum: f64 = 1.0lf; sum = sum * 0.1lf; total = f32(sum); }",
     );
     match executor(&files, &[]).expect_err("f64 was not asked for") {
-        ExecuteError::Gpu { pass, place, message } => {
+        ExecuteError::Gpu {
+            pass,
+            place,
+            message,
+        } => {
             assert_eq!(pass, "precise");
             assert!(place.starts_with("graph.ron:1:"), "{place}");
             assert!(!message.is_empty());
@@ -510,9 +678,18 @@ fn a_provider_that_fails() {
             vec!["items".to_owned()]
         }
         fn describe(&self, name: &str) -> Option<skiagraph_graph::Provided> {
-            (name == "items").then_some(skiagraph_graph::Provided { items: Some(4), stride: 4, uniform: false })
+            (name == "items").then_some(skiagraph_graph::Provided {
+                items: Some(4),
+                stride: 4,
+                uniform: false,
+            })
         }
-        fn build(&mut self, _: &str, device: &wgpu::Device, _: &wgpu::Queue) -> Result<wgpu::Buffer, skiagraph_graph::ProviderError> {
+        fn build(
+            &mut self,
+            _: &str,
+            device: &wgpu::Device,
+            _: &wgpu::Queue,
+        ) -> Result<wgpu::Buffer, skiagraph_graph::ProviderError> {
             // A buffer without the usage that binding needs.
             Ok(device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("items"),
@@ -522,19 +699,38 @@ fn a_provider_that_fails() {
             }))
         }
     }
-    let files = files("Buffer(name: \"total\")", "Compute(name: \"sum\", dispatch: Groups(1, 1, 1))", "(name: \"total\")").with(
+    let files = files(
+        "Buffer(name: \"total\")",
+        "Compute(name: \"sum\", dispatch: Groups(1, 1, 1))",
+        "(name: \"total\")",
+    )
+    .with(
         "sum.wgsl",
         "var<storage, read> items: array<u32>;
          var<storage, read_write> total: u32;
          @compute @workgroup_size(1) fn main() { total = items[0]; }",
     );
     let graph = load(&files).unwrap_or_else(|errors| panic!("{errors}"));
-    let plan = graph.plan(&request(&Broken)).unwrap_or_else(|errors| panic!("{errors}"));
-    match Executor::new(&GPU.device, &GPU.queue, plan, &mut Broken).expect_err("it cannot be bound") {
+    let plan = graph
+        .plan(&request(&Broken))
+        .unwrap_or_else(|errors| panic!("{errors}"));
+    match Executor::new(&GPU.device, &GPU.queue, plan, &mut Broken).expect_err("it cannot be bound")
+    {
         ExecuteError::Gpu { pass, .. } => assert_eq!(pass, "sum"),
         other => panic!("{other}"),
     }
-    let plan = graph.plan(&request(&Broken)).unwrap_or_else(|errors| panic!("{errors}"));
-    let error = Executor::new(&GPU.device, &GPU.queue, plan, &mut skiagraph_graph::NoProvider).expect_err("nothing is provided");
-    assert!(matches!(&error, ExecuteError::Provider { name, .. } if name == "items"), "{error}");
+    let plan = graph
+        .plan(&request(&Broken))
+        .unwrap_or_else(|errors| panic!("{errors}"));
+    let error = Executor::new(
+        &GPU.device,
+        &GPU.queue,
+        plan,
+        &mut skiagraph_graph::NoProvider,
+    )
+    .expect_err("nothing is provided");
+    assert!(
+        matches!(&error, ExecuteError::Provider { name, .. } if name == "items"),
+        "{error}"
+    );
 }

@@ -509,7 +509,10 @@ impl Plan {
             ResourceKind::Buffer(buffer) => buffer.bytes,
             _ => 0,
         };
-        self.lifetimes.keys().map(bytes).sum()
+        self.lifetimes
+            .keys()
+            .map(bytes)
+            .fold(0, u64::saturating_add)
     }
 
     /// Bytes saved by resources that share memory. None do so far.

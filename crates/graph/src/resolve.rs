@@ -60,14 +60,17 @@ pub(crate) struct Texture {
 
 impl Texture {
     pub fn bytes(&self) -> u64 {
-        let mip = |mip: u32| wgpu::Extent3d {
-            width: (self.size[0] >> mip).max(1),
-            height: (self.size[1] >> mip).max(1),
-            depth_or_array_layers: self.layers,
+        let texel = self
+            .format
+            .theoretical_memory_footprint(wgpu::Extent3d::default());
+        // A host's limits may allow for more than 64 bits can count.
+        let mip = |level: u32| {
+            let edges = self.size.map(|edge| u64::from((edge >> level).max(1)));
+            [edges[0], edges[1], u64::from(self.layers)]
+                .into_iter()
+                .fold(texel, u64::saturating_mul)
         };
-        (0..self.mips)
-            .map(|level| self.format.theoretical_memory_footprint(mip(level)))
-            .sum()
+        (0..self.mips).map(mip).fold(0, u64::saturating_add)
     }
 }
 

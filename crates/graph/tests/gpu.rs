@@ -734,3 +734,26 @@ fn a_provider_that_fails() {
         "{error}"
     );
 }
+
+/// Terabytes: an error that names the texture.
+#[test]
+fn more_memory_than_there_is() {
+    let limits = GPU.device.limits();
+    let (edge, layers) = (
+        limits.max_texture_dimension_2d,
+        limits.max_texture_array_layers,
+    );
+    let files = files(
+        &format!(
+            "Texture(name: \"image\", format: Rgba32Float, size: Square({edge}), layers: {layers})"
+        ),
+        "Clear(name: \"reset\", target: \"image\")",
+        "(name: \"image\")",
+    );
+    match executor(&files, &[]).expect_err("no device has as much") {
+        ExecuteError::OutOfMemory { name } | ExecuteError::Resource { name, .. } => {
+            assert_eq!(name, "image")
+        }
+        other => panic!("{other}"),
+    }
+}

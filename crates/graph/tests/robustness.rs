@@ -236,7 +236,10 @@ proptest! {
             .replace("Times(2,", &format!("Times({count},"))
             .replace("mips: 2, layers: 1", &format!("mips: {}, layers: {}", mips % 40, layers % 3000))
             .replace("mips: 1)]", &format!("mips: {})]", mips % 3));
-        if let Ok(graph) = Graph::load("graph.ron", &Registry::standard(), &files().with("graph.ron", document)) {
+        let files = files().with("graph.ron", document);
+        let graph = Graph::load("graph.ron", &Registry::standard(), &files);
+        let graph = graph.unwrap_or_else(|errors| panic!("sizes are not known yet: {errors}"));
+        {
             for viewport in [[width, height], [width % 8193, height % 8193], [1, 1]] {
                 let mut request = PlanRequest::new(viewport, &Triangle);
                 for limits in [wgpu::Limits::default(), wgpu::Limits { max_texture_dimension_2d: u32::MAX, max_texture_array_layers: u32::MAX, max_buffer_size: u64::MAX, max_storage_buffer_binding_size: u64::MAX, max_compute_workgroups_per_dimension: u32::MAX, ..wgpu::Limits::default() }] {
@@ -248,4 +251,30 @@ proptest! {
             }
         }
     }
+}
+
+/// As many bytes as 64 bits cannot count, where a host's limits allow for them.
+#[test]
+fn more_bytes_than_can_be_counted() {
+    let document = "(format: 1,
+        materials: [Texture(name: \"image\", format: Rgba32Float, size: Texels(4294967295, 4294967295), mips: 32, layers: 64),
+            Buffer(name: \"items\", count: Times(4294967295, 1073741823))],
+        passes: [Clear(name: \"reset\", target: \"image\"), Compute(name: \"number\", dispatch: Groups(1, 1, 1))],
+        outputs: [(name: \"image\"), (name: \"items\")])";
+    let shader = "var<storage, read_write> items: array<u32>; @compute @workgroup_size(1) fn main() { items[0] = 1u; }";
+    let files = Files::new([("graph.ron", document), ("number.wgsl", shader)]);
+    let graph = Graph::load("graph.ron", &Registry::standard(), &files)
+        .unwrap_or_else(|errors| panic!("{errors}"));
+    let mut request = PlanRequest::new([1, 1], &Triangle);
+    request.limits = wgpu::Limits {
+        max_texture_dimension_2d: u32::MAX,
+        max_buffer_size: u64::MAX,
+        max_storage_buffer_binding_size: u64::MAX,
+        ..wgpu::Limits::default()
+    };
+    let plan = graph
+        .plan(&request)
+        .unwrap_or_else(|errors| panic!("{errors}"));
+    assert_eq!(plan.memory_bytes(), u64::MAX);
+    assert_eq!(plan.outputs()[1].size, [u32::MAX, 1]);
 }

@@ -1,7 +1,8 @@
 //! Phase 10: the passes are encoded into the host's encoder; timing and readback end after submission.
 
 use crate::{
-    allocate::{MadeCall, MadeDraw, MadeGroups, MadeStep, Maker, Memory},
+    allocate::{MadeCall, MadeDraw, MadeGroups, MadeStep, Maker},
+    memory::Memory,
     plan::Plan,
     provider::Provider,
     readback::{self, Pending, Readback},

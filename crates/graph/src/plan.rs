@@ -1,5 +1,9 @@
 //! [`Plan`]: a graph on a viewport with values for its params, checked against an adapter's limits. Pure data.
 
+mod request;
+
+pub use request::{Capture, CulledPass, OutputSummary, PassSummary, PlanRequest};
+
 use crate::{
     cull,
     diagnostics::{Code, Diagnostic, Diagnostics, Severity},
@@ -8,7 +12,6 @@ use crate::{
     lifetime::{Lifetime, lifetimes},
     link::{LinkedPass, Linker},
     order::{Order, order},
-    provider::Provider,
     registry::Params,
     resolve::{
         Buffer, Environment, Part, Resource, ResourceId, ResourceKind, Resources, Target, resolve,
@@ -17,87 +20,6 @@ use crate::{
     step::Step,
 };
 use std::collections::{BTreeMap, BTreeSet};
-
-/// What a plan is made for.
-pub struct PlanRequest<'a> {
-    /// Width and height in pixels.
-    pub viewport: [u32; 2],
-    /// Values of params; where missing, the document's default.
-    pub params: BTreeMap<String, ParamValue>,
-    /// The outputs that are wanted; `None` = all that the document declares.
-    pub outputs: Option<Vec<String>>,
-    /// Materials that are to be read back beside the outputs.
-    pub captures: Vec<Capture>,
-    /// Limits that the device will have.
-    pub limits: wgpu::Limits,
-    /// Features that the device will have.
-    pub features: wgpu::Features,
-    /// Describes the provided resources.
-    pub provider: &'a dyn Provider,
-}
-
-impl<'a> PlanRequest<'a> {
-    /// A request with wgpu's default limits, no features, default params and all outputs.
-    pub fn new(viewport: [u32; 2], provider: &'a dyn Provider) -> Self {
-        Self {
-            viewport,
-            params: BTreeMap::new(),
-            outputs: None,
-            captures: Vec::new(),
-            limits: wgpu::Limits::default(),
-            features: wgpu::Features::empty(),
-            provider,
-        }
-    }
-}
-
-/// A material to be read back.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Capture {
-    /// Material, view or provided resource.
-    pub material: String,
-    /// The pass after which its content is wanted; `None` = at the end of the frame.
-    pub after: Option<String>,
-}
-
-impl Capture {
-    /// The name under which it is read back: `material` or `material@pass`.
-    pub fn name(&self) -> String {
-        match &self.after {
-            Some(pass) => format!("{}@{pass}", self.material),
-            None => self.material.clone(),
-        }
-    }
-}
-
-/// A live pass.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PassSummary {
-    /// Name.
-    pub name: String,
-    /// Kind, as the document writes it.
-    pub kind: String,
-}
-
-/// A pass that does not run.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct CulledPass {
-    /// Name.
-    pub name: String,
-    /// Why.
-    pub reason: String,
-}
-
-/// Something that can be read back.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct OutputSummary {
-    /// Name of the output or capture.
-    pub name: String,
-    /// Format of a texture; `None` for a buffer.
-    pub format: Option<wgpu::TextureFormat>,
-    /// Texels of a texture; `[bytes, 1]` of a buffer.
-    pub size: [u32; 2],
-}
 
 /// A graph that is ready to be allocated: live passes in order, every resource with its size and uses.
 #[derive(Debug)]

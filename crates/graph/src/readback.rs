@@ -1,8 +1,8 @@
 //! Bringing outputs back to the host: asked for per frame, copied behind the frame, mapped after submission.
 
 use crate::{
-    allocate::Memory,
     execute::ExecuteError,
+    memory::Memory,
     plan::Plan,
     resolve::{ResourceKind, Target},
 };

@@ -1,4 +1,4 @@
-//! Phase 1: the RON text becomes a [`Document`]; nothing is looked up yet but pass kinds.
+//! Phase 1: the RON text becomes a document; nothing is looked up yet but pass kinds.
 
 pub mod located;
 pub mod materials;

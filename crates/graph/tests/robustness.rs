@@ -2,8 +2,11 @@
 
 mod support;
 
-use proptest::prelude::*;
-use skiagraph_graph::{Graph, PlanRequest, Registry};
+use proptest::{
+    prelude::*,
+    test_runner::{RngAlgorithm, TestRng, TestRunner},
+};
+use skiagraph_graph::{Executor, Frame, Graph, PlanRequest, Registry, gpu};
 use support::{Files, Triangle};
 
 /// A document with some of everything, right as it stands.
@@ -202,19 +205,25 @@ fn change(text: &str, at: f64, gone: usize, word: &str) -> String {
     )
 }
 
+/// The files with some words replaced.
+fn changed(changes: Vec<(usize, f64, usize, usize)>) -> Files {
+    let mut files = files();
+    let names: Vec<String> = files.0.keys().cloned().collect();
+    for (file, at, gone, word) in changes {
+        let name = &names[file];
+        let text = change(&files.0[name], at, gone, WORDS[word]);
+        files.0.insert(name.clone(), text);
+    }
+    files
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// Words are lost, added and swapped anywhere in the document and its shaders.
     #[test]
     fn changed_anywhere(changes in prop::collection::vec(any_change(), 1..4)) {
-        let mut files = files();
-        let names: Vec<String> = files.0.keys().cloned().collect();
-        for (file, at, gone, word) in changes {
-            let name = &names[file];
-            let text = change(&files.0[name], at, gone, WORDS[word]);
-            files.0.insert(name.clone(), text);
-        }
+        let files = changed(changes);
         // Right or wrong, it is an answer.
         if let Err(text) = judge(&files) {
             prop_assert!(!text.is_empty());
@@ -277,4 +286,233 @@ fn more_bytes_than_can_be_counted() {
         .unwrap_or_else(|errors| panic!("{errors}"));
     assert_eq!(plan.memory_bytes(), u64::MAX);
     assert_eq!(plan.outputs()[1].size, [u32::MAX, 1]);
+}
+
+/// What may stand in the place of something in the document or its shaders, and often still plans.
+const OTHERS: &[(&str, &[&str])] = &[
+    (
+        "R32Float",
+        &[
+            "R16Float",
+            "Rgba32Float",
+            "R8Unorm",
+            "Rg32Float",
+            "Rgba8UnormSrgb",
+            "Rg11b10Ufloat",
+        ],
+    ),
+    ("Depth32Float", &["Depth16Unorm", "Depth24Plus"]),
+    (
+        "Square(Param(\"edge\"))",
+        &[
+            "Texels(1, 1)",
+            "Texels(8192, 1)",
+            "Like(\"small\")",
+            "Texels(5, 300)",
+        ],
+    ),
+    (
+        "ViewportTimes(0.5)",
+        &[
+            "ViewportTimes(2)",
+            "ViewportTimes(0.0001)",
+            "Square(1)",
+            "Viewport",
+        ],
+    ),
+    (
+        "Times(2, PixelsOf(\"small\"))",
+        &[
+            "1",
+            "65",
+            "Pixels",
+            "CountOf(\"scene.indices\")",
+            "Times(64, 2048)",
+        ],
+    ),
+    (
+        "Groups(1, 2, 3)",
+        &[
+            "Groups(0, 1, 1)",
+            "Over(\"small\")",
+            "Over(\"kept\")",
+            "Indirect(\"items\")",
+            "Over(\"scene.positions\")",
+        ],
+    ),
+    (
+        "compare: Less",
+        &[
+            "compare: Always, write: false",
+            "compare: Never",
+            "compare: GreaterEqual",
+        ],
+    ),
+    (
+        "load: Clear(1.0)",
+        &["load: Clear(0)", "load: Clear(Param(\"bias\"))"],
+    ),
+    (
+        "load: Clear(0, 0, 0, 0)",
+        &[
+            "load: Clear(0.5, 1e30, -1, 0)",
+            "blend: Additive",
+            "blend: Alpha",
+            "blend: Min",
+        ],
+    ),
+    ("mips: 2", &["mips: 1", "mips: 5"]),
+    ("layers: 1", &["layers: 2"]),
+    (
+        "bias: (constant: 1)",
+        &[
+            "bias: (slope_scale: 1e30, clamp: -1)",
+            "bias: (constant: -2147483648)",
+        ],
+    ),
+    ("default: 16", &["default: 1", "default: 64"]),
+    ("default: -0.5", &["default: 1e30", "default: 0"]),
+    (
+        "default: \"front\"",
+        &["default: \"none\"", "default: \"back\""],
+    ),
+    ("filter: Nearest", &["filter: Linear", "compare: Less"]),
+    (
+        "draw: CountOf(\"scene.indices\")",
+        &[
+            "draw: 0",
+            "draw: 7",
+            "draw: 3, instances: 0",
+            "draw: 3, topology: LineList",
+            "draw: 3, topology: PointList",
+            "draw: 3, topology: TriangleStrip",
+            "draw: Indirect(\"items\")",
+        ],
+    ),
+    (
+        "@workgroup_size(64)",
+        &[
+            "@workgroup_size(1)",
+            "@workgroup_size(16, 16)",
+            "@workgroup_size(1, 1, 64)",
+            "@workgroup_size(256)",
+        ],
+    ),
+    (
+        "Over(\"items\")",
+        &[
+            "Over(\"kept\")",
+            "Over(\"depth\")",
+            "Over(\"scene.indices\")",
+            "Groups(65535, 1, 1)",
+        ],
+    ),
+    (
+        "items[id.x] = id.x;",
+        &[
+            "items[id.x] = items[id.x / 0u];",
+            "items[9999999u] = 1u;",
+            "var x: f16 = 1.0h;",
+            "workgroupBarrier();",
+        ],
+    ),
+    (
+        "var<uniform> params",
+        &[
+            "@group(3) @binding(9) var<uniform> params",
+            "@group(1) @binding(999) var<uniform> params",
+        ],
+    ),
+    (
+        "from: \"small\", to: \"same\"",
+        &[
+            "from: \"same\", to: \"small\"",
+            "from: \"top\", to: \"same\"",
+        ],
+    ),
+    (
+        "name: \"top\", mip: 0, mips: 1",
+        &["name: \"top\", mip: 1, mips: 1", "name: \"top\", mip: 1"],
+    ),
+];
+
+/// The files with some things replaced by others of their kind.
+fn varied(choices: &[(usize, usize)]) -> Files {
+    let mut files = files();
+    for (which, other) in choices {
+        let (from, to) = OTHERS[which % OTHERS.len()];
+        for text in files.0.values_mut() {
+            *text = text.replacen(from, to[other % to.len()], 1);
+        }
+    }
+    files
+}
+
+/// What plans must also run, or be refused with an error: wgpu's own answer to an error that nobody catches is a panic.
+#[test]
+fn what_plans_runs_or_is_refused() {
+    let gpu = gpu::open(None).unwrap_or_else(|error| panic!("{error}"));
+    let ran = std::cell::Cell::new(0);
+    let mut runner = TestRunner::new_with_rng(
+        ProptestConfig {
+            cases: 300,
+            failure_persistence: None,
+            ..ProptestConfig::default()
+        },
+        TestRng::deterministic_rng(RngAlgorithm::ChaCha),
+    );
+    let outcome = runner.run(
+        &prop::collection::vec(any::<(usize, usize)>(), 1..3),
+        |choices| {
+            let files = varied(&choices);
+            let Ok(graph) = Graph::load("graph.ron", &Registry::standard(), &files) else {
+                return Ok(());
+            };
+            let mut request = PlanRequest::new([33, 17], &Triangle);
+            request.limits = gpu.device.limits();
+            request.features = gpu.device.features();
+            let Ok(plan) = graph.plan(&request) else {
+                return Ok(());
+            };
+            let outputs: Vec<String> = plan
+                .outputs()
+                .into_iter()
+                .map(|output| output.name)
+                .collect();
+            let read: Vec<&str> = outputs.iter().map(String::as_str).collect();
+            match Executor::new(&gpu.device, &gpu.queue, plan, &mut Triangle) {
+                Err(error) => prop_assert!(!error.to_string().is_empty()),
+                Ok(mut executor) => {
+                    let mut encoder = gpu
+                        .device
+                        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+                    executor
+                        .encode(
+                            &mut encoder,
+                            &Frame {
+                                timing: true,
+                                read: &read,
+                            },
+                        )
+                        .map_err(|error| TestCaseError::fail(error.to_string()))?;
+                    gpu.queue.submit([encoder.finish()]);
+                    executor
+                        .submitted(&gpu.queue)
+                        .map_err(|error| TestCaseError::fail(error.to_string()))?;
+                    let report = executor
+                        .finish()
+                        .map_err(|error| TestCaseError::fail(error.to_string()))?;
+                    prop_assert_eq!(report.readbacks.len(), read.len());
+                    ran.set(ran.get() + 1);
+                }
+            }
+            Ok(())
+        },
+    );
+    outcome.unwrap_or_else(|failure| panic!("{failure}"));
+    let ran = ran.get();
+    assert!(
+        ran > 50,
+        "only {ran} of the changed documents ran: the test says little"
+    );
 }

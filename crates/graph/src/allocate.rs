@@ -1,127 +1,38 @@
-//! Phase 9: what the live passes touch is made on the device: textures, buffers, pipelines, bind groups.
+//! Phase 9, second half: pipelines and bind groups of the live passes.
 
 use crate::{
-    document::materials::{Address, Filter, SamplerEntry},
-    execute::{ExecuteError, scoped},
+    execute::ExecuteError,
     link::{BindTarget, LinkedCall, LinkedDraw, LinkedGroups, LinkedProgram, LinkedStep},
-    plan::Plan,
-    provider::Provider,
-    resolve::{Part, ResourceId, ResourceKind, Target},
+    memory::Memory,
+    resolve::{Part, Target},
     wgsl::Shader,
 };
 use naga::ShaderStage;
-use std::{borrow::Cow, collections::BTreeMap, collections::HashMap, sync::Arc};
-
-/// Textures, buffers and samplers of a plan.
-#[derive(Default)]
-pub(crate) struct Memory {
-    textures: BTreeMap<ResourceId, wgpu::Texture>,
-    buffers: BTreeMap<ResourceId, wgpu::Buffer>,
-    samplers: BTreeMap<ResourceId, wgpu::Sampler>,
-}
-
-impl Memory {
-    pub fn texture(&self, id: ResourceId) -> Result<&wgpu::Texture, ExecuteError> {
-        self.textures.get(&id).ok_or(ExecuteError::Internal("a texture that a live pass uses was not made"))
-    }
-
-    pub fn buffer(&self, id: ResourceId) -> Result<&wgpu::Buffer, ExecuteError> {
-        self.buffers.get(&id).ok_or(ExecuteError::Internal("a buffer that a live pass uses was not made"))
-    }
-
-    /// A view of one part, of the dimension that a shader or an attachment sees.
-    pub fn view(&self, target: &Target, dimension: wgpu::TextureViewDimension) -> Result<wgpu::TextureView, ExecuteError> {
-        let Part { mips, layers } = &target.part;
-        Ok(self.texture(target.id)?.create_view(&wgpu::TextureViewDescriptor {
-            dimension: Some(dimension),
-            base_mip_level: mips.start,
-            mip_level_count: Some(mips.len() as u32),
-            base_array_layer: layers.start,
-            array_layer_count: Some(layers.len() as u32),
-            ..wgpu::TextureViewDescriptor::default()
-        }))
-    }
-
-    /// Makes every resource with a lifetime; provided ones are asked of the provider, and only here.
-    pub fn new(plan: &Plan, device: &wgpu::Device, queue: &wgpu::Queue, provider: &mut dyn Provider) -> Result<Self, ExecuteError> {
-        let mut memory = Self::default();
-        for (&id, lifetime) in &plan.lifetimes {
-            let resource = &plan.resources[id.0];
-            match &resource.kind {
-                ResourceKind::Texture(texture) => {
-                    let made = scoped(device, &resource.name, || {
-                        device.create_texture(&wgpu::TextureDescriptor {
-                            label: Some(&resource.name),
-                            size: wgpu::Extent3d {
-                                width: texture.size[0],
-                                height: texture.size[1],
-                                depth_or_array_layers: texture.layers,
-                            },
-                            mip_level_count: texture.mips,
-                            sample_count: 1,
-                            dimension: wgpu::TextureDimension::D2,
-                            format: texture.format,
-                            usage: lifetime.textures,
-                            view_formats: &[],
-                        })
-                    })?;
-                    memory.textures.insert(id, made);
-                }
-                ResourceKind::Buffer(buffer) => {
-                    let made = scoped(device, &resource.name, || {
-                        device.create_buffer(&wgpu::BufferDescriptor {
-                            label: Some(&resource.name),
-                            size: buffer.bytes,
-                            usage: lifetime.buffers,
-                            mapped_at_creation: false,
-                        })
-                    })?;
-                    memory.buffers.insert(id, made);
-                }
-                ResourceKind::Sampler(entry) => {
-                    memory.samplers.insert(id, sampler(device, &resource.name, entry));
-                }
-                ResourceKind::Provided(_) => {
-                    let built = scoped(device, &resource.name, || provider.build(&resource.name, device, queue))?;
-                    let buffer = built.map_err(|why| ExecuteError::Provider { name: resource.name.clone(), why: why.0 })?;
-                    memory.buffers.insert(id, buffer);
-                }
-            }
-        }
-        Ok(memory)
-    }
-}
-
-fn sampler(device: &wgpu::Device, name: &str, entry: &SamplerEntry) -> wgpu::Sampler {
-    let address = match entry.address {
-        Address::ClampToEdge => wgpu::AddressMode::ClampToEdge,
-        Address::Repeat => wgpu::AddressMode::Repeat,
-        Address::MirrorRepeat => wgpu::AddressMode::MirrorRepeat,
-    };
-    let (filter, mip) = match entry.filter {
-        Filter::Nearest => (wgpu::FilterMode::Nearest, wgpu::MipmapFilterMode::Nearest),
-        Filter::Linear => (wgpu::FilterMode::Linear, wgpu::MipmapFilterMode::Linear),
-    };
-    device.create_sampler(&wgpu::SamplerDescriptor {
-        label: Some(name),
-        address_mode_u: address,
-        address_mode_v: address,
-        address_mode_w: address,
-        mag_filter: filter,
-        min_filter: filter,
-        mipmap_filter: mip,
-        compare: entry.compare.map(Into::into),
-        ..wgpu::SamplerDescriptor::default()
-    })
-}
+use std::{borrow::Cow, collections::HashMap, sync::Arc};
 
 /// A step with everything it needs on the device.
 pub(crate) enum MadeStep {
     Draw(MadeDraw),
-    Dispatch { pipeline: wgpu::ComputePipeline, groups: Vec<Option<wgpu::BindGroup>>, size: MadeGroups },
-    CopyTexture { from: wgpu::Texture, to: wgpu::Texture, origins: [Target; 2], mips: Vec<wgpu::Extent3d> },
-    CopyBuffer { from: wgpu::Buffer, to: wgpu::Buffer },
-    ClearTexture { views: Vec<wgpu::TextureView>, depth: bool, value: [f64; 4] },
+    Dispatch {
+        pipeline: wgpu::ComputePipeline,
+        groups: Vec<Option<wgpu::BindGroup>>,
+        size: MadeGroups,
+    },
+    CopyTexture {
+        from: wgpu::Texture,
+        to: wgpu::Texture,
+        origins: [Target; 2],
+        mips: Vec<wgpu::Extent3d>,
+    },
+    CopyBuffer {
+        from: wgpu::Buffer,
+        to: wgpu::Buffer,
+    },
+    ClearTexture {
+        views: Vec<wgpu::TextureView>,
+        depth: bool,
+        value: [f64; 4],
+    },
     ClearBuffer(wgpu::Buffer),
 }
 
@@ -152,13 +63,18 @@ pub(crate) struct Maker<'a> {
 }
 
 /// The vertex stage of a full-screen pass: one triangle over the whole target.
-const FULLSCREEN: &str = "@vertex fn fullscreen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+const FULLSCREEN: &str =
+    "@vertex fn fullscreen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
     return vec4<f32>(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }";
 
 impl<'a> Maker<'a> {
     pub fn new(device: &'a wgpu::Device, memory: &'a Memory) -> Self {
-        Self { device, memory, modules: HashMap::new() }
+        Self {
+            device,
+            memory,
+            modules: HashMap::new(),
+        }
     }
 
     pub fn step(&mut self, label: &str, step: &LinkedStep) -> Result<MadeStep, ExecuteError> {
@@ -167,19 +83,30 @@ impl<'a> Maker<'a> {
             LinkedStep::Dispatch { program, groups } => {
                 let module = self.module(&program.shader);
                 let (layout, bind_groups) = self.bindings(label, program)?;
-                let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                    label: Some(label),
-                    layout: Some(&layout),
-                    module: &module,
-                    entry_point: program.entries.first().map(|&entry| program.shader.entry_name(entry)),
-                    compilation_options: options(&constants(program)),
-                    cache: None,
-                });
+                let pipeline =
+                    self.device
+                        .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                            label: Some(label),
+                            layout: Some(&layout),
+                            module: &module,
+                            entry_point: program
+                                .entries
+                                .first()
+                                .map(|&entry| program.shader.entry_name(entry)),
+                            compilation_options: options(&constants(program)),
+                            cache: None,
+                        });
                 let size = match groups {
                     LinkedGroups::Fixed(groups) => MadeGroups::Fixed(*groups),
-                    LinkedGroups::Indirect(buffer) => MadeGroups::Indirect(self.memory.buffer(*buffer)?.clone()),
+                    LinkedGroups::Indirect(buffer) => {
+                        MadeGroups::Indirect(self.memory.buffer(*buffer)?.clone())
+                    }
                 };
-                Ok(MadeStep::Dispatch { pipeline, groups: bind_groups, size })
+                Ok(MadeStep::Dispatch {
+                    pipeline,
+                    groups: bind_groups,
+                    size,
+                })
             }
             LinkedStep::CopyTexture { from, to } => {
                 let source = self.memory.texture(from.id)?.clone();
@@ -190,23 +117,48 @@ impl<'a> Maker<'a> {
                 });
                 let mips = mips.collect();
                 let target = self.memory.texture(to.id)?.clone();
-                Ok(MadeStep::CopyTexture { from: source, to: target, origins: [from.clone(), to.clone()], mips })
+                Ok(MadeStep::CopyTexture {
+                    from: source,
+                    to: target,
+                    origins: [from.clone(), to.clone()],
+                    mips,
+                })
             }
-            LinkedStep::CopyBuffer { from, to } => {
-                Ok(MadeStep::CopyBuffer { from: self.memory.buffer(*from)?.clone(), to: self.memory.buffer(*to)?.clone() })
-            }
+            LinkedStep::CopyBuffer { from, to } => Ok(MadeStep::CopyBuffer {
+                from: self.memory.buffer(*from)?.clone(),
+                to: self.memory.buffer(*to)?.clone(),
+            }),
             LinkedStep::ClearTexture { target, value } => {
                 let mut views = Vec::new();
                 for mip in target.part.mips.clone() {
                     for layer in target.part.layers.clone() {
-                        let part = Part { mips: mip..mip + 1, layers: layer..layer + 1 };
-                        views.push(self.memory.view(&Target { id: target.id, part }, wgpu::TextureViewDimension::D2)?);
+                        let part = Part {
+                            mips: mip..mip + 1,
+                            layers: layer..layer + 1,
+                        };
+                        views.push(self.memory.view(
+                            &Target {
+                                id: target.id,
+                                part,
+                            },
+                            wgpu::TextureViewDimension::D2,
+                        )?);
                     }
                 }
-                let depth = self.memory.texture(target.id)?.format().is_depth_stencil_format();
-                Ok(MadeStep::ClearTexture { views, depth, value: *value })
+                let depth = self
+                    .memory
+                    .texture(target.id)?
+                    .format()
+                    .is_depth_stencil_format();
+                Ok(MadeStep::ClearTexture {
+                    views,
+                    depth,
+                    value: *value,
+                })
             }
-            LinkedStep::ClearBuffer(buffer) => Ok(MadeStep::ClearBuffer(self.memory.buffer(*buffer)?.clone())),
+            LinkedStep::ClearBuffer(buffer) => {
+                Ok(MadeStep::ClearBuffer(self.memory.buffer(*buffer)?.clone()))
+            }
         }
     }
 
@@ -216,13 +168,18 @@ impl<'a> Maker<'a> {
         let (layout, groups) = self.bindings(label, program)?;
         let constants = constants(program);
         let entry = |stage: ShaderStage| {
-            program.stages.iter().position(|known| *known == stage).map(|index| program.shader.entry_name(program.entries[index]))
+            program
+                .stages
+                .iter()
+                .position(|known| *known == stage)
+                .map(|index| program.shader.entry_name(program.entries[index]))
         };
         let fullscreen = draw.fullscreen.then(|| {
-            self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some("fullscreen"),
-                source: wgpu::ShaderSource::Wgsl(Cow::Borrowed(FULLSCREEN)),
-            })
+            self.device
+                .create_shader_module(wgpu::ShaderModuleDescriptor {
+                    label: Some("fullscreen"),
+                    source: wgpu::ShaderSource::Wgsl(Cow::Borrowed(FULLSCREEN)),
+                })
         });
         let vertex = match &fullscreen {
             Some(module) => wgpu::VertexState {
@@ -242,7 +199,11 @@ impl<'a> Maker<'a> {
             .colors
             .iter()
             .map(|color| {
-                Some(wgpu::ColorTargetState { format: color.format, blend: color.blend, write_mask: wgpu::ColorWrites::ALL })
+                Some(wgpu::ColorTargetState {
+                    format: color.format,
+                    blend: color.blend,
+                    write_mask: wgpu::ColorWrites::ALL,
+                })
             })
             .collect();
         let fragment = entry(ShaderStage::Fragment).map(|name| wgpu::FragmentState {
@@ -251,45 +212,77 @@ impl<'a> Maker<'a> {
             compilation_options: options(&constants),
             targets: &targets,
         });
-        let pipeline = self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(label),
-            layout: Some(&layout),
-            vertex,
-            primitive: draw.primitive,
-            depth_stencil: draw.depth.as_ref().map(|depth| depth.state.clone()),
-            multisample: wgpu::MultisampleState::default(),
-            fragment,
-            multiview_mask: None,
-            cache: None,
-        });
+        let pipeline = self
+            .device
+            .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(label),
+                layout: Some(&layout),
+                vertex,
+                primitive: draw.primitive,
+                depth_stencil: draw.depth.as_ref().map(|depth| depth.state.clone()),
+                multisample: wgpu::MultisampleState::default(),
+                fragment,
+                multiview_mask: None,
+                cache: None,
+            });
         let colors = draw
             .colors
             .iter()
-            .map(|color| Ok((self.memory.view(&color.target, wgpu::TextureViewDimension::D2)?, color.clear)))
+            .map(|color| {
+                Ok((
+                    self.memory
+                        .view(&color.target, wgpu::TextureViewDimension::D2)?,
+                    color.clear,
+                ))
+            })
             .collect::<Result<_, ExecuteError>>()?;
         let depth = match &draw.depth {
             Some(depth) => {
-                let view = self.memory.view(&depth.target, wgpu::TextureViewDimension::D2)?;
-                Some((view, depth.clear, depth.state.depth_write_enabled == Some(true)))
+                let view = self
+                    .memory
+                    .view(&depth.target, wgpu::TextureViewDimension::D2)?;
+                Some((
+                    view,
+                    depth.clear,
+                    depth.state.depth_write_enabled == Some(true),
+                ))
             }
             None => None,
         };
         let call = match &draw.call {
-            LinkedCall::Direct { vertices, instances } => MadeCall::Direct { vertices: *vertices, instances: *instances },
-            LinkedCall::Indirect(buffer) => MadeCall::Indirect(self.memory.buffer(*buffer)?.clone()),
+            LinkedCall::Direct {
+                vertices,
+                instances,
+            } => MadeCall::Direct {
+                vertices: *vertices,
+                instances: *instances,
+            },
+            LinkedCall::Indirect(buffer) => {
+                MadeCall::Indirect(self.memory.buffer(*buffer)?.clone())
+            }
         };
-        Ok(MadeDraw { pipeline, groups, colors, depth, call })
+        Ok(MadeDraw {
+            pipeline,
+            groups,
+            colors,
+            depth,
+            call,
+        })
     }
 
     fn module(&mut self, shader: &Arc<Shader>) -> wgpu::ShaderModule {
         let name = shader.source.file.name.to_string();
         let make = || {
-            self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(&name),
-                source: wgpu::ShaderSource::Naga(Cow::Owned(shader.module.clone())),
-            })
+            self.device
+                .create_shader_module(wgpu::ShaderModuleDescriptor {
+                    label: Some(&name),
+                    source: wgpu::ShaderSource::Naga(Cow::Owned(shader.module.clone())),
+                })
         };
-        self.modules.entry(name.clone()).or_insert_with(make).clone()
+        self.modules
+            .entry(name.clone())
+            .or_insert_with(make)
+            .clone()
     }
 
     /// The pipeline layout and the bind groups of a program; groups without a binding are left out.
@@ -298,10 +291,19 @@ impl<'a> Maker<'a> {
         label: &str,
         program: &LinkedProgram,
     ) -> Result<(wgpu::PipelineLayout, Vec<Option<wgpu::BindGroup>>), ExecuteError> {
-        let count = program.bindings.iter().map(|binding| binding.group + 1).max().unwrap_or(0);
+        let count = program
+            .bindings
+            .iter()
+            .map(|binding| binding.group + 1)
+            .max()
+            .unwrap_or(0);
         let (mut layouts, mut groups) = (Vec::new(), Vec::new());
         for group in 0..count {
-            let of_group: Vec<_> = program.bindings.iter().filter(|binding| binding.group == group).collect();
+            let of_group: Vec<_> = program
+                .bindings
+                .iter()
+                .filter(|binding| binding.group == group)
+                .collect();
             if of_group.is_empty() {
                 layouts.push(None);
                 groups.push(None);
@@ -318,7 +320,10 @@ impl<'a> Maker<'a> {
                 .collect();
             let layout = self
                 .device
-                .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries });
+                .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                    label: Some(label),
+                    entries: &entries,
+                });
             let bound: Vec<(u32, Bound)> = of_group
                 .iter()
                 .map(|binding| Ok((binding.binding, self.bound(label, &binding.target)?)))
@@ -334,30 +339,34 @@ impl<'a> Maker<'a> {
                     },
                 })
                 .collect();
-            groups.push(Some(self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some(label),
-                layout: &layout,
-                entries: &entries,
-            })));
+            groups.push(Some(self.device.create_bind_group(
+                &wgpu::BindGroupDescriptor {
+                    label: Some(label),
+                    layout: &layout,
+                    entries: &entries,
+                },
+            )));
             layouts.push(Some(layout));
         }
-        let layouts: Vec<Option<&wgpu::BindGroupLayout>> = layouts.iter().map(Option::as_ref).collect();
-        let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some(label),
-            bind_group_layouts: &layouts,
-            immediate_size: 0,
-        });
+        let layouts: Vec<Option<&wgpu::BindGroupLayout>> =
+            layouts.iter().map(Option::as_ref).collect();
+        let layout = self
+            .device
+            .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some(label),
+                bind_group_layouts: &layouts,
+                immediate_size: 0,
+            });
         Ok((layout, groups))
     }
 
     fn bound(&self, label: &str, target: &BindTarget) -> Result<Bound, ExecuteError> {
         Ok(match target {
             BindTarget::Buffer(id) => Bound::Buffer(self.memory.buffer(*id)?.clone()),
-            BindTarget::Texture { target, dimension } => Bound::View(self.memory.view(target, *dimension)?),
-            BindTarget::Sampler(id) => {
-                let sampler = self.memory.samplers.get(id);
-                Bound::Sampler(sampler.ok_or(ExecuteError::Internal("a sampler that a live pass uses was not made"))?.clone())
+            BindTarget::Texture { target, dimension } => {
+                Bound::View(self.memory.view(target, *dimension)?)
             }
+            BindTarget::Sampler(id) => Bound::Sampler(self.memory.sampler(*id)?.clone()),
             BindTarget::Params(bytes) => {
                 let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
                     label: Some(&format!("{label} params")),
@@ -367,7 +376,11 @@ impl<'a> Maker<'a> {
                 });
                 match buffer.get_mapped_range_mut(..) {
                     Ok(mut mapped) => mapped.copy_from_slice(bytes),
-                    Err(_) => return Err(ExecuteError::Internal("the params of a pass could not be uploaded")),
+                    Err(_) => {
+                        return Err(ExecuteError::Internal(
+                            "the params of a pass could not be uploaded",
+                        ));
+                    }
                 }
                 buffer.unmap();
                 Bound::Buffer(buffer)
@@ -383,9 +396,16 @@ enum Bound {
 }
 
 fn constants(program: &LinkedProgram) -> Vec<(&str, f64)> {
-    program.constants.iter().map(|(name, value)| (name.as_str(), *value)).collect()
+    program
+        .constants
+        .iter()
+        .map(|(name, value)| (name.as_str(), *value))
+        .collect()
 }
 
 fn options<'a>(constants: &'a [(&'a str, f64)]) -> wgpu::PipelineCompilationOptions<'a> {
-    wgpu::PipelineCompilationOptions { constants, ..wgpu::PipelineCompilationOptions::default() }
+    wgpu::PipelineCompilationOptions {
+        constants,
+        ..wgpu::PipelineCompilationOptions::default()
+    }
 }

@@ -11,8 +11,14 @@ pub(crate) fn live(order: &Order, roots: impl IntoIterator<Item = usize>) -> Vec
         if std::mem::replace(&mut live[pass], true) {
             continue;
         }
-        let needed = order.edges.edges_directed(NodeIndex::new(pass), Direction::Incoming);
-        open.extend(needed.filter(|edge| *edge.weight() == Hazard::ReadAfterWrite).map(|edge| edge.source().index()));
+        let needed = order
+            .edges
+            .edges_directed(NodeIndex::new(pass), Direction::Incoming);
+        open.extend(
+            needed
+                .filter(|edge| *edge.weight() == Hazard::ReadAfterWrite)
+                .map(|edge| edge.source().index()),
+        );
     }
     live
 }

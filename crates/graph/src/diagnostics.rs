@@ -108,18 +108,30 @@ pub struct Diagnostic {
 impl Diagnostic {
     /// An error without a place yet.
     pub fn error(code: Code, message: impl Into<String>) -> Self {
-        Self { code, severity: Severity::Error, message: message.into(), labels: Vec::new(), help: None }
+        Self {
+            code,
+            severity: Severity::Error,
+            message: message.into(),
+            labels: Vec::new(),
+            help: None,
+        }
     }
 
     /// A warning without a place yet.
     pub fn warning(code: Code, message: impl Into<String>) -> Self {
-        Self { severity: Severity::Warning, ..Self::error(code, message) }
+        Self {
+            severity: Severity::Warning,
+            ..Self::error(code, message)
+        }
     }
 
     /// Adds a place; the first one added is the mistake's own.
     #[must_use]
     pub fn at(mut self, span: Span, text: impl Into<String>) -> Self {
-        self.labels.push(Label { span, text: text.into() });
+        self.labels.push(Label {
+            span,
+            text: text.into(),
+        });
         self
     }
 
@@ -162,7 +174,12 @@ pub fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> O
     }
     const SHOWN: usize = 16;
     let rest = known.len().saturating_sub(SHOWN);
-    let mut list = known.iter().take(SHOWN).map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    let mut list = known
+        .iter()
+        .take(SHOWN)
+        .map(|name| format!("`{name}`"))
+        .collect::<Vec<_>>()
+        .join(", ");
     if rest > 0 {
         list.push_str(&format!(" and {rest} more"));
     }
@@ -207,12 +224,21 @@ impl From<Diagnostic> for Diagnostics {
 
 /// Renders a list of diagnostics, one after the other.
 pub fn render(list: &[Diagnostic], colour: bool) -> String {
-    let theme = if colour { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
-    let handler = GraphicalReportHandler::new_themed(theme).with_width(110).with_links(false);
+    let theme = if colour {
+        GraphicalTheme::unicode()
+    } else {
+        GraphicalTheme::unicode_nocolor()
+    };
+    let handler = GraphicalReportHandler::new_themed(theme)
+        .with_width(110)
+        .with_links(false);
     let mut text = String::new();
     for diagnostic in list {
         // Rendering into a String fails only if a Display implementation does; then the bare message must do.
-        if handler.render_report(&mut text, &Report::new(diagnostic)).is_err() {
+        if handler
+            .render_report(&mut text, &Report::new(diagnostic))
+            .is_err()
+        {
             text.push_str(&diagnostic.message);
         }
         text.push('\n');
@@ -234,19 +260,36 @@ struct Report<'a> {
 
 impl<'a> Report<'a> {
     fn new(diagnostic: &'a Diagnostic) -> Self {
-        let first = diagnostic.labels.first().map(|label| label.span.file.clone());
+        let first = diagnostic
+            .labels
+            .first()
+            .map(|label| label.span.file.clone());
         let mut report = Self::of_file(diagnostic, diagnostic.message.clone(), first.as_ref());
-        let mut files: Vec<_> = diagnostic.labels.iter().map(|label| label.span.file.clone()).collect();
+        let mut files: Vec<_> = diagnostic
+            .labels
+            .iter()
+            .map(|label| label.span.file.clone())
+            .collect();
         files.sort_by(|a, b| a.name.cmp(&b.name));
         files.dedup();
-        for file in files.into_iter().filter(|file| Some(file) != first.as_ref()) {
+        for file in files
+            .into_iter()
+            .filter(|file| Some(file) != first.as_ref())
+        {
             let note = Self::of_file(diagnostic, format!("and in {}", file.name), Some(&file));
-            report.related.push(Self { is_note: true, ..note });
+            report.related.push(Self {
+                is_note: true,
+                ..note
+            });
         }
         report
     }
 
-    fn of_file(diagnostic: &'a Diagnostic, message: String, file: Option<&crate::source::SourceFile>) -> Self {
+    fn of_file(
+        diagnostic: &'a Diagnostic,
+        message: String,
+        file: Option<&crate::source::SourceFile>,
+    ) -> Self {
         let labels = diagnostic
             .labels
             .iter()
@@ -258,7 +301,14 @@ impl<'a> Report<'a> {
             })
             .collect();
         let source = file.map(|file| NamedSource::new(&*file.name, file.text.to_string()));
-        Self { diagnostic, message, source, labels, related: Vec::new(), is_note: false }
+        Self {
+            diagnostic,
+            message,
+            source,
+            labels,
+            related: Vec::new(),
+            is_note: false,
+        }
     }
 }
 
@@ -298,11 +348,17 @@ impl miette::Diagnostic for Report<'_> {
     }
 
     fn help<'b>(&'b self) -> Option<Box<dyn fmt::Display + 'b>> {
-        self.diagnostic.help.as_ref().filter(|_| !self.is_note).map(|help| Box::new(help) as Box<dyn fmt::Display>)
+        self.diagnostic
+            .help
+            .as_ref()
+            .filter(|_| !self.is_note)
+            .map(|help| Box::new(help) as Box<dyn fmt::Display>)
     }
 
     fn source_code(&self) -> Option<&dyn miette::SourceCode> {
-        self.source.as_ref().map(|source| source as &dyn miette::SourceCode)
+        self.source
+            .as_ref()
+            .map(|source| source as &dyn miette::SourceCode)
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
@@ -310,6 +366,10 @@ impl miette::Diagnostic for Report<'_> {
     }
 
     fn related<'b>(&'b self) -> Option<Box<dyn Iterator<Item = &'b dyn miette::Diagnostic> + 'b>> {
-        Some(Box::new(self.related.iter().map(|report| report as &dyn miette::Diagnostic)))
+        Some(Box::new(
+            self.related
+                .iter()
+                .map(|report| report as &dyn miette::Diagnostic),
+        ))
     }
 }

@@ -1,7 +1,8 @@
 //! Phase 10: the passes are encoded into the host's encoder; timing and readback end after submission.
 
 use crate::{
-    allocate::{MadeCall, MadeDraw, MadeGroups, MadeStep, Maker, Memory},
+    allocate::{MadeCall, MadeDraw, MadeGroups, MadeStep, Maker},
+    memory::Memory,
     plan::Plan,
     provider::Provider,
     readback::{self, Pending, Readback},
@@ -107,7 +108,12 @@ impl Executor {
     ///
     /// # Errors
     /// See [`ExecuteError`]; an error about a pass names it and its place.
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, plan: Plan, provider: &mut dyn Provider) -> Result<Self, ExecuteError> {
+    pub fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        plan: Plan,
+        provider: &mut dyn Provider,
+    ) -> Result<Self, ExecuteError> {
         let memory = Memory::new(&plan, device, queue, provider)?;
         let mut passes = Vec::new();
         {
@@ -116,12 +122,18 @@ impl Executor {
                 let pass = &plan.passes[index];
                 let refused = |error| named(error, &pass.name, &pass.name.span.to_string());
                 let steps = scoped(device, &pass.name, || {
-                    pass.steps.iter().map(|step| maker.step(&pass.name, step)).collect::<Result<Vec<_>, _>>()
+                    pass.steps
+                        .iter()
+                        .map(|step| maker.step(&pass.name, step))
+                        .collect::<Result<Vec<_>, _>>()
                 })
                 .map_err(refused)??;
                 scoped(device, &pass.name, || {
-                    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-                    steps.iter().for_each(|step| encode(step, &pass.name, &mut encoder, None));
+                    let mut encoder =
+                        device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+                    steps
+                        .iter()
+                        .for_each(|step| encode(step, &pass.name, &mut encoder, None));
                     encoder.finish()
                 })
                 .map_err(refused)?;
@@ -129,7 +141,16 @@ impl Executor {
             }
         }
         let timer = Timer::new(device, queue)?;
-        Ok(Self { device: device.clone(), plan, memory, passes, timer, timed: false, cpu: Vec::new(), pending: Vec::new() })
+        Ok(Self {
+            device: device.clone(),
+            plan,
+            memory,
+            passes,
+            timer,
+            timed: false,
+            cpu: Vec::new(),
+            pending: Vec::new(),
+        })
     }
 
     /// The plan.
@@ -142,18 +163,31 @@ impl Executor {
     /// # Errors
     /// If an output is asked for that the plan does not have (nothing has been encoded then), or there is no memory to read
     /// one back.
-    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &Frame<'_>) -> Result<(), ExecuteError> {
+    pub fn encode(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &Frame<'_>,
+    ) -> Result<(), ExecuteError> {
         let readable = &self.plan.readable;
-        if let Some(name) = frame.read.iter().find(|name| readable.iter().all(|(known, _)| known != *name)) {
+        if let Some(name) = frame
+            .read
+            .iter()
+            .find(|name| readable.iter().all(|(known, _)| known != *name))
+        {
             let known: Vec<&str> = readable.iter().map(|(name, _)| name.as_str()).collect();
-            return Err(ExecuteError::NoSuchOutput { name: (*name).to_owned(), known: known.join(", ") });
+            return Err(ExecuteError::NoSuchOutput {
+                name: (*name).to_owned(),
+                known: known.join(", "),
+            });
         }
         self.timed = frame.timing;
         self.cpu.clear();
         for (name, steps) in &self.passes {
             let start = Instant::now();
             encoder.push_debug_group(name);
-            steps.iter().for_each(|step| encode(step, name, encoder, frame.timing.then_some(&self.timer)));
+            steps
+                .iter()
+                .for_each(|step| encode(step, name, encoder, frame.timing.then_some(&self.timer)));
             encoder.pop_debug_group();
             self.cpu.push((name.clone(), start.elapsed()));
         }
@@ -163,8 +197,9 @@ impl Executor {
         self.pending.clear();
         for name in frame.read {
             // The staging buffer is made here, so there may be no memory for it.
-            let pending =
-                scoped(&self.device, name, || readback::copy(&self.device, encoder, &self.plan, &self.memory, name))??;
+            let pending = scoped(&self.device, name, || {
+                readback::copy(&self.device, encoder, &self.plan, &self.memory, name)
+            })??;
             self.pending.push(pending);
         }
         Ok(())
@@ -187,45 +222,73 @@ impl Executor {
     /// # Errors
     /// If the device was lost.
     pub fn finish(&mut self) -> Result<FrameReport, ExecuteError> {
-        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| ExecuteError::DeviceLost(error.to_string()))?;
+        self.device
+            .poll(wgpu::PollType::wait_indefinitely())
+            .map_err(|error| ExecuteError::DeviceLost(error.to_string()))?;
         let timing = self.timed.then(|| self.timer.take(&self.cpu));
-        let readbacks = std::mem::take(&mut self.pending).into_iter().map(Pending::take).collect::<Result<_, _>>()?;
+        let readbacks = std::mem::take(&mut self.pending)
+            .into_iter()
+            .map(Pending::take)
+            .collect::<Result<_, _>>()?;
         Ok(FrameReport { timing, readbacks })
     }
 }
 
 impl std::fmt::Debug for Executor {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Executor").field("plan", &self.plan).finish_non_exhaustive()
+        f.debug_struct("Executor")
+            .field("plan", &self.plan)
+            .finish_non_exhaustive()
     }
 }
 
 /// Runs `make` inside error scopes, so that what wgpu finds wrong comes back as an error.
-pub(crate) fn scoped<T>(device: &wgpu::Device, name: &str, make: impl FnOnce() -> T) -> Result<T, ExecuteError> {
-    let scopes = [wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::Validation]
-        .map(|filter| device.push_error_scope(filter));
+pub(crate) fn scoped<T>(
+    device: &wgpu::Device,
+    name: &str,
+    make: impl FnOnce() -> T,
+) -> Result<T, ExecuteError> {
+    let scopes = [
+        wgpu::ErrorFilter::OutOfMemory,
+        wgpu::ErrorFilter::Internal,
+        wgpu::ErrorFilter::Validation,
+    ]
+    .map(|filter| device.push_error_scope(filter));
     let made = make();
     // Scopes are a stack: the last one pushed is popped first.
-    let errors: Vec<wgpu::Error> = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).collect();
+    let errors: Vec<wgpu::Error> = scopes
+        .into_iter()
+        .rev()
+        .filter_map(|scope| pollster::block_on(scope.pop()))
+        .collect();
     match errors.into_iter().next() {
         None => Ok(made),
-        Some(wgpu::Error::OutOfMemory { .. }) => Err(ExecuteError::OutOfMemory { name: name.to_owned() }),
-        Some(error) => Err(ExecuteError::Resource { name: name.to_owned(), message: chain(&error) }),
+        Some(wgpu::Error::OutOfMemory { .. }) => Err(ExecuteError::OutOfMemory {
+            name: name.to_owned(),
+        }),
+        Some(error) => Err(ExecuteError::Resource {
+            name: name.to_owned(),
+            message: chain(&error),
+        }),
     }
 }
 
 fn chain(error: &wgpu::Error) -> String {
     match error {
-        wgpu::Error::Validation { description, .. } | wgpu::Error::Internal { description, .. } => description.trim().to_owned(),
+        wgpu::Error::Validation { description, .. } | wgpu::Error::Internal { description, .. } => {
+            description.trim().to_owned()
+        }
         wgpu::Error::OutOfMemory { .. } => "out of memory".to_owned(),
     }
 }
 
 fn named(error: ExecuteError, pass: &str, place: &str) -> ExecuteError {
     match error {
-        ExecuteError::Resource { message, .. } => {
-            ExecuteError::Gpu { pass: pass.to_owned(), place: place.to_owned(), message }
-        }
+        ExecuteError::Resource { message, .. } => ExecuteError::Gpu {
+            pass: pass.to_owned(),
+            place: place.to_owned(),
+            message,
+        },
         other => other,
     }
 }
@@ -233,12 +296,18 @@ fn named(error: ExecuteError, pass: &str, place: &str) -> ExecuteError {
 fn encode(step: &MadeStep, name: &str, encoder: &mut wgpu::CommandEncoder, timer: Option<&Timer>) {
     match step {
         MadeStep::Draw(draw) => encode_draw(draw, name, encoder, timer),
-        MadeStep::Dispatch { pipeline, groups, size } => {
+        MadeStep::Dispatch {
+            pipeline,
+            groups,
+            size,
+        } => {
             let query = timer.map(|timer| timer.profiler().begin_pass_query(name, encoder));
             {
                 let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                     label: Some(name),
-                    timestamp_writes: query.as_ref().and_then(|query| query.compute_pass_timestamp_writes()),
+                    timestamp_writes: query
+                        .as_ref()
+                        .and_then(|query| query.compute_pass_timestamp_writes()),
                 });
                 if let Some(timer) = timer {
                     timer.open_compute(&mut pass);
@@ -254,12 +323,21 @@ fn encode(step: &MadeStep, name: &str, encoder: &mut wgpu::CommandEncoder, timer
             }
             end(timer, query, encoder);
         }
-        MadeStep::CopyTexture { from, to, origins, mips } => {
+        MadeStep::CopyTexture {
+            from,
+            to,
+            origins,
+            mips,
+        } => {
             let query = timer.map(|timer| timer.profiler().begin_query(name, encoder));
             let place = |texture, index: usize, mip: u32| wgpu::TexelCopyTextureInfo {
                 texture,
                 mip_level: origins[index].part.mips.start + mip,
-                origin: wgpu::Origin3d { x: 0, y: 0, z: origins[index].part.layers.start },
+                origin: wgpu::Origin3d {
+                    x: 0,
+                    y: 0,
+                    z: origins[index].part.layers.start,
+                },
                 aspect: wgpu::TextureAspect::All,
             };
             for (mip, extent) in (0u32..).zip(mips) {
@@ -277,7 +355,11 @@ fn encode(step: &MadeStep, name: &str, encoder: &mut wgpu::CommandEncoder, timer
             encoder.clear_buffer(buffer, 0, None);
             end(timer, query, encoder);
         }
-        MadeStep::ClearTexture { views, depth, value } => {
+        MadeStep::ClearTexture {
+            views,
+            depth,
+            value,
+        } => {
             for view in views {
                 let query = timer.map(|timer| timer.profiler().begin_pass_query(name, encoder));
                 let color = (!depth).then(|| color_attachment(view, Some(*value)));
@@ -290,27 +372,53 @@ fn encode(step: &MadeStep, name: &str, encoder: &mut wgpu::CommandEncoder, timer
     }
 }
 
-fn end(timer: Option<&Timer>, query: Option<wgpu_profiler::GpuProfilerQuery>, encoder: &mut wgpu::CommandEncoder) {
+fn end(
+    timer: Option<&Timer>,
+    query: Option<wgpu_profiler::GpuProfilerQuery>,
+    encoder: &mut wgpu::CommandEncoder,
+) {
     if let (Some(timer), Some(query)) = (timer, query) {
         timer.profiler().end_query(encoder, query);
     }
 }
 
-fn color_attachment(view: &wgpu::TextureView, clear: Option<[f64; 4]>) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+fn color_attachment(
+    view: &wgpu::TextureView,
+    clear: Option<[f64; 4]>,
+) -> Option<wgpu::RenderPassColorAttachment<'_>> {
     let load = match clear {
         Some([r, g, b, a]) => wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a }),
         None => wgpu::LoadOp::Load,
     };
-    let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
-    Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
+    let ops = wgpu::Operations {
+        load,
+        store: wgpu::StoreOp::Store,
+    };
+    Some(wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops,
+    })
 }
 
-fn depth_attachment(view: &wgpu::TextureView, clear: Option<f32>, write: bool) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+fn depth_attachment(
+    view: &wgpu::TextureView,
+    clear: Option<f32>,
+    write: bool,
+) -> wgpu::RenderPassDepthStencilAttachment<'_> {
     let load = clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear);
     // Without operations the attachment is read-only, and the pass may sample it too.
     let is_written = write || clear.is_some();
-    let depth_ops = is_written.then_some(wgpu::Operations { load, store: wgpu::StoreOp::Store });
-    wgpu::RenderPassDepthStencilAttachment { view, depth_ops, stencil_ops: None }
+    let depth_ops = is_written.then_some(wgpu::Operations {
+        load,
+        store: wgpu::StoreOp::Store,
+    });
+    wgpu::RenderPassDepthStencilAttachment {
+        view,
+        depth_ops,
+        stencil_ops: None,
+    }
 }
 
 fn render_pass<'e>(
@@ -330,10 +438,22 @@ fn render_pass<'e>(
     })
 }
 
-fn encode_draw(draw: &MadeDraw, name: &str, encoder: &mut wgpu::CommandEncoder, timer: Option<&Timer>) {
+fn encode_draw(
+    draw: &MadeDraw,
+    name: &str,
+    encoder: &mut wgpu::CommandEncoder,
+    timer: Option<&Timer>,
+) {
     let query = timer.map(|timer| timer.profiler().begin_pass_query(name, encoder));
-    let colors: Vec<_> = draw.colors.iter().map(|(view, clear)| color_attachment(view, *clear)).collect();
-    let depth = draw.depth.as_ref().map(|(view, clear, write)| depth_attachment(view, *clear, *write));
+    let colors: Vec<_> = draw
+        .colors
+        .iter()
+        .map(|(view, clear)| color_attachment(view, *clear))
+        .collect();
+    let depth = draw
+        .depth
+        .as_ref()
+        .map(|(view, clear, write)| depth_attachment(view, *clear, *write));
     {
         let mut pass = render_pass(name, encoder, &colors, depth, query.as_ref());
         pass.set_pipeline(&draw.pipeline);
@@ -341,7 +461,10 @@ fn encode_draw(draw: &MadeDraw, name: &str, encoder: &mut wgpu::CommandEncoder, 
             pass.set_bind_group(index, group.as_ref(), &[]);
         }
         match &draw.call {
-            MadeCall::Direct { vertices, instances } => pass.draw(0..*vertices, 0..*instances),
+            MadeCall::Direct {
+                vertices,
+                instances,
+            } => pass.draw(0..*vertices, 0..*instances),
             MadeCall::Indirect(buffer) => pass.draw_indirect(buffer, 0),
         }
     }

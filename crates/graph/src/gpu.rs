@@ -79,7 +79,10 @@ fn enumerate(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
 
 /// Every usable adapter, the one that [`open`] prefers first.
 pub fn adapters() -> Vec<wgpu::AdapterInfo> {
-    enumerate(&instance()).iter().map(wgpu::Adapter::get_info).collect()
+    enumerate(&instance())
+        .iter()
+        .map(wgpu::Adapter::get_info)
+        .collect()
 }
 
 /// Opens the adapter whose name contains `name` (in any case), or `WGPU_ADAPTER_NAME`, or the best there is: a discrete
@@ -93,13 +96,28 @@ pub fn open(name: Option<&str>) -> Result<Gpu, GpuError> {
     if adapters.is_empty() {
         return Err(GpuError::NoAdapter);
     }
-    let name = name.map(str::to_owned).or_else(|| std::env::var("WGPU_ADAPTER_NAME").ok()).filter(|name| !name.is_empty());
-    let names: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
+    let name = name
+        .map(str::to_owned)
+        .or_else(|| std::env::var("WGPU_ADAPTER_NAME").ok())
+        .filter(|name| !name.is_empty());
+    let names: Vec<String> = adapters
+        .iter()
+        .map(|adapter| adapter.get_info().name)
+        .collect();
     let fits = |adapter: &wgpu::Adapter| {
-        name.as_ref().is_none_or(|name| adapter.get_info().name.to_lowercase().contains(&name.to_lowercase()))
+        name.as_ref().is_none_or(|name| {
+            adapter
+                .get_info()
+                .name
+                .to_lowercase()
+                .contains(&name.to_lowercase())
+        })
     };
     let Some(adapter) = adapters.into_iter().find(fits) else {
-        return Err(GpuError::NoSuchAdapter { name: name.unwrap_or_default(), seen: names.join(", ") });
+        return Err(GpuError::NoSuchAdapter {
+            name: name.unwrap_or_default(),
+            seen: names.join(", "),
+        });
     };
     let request = adapter.request_device(&wgpu::DeviceDescriptor {
         label: Some("skiagraph"),
@@ -108,7 +126,15 @@ pub fn open(name: Option<&str>) -> Result<Gpu, GpuError> {
         ..wgpu::DeviceDescriptor::default()
     });
     match pollster::block_on(request) {
-        Ok((device, queue)) => Ok(Gpu { instance, adapter, device, queue }),
-        Err(error) => Err(GpuError::Device { adapter: adapter.get_info().name, why: error.to_string() }),
+        Ok((device, queue)) => Ok(Gpu {
+            instance,
+            adapter,
+            device,
+            queue,
+        }),
+        Err(error) => Err(GpuError::Device {
+            adapter: adapter.get_info().name,
+            why: error.to_string(),
+        }),
     }
 }

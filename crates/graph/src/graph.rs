@@ -62,43 +62,70 @@ impl Graph {
     ///
     /// # Errors
     /// Everything that is wrong with the document and its shaders, as far as it can be said without sizes and a device.
-    pub fn load(path: &str, registry: &Registry, sources: &dyn Sources) -> Result<Self, Diagnostics> {
-        let missing = |message: String| Diagnostics::from(Diagnostic::error(Code::MissingFile, message));
+    pub fn load(
+        path: &str,
+        registry: &Registry,
+        sources: &dyn Sources,
+    ) -> Result<Self, Diagnostics> {
+        let missing =
+            |message: String| Diagnostics::from(Diagnostic::error(Code::MissingFile, message));
         let text = match sources.read(path) {
             Ok(Some(text)) => text,
             Ok(None) => {
                 let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
-                let listed: Vec<String> = sources.list(folder).into_iter().filter(|name| name.ends_with(".ron")).collect();
-                let hint = suggestion(name, listed.iter().map(String::as_str)).filter(|hint| hint.starts_with("did"));
-                let error = Diagnostic::error(Code::MissingFile, format!("there is no document `{path}`"));
+                let listed: Vec<String> = sources
+                    .list(folder)
+                    .into_iter()
+                    .filter(|name| name.ends_with(".ron"))
+                    .collect();
+                let hint = suggestion(name, listed.iter().map(String::as_str))
+                    .filter(|hint| hint.starts_with("did"));
+                let error =
+                    Diagnostic::error(Code::MissingFile, format!("there is no document `{path}`"));
                 return Err(match hint {
                     Some(hint) => error.help(hint),
                     None => error,
                 }
                 .into());
             }
-            Err(why) => return Err(missing(format!("the document `{path}` cannot be read: {why}"))),
+            Err(why) => {
+                return Err(missing(format!(
+                    "the document `{path}` cannot be read: {why}"
+                )));
+            }
         };
         let mut diagnostics = Vec::new();
-        let Some(document) = document::parse(SourceFile::new(path, text), registry, &mut diagnostics) else {
+        let Some(document) =
+            document::parse(SourceFile::new(path, text), registry, &mut diagnostics)
+        else {
             return Err(Diagnostics::new(diagnostics));
         };
         if document.outputs.is_empty() && diagnostics.is_empty() {
             let end = document.file.text.trim_end().len();
             diagnostics.push(
-                Diagnostic::error(Code::Output, "the document has no outputs, so none of its passes is needed")
-                    .at(document.file.span(end.saturating_sub(1)..end), "")
-                    .help("add `outputs: [(name: \"…\")]`"),
+                Diagnostic::error(
+                    Code::Output,
+                    "the document has no outputs, so none of its passes is needed",
+                )
+                .at(document.file.span(end.saturating_sub(1)..end), "")
+                .help("add `outputs: [(name: \"…\")]`"),
             );
         }
-        let mut graph = Self { document, shaders: HashMap::new(), warnings: Vec::new() };
+        let mut graph = Self {
+            document,
+            shaders: HashMap::new(),
+            warnings: Vec::new(),
+        };
         let passes = graph.lower(&BTreeMap::new(), &mut diagnostics);
         graph.load_shaders(&passes, sources, &mut diagnostics);
         graph.unused(&passes, &mut diagnostics);
-        let (errors, warnings): (Vec<_>, Vec<_>) =
-            diagnostics.into_iter().partition(|diagnostic| diagnostic.severity == Severity::Error);
+        let (errors, warnings): (Vec<_>, Vec<_>) = diagnostics
+            .into_iter()
+            .partition(|diagnostic| diagnostic.severity == Severity::Error);
         if !errors.is_empty() {
-            return Err(Diagnostics::new(errors.into_iter().chain(warnings).collect()));
+            return Err(Diagnostics::new(
+                errors.into_iter().chain(warnings).collect(),
+            ));
         }
         graph.warnings = warnings;
         Ok(graph)
@@ -121,7 +148,11 @@ impl Graph {
 
     /// Names of the declared outputs.
     pub fn outputs(&self) -> Vec<&str> {
-        self.document.outputs.iter().map(|output| output.name.as_str()).collect()
+        self.document
+            .outputs
+            .iter()
+            .map(|output| output.name.as_str())
+            .collect()
     }
 
     /// What is suspicious in the document.
@@ -135,24 +166,38 @@ impl Graph {
     /// If there is no such param, or the value has the wrong type or is out of range.
     pub fn parse_param(&self, name: &str, text: &str) -> Result<ParamValue, ParamError> {
         let param = self.param(name)?;
-        param.parse(text).map_err(|why| ParamError::Value { graph: self.path().to_owned(), name: name.to_owned(), why })
+        param.parse(text).map_err(|why| ParamError::Value {
+            graph: self.path().to_owned(),
+            name: name.to_owned(),
+            why,
+        })
     }
 
     pub(crate) fn param(&self, name: &str) -> Result<&Param, ParamError> {
         let params = self.params();
-        params.iter().find(|param| param.name.value == name).ok_or_else(|| {
-            let hint = suggestion(name, params.iter().map(|param| param.name.as_str()));
-            ParamError::Unknown {
-                graph: self.path().to_owned(),
-                name: name.to_owned(),
-                hint: hint.map_or(", it has none".to_owned(), |hint| format!(": {hint}")),
-            }
-        })
+        params
+            .iter()
+            .find(|param| param.name.value == name)
+            .ok_or_else(|| {
+                let hint = suggestion(name, params.iter().map(|param| param.name.as_str()));
+                ParamError::Unknown {
+                    graph: self.path().to_owned(),
+                    name: name.to_owned(),
+                    hint: hint.map_or(", it has none".to_owned(), |hint| format!(": {hint}")),
+                }
+            })
     }
 
     /// Lowers every pass with these values of params.
-    pub(crate) fn lower(&self, values: &BTreeMap<String, ParamValue>, diagnostics: &mut Vec<Diagnostic>) -> Vec<LoweredPass> {
-        let params = Params { declared: &self.document.params, values };
+    pub(crate) fn lower(
+        &self,
+        values: &BTreeMap<String, ParamValue>,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Vec<LoweredPass> {
+        let params = Params {
+            declared: &self.document.params,
+            values,
+        };
         let lower = |pass: &document::PassEntry| {
             let mut lowering = Lowering {
                 name: &pass.name,
@@ -165,16 +210,31 @@ impl Graph {
             };
             pass.body.lower(&mut lowering);
             diagnostics.append(&mut lowering.diagnostics);
-            LoweredPass { name: pass.name.clone(), kind: pass.kind, steps: lowering.steps, scratch: lowering.scratch }
+            LoweredPass {
+                name: pass.name.clone(),
+                kind: pass.kind,
+                steps: lowering.steps,
+                scratch: lowering.scratch,
+            }
         };
         self.document.passes.iter().map(lower).collect()
     }
 
-    fn load_shaders(&mut self, passes: &[LoweredPass], sources: &dyn Sources, diagnostics: &mut Vec<Diagnostic>) {
+    fn load_shaders(
+        &mut self,
+        passes: &[LoweredPass],
+        sources: &dyn Sources,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) {
         let path = self.document.file.name.to_string();
         let mut files = ShaderFiles::new(sources, &path);
         let mut tried: HashSet<String> = HashSet::new();
-        for name in passes.iter().flat_map(|pass| &pass.steps).filter_map(program).filter_map(|program| program.shader.as_ref()) {
+        for name in passes
+            .iter()
+            .flat_map(|pass| &pass.steps)
+            .filter_map(program)
+            .filter_map(|program| program.shader.as_ref())
+        {
             if !tried.insert(name.value.clone()) {
                 continue;
             }
@@ -198,8 +258,16 @@ impl Graph {
             names_of(step, &mut |name| {
                 used.insert(name.to_owned());
             });
-            if let Some(shader) = program(step).and_then(|program| self.shaders.get(&program.shader.as_ref()?.value)) {
-                used.extend(shader.module.global_variables.iter().filter_map(|(_, global)| global.name.clone()));
+            if let Some(shader) =
+                program(step).and_then(|program| self.shaders.get(&program.shader.as_ref()?.value))
+            {
+                used.extend(
+                    shader
+                        .module
+                        .global_variables
+                        .iter()
+                        .filter_map(|(_, global)| global.name.clone()),
+                );
             }
         }
         for material in &self.document.materials {
@@ -207,26 +275,47 @@ impl Graph {
                 used.insert(name.to_owned());
             };
             match material {
-                Material::Texture(TextureEntry { size: Located { value: Size::Like(other), .. }, .. }) => size(other),
-                Material::Buffer(BufferEntry { count: Some(count), .. }) => names_in(count, &mut size),
+                Material::Texture(TextureEntry {
+                    size:
+                        Located {
+                            value: Size::Like(other),
+                            ..
+                        },
+                    ..
+                }) => size(other),
+                Material::Buffer(BufferEntry {
+                    count: Some(count), ..
+                }) => names_in(count, &mut size),
                 _ => {}
             }
         }
         for output in &self.document.outputs {
-            used.insert(output.material.as_ref().unwrap_or(&output.name).value.clone());
+            used.insert(
+                output
+                    .material
+                    .as_ref()
+                    .unwrap_or(&output.name)
+                    .value
+                    .clone(),
+            );
         }
         for material in &self.document.materials {
             let mut names: Vec<&Located<String>> = vec![material.name()];
             if let Material::Texture(texture) = material {
                 names.extend(texture.views.iter().map(|view| &view.name));
             }
-            let is_used = |name: &&Located<String>| used.contains(name.as_str()) || used.contains(&name.replace('.', "_"));
+            let is_used = |name: &&Located<String>| {
+                used.contains(name.as_str()) || used.contains(&name.replace('.', "_"))
+            };
             if !names.iter().any(is_used) {
                 let name = material.name();
                 diagnostics.push(
-                    Diagnostic::warning(Code::Unused, format!("no pass uses the material `{}`", name.value))
-                        .at(name.span.clone(), "")
-                        .help("remove it, or check the names of the shader globals that should be it"),
+                    Diagnostic::warning(
+                        Code::Unused,
+                        format!("no pass uses the material `{}`", name.value),
+                    )
+                    .at(name.span.clone(), "")
+                    .help("remove it, or check the names of the shader globals that should be it"),
                 );
             }
         }
@@ -266,7 +355,10 @@ fn names_of(step: &Step, each: &mut dyn FnMut(&str)) {
             draw.colors.iter().for_each(|color| each(&color.target));
             draw.depth.iter().for_each(|depth| each(&depth.target));
             match &draw.call {
-                DrawCall::Direct { count: vertices, instances } => {
+                DrawCall::Direct {
+                    count: vertices,
+                    instances,
+                } => {
                     names_in(vertices, each);
                     names_in(instances, each);
                 }

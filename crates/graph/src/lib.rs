@@ -16,6 +16,7 @@ pub mod gpu;
 mod graph;
 mod lifetime;
 mod link;
+mod memory;
 mod order;
 #[cfg(test)]
 mod order_tests;

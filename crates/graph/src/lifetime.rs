@@ -14,7 +14,10 @@ pub(crate) struct Lifetime {
 }
 
 /// Only resources that a scheduled pass touches have a lifetime, and only those are made.
-pub(crate) fn lifetimes(passes: &[LinkedPass], schedule: &[usize]) -> BTreeMap<ResourceId, Lifetime> {
+pub(crate) fn lifetimes(
+    passes: &[LinkedPass],
+    schedule: &[usize],
+) -> BTreeMap<ResourceId, Lifetime> {
     let mut lifetimes: BTreeMap<ResourceId, Lifetime> = BTreeMap::new();
     for &pass in schedule {
         for access in &passes[pass].accesses {

@@ -36,7 +36,9 @@ pub(crate) struct Order {
 impl Order {
     /// The passes whose versions of a part of a resource are final.
     pub fn final_writers(&self, target: &Target) -> BTreeSet<usize> {
-        cells(target.id, &target.part).filter_map(|cell| self.last.get(&cell).copied()).collect()
+        cells(target.id, &target.part)
+            .filter_map(|cell| self.last.get(&cell).copied())
+            .collect()
     }
 }
 
@@ -48,16 +50,25 @@ struct State {
 
 fn cells(resource: ResourceId, part: &Part) -> impl Iterator<Item = Cell> + use<> {
     let layers = part.layers.clone();
-    part.mips.clone().flat_map(move |mip| layers.clone().map(move |layer| (resource, mip, layer)))
+    part.mips
+        .clone()
+        .flat_map(move |mip| layers.clone().map(move |layer| (resource, mip, layer)))
 }
 
-pub(crate) fn order(passes: &[LinkedPass], resources: &Resources<'_>, diagnostics: &mut Vec<Diagnostic>) -> Order {
+pub(crate) fn order(
+    passes: &[LinkedPass],
+    resources: &Resources<'_>,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Order {
     let mut edges: BTreeSet<(usize, usize, Hazard)> = BTreeSet::new();
     let mut states: BTreeMap<Cell, State> = BTreeMap::new();
     let mut early: Vec<(usize, &Access)> = Vec::new();
     for (index, pass) in passes.iter().enumerate() {
         for access in &pass.accesses {
-            let provided = matches!(resources.get(access.resource).kind, ResourceKind::Provided(_) | ResourceKind::Sampler(_));
+            let provided = matches!(
+                resources.get(access.resource).kind,
+                ResourceKind::Provided(_) | ResourceKind::Sampler(_)
+            );
             for cell in cells(access.resource, &access.part) {
                 let state = states.entry(cell).or_default();
                 let mut edge = |from: usize, hazard| {
@@ -68,11 +79,16 @@ pub(crate) fn order(passes: &[LinkedPass], resources: &Resources<'_>, diagnostic
                 match state.writer {
                     Some(writer) if access.reads => edge(writer, Hazard::ReadAfterWrite),
                     // A write that does not cover keeps some of the old version, so it reads it.
-                    Some(writer) if access.writes && !access.covers => edge(writer, Hazard::ReadAfterWrite),
-                    None if access.reads && !provided => {
-                        if !early.iter().any(|(pass, other)| *pass == index && other.resource == access.resource) {
-                            early.push((index, access));
-                        }
+                    Some(writer) if access.writes && !access.covers => {
+                        edge(writer, Hazard::ReadAfterWrite)
+                    }
+                    None if access.reads
+                        && !provided
+                        && !early.iter().any(|(pass, other)| {
+                            *pass == index && other.resource == access.resource
+                        }) =>
+                    {
+                        early.push((index, access));
                     }
                     _ => {}
                 }
@@ -97,7 +113,10 @@ pub(crate) fn order(passes: &[LinkedPass], resources: &Resources<'_>, diagnostic
     for (from, to, hazard) in edges {
         graph.add_edge(nodes[from], nodes[to], hazard);
     }
-    let last = states.into_iter().filter_map(|(cell, state)| Some((cell, state.writer?))).collect();
+    let last = states
+        .into_iter()
+        .filter_map(|(cell, state)| Some((cell, state.writer?)))
+        .collect();
     let order = Order { edges: graph, last };
     for (index, access) in early {
         diagnostics.push(explain(index, access, passes, resources, &order));
@@ -106,47 +125,93 @@ pub(crate) fn order(passes: &[LinkedPass], resources: &Resources<'_>, diagnostic
 }
 
 /// A read with nothing written above it: written never, written below, or written below by a pass that needs the reader.
-fn explain(reader: usize, access: &Access, passes: &[LinkedPass], resources: &Resources<'_>, order: &Order) -> Diagnostic {
+fn explain(
+    reader: usize,
+    access: &Access,
+    passes: &[LinkedPass],
+    resources: &Resources<'_>,
+    order: &Order,
+) -> Diagnostic {
     let name = &resources.get(access.resource).name;
     let pass = &passes[reader];
     let below = (reader + 1..passes.len()).find(|&index| {
-        passes[index].accesses.iter().any(|other| other.writes && other.resource == access.resource && other.part.overlaps(&access.part))
+        passes[index].accesses.iter().any(|other| {
+            other.writes && other.resource == access.resource && other.part.overlaps(&access.part)
+        })
     });
     let Some(writer) = below else {
-        let itself = access.writes || passes[reader].accesses.iter().any(|other| other.writes && other.resource == access.resource);
+        let itself = access.writes
+            || passes[reader]
+                .accesses
+                .iter()
+                .any(|other| other.writes && other.resource == access.resource);
         let help = if itself {
-            format!("put `Clear(name: \"clear_{name}\", target: \"{name}\")` above it: it starts from what was there before")
+            format!(
+                "put `Clear(name: \"clear_{name}\", target: \"{name}\")` above it: it starts from what was there before"
+            )
         } else {
             "let a pass above write it, or name another material".to_owned()
         };
         let verb = if itself { "reads and changes" } else { "reads" };
         let part = passes[..reader].iter().any(|earlier| {
-            earlier.accesses.iter().any(|other| other.writes && other.resource == access.resource && other.part.overlaps(&access.part))
+            earlier.accesses.iter().any(|other| {
+                other.writes
+                    && other.resource == access.resource
+                    && other.part.overlaps(&access.part)
+            })
         });
         let what = if part { "a part of " } else { "" };
-        return Diagnostic::error(Code::ReadBeforeWrite, format!("pass `{}` {verb} {what}`{name}` that no pass has written", *pass.name))
-            .at(access.span.clone(), "read here")
-            .at(pass.name.span.clone(), "by this pass")
-            .help(help);
+        return Diagnostic::error(
+            Code::ReadBeforeWrite,
+            format!(
+                "pass `{}` {verb} {what}`{name}` that no pass has written",
+                *pass.name
+            ),
+        )
+        .at(access.span.clone(), "read here")
+        .at(pass.name.span.clone(), "by this pass")
+        .help(help);
     };
     // Only what a pass needs makes it depend on another; an overwrite could be moved.
-    let needs = EdgeFiltered::from_fn(&order.edges, |edge| *edge.weight() == Hazard::ReadAfterWrite);
-    let path =
-        petgraph::algo::astar(&needs, NodeIndex::new(reader), |node| node.index() == writer, |_| 1u64, |_| 0);
+    let needs = EdgeFiltered::from_fn(&order.edges, |edge| {
+        *edge.weight() == Hazard::ReadAfterWrite
+    });
+    let path = petgraph::algo::astar(
+        &needs,
+        NodeIndex::new(reader),
+        |node| node.index() == writer,
+        |_| 1u64,
+        |_| 0,
+    );
     let writer_name = &passes[writer].name;
     match path {
         Some((_, path)) => {
-            let mut names: Vec<&str> = path.iter().map(|node| passes[node.index()].name.as_str()).collect();
+            let mut names: Vec<&str> = path
+                .iter()
+                .map(|node| passes[node.index()].name.as_str())
+                .collect();
             names.push(&pass.name.value);
-            Diagnostic::error(Code::Cycle, format!("passes need each other's results: {}", names.join(" → ")))
-                .at(pass.name.span.clone(), format!("reads `{name}`"))
-                .at(writer_name.span.clone(), format!("writes `{name}`, and needs what `{}` made", *pass.name))
-                .help("break the cycle: write a second material, or move the read into a pass below")
+            Diagnostic::error(
+                Code::Cycle,
+                format!("passes need each other's results: {}", names.join(" → ")),
+            )
+            .at(pass.name.span.clone(), format!("reads `{name}`"))
+            .at(
+                writer_name.span.clone(),
+                format!("writes `{name}`, and needs what `{}` made", *pass.name),
+            )
+            .help("break the cycle: write a second material, or move the read into a pass below")
         }
-        None => Diagnostic::error(Code::ReadBeforeWrite, format!("pass `{}` reads `{name}` before it is written", *pass.name))
-            .at(access.span.clone(), "read here")
-            .at(pass.name.span.clone(), "by this pass")
-            .at(writer_name.span.clone(), "written only here, below")
-            .help(format!("move `{}` above `{}`: the file reads as a sequential program", writer_name.value, *pass.name)),
+        None => Diagnostic::error(
+            Code::ReadBeforeWrite,
+            format!("pass `{}` reads `{name}` before it is written", *pass.name),
+        )
+        .at(access.span.clone(), "read here")
+        .at(pass.name.span.clone(), "by this pass")
+        .at(writer_name.span.clone(), "written only here, below")
+        .help(format!(
+            "move `{}` above `{}`: the file reads as a sequential program",
+            writer_name.value, *pass.name
+        )),
     }
 }

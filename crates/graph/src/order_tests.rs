@@ -47,19 +47,36 @@ fn case(uses: &[Vec<Use>]) -> Case {
     let names: Vec<String> = (0..uses.len()).map(|index| format!("p{index}")).collect();
     let file = SourceFile::new("graph.ron", names.join(" "));
     let values = BTreeMap::new();
-    let params = Params { declared: &[], values: &values };
-    let environment = Environment { viewport: [8, 8], limits: &wgpu::Limits::default(), provider: &NoProvider };
+    let params = Params {
+        declared: &[],
+        values: &values,
+    };
+    let environment = Environment {
+        viewport: [8, 8],
+        limits: &wgpu::Limits::default(),
+        provider: &NoProvider,
+    };
     let mut diagnostics = Vec::new();
     let mut resources: Resources<'_> = resolve(&[], &params, &environment, &mut diagnostics);
     for index in 0..RESOURCES {
-        resources.add(format!("r{index}"), None, ResourceKind::Buffer(Buffer::default()));
+        resources.add(
+            format!("r{index}"),
+            None,
+            ResourceKind::Buffer(Buffer::default()),
+        );
     }
     let pass = |(index, uses): (usize, &Vec<Use>)| {
-        let at = names[..index].iter().map(|name| name.len() + 1).sum::<usize>();
+        let at = names[..index]
+            .iter()
+            .map(|name| name.len() + 1)
+            .sum::<usize>();
         let span = file.span(at..at + names[index].len());
         let access = |(resource, how, mips, layers): &Use| Access {
             resource: ResourceId(*resource),
-            part: Part { mips: mips.clone(), layers: layers.clone() },
+            part: Part {
+                mips: mips.clone(),
+                layers: layers.clone(),
+            },
             reads: matches!(how, Read | Change),
             writes: *how != Read,
             covers: *how == Write,
@@ -68,30 +85,52 @@ fn case(uses: &[Vec<Use>]) -> Case {
             step: 0,
         };
         let accesses = uses.iter().map(access).collect();
-        LinkedPass { name: Located::new(names[index].clone(), span.clone()), kind: "Test", steps: Vec::new(), accesses }
+        LinkedPass {
+            name: Located::new(names[index].clone(), span.clone()),
+            kind: "Test",
+            steps: Vec::new(),
+            accesses,
+        }
     };
     let passes: Vec<LinkedPass> = uses.iter().enumerate().map(pass).collect();
     let order = order(&passes, &resources, &mut diagnostics);
-    Case { passes, order, diagnostics }
+    Case {
+        passes,
+        order,
+        diagnostics,
+    }
 }
 
 impl Case {
     fn edges(&self) -> BTreeSet<(usize, usize, Hazard)> {
         let graph = &self.order.edges;
-        graph.raw_edges().iter().map(|edge| (edge.source().index(), edge.target().index(), edge.weight)).collect()
+        graph
+            .raw_edges()
+            .iter()
+            .map(|edge| (edge.source().index(), edge.target().index(), edge.weight))
+            .collect()
     }
 
     /// Schedule for the final versions of the resources.
     fn schedule(&self, wanted: &[Use]) -> Vec<usize> {
         let roots = wanted.iter().flat_map(|(resource, _, mips, layers)| {
-            let part = Part { mips: mips.clone(), layers: layers.clone() };
-            self.order.final_writers(&Target { id: ResourceId(*resource), part })
+            let part = Part {
+                mips: mips.clone(),
+                layers: layers.clone(),
+            };
+            self.order.final_writers(&Target {
+                id: ResourceId(*resource),
+                part,
+            })
         });
         schedule(&self.order, &cull::live(&self.order, roots))
     }
 
     fn codes(&self) -> Vec<Code> {
-        self.diagnostics.iter().map(|diagnostic| diagnostic.code).collect()
+        self.diagnostics
+            .iter()
+            .map(|diagnostic| diagnostic.code)
+            .collect()
     }
 }
 
@@ -103,14 +142,27 @@ const WAW: Hazard = Hazard::WriteAfterWrite;
 fn edges_of_each_hazard() {
     type Table = (&'static str, Vec<Vec<Use>>, Vec<(usize, usize, Hazard)>);
     let table: Vec<Table> = vec![
-        ("p0 ─write─▶ r0 ─read─▶ p1", vec![vec![whole(0, Write)], vec![whole(0, Read)]], vec![(0, 1, RAW)]),
+        (
+            "p0 ─write─▶ r0 ─read─▶ p1",
+            vec![vec![whole(0, Write)], vec![whole(0, Read)]],
+            vec![(0, 1, RAW)],
+        ),
         // p1 reads p0's version, so p2 has to wait for p1; p3 reads p2's version only.
         (
             "p0 ─▶ r0 ─▶ p1 ; p2 ─▶ r0 ─▶ p3",
-            vec![vec![whole(0, Write)], vec![whole(0, Read)], vec![whole(0, Write)], vec![whole(0, Read)]],
+            vec![
+                vec![whole(0, Write)],
+                vec![whole(0, Read)],
+                vec![whole(0, Write)],
+                vec![whole(0, Read)],
+            ],
             vec![(0, 1, RAW), (0, 2, WAW), (1, 2, WAR), (2, 3, RAW)],
         ),
-        ("p0 ─▶ r0 ◀─overwrites all─ p1", vec![vec![whole(0, Write)], vec![whole(0, Write)]], vec![(0, 1, WAW)]),
+        (
+            "p0 ─▶ r0 ◀─overwrites all─ p1",
+            vec![vec![whole(0, Write)], vec![whole(0, Write)]],
+            vec![(0, 1, WAW)],
+        ),
         // What p1 does not write is still p0's: p1 needs p0.
         (
             "p0 ─▶ r0 ◀─overwrites some─ p1",
@@ -119,23 +171,44 @@ fn edges_of_each_hazard() {
         ),
         (
             "p0 ─clear─▶ r0 ◀─atomicAdd─ p1 ; p2 atomicAdd",
-            vec![vec![whole(0, Write)], vec![whole(0, Change)], vec![whole(0, Change)]],
+            vec![
+                vec![whole(0, Write)],
+                vec![whole(0, Change)],
+                vec![whole(0, Change)],
+            ],
             // p1's own read is over once it writes, but p2 overwrites what p1 reads and wrote.
-            vec![(0, 1, RAW), (0, 1, WAW), (1, 2, RAW), (1, 2, WAR), (1, 2, WAW)],
+            vec![
+                (0, 1, RAW),
+                (0, 1, WAW),
+                (1, 2, RAW),
+                (1, 2, WAR),
+                (1, 2, WAW),
+            ],
         ),
         (
             "p0 ─▶ r0 ─▶ { p1, p2 } : readers need not wait for each other",
-            vec![vec![whole(0, Write)], vec![whole(0, Read)], vec![whole(0, Read)]],
+            vec![
+                vec![whole(0, Write)],
+                vec![whole(0, Read)],
+                vec![whole(0, Read)],
+            ],
             vec![(0, 1, RAW), (0, 2, RAW)],
         ),
         (
             "p0 ─▶ r0.mip0 ; p1: r0.mip0 ─▶ r0.mip1 : a pass and its own parts make no edge",
-            vec![vec![(0, Write, 0..1, 0..1)], vec![(0, Read, 0..1, 0..1), (0, Write, 1..2, 0..1)]],
+            vec![
+                vec![(0, Write, 0..1, 0..1)],
+                vec![(0, Read, 0..1, 0..1), (0, Write, 1..2, 0..1)],
+            ],
             vec![(0, 1, RAW)],
         ),
         (
             "p0 ─▶ r0.mip0 ; p1 ─▶ r0.mip1 ; p2 reads mip1 : mips are independent",
-            vec![vec![(0, Write, 0..1, 0..1)], vec![(0, Write, 1..2, 0..1)], vec![(0, Read, 1..2, 0..1)]],
+            vec![
+                vec![(0, Write, 0..1, 0..1)],
+                vec![(0, Write, 1..2, 0..1)],
+                vec![(0, Read, 1..2, 0..1)],
+            ],
             vec![(1, 2, RAW)],
         ),
         (
@@ -151,7 +224,11 @@ fn edges_of_each_hazard() {
     ];
     for (graph, uses, expected) in table {
         let case = case(&uses);
-        assert!(case.diagnostics.is_empty(), "{graph}: {:?}", case.diagnostics);
+        assert!(
+            case.diagnostics.is_empty(),
+            "{graph}: {:?}",
+            case.diagnostics
+        );
         assert_eq!(case.edges(), expected.into_iter().collect(), "{graph}");
     }
 }
@@ -160,14 +237,33 @@ fn edges_of_each_hazard() {
 fn only_what_the_outputs_need_runs() {
     type Table = (&'static str, Vec<Vec<Use>>, Vec<Use>, Vec<usize>);
     let table: Vec<Table> = vec![
-        ("p0 ─▶ r0 ; p1 ─▶ r1 ; out r0", vec![vec![whole(0, Write)], vec![whole(1, Write)]], vec![whole(0, Read)], vec![0]),
+        (
+            "p0 ─▶ r0 ; p1 ─▶ r1 ; out r0",
+            vec![vec![whole(0, Write)], vec![whole(1, Write)]],
+            vec![whole(0, Read)],
+            vec![0],
+        ),
         // A covered version is nobody's: p0 is not run though p1 writes after it.
-        ("p0 ─▶ r0 ◀─covers─ p1 ; out r0", vec![vec![whole(0, Write)], vec![whole(0, Write)]], vec![whole(0, Read)], vec![1]),
-        ("p0 ─▶ r0 ◀─partly─ p1 ; out r0", vec![vec![whole(0, Write)], vec![whole(0, Partly)]], vec![whole(0, Read)], vec![0, 1]),
+        (
+            "p0 ─▶ r0 ◀─covers─ p1 ; out r0",
+            vec![vec![whole(0, Write)], vec![whole(0, Write)]],
+            vec![whole(0, Read)],
+            vec![1],
+        ),
+        (
+            "p0 ─▶ r0 ◀─partly─ p1 ; out r0",
+            vec![vec![whole(0, Write)], vec![whole(0, Partly)]],
+            vec![whole(0, Read)],
+            vec![0, 1],
+        ),
         // p1 only reads; that a later pass overwrites what it read keeps it no more alive.
         (
             "p0 ─▶ r0 ─▶ p1 ─▶ r1 ; p2 ─▶ r0 ; out r0",
-            vec![vec![whole(0, Write)], vec![whole(0, Read), whole(1, Write)], vec![whole(0, Write)]],
+            vec![
+                vec![whole(0, Write)],
+                vec![whole(0, Read), whole(1, Write)],
+                vec![whole(0, Write)],
+            ],
             vec![whole(0, Read)],
             vec![2],
         ),
@@ -189,7 +285,12 @@ fn only_what_the_outputs_need_runs() {
             vec![(0, Read, 1..2, 0..1)],
             vec![1],
         ),
-        ("no outputs, nothing runs", vec![vec![whole(0, Write)]], vec![], vec![]),
+        (
+            "no outputs, nothing runs",
+            vec![vec![whole(0, Write)]],
+            vec![],
+            vec![],
+        ),
         // Nothing orders these four; the file does.
         (
             "p0 ─▶ r3 ; p1 ─▶ r2 ; p2 ─▶ r1 ; p3 ─▶ r0 ; all out",
@@ -200,7 +301,11 @@ fn only_what_the_outputs_need_runs() {
     ];
     for (graph, uses, outputs, expected) in table {
         let case = case(&uses);
-        assert!(case.diagnostics.is_empty(), "{graph}: {:?}", case.diagnostics);
+        assert!(
+            case.diagnostics.is_empty(),
+            "{graph}: {:?}",
+            case.diagnostics
+        );
         assert_eq!(case.schedule(&outputs), expected, "{graph}");
     }
 }
@@ -209,27 +314,61 @@ fn only_what_the_outputs_need_runs() {
 fn reads_of_nothing() {
     type Table = (&'static str, Vec<Vec<Use>>, Vec<Code>);
     let table: Vec<Table> = vec![
-        ("r0 ─▶ p0", vec![vec![whole(0, Read)]], vec![Code::ReadBeforeWrite]),
-        ("p0 counts in r0, which nobody cleared", vec![vec![whole(0, Change)]], vec![Code::ReadBeforeWrite]),
-        ("r0 ─▶ p0 ; p1 ─▶ r0", vec![vec![whole(0, Read)], vec![whole(0, Write)]], vec![Code::ReadBeforeWrite]),
+        (
+            "r0 ─▶ p0",
+            vec![vec![whole(0, Read)]],
+            vec![Code::ReadBeforeWrite],
+        ),
+        (
+            "p0 counts in r0, which nobody cleared",
+            vec![vec![whole(0, Change)]],
+            vec![Code::ReadBeforeWrite],
+        ),
+        (
+            "r0 ─▶ p0 ; p1 ─▶ r0",
+            vec![vec![whole(0, Read)], vec![whole(0, Write)]],
+            vec![Code::ReadBeforeWrite],
+        ),
         // p0 ─▶ r1 ─▶ p1 ─▶ r0 ─▶ p0
         (
             "p0: r0 ─▶ r1 ; p1: r1 ─▶ r0",
-            vec![vec![whole(0, Read), whole(1, Write)], vec![whole(1, Read), whole(0, Write)]],
+            vec![
+                vec![whole(0, Read), whole(1, Write)],
+                vec![whole(1, Read), whole(0, Write)],
+            ],
             vec![Code::Cycle],
         ),
         // An overwrite is no need: p1 could run first.
         (
             "p0: r0 ─▶ r1 ; p1 ─▶ r1, r0",
-            vec![vec![whole(0, Read), whole(1, Write)], vec![whole(1, Write), whole(0, Write)]],
+            vec![
+                vec![whole(0, Read), whole(1, Write)],
+                vec![whole(1, Write), whole(0, Write)],
+            ],
             vec![Code::ReadBeforeWrite],
         ),
-        ("p0 ─▶ r0.mip0 ; p1 reads r0.mip0..2", vec![vec![whole(0, Write)], vec![(0, Read, 0..2, 0..1)]], vec![Code::ReadBeforeWrite]),
+        (
+            "p0 ─▶ r0.mip0 ; p1 reads r0.mip0..2",
+            vec![vec![whole(0, Write)], vec![(0, Read, 0..2, 0..1)]],
+            vec![Code::ReadBeforeWrite],
+        ),
         // Some of a buffer that nobody wrote before is no read.
-        ("p0 ─partly─▶ r0 ─▶ p1", vec![vec![whole(0, Partly)], vec![whole(0, Read)]], vec![]),
+        (
+            "p0 ─partly─▶ r0 ─▶ p1",
+            vec![vec![whole(0, Partly)], vec![whole(0, Read)]],
+            vec![],
+        ),
         // Within one pass the steps run in order.
-        ("p0: clears r0, then counts in it", vec![vec![whole(0, Write), whole(0, Change)]], vec![]),
-        ("one mistake is told once per resource", vec![vec![(0, Read, 0..3, 0..5)]], vec![Code::ReadBeforeWrite]),
+        (
+            "p0: clears r0, then counts in it",
+            vec![vec![whole(0, Write), whole(0, Change)]],
+            vec![],
+        ),
+        (
+            "one mistake is told once per resource",
+            vec![vec![(0, Read, 0..3, 0..5)]],
+            vec![Code::ReadBeforeWrite],
+        ),
     ];
     for (graph, uses, expected) in table {
         assert_eq!(case(&uses).codes(), expected, "{graph}");
@@ -245,15 +384,23 @@ fn a_cycle_is_told_with_its_path() {
         vec![whole(2, Read), whole(0, Write)],
     ]);
     assert_eq!(case.codes(), [Code::Cycle]);
-    assert!(case.diagnostics[0].message.ends_with("p0 → p1 → p2 → p0"), "{}", case.diagnostics[0].message);
+    assert!(
+        case.diagnostics[0].message.ends_with("p0 → p1 → p2 → p0"),
+        "{}",
+        case.diagnostics[0].message
+    );
 }
 
 /// A chain as long as no document has it: neither recursion nor quadratic work.
 #[test]
 fn ten_thousand_passes() {
-    let uses: Vec<Vec<Use>> =
-        (0..10_000).map(|index| vec![whole(0, if index == 0 { Write } else { Change })]).collect();
-    assert_eq!(case(&uses).schedule(&[whole(0, Read)]), (0..10_000).collect::<Vec<_>>());
+    let uses: Vec<Vec<Use>> = (0..10_000)
+        .map(|index| vec![whole(0, if index == 0 { Write } else { Change })])
+        .collect();
+    assert_eq!(
+        case(&uses).schedule(&[whole(0, Read)]),
+        (0..10_000).collect::<Vec<_>>()
+    );
     let mut cycle = uses;
     cycle[0] = vec![whole(1, Read), whole(0, Write)];
     cycle.push(vec![whole(0, Read), whole(1, Write)]);
@@ -262,8 +409,11 @@ fn ten_thousand_passes() {
 
 type Cell = (usize, u32, u32);
 
+/// Who wrote what a pass sees in a cell.
+type Seen = BTreeMap<(usize, Cell), Option<usize>>;
+
 /// What each pass of `sequence` sees in the cells that it reads, when the passes run in that sequence: who wrote it.
-fn interpret(passes: &[LinkedPass], sequence: &[usize]) -> (BTreeMap<(usize, Cell), Option<usize>>, BTreeMap<Cell, usize>) {
+fn interpret(passes: &[LinkedPass], sequence: &[usize]) -> (Seen, BTreeMap<Cell, usize>) {
     let mut memory: BTreeMap<Cell, usize> = BTreeMap::new();
     let mut seen = BTreeMap::new();
     for &pass in sequence {

@@ -1,5 +1,9 @@
 //! [`Plan`]: a graph on a viewport with values for its params, checked against an adapter's limits. Pure data.
 
+mod request;
+
+pub use request::{Capture, CulledPass, OutputSummary, PassSummary, PlanRequest};
+
 use crate::{
     cull,
     diagnostics::{Code, Diagnostic, Diagnostics, Severity},
@@ -8,94 +12,14 @@ use crate::{
     lifetime::{Lifetime, lifetimes},
     link::{LinkedPass, Linker},
     order::{Order, order},
-    provider::Provider,
     registry::Params,
-    resolve::{Buffer, Environment, Part, Resource, ResourceId, ResourceKind, Resources, Target, resolve},
+    resolve::{
+        Buffer, Environment, Part, Resource, ResourceId, ResourceKind, Resources, Target, resolve,
+    },
     schedule::schedule,
     step::Step,
 };
 use std::collections::{BTreeMap, BTreeSet};
-
-/// What a plan is made for.
-pub struct PlanRequest<'a> {
-    /// Width and height in pixels.
-    pub viewport: [u32; 2],
-    /// Values of params; where missing, the document's default.
-    pub params: BTreeMap<String, ParamValue>,
-    /// The outputs that are wanted; `None` = all that the document declares.
-    pub outputs: Option<Vec<String>>,
-    /// Materials that are to be read back beside the outputs.
-    pub captures: Vec<Capture>,
-    /// Limits that the device will have.
-    pub limits: wgpu::Limits,
-    /// Features that the device will have.
-    pub features: wgpu::Features,
-    /// Describes the provided resources.
-    pub provider: &'a dyn Provider,
-}
-
-impl<'a> PlanRequest<'a> {
-    /// A request with wgpu's default limits, no features, default params and all outputs.
-    pub fn new(viewport: [u32; 2], provider: &'a dyn Provider) -> Self {
-        Self {
-            viewport,
-            params: BTreeMap::new(),
-            outputs: None,
-            captures: Vec::new(),
-            limits: wgpu::Limits::default(),
-            features: wgpu::Features::empty(),
-            provider,
-        }
-    }
-}
-
-/// A material to be read back.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Capture {
-    /// Material, view or provided resource.
-    pub material: String,
-    /// The pass after which its content is wanted; `None` = at the end of the frame.
-    pub after: Option<String>,
-}
-
-impl Capture {
-    /// The name under which it is read back: `material` or `material@pass`.
-    pub fn name(&self) -> String {
-        match &self.after {
-            Some(pass) => format!("{}@{pass}", self.material),
-            None => self.material.clone(),
-        }
-    }
-}
-
-/// A live pass.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PassSummary {
-    /// Name.
-    pub name: String,
-    /// Kind, as the document writes it.
-    pub kind: String,
-}
-
-/// A pass that does not run.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct CulledPass {
-    /// Name.
-    pub name: String,
-    /// Why.
-    pub reason: String,
-}
-
-/// Something that can be read back.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct OutputSummary {
-    /// Name of the output or capture.
-    pub name: String,
-    /// Format of a texture; `None` for a buffer.
-    pub format: Option<wgpu::TextureFormat>,
-    /// Texels of a texture; `[bytes, 1]` of a buffer.
-    pub size: [u32; 2],
-}
 
 /// A graph that is ready to be allocated: live passes in order, every resource with its size and uses.
 #[derive(Debug)]
@@ -118,21 +42,43 @@ impl Graph {
         let mut diagnostics = Vec::new();
         self.check_params(&request.params, &mut diagnostics);
         if request.viewport.contains(&0) {
-            diagnostics.push(Diagnostic::error(Code::Size, "the viewport has no pixels").at(self.place(), ""));
+            diagnostics.push(
+                Diagnostic::error(Code::Size, "the viewport has no pixels").at(self.place(), ""),
+            );
         }
         if !diagnostics.is_empty() {
             return Err(Diagnostics::new(diagnostics));
         }
-        let params = Params { declared: &self.document.params, values: &request.params };
-        let environment = Environment { viewport: request.viewport, limits: &request.limits, provider: request.provider };
+        let params = Params {
+            declared: &self.document.params,
+            values: &request.params,
+        };
+        let environment = Environment {
+            viewport: request.viewport,
+            limits: &request.limits,
+            provider: request.provider,
+        };
         let lowered = self.lower(&request.params, &mut diagnostics);
-        let mut resources = resolve(&self.document.materials, &params, &environment, &mut diagnostics);
+        let mut resources = resolve(
+            &self.document.materials,
+            &params,
+            &environment,
+            &mut diagnostics,
+        );
         for (name, bytes) in lowered.iter().flat_map(|pass| &pass.scratch) {
-            let kind = ResourceKind::Buffer(Buffer { count: Some(bytes / 4), bytes: 0 });
+            let kind = ResourceKind::Buffer(Buffer {
+                count: Some(bytes / 4),
+                bytes: 0,
+            });
             resources.add(name.clone(), None, kind);
         }
-        let mut linker =
-            Linker::new(&mut resources, &self.shaders, &params, (&request.limits, request.features), &mut diagnostics);
+        let mut linker = Linker::new(
+            &mut resources,
+            &self.shaders,
+            &params,
+            (&request.limits, request.features),
+            &mut diagnostics,
+        );
         let mut passes = Vec::new();
         let mut complete = true;
         for pass in &lowered {
@@ -150,15 +96,25 @@ impl Graph {
         layouts.settle(&mut resources, &request.limits, &mut diagnostics);
         self.check_captures(request, &mut diagnostics);
         // Versions mean nothing while passes are missing.
-        if !complete || diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {
+        if !complete
+            || diagnostics
+                .iter()
+                .any(|diagnostic| diagnostic.severity == Severity::Error)
+        {
             return Err(Diagnostics::new(diagnostics));
         }
         let order = order(&passes, &resources, &mut diagnostics);
         let readable = self.readable(request, &mut resources, &order, &mut diagnostics);
-        if diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {
+        if diagnostics
+            .iter()
+            .any(|diagnostic| diagnostic.severity == Severity::Error)
+        {
             return Err(Diagnostics::new(diagnostics));
         }
-        let roots: BTreeSet<usize> = readable.iter().flat_map(|(_, target)| order.final_writers(target)).collect();
+        let roots: BTreeSet<usize> = readable
+            .iter()
+            .flat_map(|(_, target)| order.final_writers(target))
+            .collect();
         let live = cull::live(&order, roots);
         let schedule = schedule(&order, &live);
         let mut lifetimes = lifetimes(&passes, &schedule);
@@ -167,7 +123,9 @@ impl Graph {
             return Err(Diagnostics::new(diagnostics));
         }
         for (_, target) in &readable {
-            let Some(lifetime) = lifetimes.get_mut(&target.id) else { continue };
+            let Some(lifetime) = lifetimes.get_mut(&target.id) else {
+                continue;
+            };
             lifetime.textures |= wgpu::TextureUsages::COPY_SRC;
             lifetime.buffers |= wgpu::BufferUsages::COPY_SRC;
         }
@@ -175,7 +133,10 @@ impl Graph {
             .iter()
             .zip(&live)
             .filter(|(_, live)| !**live)
-            .map(|(pass, _)| CulledPass { name: pass.name.value.clone(), reason: reason(pass, &resources.list) })
+            .map(|(pass, _)| CulledPass {
+                name: pass.name.value.clone(),
+                reason: reason(pass, &resources.list),
+            })
             .collect();
         Ok(Plan {
             resources: resources.list,
@@ -188,7 +149,11 @@ impl Graph {
         })
     }
 
-    fn check_params(&self, params: &BTreeMap<String, ParamValue>, diagnostics: &mut Vec<Diagnostic>) {
+    fn check_params(
+        &self,
+        params: &BTreeMap<String, ParamValue>,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) {
         for (name, value) in params {
             let problem = match self.param(name) {
                 Ok(param) => param.check(value).err().map(|why| {
@@ -202,12 +167,24 @@ impl Graph {
     }
 
     fn check_captures(&self, request: &PlanRequest<'_>, diagnostics: &mut Vec<Diagnostic>) {
-        let passes: Vec<&str> = self.document.passes.iter().map(|pass| pass.name.as_str()).collect();
-        for pass in request.captures.iter().filter_map(|capture| capture.after.as_deref()) {
+        let passes: Vec<&str> = self
+            .document
+            .passes
+            .iter()
+            .map(|pass| pass.name.as_str())
+            .collect();
+        for pass in request
+            .captures
+            .iter()
+            .filter_map(|capture| capture.after.as_deref())
+        {
             if !passes.contains(&pass) {
                 diagnostics.push(
-                    Diagnostic::error(Code::Output, format!("there is no pass `{pass}` to read a material after"))
-                        .suggest(pass, passes.iter().copied()),
+                    Diagnostic::error(
+                        Code::Output,
+                        format!("there is no pass `{pass}` to read a material after"),
+                    )
+                    .suggest(pass, passes.iter().copied()),
                 );
             }
         }
@@ -226,26 +203,43 @@ impl Graph {
         for wanted in request.outputs.iter().flatten() {
             if !declared.contains(&wanted.as_str()) {
                 diagnostics.push(
-                    Diagnostic::error(Code::Output, format!("`{}` has no output `{wanted}`", self.path()))
-                        .suggest(wanted, declared.iter().copied()),
+                    Diagnostic::error(
+                        Code::Output,
+                        format!("`{}` has no output `{wanted}`", self.path()),
+                    )
+                    .suggest(wanted, declared.iter().copied()),
                 );
             }
         }
         for output in &self.document.outputs {
-            let wanted = request.outputs.as_ref().is_none_or(|wanted| wanted.contains(&output.name.value));
+            let wanted = request
+                .outputs
+                .as_ref()
+                .is_none_or(|wanted| wanted.contains(&output.name.value));
             let material = output.material.as_ref().unwrap_or(&output.name);
-            let Some(target) = resources.expect(material, diagnostics) else { continue };
+            let Some(target) = resources.expect(material, diagnostics) else {
+                continue;
+            };
             if order.final_writers(&target).is_empty() {
                 diagnostics.push(
-                    Diagnostic::error(Code::ReadBeforeWrite, format!("no pass writes the output `{}`", *output.name))
-                        .at(material.span.clone(), format!("`{}` is never written", material.value))
-                        .help("let a pass write it, or name another `material`"),
+                    Diagnostic::error(
+                        Code::ReadBeforeWrite,
+                        format!("no pass writes the output `{}`", *output.name),
+                    )
+                    .at(
+                        material.span.clone(),
+                        format!("`{}` is never written", material.value),
+                    )
+                    .help("let a pass write it, or name another `material`"),
                 );
             } else if let Some(why) = unreadable(resources, &target) {
                 diagnostics.push(
-                    Diagnostic::error(Code::FormatMismatch, format!("the output `{}` cannot be read back", *output.name))
-                        .at(material.span.clone(), why)
-                        .help("use Depth32Float or Depth16Unorm"),
+                    Diagnostic::error(
+                        Code::FormatMismatch,
+                        format!("the output `{}` cannot be read back", *output.name),
+                    )
+                    .at(material.span.clone(), why)
+                    .help("use Depth32Float or Depth16Unorm"),
                 );
             } else if wanted {
                 readable.push((output.name.value.clone(), target));
@@ -256,20 +250,32 @@ impl Graph {
             // Those after a pass were entered as resources of their own; an output of that name is there already.
             let found = resources.find(&name);
             match found {
-                Some(target) if order.final_writers(&target).is_empty() => diagnostics
-                    .push(Diagnostic::error(Code::Output, format!("`{name}` cannot be read back: no pass writes it"))),
+                Some(target) if order.final_writers(&target).is_empty() => {
+                    diagnostics.push(Diagnostic::error(
+                        Code::Output,
+                        format!("`{name}` cannot be read back: no pass writes it"),
+                    ))
+                }
                 Some(target) if unreadable(resources, &target).is_some() => {
                     let why = unreadable(resources, &target).unwrap_or_default();
-                    diagnostics.push(Diagnostic::error(Code::Output, format!("`{name}` cannot be read back: it is {why}")));
+                    diagnostics.push(Diagnostic::error(
+                        Code::Output,
+                        format!("`{name}` cannot be read back: it is {why}"),
+                    ));
                 }
-                Some(target) if readable.iter().all(|(known, _)| *known != name) => readable.push((name, target)),
+                Some(target) if readable.iter().all(|(known, _)| *known != name) => {
+                    readable.push((name, target))
+                }
                 Some(_) => {}
                 None if capture.after.is_some() => {}
                 None => {
                     let known = resources.known();
                     diagnostics.push(
-                        Diagnostic::error(Code::Output, format!("`{}` has no output or material `{name}`", self.path()))
-                            .suggest(&name, known.iter().map(String::as_str)),
+                        Diagnostic::error(
+                            Code::Output,
+                            format!("`{}` has no output or material `{name}`", self.path()),
+                        )
+                        .suggest(&name, known.iter().map(String::as_str)),
                     );
                 }
             }
@@ -279,11 +285,23 @@ impl Graph {
 }
 
 /// A buffer that is only cleared or copied has no size: no shader says what its items are.
-fn unsized_buffers(lifetimes: &BTreeMap<ResourceId, Lifetime>, resources: &Resources<'_>, diagnostics: &mut Vec<Diagnostic>) {
+fn unsized_buffers(
+    lifetimes: &BTreeMap<ResourceId, Lifetime>,
+    resources: &Resources<'_>,
+    diagnostics: &mut Vec<Diagnostic>,
+) {
     for resource in lifetimes.keys().map(|id| resources.get(*id)) {
-        let ResourceKind::Buffer(Buffer { bytes: 0, .. }) = resource.kind else { continue };
-        let error = Diagnostic::error(Code::Size, format!("the size of `{}` is not known: no shader sees it", resource.name))
-            .help("let a pass bind it: the size of its items comes from the shader's type");
+        let ResourceKind::Buffer(Buffer { bytes: 0, .. }) = resource.kind else {
+            continue;
+        };
+        let error = Diagnostic::error(
+            Code::Size,
+            format!(
+                "the size of `{}` is not known: no shader sees it",
+                resource.name
+            ),
+        )
+        .help("let a pass bind it: the size of its items comes from the shader's type");
         diagnostics.push(match &resource.declared {
             Some(span) => error.at(span.clone(), ""),
             None => error,
@@ -295,7 +313,10 @@ fn unsized_buffers(lifetimes: &BTreeMap<ResourceId, Lifetime>, resources: &Resou
 fn unreadable(resources: &Resources<'_>, target: &Target) -> Option<String> {
     match &resources.get(target.id).kind {
         ResourceKind::Texture(texture) if texture.format.block_copy_size(None).is_none() => {
-            Some(format!("a texture of format {:?}, whose layout is the driver's own", texture.format))
+            Some(format!(
+                "a texture of format {:?}, whose layout is the driver's own",
+                texture.format
+            ))
         }
         _ => None,
     }
@@ -318,29 +339,49 @@ impl Linker<'_, '_> {
             ResourceKind::Buffer(buffer) => ResourceKind::Buffer(buffer.clone()),
             ResourceKind::Provided(_) => ResourceKind::Buffer(Buffer::default()),
             ResourceKind::Sampler(_) => {
-                self.diagnostics.push(Diagnostic::error(Code::Output, format!("`{}` is a sampler and has no content", from.value)));
+                self.diagnostics.push(Diagnostic::error(
+                    Code::Output,
+                    format!("`{}` is a sampler and has no content", from.value),
+                ));
                 return None;
             }
         };
         self.resources.add(name.value.clone(), None, kind);
-        self.pass(&name, "Capture", &[Step::Copy { from, to: name.clone() }])
+        self.pass(
+            &name,
+            "Capture",
+            &[Step::Copy {
+                from,
+                to: name.clone(),
+            }],
+        )
     }
 }
 
 fn reason(pass: &LinkedPass, resources: &[Resource]) -> String {
-    let written: BTreeSet<&str> =
-        pass.accesses.iter().filter(|access| access.writes).map(|access| resources[access.resource.0].name.as_str()).collect();
+    let written: BTreeSet<&str> = pass
+        .accesses
+        .iter()
+        .filter(|access| access.writes)
+        .map(|access| resources[access.resource.0].name.as_str())
+        .collect();
     let names: Vec<String> = written.iter().map(|name| format!("`{name}`")).collect();
     match names.is_empty() {
         true => "it writes nothing".to_owned(),
-        false => format!("nothing that an output needs reads what it writes ({})", names.join(", ")),
+        false => format!(
+            "nothing that an output needs reads what it writes ({})",
+            names.join(", ")
+        ),
     }
 }
 
 impl Plan {
     /// The live passes in the order in which they run.
     pub fn passes(&self) -> Vec<PassSummary> {
-        let summary = |&pass: &usize| PassSummary { name: self.passes[pass].name.value.clone(), kind: self.passes[pass].kind.to_owned() };
+        let summary = |&pass: &usize| PassSummary {
+            name: self.passes[pass].name.value.clone(),
+            kind: self.passes[pass].kind.to_owned(),
+        };
         self.schedule.iter().map(summary).collect()
     }
 
@@ -363,13 +404,22 @@ impl Plan {
     pub fn outputs(&self) -> Vec<OutputSummary> {
         let summary = |(name, target): &(String, Target)| {
             let (format, size) = match &self.resources[target.id.0].kind {
-                ResourceKind::Texture(texture) => {
-                    (Some(texture.format), texture.size.map(|edge| (edge >> target.part.mips.start).max(1)))
+                ResourceKind::Texture(texture) => (
+                    Some(texture.format),
+                    texture
+                        .size
+                        .map(|edge| (edge >> target.part.mips.start).max(1)),
+                ),
+                ResourceKind::Buffer(buffer) => {
+                    (None, [u32::try_from(buffer.bytes).unwrap_or(u32::MAX), 1])
                 }
-                ResourceKind::Buffer(buffer) => (None, [u32::try_from(buffer.bytes).unwrap_or(u32::MAX), 1]),
                 _ => (None, [0, 0]),
             };
-            OutputSummary { name: name.clone(), format, size }
+            OutputSummary {
+                name: name.clone(),
+                format,
+                size,
+            }
         };
         self.readable.iter().map(summary).collect()
     }
@@ -381,7 +431,10 @@ impl Plan {
             ResourceKind::Buffer(buffer) => buffer.bytes,
             _ => 0,
         };
-        self.lifetimes.keys().map(bytes).sum()
+        self.lifetimes
+            .keys()
+            .map(bytes)
+            .fold(0, u64::saturating_add)
     }
 
     /// Bytes saved by resources that share memory. None do so far.

@@ -15,7 +15,12 @@ pub trait Provider {
     ///
     /// # Errors
     /// Why it cannot be built.
-    fn build(&mut self, name: &str, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<wgpu::Buffer, ProviderError>;
+    fn build(
+        &mut self,
+        name: &str,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<wgpu::Buffer, ProviderError>;
 }
 
 /// Description of a provided buffer.
@@ -53,7 +58,14 @@ impl Provider for NoProvider {
         None
     }
 
-    fn build(&mut self, name: &str, _: &wgpu::Device, _: &wgpu::Queue) -> Result<wgpu::Buffer, ProviderError> {
-        Err(ProviderError(format!("nothing is provided under the name `{name}`")))
+    fn build(
+        &mut self,
+        name: &str,
+        _: &wgpu::Device,
+        _: &wgpu::Queue,
+    ) -> Result<wgpu::Buffer, ProviderError> {
+        Err(ProviderError(format!(
+            "nothing is provided under the name `{name}`"
+        )))
     }
 }

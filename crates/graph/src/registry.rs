@@ -42,12 +42,20 @@ impl Lowering<'_> {
     /// The program of the pass's own shader (its `shader` field, else its name) with the bindings the document gives.
     pub fn program(&self) -> Program {
         let shader = self.shader.unwrap_or(self.name).clone();
-        Program { shader: Some(shader), bind: self.bind.to_vec(), ..Program::default() }
+        Program {
+            shader: Some(shader),
+            bind: self.bind.to_vec(),
+            ..Program::default()
+        }
     }
 
     /// The program of a shader that comes with the pass kind.
     pub fn program_of(&self, shader: &str) -> Program {
-        Program { shader: Some(self.named(shader)), bind: self.bind.to_vec(), ..Program::default() }
+        Program {
+            shader: Some(self.named(shader)),
+            bind: self.bind.to_vec(),
+            ..Program::default()
+        }
     }
 
     /// A name that the kind itself gives; errors about it point at the pass.
@@ -74,7 +82,9 @@ impl Lowering<'_> {
 
     /// The value behind a literal or a param; a param of the wrong type is reported, and `fallback` returned.
     pub fn value<T: FromParam>(&mut self, value: &Value<T>, fallback: T) -> T {
-        self.params.value(value, &mut self.diagnostics).unwrap_or(fallback)
+        self.params
+            .value(value, &mut self.diagnostics)
+            .unwrap_or(fallback)
     }
 }
 
@@ -88,11 +98,18 @@ pub struct Params<'a> {
 impl Params<'_> {
     /// The declaration and the value of a param.
     pub fn get(&self, name: &str) -> Option<(&Param, &ParamValue)> {
-        let param = self.declared.iter().find(|param| param.name.value == name)?;
+        let param = self
+            .declared
+            .iter()
+            .find(|param| param.name.value == name)?;
         Some((param, self.values.get(name).unwrap_or(&param.default)))
     }
 
-    pub(crate) fn value<T: FromParam>(&self, value: &Value<T>, diagnostics: &mut Vec<Diagnostic>) -> Option<T> {
+    pub(crate) fn value<T: FromParam>(
+        &self,
+        value: &Value<T>,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Option<T> {
         let name = match value {
             Value::Literal(literal) => return Some(literal.clone()),
             Value::Param(name) => name,
@@ -100,18 +117,24 @@ impl Params<'_> {
         let Some((param, value)) = self.get(name) else {
             let known = self.declared.iter().map(|param| param.name.as_str());
             diagnostics.push(
-                Diagnostic::error(Code::UnknownParam, format!("no param is called `{}`", name.value))
-                    .at(name.span.clone(), "")
-                    .suggest(name, known),
+                Diagnostic::error(
+                    Code::UnknownParam,
+                    format!("no param is called `{}`", name.value),
+                )
+                .at(name.span.clone(), "")
+                .suggest(name, known),
             );
             return None;
         };
         let converted = T::from_param(param, value);
         if converted.is_none() {
             diagnostics.push(
-                Diagnostic::error(Code::ParamValue, format!("param `{}` ({}) cannot stand here", name.value, param.ty))
-                    .at(name.span.clone(), format!("{} is needed", T::EXPECTED))
-                    .at(param.name.span.clone(), "declared here"),
+                Diagnostic::error(
+                    Code::ParamValue,
+                    format!("param `{}` ({}) cannot stand here", name.value, param.ty),
+                )
+                .at(name.span.clone(), format!("{} is needed", T::EXPECTED))
+                .at(param.name.span.clone(), "declared here"),
             );
         }
         converted

@@ -1,15 +1,18 @@
 //! Phase 2: names become resources, sizes become numbers.
 
+mod sizes;
+
 use crate::{
     diagnostics::{Code, Diagnostic},
     document::{
         located::Located,
-        materials::{BufferEntry, Count, Material, SamplerEntry, Size, TextureEntry},
+        materials::{BufferEntry, Count, Material, SamplerEntry, TextureEntry},
     },
     provider::{Provided, Provider},
     registry::Params,
     source::Span,
 };
+use sizes::Sizes;
 use std::{
     collections::{HashMap, HashSet},
     ops::Range,
@@ -41,7 +44,9 @@ impl ResourceKind {
         match self {
             Self::Texture(_) => "a texture",
             Self::Buffer(_) => "a buffer",
-            Self::Sampler(SamplerEntry { compare: Some(_), .. }) => "a sampler with `compare`",
+            Self::Sampler(SamplerEntry {
+                compare: Some(_), ..
+            }) => "a sampler with `compare`",
             Self::Sampler(_) => "a sampler without `compare`",
             Self::Provided(_) => "a provided buffer",
         }
@@ -58,12 +63,17 @@ pub(crate) struct Texture {
 
 impl Texture {
     pub fn bytes(&self) -> u64 {
-        let mip = |mip: u32| wgpu::Extent3d {
-            width: (self.size[0] >> mip).max(1),
-            height: (self.size[1] >> mip).max(1),
-            depth_or_array_layers: self.layers,
+        let texel = self
+            .format
+            .theoretical_memory_footprint(wgpu::Extent3d::default());
+        // A host's limits may allow for more than 64 bits can count.
+        let mip = |level: u32| {
+            let edges = self.size.map(|edge| u64::from((edge >> level).max(1)));
+            [edges[0], edges[1], u64::from(self.layers)]
+                .into_iter()
+                .fold(texel, u64::saturating_mul)
         };
-        (0..self.mips).map(|level| self.format.theoretical_memory_footprint(mip(level))).sum()
+        (0..self.mips).map(mip).fold(0, u64::saturating_add)
     }
 }
 
@@ -83,7 +93,10 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    pub const ONE: Part = Part { mips: 0..1, layers: 0..1 };
+    pub const ONE: Part = Part {
+        mips: 0..1,
+        layers: 0..1,
+    };
 
     pub fn overlaps(&self, other: &Part) -> bool {
         let meet = |a: &Range<u32>, b: &Range<u32>| a.start < b.end && b.start < a.end;
@@ -142,7 +155,12 @@ pub(crate) fn resolve<'a>(
         Material::Texture(entry) => Some((entry.name.as_str(), entry)),
         _ => None,
     });
-    let mut sizes = Sizes { textures: textures.collect(), params, environment, done: HashMap::new() };
+    let mut sizes = Sizes {
+        textures: textures.collect(),
+        params,
+        environment,
+        done: HashMap::new(),
+    };
     // Textures first: buffers may be counted by them.
     for material in materials {
         let name = material.name();
@@ -150,16 +168,24 @@ pub(crate) fn resolve<'a>(
         match material {
             Material::Texture(entry) => match sizes.texture(entry, diagnostics) {
                 Some(texture) => {
-                    let id = resources.add(name.value.clone(), declared, ResourceKind::Texture(texture));
+                    let id =
+                        resources.add(name.value.clone(), declared, ResourceKind::Texture(texture));
                     resources.add_views(entry, id, diagnostics);
                 }
                 None => {
                     resources.spoil(name);
-                    entry.views.iter().for_each(|view| resources.spoil(&view.name));
+                    entry
+                        .views
+                        .iter()
+                        .for_each(|view| resources.spoil(&view.name));
                 }
             },
             Material::Sampler(entry) => {
-                resources.add(name.value.clone(), declared, ResourceKind::Sampler(entry.clone()));
+                resources.add(
+                    name.value.clone(),
+                    declared,
+                    ResourceKind::Sampler(entry.clone()),
+                );
             }
             Material::Buffer(_) => {}
         }
@@ -174,7 +200,9 @@ fn spelling(name: &str) -> String {
 }
 
 fn size_error(name: &Located<String>, span: &Span, what: &str, help: &str) -> Diagnostic {
-    Diagnostic::error(Code::Size, format!("`{}`: {what}", name.value)).at(span.clone(), "").help(help)
+    Diagnostic::error(Code::Size, format!("`{}`: {what}", name.value))
+        .at(span.clone(), "")
+        .help(help)
 }
 
 impl Resources<'_> {
@@ -182,12 +210,19 @@ impl Resources<'_> {
     pub fn add(&mut self, name: String, declared: Option<Span>, kind: ResourceKind) -> ResourceId {
         let id = ResourceId(self.list.len());
         let part = match &kind {
-            ResourceKind::Texture(texture) => Part { mips: 0..texture.mips, layers: 0..texture.layers },
+            ResourceKind::Texture(texture) => Part {
+                mips: 0..texture.mips,
+                layers: 0..texture.layers,
+            },
             _ => Part::ONE,
         };
         self.names.insert(name.clone(), Target { id, part });
         self.spelt.insert(spelling(&name), name.clone());
-        self.list.push(Resource { name, declared, kind });
+        self.list.push(Resource {
+            name,
+            declared,
+            kind,
+        });
         id
     }
 
@@ -203,7 +238,12 @@ impl Resources<'_> {
     }
 
     /// Adds the buffers, each after those that its count refers to.
-    fn add_buffers(&mut self, materials: &[Material], params: &Params<'_>, diagnostics: &mut Vec<Diagnostic>) {
+    fn add_buffers(
+        &mut self,
+        materials: &[Material],
+        params: &Params<'_>,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) {
         let mut waiting: Vec<&BufferEntry> = materials
             .iter()
             .filter_map(|material| match material {
@@ -213,11 +253,19 @@ impl Resources<'_> {
             .collect();
         while !waiting.is_empty() {
             let names: HashSet<&str> = waiting.iter().map(|entry| entry.name.as_str()).collect();
-            let is_ready = |entry: &&BufferEntry| entry.count.as_ref().is_none_or(|count| !count.refers_to(&names));
+            let is_ready = |entry: &&BufferEntry| {
+                entry
+                    .count
+                    .as_ref()
+                    .is_none_or(|count| !count.refers_to(&names))
+            };
             let (ready, others): (Vec<_>, Vec<_>) = waiting.iter().copied().partition(is_ready);
             if ready.is_empty() {
                 for entry in others {
-                    let place = entry.count.as_ref().map_or(&entry.name.span, |count| &count.span);
+                    let place = entry
+                        .count
+                        .as_ref()
+                        .map_or(&entry.name.span, |count| &count.span);
                     diagnostics.push(size_error(
                         &entry.name,
                         place,
@@ -235,12 +283,22 @@ impl Resources<'_> {
         }
     }
 
-    fn add_buffer(&mut self, entry: &BufferEntry, params: &Params<'_>, diagnostics: &mut Vec<Diagnostic>) {
+    fn add_buffer(
+        &mut self,
+        entry: &BufferEntry,
+        params: &Params<'_>,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) {
         let count = match &entry.count {
             None => None,
             Some(written) => match self.count(written, params, diagnostics) {
                 Some(0) => {
-                    diagnostics.push(size_error(&entry.name, &written.span, "a buffer of no items", "give it one at least"));
+                    diagnostics.push(size_error(
+                        &entry.name,
+                        &written.span,
+                        "a buffer of no items",
+                        "give it one at least",
+                    ));
                     return self.spoil(&entry.name);
                 }
                 Some(count) => Some(count),
@@ -248,28 +306,59 @@ impl Resources<'_> {
             },
         };
         let kind = ResourceKind::Buffer(Buffer { count, bytes: 0 });
-        self.add(entry.name.value.clone(), Some(entry.name.span.clone()), kind);
+        self.add(
+            entry.name.value.clone(),
+            Some(entry.name.span.clone()),
+            kind,
+        );
     }
 
-    fn add_views(&mut self, entry: &TextureEntry, id: ResourceId, diagnostics: &mut Vec<Diagnostic>) {
-        let ResourceKind::Texture(texture) = &self.list[id.0].kind else { return };
+    fn add_views(
+        &mut self,
+        entry: &TextureEntry,
+        id: ResourceId,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) {
+        let ResourceKind::Texture(texture) = &self.list[id.0].kind else {
+            return;
+        };
         let (mips, layers) = (texture.mips, texture.layers);
         for view in &entry.views {
-            let end = |first: u32, count: Option<u32>, all: u32| count.map_or(Some(all), |count| first.checked_add(count));
-            let range = |first: u32, count: Option<u32>, all: u32| {
-                end(first, count, all).filter(|&end| first < end && end <= all).map(|end| first..end)
+            let end = |first: u32, count: Option<u32>, all: u32| {
+                count.map_or(Some(all), |count| first.checked_add(count))
             };
-            match (range(view.mip, view.mips, mips), range(view.layer, view.layers, layers)) {
+            let range = |first: u32, count: Option<u32>, all: u32| {
+                end(first, count, all)
+                    .filter(|&end| first < end && end <= all)
+                    .map(|end| first..end)
+            };
+            match (
+                range(view.mip, view.mips, mips),
+                range(view.layer, view.layers, layers),
+            ) {
                 (Some(mips), Some(layers)) => {
-                    self.names.insert(view.name.value.clone(), Target { id, part: Part { mips, layers } });
-                    self.spelt.insert(spelling(&view.name), view.name.value.clone());
+                    self.names.insert(
+                        view.name.value.clone(),
+                        Target {
+                            id,
+                            part: Part { mips, layers },
+                        },
+                    );
+                    self.spelt
+                        .insert(spelling(&view.name), view.name.value.clone());
                 }
                 _ => {
                     self.spoil(&view.name);
                     diagnostics.push(
-                        Diagnostic::error(Code::Size, format!("the view `{}` lies outside its texture", *view.name))
-                            .at(view.name.span.clone(), "")
-                            .help(format!("`{}` has {mips} mips and {layers} layers, counted from 0", *entry.name)),
+                        Diagnostic::error(
+                            Code::Size,
+                            format!("the view `{}` lies outside its texture", *view.name),
+                        )
+                        .at(view.name.span.clone(), "")
+                        .help(format!(
+                            "`{}` has {mips} mips and {layers} layers, counted from 0",
+                            *entry.name
+                        )),
                     );
                 }
             }
@@ -287,7 +376,13 @@ impl Resources<'_> {
         }
         let provided = self.provider.describe(name)?;
         let id = self.add(name.to_owned(), None, ResourceKind::Provided(provided));
-        Some(Target { id, part: Part { mips: 0..1, layers: 0..1 } })
+        Some(Target {
+            id,
+            part: Part {
+                mips: 0..1,
+                layers: 0..1,
+            },
+        })
     }
 
     /// What a shader global of that name stands for.
@@ -300,14 +395,24 @@ impl Resources<'_> {
     }
 
     /// What a name in the document stands for; an unknown one is reported.
-    pub fn expect(&mut self, name: &Located<String>, diagnostics: &mut Vec<Diagnostic>) -> Option<Target> {
+    pub fn expect(
+        &mut self,
+        name: &Located<String>,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Option<Target> {
         let found = self.find(name);
         if found.is_none() && !self.is_broken(name) {
             let known = self.known();
             diagnostics.push(
-                Diagnostic::error(Code::UnknownResource, format!("nothing is called `{}`", name.value))
-                    .at(name.span.clone(), "no material or provided resource has this name")
-                    .suggest(name, known.iter().map(String::as_str)),
+                Diagnostic::error(
+                    Code::UnknownResource,
+                    format!("nothing is called `{}`", name.value),
+                )
+                .at(
+                    name.span.clone(),
+                    "no material or provided resource has this name",
+                )
+                .suggest(name, known.iter().map(String::as_str)),
             );
         }
         found
@@ -317,24 +422,39 @@ impl Resources<'_> {
     pub fn known(&self) -> Vec<String> {
         let mut names: Vec<String> = self.names.keys().cloned().collect();
         names.sort();
-        let provided: Vec<String> = self.provider.names().into_iter().filter(|name| !names.contains(name)).collect();
+        let provided: Vec<String> = self
+            .provider
+            .names()
+            .into_iter()
+            .filter(|name| !names.contains(name))
+            .collect();
         names.extend(provided);
         names
     }
 
     /// The number of items that a count stands for, once every size is known.
-    pub fn count(&mut self, count: &Count, params: &Params<'_>, diagnostics: &mut Vec<Diagnostic>) -> Option<u64> {
+    pub fn count(
+        &mut self,
+        count: &Count,
+        params: &Params<'_>,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Option<u64> {
         match count {
             Count::Number(value) => params.value(value, diagnostics).map(u64::from),
             Count::Pixels => Some(u64::from(self.viewport[0]) * u64::from(self.viewport[1])),
             Count::Times(a, b) => {
-                let (a, b) = (self.count(a, params, diagnostics)?, self.count(b, params, diagnostics)?);
+                let (a, b) = (
+                    self.count(a, params, diagnostics)?,
+                    self.count(b, params, diagnostics)?,
+                );
                 Some(a.saturating_mul(b))
             }
             Count::PixelsOf(name) | Count::CountOf(name) => {
                 let target = self.expect(name, diagnostics)?;
                 let items = match &self.get(target.id).kind {
-                    ResourceKind::Texture(texture) => Some(u64::from(texture.size[0]) * u64::from(texture.size[1])),
+                    ResourceKind::Texture(texture) => {
+                        Some(u64::from(texture.size[0]) * u64::from(texture.size[1]))
+                    }
                     ResourceKind::Buffer(buffer) => buffer.count,
                     ResourceKind::Provided(provided) => provided.items,
                     ResourceKind::Sampler(_) => None,
@@ -347,106 +467,6 @@ impl Resources<'_> {
                     );
                 }
                 items
-            }
-        }
-    }
-}
-
-/// Resolves sizes that may refer to each other.
-struct Sizes<'a> {
-    textures: HashMap<&'a str, &'a TextureEntry>,
-    params: &'a Params<'a>,
-    environment: &'a Environment<'a>,
-    done: HashMap<&'a str, Option<[u32; 2]>>,
-}
-
-impl<'a> Sizes<'a> {
-    fn texture(&mut self, entry: &'a TextureEntry, diagnostics: &mut Vec<Diagnostic>) -> Option<Texture> {
-        let size = self.size(entry, diagnostics)?;
-        let mips = self.params.value(&entry.mips, diagnostics)?;
-        let layers = self.params.value(&entry.layers, diagnostics)?;
-        let limits = self.environment.limits;
-        let most = limits.max_texture_dimension_2d;
-        if size.contains(&0) || mips == 0 || layers == 0 {
-            let what = format!("{}×{} texels, layers: {layers}, mips: {mips}: a texture of no texels", size[0], size[1]);
-            diagnostics.push(size_error(&entry.name, &entry.size.span, &what, "give it one at least"));
-            return None;
-        }
-        if size.iter().any(|&edge| edge > most) {
-            diagnostics.push(size_error(
-                &entry.name,
-                &entry.size.span,
-                &format!("{}×{} texels are more than the adapter can hold", size[0], size[1]),
-                &format!("its limit is {most} in each direction"),
-            ));
-            return None;
-        }
-        if layers > limits.max_texture_array_layers {
-            let help = format!("its limit is {}", limits.max_texture_array_layers);
-            diagnostics.push(size_error(&entry.name, &entry.name.span, &format!("{layers} layers are more than the adapter can hold"), &help));
-            return None;
-        }
-        let full = size[0].max(size[1]).ilog2() + 1;
-        if mips > full {
-            let help = format!("{}×{} texels have {full}", size[0], size[1]);
-            diagnostics.push(size_error(&entry.name, &entry.name.span, &format!("{mips} mips are too many"), &help));
-            return None;
-        }
-        Some(Texture { format: entry.format.0, size, mips, layers })
-    }
-
-    /// Follows `Like` from texture to texture to one that has a size of its own.
-    fn size(&mut self, entry: &'a TextureEntry, diagnostics: &mut Vec<Diagnostic>) -> Option<[u32; 2]> {
-        let mut chain: Vec<&'a str> = Vec::new();
-        let mut seen: HashSet<&'a str> = HashSet::new();
-        let mut last = entry;
-        let size = loop {
-            if let Some(known) = self.done.get(last.name.as_str()) {
-                break *known;
-            }
-            chain.push(&last.name);
-            seen.insert(&last.name);
-            let Size::Like(other) = &last.size.value else { break self.own_size(&last.size.value, diagnostics) };
-            match self.textures.get(other.as_str()) {
-                Some(texture) if seen.contains(texture.name.as_str()) => {
-                    let error = size_error(
-                        &last.name,
-                        &last.size.span,
-                        "its size is that of itself",
-                        "give one of these textures a size of its own",
-                    );
-                    diagnostics.push(error);
-                    break None;
-                }
-                Some(texture) => last = texture,
-                None => {
-                    let mut known: Vec<&str> = self.textures.keys().copied().filter(|name| *name != last.name.as_str()).collect();
-                    known.sort_unstable();
-                    diagnostics.push(
-                        Diagnostic::error(Code::UnknownResource, format!("no texture is called `{}`", other.value))
-                            .at(other.span.clone(), "")
-                            .suggest(other, known),
-                    );
-                    break None;
-                }
-            }
-        };
-        self.done.extend(chain.into_iter().map(|name| (name, size)));
-        size
-    }
-
-    fn own_size(&self, size: &Size, diagnostics: &mut Vec<Diagnostic>) -> Option<[u32; 2]> {
-        let [width, height] = self.environment.viewport;
-        match size {
-            Size::Viewport | Size::Like(_) => Some([width, height]),
-            Size::ViewportTimes(factor) => self.params.value(factor, diagnostics).map(|factor| {
-                // Saturates, NaN becomes 0: both are caught as sizes that cannot be.
-                [width, height].map(|edge| (f64::from(edge) * f64::from(factor)).ceil() as u32)
-            }),
-            Size::Square(edge) => self.params.value(edge, diagnostics).map(|edge| [edge, edge]),
-            Size::Texels(width, height) => {
-                let (width, height) = (self.params.value(width, diagnostics), self.params.value(height, diagnostics));
-                width.zip(height).map(|(width, height)| [width, height])
             }
         }
     }

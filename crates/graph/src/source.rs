@@ -93,12 +93,18 @@ pub struct SourceFile {
 impl SourceFile {
     /// A file of that name and text.
     pub fn new(name: impl Into<Arc<str>>, text: impl Into<Arc<str>>) -> Self {
-        Self { name: name.into(), text: text.into() }
+        Self {
+            name: name.into(),
+            text: text.into(),
+        }
     }
 
     /// The place of `range` (bytes) in this file.
     pub fn span(&self, range: Range<usize>) -> Span {
-        Span { file: self.clone(), range }
+        Span {
+            file: self.clone(),
+            range,
+        }
     }
 }
 
@@ -114,7 +120,11 @@ pub struct Span {
 impl Span {
     /// Line and column of the start, counted from 1, columns in characters.
     pub fn line_column(&self) -> (usize, usize) {
-        let before = self.file.text.get(..self.range.start).unwrap_or(&self.file.text);
+        let before = self
+            .file
+            .text
+            .get(..self.range.start)
+            .unwrap_or(&self.file.text);
         let line = before.matches('\n').count() + 1;
         let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
         (line, column)

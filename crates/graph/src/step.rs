@@ -4,6 +4,10 @@ use crate::document::{located::Located, materials::Count, value::Compare};
 
 /// One piece of GPU work of a pass. The steps of a pass run in order and are timed together.
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a graph has a handful, each made once"
+)]
 pub enum Step {
     /// A render pass with one draw call.
     Draw(Draw),

@@ -2,10 +2,14 @@
 
 use crate::{
     Graph, NoProvider, PlanRequest, Registry, SourceFile, Sources,
-    execute::{ExecuteError, Executor, Frame},
     document::params::ParamValue,
+    execute::{ExecuteError, Executor, Frame},
 };
-use std::{collections::BTreeMap, sync::Arc, time::{Duration, Instant}};
+use std::{
+    collections::BTreeMap,
+    sync::Arc,
+    time::{Duration, Instant},
+};
 use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
 
 /// Times of one frame.
@@ -50,9 +54,15 @@ pub(crate) struct Timer {
 
 impl Timer {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, ExecuteError> {
-        let settings = GpuProfilerSettings { enable_debug_groups: false, ..GpuProfilerSettings::default() };
-        let profiler = GpuProfiler::new(device, settings).map_err(|error| ExecuteError::Timing(error.to_string()))?;
-        let inside = device.features().contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
+        let settings = GpuProfilerSettings {
+            enable_debug_groups: false,
+            ..GpuProfilerSettings::default()
+        };
+        let profiler = GpuProfiler::new(device, settings)
+            .map_err(|error| ExecuteError::Timing(error.to_string()))?;
+        let inside = device
+            .features()
+            .contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
         let spare = inside.then(|| {
             device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("spare timestamp"),
@@ -60,7 +70,11 @@ impl Timer {
                 count: 1,
             })
         });
-        Ok(Self { profiler, spare, period: queue.get_timestamp_period() })
+        Ok(Self {
+            profiler,
+            spare,
+            period: queue.get_timestamp_period(),
+        })
     }
 
     pub fn profiler(&self) -> &GpuProfiler {
@@ -79,26 +93,45 @@ impl Timer {
     }
 
     pub fn submitted(&mut self) -> Result<(), ExecuteError> {
-        self.profiler.end_frame().map_err(|error| ExecuteError::Timing(error.to_string()))
+        self.profiler
+            .end_frame()
+            .map_err(|error| ExecuteError::Timing(error.to_string()))
     }
 
     /// The frame's times, after the device was polled; `passes` are names and CPU times in order.
     pub fn take(&mut self, passes: &[(String, Duration)]) -> FrameTiming {
         // A host that submitted several frames before it asks wants the last one.
-        let results = std::iter::from_fn(|| self.profiler.process_finished_frame(self.period)).last().unwrap_or_default();
+        let results = std::iter::from_fn(|| self.profiler.process_finished_frame(self.period))
+            .last()
+            .unwrap_or_default();
         let span = |queries: &[&GpuTimerQueryResult]| {
             let times: Option<Vec<_>> = queries.iter().map(|query| query.time.clone()).collect();
             let times = times.filter(|times| !times.is_empty())?;
-            let begin = times.iter().map(|time| time.start).fold(f64::INFINITY, f64::min);
-            let end = times.iter().map(|time| time.end).fold(f64::NEG_INFINITY, f64::max);
+            let begin = times
+                .iter()
+                .map(|time| time.start)
+                .fold(f64::INFINITY, f64::min);
+            let end = times
+                .iter()
+                .map(|time| time.end)
+                .fold(f64::NEG_INFINITY, f64::max);
             // Timestamps that run backwards are no measurement.
             Duration::try_from_secs_f64(end - begin).ok()
         };
-        let of_pass = |name: &str| results.iter().filter(|query| query.label == name).collect::<Vec<_>>();
+        let of_pass = |name: &str| {
+            results
+                .iter()
+                .filter(|query| query.label == name)
+                .collect::<Vec<_>>()
+        };
         FrameTiming {
             passes: passes
                 .iter()
-                .map(|(name, cpu)| PassTiming { name: name.clone(), gpu: span(&of_pass(name)), cpu: *cpu })
+                .map(|(name, cpu)| PassTiming {
+                    name: name.clone(),
+                    gpu: span(&of_pass(name)),
+                    cpu: *cpu,
+                })
                 .collect(),
             gpu: span(&results.iter().collect::<Vec<_>>()),
         }
@@ -129,7 +162,9 @@ const FRAMES: usize = 5;
 /// If the little graph that it runs fails on this device.
 pub fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, ExecuteError> {
     if !device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
-        return Ok(Trust::Untrusted { reason: "the adapter has no timestamp queries".to_owned() });
+        return Ok(Trust::Untrusted {
+            reason: "the adapter has no timestamp queries".to_owned(),
+        });
     }
     let internal = |_| ExecuteError::Internal("the timestamp check's own graph is broken");
     let graph = Graph::load("check.ron", &Registry::standard(), &CheckSources).map_err(internal)?;
@@ -137,20 +172,38 @@ pub fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, Execut
     loop {
         let mut request = PlanRequest::new([64, 64], &NoProvider);
         request.params = BTreeMap::from([("rounds".to_owned(), ParamValue::U32(rounds))]);
-        let mut executor = Executor::new(device, queue, graph.plan(&request).map_err(internal)?, &mut NoProvider)?;
+        let mut executor = Executor::new(
+            device,
+            queue,
+            graph.plan(&request).map_err(internal)?,
+            &mut NoProvider,
+        )?;
         let mut frames = Vec::new();
         for _ in 0..FRAMES {
-            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            executor.encode(&mut encoder, &Frame { timing: true, read: &[] })?;
+            let mut encoder =
+                device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            executor.encode(
+                &mut encoder,
+                &Frame {
+                    timing: true,
+                    read: &[],
+                },
+            )?;
             let start = Instant::now();
             queue.submit([encoder.finish()]);
             executor.submitted(queue)?;
             let report = executor.finish()?;
-            let gpu = report.timing.and_then(|timing| timing.passes.last().and_then(|pass| pass.gpu));
+            let gpu = report
+                .timing
+                .and_then(|timing| timing.passes.last().and_then(|pass| pass.gpu));
             frames.push((start.elapsed(), gpu));
         }
         // The first frame compiles shaders on some drivers.
-        let shortest = frames[1..].iter().map(|(wall, _)| *wall).min().unwrap_or_default();
+        let shortest = frames[1..]
+            .iter()
+            .map(|(wall, _)| *wall)
+            .min()
+            .unwrap_or_default();
         if shortest < LONG && rounds < 1 << 30 {
             rounds *= 4;
             continue;
@@ -165,7 +218,9 @@ fn judge(frames: &[(Duration, Option<Duration>)]) -> Trust {
     let mut best: Option<(f64, f64)> = None;
     for (wall, gpu) in frames {
         let Some(gpu) = gpu else {
-            return Trust::Untrusted { reason: "the adapter gave no timestamps for a timed pass".to_owned() };
+            return Trust::Untrusted {
+                reason: "the adapter gave no timestamps for a timed pass".to_owned(),
+            };
         };
         let (wall, gpu) = (wall.as_secs_f64(), gpu.as_secs_f64());
         if best.is_none_or(|(best_wall, best_gpu)| gpu / wall > best_gpu / best_wall) {
@@ -181,7 +236,9 @@ fn judge(frames: &[(Duration, Option<Duration>)]) -> Trust {
                 gpu * 1e3
             ),
         },
-        None => Trust::Untrusted { reason: "no frame was timed".to_owned() },
+        None => Trust::Untrusted {
+            reason: "no frame was timed".to_owned(),
+        },
     }
 }
 
@@ -209,27 +266,44 @@ mod tests {
     use super::*;
 
     fn frames(frames: &[(u64, Option<u64>)]) -> Vec<(Duration, Option<Duration>)> {
-        frames.iter().map(|(wall, gpu)| (Duration::from_millis(*wall), gpu.map(Duration::from_millis))).collect()
+        frames
+            .iter()
+            .map(|(wall, gpu)| (Duration::from_millis(*wall), gpu.map(Duration::from_millis)))
+            .collect()
     }
 
     #[test]
     fn a_loaded_machine_does_not_make_true_timestamps_false() {
-        assert_eq!(judge(&frames(&[(300, Some(35)), (40, Some(36)), (90, Some(30))])), Trust::Trusted);
+        assert_eq!(
+            judge(&frames(&[(300, Some(35)), (40, Some(36)), (90, Some(30))])),
+            Trust::Trusted
+        );
     }
 
     #[test]
     fn timestamps_that_miss_the_dispatch_in_every_frame_are_not_believed() {
-        let Trust::Untrusted { reason } = judge(&frames(&[(40, Some(0)), (41, Some(1))])) else { panic!("believed") };
-        assert_eq!(reason, "a dispatch that took 41.0 ms of wall time after a raster pass was timed as 1.0 ms");
+        let Trust::Untrusted { reason } = judge(&frames(&[(40, Some(0)), (41, Some(1))])) else {
+            panic!("believed")
+        };
+        assert_eq!(
+            reason,
+            "a dispatch that took 41.0 ms of wall time after a raster pass was timed as 1.0 ms"
+        );
     }
 
     #[test]
     fn more_gpu_time_than_wall_time_is_not_believed() {
-        assert!(matches!(judge(&frames(&[(40, Some(39)), (40, Some(80))])), Trust::Untrusted { .. }));
+        assert!(matches!(
+            judge(&frames(&[(40, Some(39)), (40, Some(80))])),
+            Trust::Untrusted { .. }
+        ));
     }
 
     #[test]
     fn a_frame_without_timestamps_is_no_measurement() {
-        assert!(matches!(judge(&frames(&[(40, Some(39)), (40, None)])), Trust::Untrusted { .. }));
+        assert!(matches!(
+            judge(&frames(&[(40, Some(39)), (40, None)])),
+            Trust::Untrusted { .. }
+        ));
     }
 }

@@ -5,12 +5,16 @@
 
 mod support;
 
-use skiagraph_graph::{Code, Diagnostic, Diagnostics, FolderSources, Graph, PlanRequest, Registry, diagnostics};
+use skiagraph_graph::{
+    Code, Diagnostic, Diagnostics, FolderSources, Graph, PlanRequest, Registry, diagnostics,
+};
 use std::{collections::BTreeSet, path::Path};
 use support::{Files, Triangle, load};
 
 fn folder() -> FolderSources {
-    FolderSources { root: Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/broken") }
+    FolderSources {
+        root: Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/broken"),
+    }
 }
 
 /// Errors of loading or planning, or the warnings where there are no errors.
@@ -20,7 +24,12 @@ fn diagnose(path: &str, sources: &FolderSources) -> Vec<Diagnostic> {
         Err(diagnostics) => errors(diagnostics),
         Ok(graph) => match graph.plan(&PlanRequest::new([64, 48], &Triangle)) {
             Err(diagnostics) => errors(diagnostics),
-            Ok(plan) => graph.warnings().iter().chain(plan.warnings()).cloned().collect(),
+            Ok(plan) => graph
+                .warnings()
+                .iter()
+                .chain(plan.warnings())
+                .cloned()
+                .collect(),
         },
     }
 }
@@ -28,7 +37,13 @@ fn diagnose(path: &str, sources: &FolderSources) -> Vec<Diagnostic> {
 fn documents() -> Vec<String> {
     let mut names: Vec<String> = std::fs::read_dir(folder().root)
         .expect("the folder is part of the repository")
-        .map(|entry| entry.expect("it is readable").file_name().to_string_lossy().into_owned())
+        .map(|entry| {
+            entry
+                .expect("it is readable")
+                .file_name()
+                .to_string_lossy()
+                .into_owned()
+        })
         .filter_map(|name| name.strip_suffix(".ron").map(str::to_owned))
         .collect();
     names.sort();
@@ -49,27 +64,48 @@ fn every_mistake_has_its_text() {
             insta::assert_snapshot!(name.as_str(), diagnostics::render(&found, false));
         });
     }
-    assert!(right.is_empty(), "these broken documents are thought to be right: {right:?}");
+    assert!(
+        right.is_empty(),
+        "these broken documents are thought to be right: {right:?}"
+    );
 }
 
 /// Each kind of mistake is shown by one snapshot at least.
 #[test]
 fn every_code_has_a_text() {
     let sources = folder();
-    let shown: BTreeSet<Code> =
-        documents().iter().flat_map(|name| diagnose(&format!("{name}.ron"), &sources)).map(|found| found.code).collect();
-    let missing: Vec<&Code> = Code::ALL.iter().filter(|code| !shown.contains(code)).collect();
-    assert!(missing.is_empty(), "no document in tests/broken shows {missing:?}");
+    let shown: BTreeSet<Code> = documents()
+        .iter()
+        .flat_map(|name| diagnose(&format!("{name}.ron"), &sources))
+        .map(|found| found.code)
+        .collect();
+    let missing: Vec<&Code> = Code::ALL
+        .iter()
+        .filter(|code| !shown.contains(code))
+        .collect();
+    assert!(
+        missing.is_empty(),
+        "no document in tests/broken shows {missing:?}"
+    );
 }
 
 /// A snapshot without its document would be checked by nothing.
 #[test]
 fn every_text_has_its_document() {
     let documents = documents();
-    for entry in std::fs::read_dir(folder().root.join("snapshots")).expect("the folder is part of the repository") {
-        let name = entry.expect("it is readable").file_name().to_string_lossy().into_owned();
+    for entry in std::fs::read_dir(folder().root.join("snapshots"))
+        .expect("the folder is part of the repository")
+    {
+        let name = entry
+            .expect("it is readable")
+            .file_name()
+            .to_string_lossy()
+            .into_owned();
         let document = name.strip_suffix(".snap").unwrap_or(&name).to_owned();
-        assert!(documents.contains(&document), "{name} belongs to no document");
+        assert!(
+            documents.contains(&document),
+            "{name} belongs to no document"
+        );
     }
 }
 
@@ -79,14 +115,23 @@ fn every_error_has_its_place() {
     let sources = folder();
     for name in documents() {
         for found in diagnose(&format!("{name}.ron"), &sources) {
-            let label = found.labels.first().unwrap_or_else(|| panic!("{name}: `{}` has no place", found.message));
-            assert!(label.span.range.end <= label.span.file.text.len(), "{name}: the place lies outside the file");
+            let label = found
+                .labels
+                .first()
+                .unwrap_or_else(|| panic!("{name}: `{}` has no place", found.message));
+            assert!(
+                label.span.range.end <= label.span.file.text.len(),
+                "{name}: the place lies outside the file"
+            );
         }
     }
 }
 
 fn text(result: Result<Graph, Diagnostics>) -> String {
-    result.err().map(|errors| errors.to_string()).unwrap_or_else(|| "it loads".to_owned())
+    result
+        .err()
+        .map(|errors| errors.to_string())
+        .unwrap_or_else(|| "it loads".to_owned())
 }
 
 #[test]
@@ -98,14 +143,21 @@ fn a_document_that_is_not_there() {
 #[test]
 fn a_file_that_is_no_text() {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
-    std::fs::write(folder.path().join("binary.ron"), [0xffu8, 0xfe, 0x00, 0x28, 0x80]).expect("it can be written");
+    std::fs::write(
+        folder.path().join("binary.ron"),
+        [0xffu8, 0xfe, 0x00, 0x28, 0x80],
+    )
+    .expect("it can be written");
     let document = "(format: 1, materials: [Texture(name: \"image\", format: R32Float, size: Viewport)], \
         passes: [Fullscreen(name: \"binary\", color: [(target: \"image\")])], outputs: [(name: \"image\")])";
     std::fs::write(folder.path().join("shader.ron"), document).expect("it can be written");
     std::fs::write(folder.path().join("binary.wgsl"), [0xc3u8, 0x28]).expect("it can be written");
-    let sources = FolderSources { root: folder.path().to_owned() };
-    let found: Vec<String> =
-        ["binary.ron", "shader.ron"].map(|path| text(Graph::load(path, &Registry::standard(), &sources))).to_vec();
+    let sources = FolderSources {
+        root: folder.path().to_owned(),
+    };
+    let found: Vec<String> = ["binary.ron", "shader.ron"]
+        .map(|path| text(Graph::load(path, &Registry::standard(), &sources)))
+        .to_vec();
     insta::assert_snapshot!("no_text", found.join("\n"));
 }
 
@@ -113,11 +165,31 @@ fn a_file_that_is_no_text() {
 #[test]
 fn values_nested_200_levels_deep() {
     let count = format!("{}1{}", "Times(2, ".repeat(200), ")".repeat(200));
-    let nested = Files::new([]).with("graph.ron", format!("(format: 1, materials: [Buffer(name: \"items\", count: {count})])"));
-    insta::assert_snapshot!("nested_200", text(load(&nested)).lines().take(3).collect::<Vec<_>>().join("\n"));
-    for (open, close) in [("(", ")"), ("[", "]"), ("{", "}"), ("Some(", ")"), ("/*", "*/")] {
+    let nested = Files::new([]).with(
+        "graph.ron",
+        format!("(format: 1, materials: [Buffer(name: \"items\", count: {count})])"),
+    );
+    insta::assert_snapshot!(
+        "nested_200",
+        text(load(&nested))
+            .lines()
+            .take(3)
+            .collect::<Vec<_>>()
+            .join("\n")
+    );
+    for (open, close) in [
+        ("(", ")"),
+        ("[", "]"),
+        ("{", "}"),
+        ("Some(", ")"),
+        ("/*", "*/"),
+    ] {
         for levels in [100, 200, 10_000] {
-            let document = format!("(format: 1, passes: {}{})", open.repeat(levels), close.repeat(levels));
+            let document = format!(
+                "(format: 1, passes: {}{})",
+                open.repeat(levels),
+                close.repeat(levels)
+            );
             assert!(load(&Files::new([]).with("graph.ron", document)).is_err());
         }
     }
@@ -143,21 +215,48 @@ fn values_nested_40_levels_deep() {
 fn shaders_nested_deep() {
     let document = "(format: 1, materials: [Buffer(name: \"items\", count: 1)], \
          passes: [Compute(name: \"index\", dispatch: Over(\"items\"))], outputs: [(name: \"items\")])";
-    let brackets = format!("fn deep() -> u32 {{ return {}1u{}; }}", "(".repeat(5000), ")".repeat(5000));
-    assert!(text(load(&Files::new([("graph.ron", document), ("index.wgsl", &brackets)]))).contains("recursion"));
-    let mut files = Files::new([("graph.ron", document), ("index.wgsl", "#import \"m0.wgsl\"\n")]);
+    let brackets = format!(
+        "fn deep() -> u32 {{ return {}1u{}; }}",
+        "(".repeat(5000),
+        ")".repeat(5000)
+    );
+    assert!(
+        text(load(&Files::new([
+            ("graph.ron", document),
+            ("index.wgsl", &brackets)
+        ])))
+        .contains("recursion")
+    );
+    let mut files = Files::new([
+        ("graph.ron", document),
+        ("index.wgsl", "#import \"m0.wgsl\"\n"),
+    ]);
     for index in 0..100 {
-        files = files.with(&format!("m{index}.wgsl"), format!("#import \"m{}.wgsl\"\n", index + 1));
+        files = files.with(
+            &format!("m{index}.wgsl"),
+            format!("#import \"m{}.wgsl\"\n", index + 1),
+        );
     }
     assert!(text(load(&files)).contains("imports are nested too deep"));
     // Types that double with every level: their layout is spelt out only so far.
     let mut bomb = "struct S0 { a: u32, b: u32 }\n".to_owned();
     for level in 1..24 {
-        bomb.push_str(&format!("struct S{level} {{ a: S{}, b: S{} }}\n", level - 1, level - 1));
+        bomb.push_str(&format!(
+            "struct S{level} {{ a: S{}, b: S{} }}\n",
+            level - 1,
+            level - 1
+        ));
     }
     bomb.push_str("var<storage, read_write> items: S23;\n@compute @workgroup_size(1) fn main() { items.a.a.a.b = items.a.a.a.a; }");
-    let graph = load(&Files::new([("graph.ron", document), ("index.wgsl", &bomb)])).unwrap_or_else(|errors| panic!("{errors}"));
-    assert!(graph.plan(&PlanRequest::new([8, 8], &Triangle)).is_err(), "it reads what nobody wrote");
+    let graph = load(&Files::new([
+        ("graph.ron", document),
+        ("index.wgsl", &bomb),
+    ]))
+    .unwrap_or_else(|errors| panic!("{errors}"));
+    assert!(
+        graph.plan(&PlanRequest::new([8, 8], &Triangle)).is_err(),
+        "it reads what nobody wrote"
+    );
 }
 
 /// Mistakes of a request rather than of the document.
@@ -183,15 +282,49 @@ fn requests_that_cannot_be_met() {
         requests.push((what, request));
     };
     add("no pixels", &|request| request.viewport = [0, 8]);
-    add("an unknown param", &|request| drop(request.params.insert("egde".to_owned(), skiagraph_graph::ParamValue::U32(1))));
-    add("a value out of range", &|request| drop(request.params.insert("edge".to_owned(), skiagraph_graph::ParamValue::U32(9))));
-    add("a value of the wrong type", &|request| drop(request.params.insert("edge".to_owned(), skiagraph_graph::ParamValue::F32(1.0))));
-    add("a value that makes a size of nothing", &|request| drop(request.params.insert("edge".to_owned(), skiagraph_graph::ParamValue::U32(0))));
-    add("an unknown output", &|request| request.outputs = Some(vec!["imgae".to_owned()]));
-    add("an unknown capture", &|request| request.captures = vec![capture("imgae", None)]);
-    add("a capture after an unknown pass", &|request| request.captures = vec![capture("image", Some("rest"))]);
-    add("an unknown capture after a pass", &|request| request.captures = vec![capture("imgae", Some("reset"))]);
-    add("a capture of a sampler", &|request| request.captures = vec![capture("nearest", None), capture("nearest", Some("reset"))]);
+    add("an unknown param", &|request| {
+        drop(
+            request
+                .params
+                .insert("egde".to_owned(), skiagraph_graph::ParamValue::U32(1)),
+        )
+    });
+    add("a value out of range", &|request| {
+        drop(
+            request
+                .params
+                .insert("edge".to_owned(), skiagraph_graph::ParamValue::U32(9)),
+        )
+    });
+    add("a value of the wrong type", &|request| {
+        drop(
+            request
+                .params
+                .insert("edge".to_owned(), skiagraph_graph::ParamValue::F32(1.0)),
+        )
+    });
+    add("a value that makes a size of nothing", &|request| {
+        drop(
+            request
+                .params
+                .insert("edge".to_owned(), skiagraph_graph::ParamValue::U32(0)),
+        )
+    });
+    add("an unknown output", &|request| {
+        request.outputs = Some(vec!["imgae".to_owned()])
+    });
+    add("an unknown capture", &|request| {
+        request.captures = vec![capture("imgae", None)]
+    });
+    add("a capture after an unknown pass", &|request| {
+        request.captures = vec![capture("image", Some("rest"))]
+    });
+    add("an unknown capture after a pass", &|request| {
+        request.captures = vec![capture("imgae", Some("reset"))]
+    });
+    add("a capture of a sampler", &|request| {
+        request.captures = vec![capture("nearest", None), capture("nearest", Some("reset"))]
+    });
     let texts: Vec<String> = requests
         .iter()
         .map(|(what, request)| match graph.plan(request) {
@@ -200,7 +333,25 @@ fn requests_that_cannot_be_met() {
         })
         .collect();
     insta::assert_snapshot!("requests", texts.join(""));
-    let known = |name: &str, value: &str| graph.parse_param(name, value).map_or_else(|error| error.to_string(), |value| value.to_string());
-    let texts = [("egde", "1"), ("edge", "nine"), ("edge", "9"), ("edge", "-1"), ("edge", "1.5"), ("cull", "back"), ("cull", "front"), ("edge", "8")];
-    insta::assert_snapshot!("params", texts.map(|(name, value)| format!("{name}={value}: {}", known(name, value))).join("\n"));
+    let known = |name: &str, value: &str| {
+        graph
+            .parse_param(name, value)
+            .map_or_else(|error| error.to_string(), |value| value.to_string())
+    };
+    let texts = [
+        ("egde", "1"),
+        ("edge", "nine"),
+        ("edge", "9"),
+        ("edge", "-1"),
+        ("edge", "1.5"),
+        ("cull", "back"),
+        ("cull", "front"),
+        ("edge", "8"),
+    ];
+    insta::assert_snapshot!(
+        "params",
+        texts
+            .map(|(name, value)| format!("{name}={value}: {}", known(name, value)))
+            .join("\n")
+    );
 }

@@ -12,6 +12,9 @@ fn a_long_dispatch_after_a_raster_pass_is_timed_truly_or_not_at_all() {
     match check(&gpu.device, &gpu.queue).expect("the check's graph runs") {
         Trust::Trusted => {}
         // The software adapter of CI has the trap and the way around it, so there is no excuse.
-        Trust::Untrusted { reason } => assert!(!adapter.contains("llvmpipe") && !reason.is_empty(), "{adapter}: {reason}"),
+        Trust::Untrusted { reason } => assert!(
+            !adapter.contains("llvmpipe") && !reason.is_empty(),
+            "{adapter}: {reason}"
+        ),
     }
 }

@@ -96,19 +96,37 @@ fn place_of(text: &str, error: &ron::error::SpannedError, base: usize) -> Range<
 }
 
 fn offset(text: &str, line: usize, column: usize) -> usize {
-    let start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
+    let start: usize = text
+        .split_inclusive('\n')
+        .take(line.saturating_sub(1))
+        .map(str::len)
+        .sum();
     let rest = text.get(start..).unwrap_or("");
-    start + rest.chars().take(column.saturating_sub(1)).map(char::len_utf8).sum::<usize>()
+    start
+        + rest
+            .chars()
+            .take(column.saturating_sub(1))
+            .map(char::len_utf8)
+            .sum::<usize>()
 }
 
 fn word_around(text: &str, start: usize, end: usize, base: usize) -> Range<usize> {
     let is_word = |c: char| c.is_alphanumeric() || c == '_' || c == '"';
     let mut low = start.min(text.len());
     if low == end {
-        low -= text[..low].chars().rev().take_while(|&c| is_word(c)).map(char::len_utf8).sum::<usize>();
+        low -= text[..low]
+            .chars()
+            .rev()
+            .take_while(|&c| is_word(c))
+            .map(char::len_utf8)
+            .sum::<usize>();
     }
     let mut high = end.min(text.len()).max(low);
-    high += text[high..].chars().take_while(|&c| is_word(c)).map(char::len_utf8).sum::<usize>();
+    high += text[high..]
+        .chars()
+        .take_while(|&c| is_word(c))
+        .map(char::len_utf8)
+        .sum::<usize>();
     base + low..base + high
 }
 
@@ -126,10 +144,17 @@ impl<'de, T: DeserializeOwned> Deserialize<'de> for Located<T> {
 }
 
 /// Deserialises a value that may be written as a bare literal (a number) or as a word; `None` if it is a word.
-pub(crate) fn literal<'de, T: DeserializeOwned, D: Deserializer<'de>>(deserializer: D) -> Result<Result<T, &'de str>, D::Error> {
+pub(crate) fn literal<'de, T: DeserializeOwned, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Result<T, &'de str>, D::Error> {
     let text = <&RawValue>::deserialize(deserializer)?.get_ron().trim();
-    let is_word = text.starts_with(|c: char| c.is_alphabetic()) && text != "true" && text != "false";
-    if is_word { Ok(Err(text)) } else { read_part(text).map(Ok).map_err(D::Error::custom) }
+    let is_word =
+        text.starts_with(|c: char| c.is_alphabetic()) && text != "true" && text != "false";
+    if is_word {
+        Ok(Err(text))
+    } else {
+        read_part(text).map(Ok).map_err(D::Error::custom)
+    }
 }
 
 /// Deserialises a part of the text being read that [`literal`] handed back.
@@ -156,17 +181,25 @@ pub struct Field {
 impl Node {
     /// The whole file, without what stands before its opening bracket.
     pub fn root(file: &SourceFile) -> Self {
-        Self { span: file.span(0..file.text.len()) }
+        Self {
+            span: file.span(0..file.text.len()),
+        }
     }
 
     /// The raw text.
     pub fn text(&self) -> &str {
-        self.span.file.text.get(self.span.range.clone()).unwrap_or("")
+        self.span
+            .file
+            .text
+            .get(self.span.range.clone())
+            .unwrap_or("")
     }
 
     fn sub(&self, part: &str) -> Node {
         let range = range_in(&self.span.file.text, part).unwrap_or(self.span.range.clone());
-        Node { span: self.span.file.span(range) }
+        Node {
+            span: self.span.file.span(range),
+        }
     }
 
     /// Deserialises the piece.
@@ -178,7 +211,10 @@ impl Node {
     }
 
     fn reading<T>(&self, read: impl FnOnce() -> Result<T, ron::Error>) -> Result<T, Diagnostic> {
-        READING.set(Some(Reading { file: self.span.file.clone(), failed: None }));
+        READING.set(Some(Reading {
+            file: self.span.file.clone(),
+            failed: None,
+        }));
         let result = read();
         let failed = READING.take().and_then(|reading| reading.failed);
         result.map_err(|error| {
@@ -196,7 +232,10 @@ impl Node {
         impl<'de> Deserialize<'de> for Raw<'de> {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
                 let entries = <Vec<&RawValue>>::deserialize(deserializer)?;
-                Ok(Raw(entries.into_iter().map(|entry| entry.get_ron().trim()).collect()))
+                Ok(Raw(entries
+                    .into_iter()
+                    .map(|entry| entry.get_ron().trim())
+                    .collect()))
             }
         }
         let raw: Raw<'_> = self.borrowed()?;
@@ -220,7 +259,10 @@ impl Node {
                     fn visit_unit<E: serde::de::Error>(self) -> Result<Raw<'de>, E> {
                         Ok(Raw(Vec::new()))
                     }
-                    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Raw<'de>, A::Error> {
+                    fn visit_map<A: MapAccess<'de>>(
+                        self,
+                        mut map: A,
+                    ) -> Result<Raw<'de>, A::Error> {
                         let mut fields = Vec::new();
                         while let Some(Word(key)) = map.next_key()? {
                             fields.push((key, map.next_value::<&RawValue>()?.get_ron().trim()));
@@ -237,7 +279,10 @@ impl Node {
             .into_iter()
             .map(|(name, value)| {
                 let node = self.sub(value);
-                Field { name: Located::new(name.clone(), self.key_span(&name, &node)), node }
+                Field {
+                    name: Located::new(name.clone(), self.key_span(&name, &node)),
+                    node,
+                }
             })
             .collect())
     }
@@ -257,13 +302,25 @@ impl Node {
     /// Splits `Tag(…)` into the tag and its body; a bare `Tag` has an empty body.
     pub fn variant(&self) -> Option<(Located<String>, Node)> {
         let text = self.text();
-        let length: usize = text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').map(char::len_utf8).sum();
+        let length: usize = text
+            .chars()
+            .take_while(|c| c.is_alphanumeric() || *c == '_')
+            .map(char::len_utf8)
+            .sum();
         if length == 0 || !text.starts_with(|c: char| c.is_alphabetic()) {
             return None;
         }
         let start = self.span.range.start;
-        let tag = Located::new(text[..length].to_owned(), self.span.file.span(start..start + length));
-        Some((tag, Node { span: self.span.file.span(start + length..self.span.range.end) }))
+        let tag = Located::new(
+            text[..length].to_owned(),
+            self.span.file.span(start..start + length),
+        );
+        Some((
+            tag,
+            Node {
+                span: self.span.file.span(start + length..self.span.range.end),
+            },
+        ))
     }
 
     fn borrowed<'a, T: Deserialize<'a>>(&'a self) -> Result<T, Diagnostic> {
@@ -303,31 +360,53 @@ pub fn from_fields<T: DeserializeOwned>(fields: &[Field], whole: &Span) -> Resul
     }
     impl<'de> MapAccess<'de> for Access<'de> {
         type Error = ron::Error;
-        fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, ron::Error> {
-            let Some(field) = self.fields.next() else { return Ok(None) };
+        fn next_key_seed<K: DeserializeSeed<'de>>(
+            &mut self,
+            seed: K,
+        ) -> Result<Option<K::Value>, ron::Error> {
+            let Some(field) = self.fields.next() else {
+                return Ok(None);
+            };
             self.value = Some(field);
             let name: &str = &field.name.value;
             seed.deserialize(IntoDeserializer::<ron::Error>::into_deserializer(name))
                 .map(Some)
                 .inspect_err(|error| fail(error, |_| Some(field.name.span.range.clone())))
         }
-        fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, ron::Error> {
-            let field = self.value.take().ok_or_else(|| ron::Error::custom("a value without its key"))?;
+        fn next_value_seed<V: DeserializeSeed<'de>>(
+            &mut self,
+            seed: V,
+        ) -> Result<V::Value, ron::Error> {
+            let field = self
+                .value
+                .take()
+                .ok_or_else(|| ron::Error::custom("a value without its key"))?;
             let text = field.node.text();
             options().from_str_seed(text, seed).map_err(|error| {
-                fail(&error.code, |_| Some(place_of(text, &error, field.node.span.range.start)));
+                fail(&error.code, |_| {
+                    Some(place_of(text, &error, field.node.span.range.start))
+                });
                 error.code
             })
         }
     }
     // ron would report it before it has the place of the second one.
-    let repeats = |(index, field): &(usize, &Field)| fields[..*index].iter().any(|earlier| earlier.name.value == field.name.value);
+    let repeats = |(index, field): &(usize, &Field)| {
+        fields[..*index]
+            .iter()
+            .any(|earlier| earlier.name.value == field.name.value)
+    };
     if let Some((_, field)) = fields.iter().enumerate().find(repeats) {
         return Err(twice(&field.name, field.name.span.clone()));
     }
-    let node = Node { span: whole.clone() };
+    let node = Node {
+        span: whole.clone(),
+    };
     node.reading(|| {
-        let access = Access { fields: fields.iter(), value: None };
+        let access = Access {
+            fields: fields.iter(),
+            value: None,
+        };
         T::deserialize(serde::de::value::MapAccessDeserializer::new(access))
     })
 }
@@ -336,33 +415,38 @@ pub fn from_fields<T: DeserializeOwned>(fields: &[Field], whole: &Span) -> Resul
 fn explain(error: &ron::Error, span: Span) -> Diagnostic {
     use ron::Error as R;
     match error {
-        R::NoSuchStructField { expected, found, .. } => {
-            Diagnostic::error(Code::UnknownField, format!("unknown field `{found}`"))
-                .at(span, "not a field of this")
-                .suggest(found, expected.iter().copied())
-        }
-        R::NoSuchEnumVariant { expected, found, .. } => {
-            Diagnostic::error(Code::UnknownVariant, format!("unknown word `{found}`"))
-                .at(span, "not one of the words that may stand here")
-                .suggest(found, expected.iter().copied())
-        }
-        R::MissingStructField { field, .. } => {
-            Diagnostic::error(Code::MissingField, format!("the field `{field}` is missing"))
-                .at(span, "it must be given here")
-        }
+        R::NoSuchStructField {
+            expected, found, ..
+        } => Diagnostic::error(Code::UnknownField, format!("unknown field `{found}`"))
+            .at(span, "not a field of this")
+            .suggest(found, expected.iter().copied()),
+        R::NoSuchEnumVariant {
+            expected, found, ..
+        } => Diagnostic::error(Code::UnknownVariant, format!("unknown word `{found}`"))
+            .at(span, "not one of the words that may stand here")
+            .suggest(found, expected.iter().copied()),
+        R::MissingStructField { field, .. } => Diagnostic::error(
+            Code::MissingField,
+            format!("the field `{field}` is missing"),
+        )
+        .at(span, "it must be given here"),
         R::DuplicateStructField { field, .. } => twice(field, span),
         R::Eof => Diagnostic::error(Code::Syntax, "the text ends too early")
             .at(span, "something is not closed")
             .help("check that every bracket and quote is closed"),
-        R::ExceededRecursionLimit => {
-            Diagnostic::error(Code::Syntax, "values are nested too deep").at(span, "").help("no document needs so many brackets in brackets: is one of them never closed?")
-        }
+        R::ExceededRecursionLimit => Diagnostic::error(Code::Syntax, "values are nested too deep")
+            .at(span, "")
+            .help("no document needs so many brackets in brackets: is one of them never closed?"),
         other => Diagnostic::error(Code::Syntax, lower_first(&other.to_string())).at(span, "here"),
     }
 }
 
 fn twice(field: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::DuplicateName, format!("the field `{field}` is given twice")).at(span, "the second one")
+    Diagnostic::error(
+        Code::DuplicateName,
+        format!("the field `{field}` is given twice"),
+    )
+    .at(span, "the second one")
 }
 
 fn lower_first(text: &str) -> String {

@@ -8,6 +8,10 @@ use serde::{Deserialize, Deserializer};
 
 /// A declared material.
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a document has a handful, each made once"
+)]
 pub enum Material {
     /// A 2D texture, possibly with mips and layers.
     Texture(TextureEntry),
@@ -152,7 +156,9 @@ impl<'de> Deserialize<'de> for Format {
                 f.write_str("a texture format, for example R32Uint")
             }
             fn visit_str<E: serde::de::Error>(self, name: &str) -> Result<Format, E> {
-                format_named(name).map(Format).ok_or_else(|| E::unknown_variant(name, FORMATS))
+                format_named(name)
+                    .map(Format)
+                    .ok_or_else(|| E::unknown_variant(name, FORMATS))
             }
         }
         deserializer.deserialize_identifier(Name)

@@ -1,4 +1,4 @@
-//! Phase 1: the RON text becomes a [`Document`]; nothing is looked up yet but pass kinds.
+//! Phase 1: the RON text becomes a document; nothing is looked up yet but pass kinds.
 
 pub mod located;
 pub mod materials;
@@ -50,16 +50,33 @@ pub(crate) struct OutputEntry {
     pub material: Option<Located<String>>,
 }
 
-const SECTIONS: [&str; 6] = ["format", "description", "params", "materials", "passes", "outputs"];
+const SECTIONS: [&str; 6] = [
+    "format",
+    "description",
+    "params",
+    "materials",
+    "passes",
+    "outputs",
+];
 
 /// Reads a document. Whatever is wrong is pushed to `diagnostics`; what could be read is returned all the same, so that
 /// later phases find more mistakes in one go.
-pub(crate) fn parse(file: SourceFile, registry: &Registry, diagnostics: &mut Vec<Diagnostic>) -> Option<Document> {
+pub(crate) fn parse(
+    file: SourceFile,
+    registry: &Registry,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Option<Document> {
     if !file.text.contains('(') {
         diagnostics.push(
-            Diagnostic::error(Code::Syntax, format!("the file `{}` holds no document", file.name))
-                .at(file.span(0..file.text.lines().next().map_or(0, str::len)), "")
-                .help(format!("begin with `(format: {FORMAT}, …)`")),
+            Diagnostic::error(
+                Code::Syntax,
+                format!("the file `{}` holds no document", file.name),
+            )
+            .at(
+                file.span(0..file.text.lines().next().map_or(0, str::len)),
+                "",
+            )
+            .help(format!("begin with `(format: {FORMAT}, …)`")),
         );
         return None;
     }
@@ -79,12 +96,20 @@ pub(crate) fn parse(file: SourceFile, registry: &Registry, diagnostics: &mut Vec
         passes: Vec::new(),
         outputs: Vec::new(),
     };
-    match sections.get("format").map(|node| (node, node.parse::<u32>())) {
+    match sections
+        .get("format")
+        .map(|node| (node, node.parse::<u32>()))
+    {
         Some((_, Ok(FORMAT))) => {}
         Some((node, Ok(other))) => diagnostics.push(
-            Diagnostic::error(Code::FormatVersion, format!("document format {other} is not known"))
-                .at(node.span.clone(), "")
-                .help(format!("this version of Skiagraph reads `format: {FORMAT}`")),
+            Diagnostic::error(
+                Code::FormatVersion,
+                format!("document format {other} is not known"),
+            )
+            .at(node.span.clone(), "")
+            .help(format!(
+                "this version of Skiagraph reads `format: {FORMAT}`"
+            )),
         ),
         Some((_, Err(error))) => diagnostics.push(error),
         None => diagnostics.push(
@@ -94,36 +119,66 @@ pub(crate) fn parse(file: SourceFile, registry: &Registry, diagnostics: &mut Vec
         ),
     }
     if let Some(node) = sections.get("description") {
-        keep(node.parse(), diagnostics, |text| document.description = text);
+        keep(node.parse(), diagnostics, |text| {
+            document.description = text
+        });
     }
     for node in entries(sections.get("params"), diagnostics) {
         if let Some(entry) = ok(node.parse::<ParamEntry>(), diagnostics) {
             match Param::from_entry(entry) {
                 Ok(param) => document.params.push(param),
                 Err((name, why)) => diagnostics.push(
-                    Diagnostic::error(Code::ParamValue, format!("the default of param `{}` does not fit", *name))
-                        .at(name.span.clone(), why),
+                    Diagnostic::error(
+                        Code::ParamValue,
+                        format!("the default of param `{}` does not fit", *name),
+                    )
+                    .at(name.span.clone(), why),
                 ),
             }
         }
     }
     for node in entries(sections.get("materials"), diagnostics) {
-        keep(material(&node), diagnostics, |material| document.materials.push(material));
+        keep(material(&node), diagnostics, |material| {
+            document.materials.push(material)
+        });
     }
     for node in entries(sections.get("passes"), diagnostics) {
-        keep(pass(&node, registry), diagnostics, |pass| document.passes.push(pass));
+        keep(pass(&node, registry), diagnostics, |pass| {
+            document.passes.push(pass)
+        });
     }
     for node in entries(sections.get("outputs"), diagnostics) {
-        keep(node.parse(), diagnostics, |output| document.outputs.push(output));
+        keep(node.parse(), diagnostics, |output| {
+            document.outputs.push(output)
+        });
     }
-    unique("param", document.params.iter().map(|param| &param.name), diagnostics);
-    unique("pass", document.passes.iter().map(|pass| &pass.name), diagnostics);
-    unique("output", document.outputs.iter().map(|output| &output.name), diagnostics);
-    let views = document.materials.iter().flat_map(|material| match material {
-        Material::Texture(texture) => texture.views.iter().map(|view| &view.name).collect(),
-        _ => Vec::new(),
-    });
-    unique("material", document.materials.iter().map(Material::name).chain(views), diagnostics);
+    unique(
+        "param",
+        document.params.iter().map(|param| &param.name),
+        diagnostics,
+    );
+    unique(
+        "pass",
+        document.passes.iter().map(|pass| &pass.name),
+        diagnostics,
+    );
+    unique(
+        "output",
+        document.outputs.iter().map(|output| &output.name),
+        diagnostics,
+    );
+    let views = document
+        .materials
+        .iter()
+        .flat_map(|material| match material {
+            Material::Texture(texture) => texture.views.iter().map(|view| &view.name).collect(),
+            _ => Vec::new(),
+        });
+    unique(
+        "material",
+        document.materials.iter().map(Material::name).chain(views),
+        diagnostics,
+    );
     Some(document)
 }
 
@@ -142,14 +197,23 @@ fn sections(fields: Vec<Field>, diagnostics: &mut Vec<Diagnostic>) -> HashMap<St
     for field in fields {
         if !SECTIONS.contains(&field.name.as_str()) {
             diagnostics.push(
-                Diagnostic::error(Code::UnknownField, format!("unknown field `{}`", *field.name))
-                    .at(field.name.span.clone(), "not a part of a document")
-                    .suggest(&field.name, SECTIONS),
+                Diagnostic::error(
+                    Code::UnknownField,
+                    format!("unknown field `{}`", *field.name),
+                )
+                .at(field.name.span.clone(), "not a part of a document")
+                .suggest(&field.name, SECTIONS),
             );
-        } else if sections.insert(field.name.value.clone(), field.node).is_some() {
+        } else if sections
+            .insert(field.name.value.clone(), field.node)
+            .is_some()
+        {
             diagnostics.push(
-                Diagnostic::error(Code::DuplicateName, format!("the field `{}` is given twice", *field.name))
-                    .at(field.name.span.clone(), "the second one"),
+                Diagnostic::error(
+                    Code::DuplicateName,
+                    format!("the field `{}` is given twice", *field.name),
+                )
+                .at(field.name.span.clone(), "the second one"),
             );
         }
     }
@@ -157,7 +221,9 @@ fn sections(fields: Vec<Field>, diagnostics: &mut Vec<Diagnostic>) -> HashMap<St
 }
 
 fn entries(section: Option<&Node>, diagnostics: &mut Vec<Diagnostic>) -> Vec<Node> {
-    section.and_then(|node| ok(node.list(), diagnostics)).unwrap_or_default()
+    section
+        .and_then(|node| ok(node.list(), diagnostics))
+        .unwrap_or_default()
 }
 
 fn material(node: &Node) -> Result<Material, Diagnostic> {
@@ -172,9 +238,12 @@ fn material(node: &Node) -> Result<Material, Diagnostic> {
         "Texture" => from_fields(&fields, &tag.span).map(Material::Texture),
         "Buffer" => from_fields(&fields, &tag.span).map(Material::Buffer),
         "Sampler" => from_fields(&fields, &tag.span).map(Material::Sampler),
-        _ => Err(Diagnostic::error(Code::UnknownVariant, format!("unknown kind of material `{}`", *tag))
-            .at(tag.span.clone(), "")
-            .suggest(&tag, KINDS)),
+        _ => Err(Diagnostic::error(
+            Code::UnknownVariant,
+            format!("unknown kind of material `{}`", *tag),
+        )
+        .at(tag.span.clone(), "")
+        .suggest(&tag, KINDS)),
     }
 }
 
@@ -188,36 +257,65 @@ fn pass(node: &Node, registry: &Registry) -> Result<PassEntry, Diagnostic> {
         bind: Pairs,
     }
     let Some((tag, body)) = node.variant() else {
-        return Err(Diagnostic::error(Code::Syntax, "a pass begins with its kind")
-            .at(node.span.clone(), "for example `Compute(name: \"…\", …)`")
-            .suggest("", registry.kinds()));
+        return Err(
+            Diagnostic::error(Code::Syntax, "a pass begins with its kind")
+                .at(node.span.clone(), "for example `Compute(name: \"…\", …)`")
+                .suggest("", registry.kinds()),
+        );
     };
     let Some(kind) = registry.get(&tag) else {
-        return Err(Diagnostic::error(Code::UnknownVariant, format!("unknown pass kind `{}`", *tag))
-            .at(tag.span.clone(), "no pass kind of this name is registered")
-            .suggest(&tag, registry.kinds()));
+        return Err(Diagnostic::error(
+            Code::UnknownVariant,
+            format!("unknown pass kind `{}`", *tag),
+        )
+        .at(tag.span.clone(), "no pass kind of this name is registered")
+        .suggest(&tag, registry.kinds()));
     };
-    let (header, own): (Vec<Field>, Vec<Field>) =
-        body.fields()?.into_iter().partition(|field| ["name", "shader", "bind"].contains(&field.name.as_str()));
+    let (header, own): (Vec<Field>, Vec<Field>) = body
+        .fields()?
+        .into_iter()
+        .partition(|field| ["name", "shader", "bind"].contains(&field.name.as_str()));
     let header: Header = from_fields(&header, &tag.span)?;
     for (index, (global, _)) in header.bind.0.iter().enumerate() {
-        if header.bind.0[..index].iter().any(|(earlier, _)| earlier.value == global.value) {
-            return Err(Diagnostic::error(Code::DuplicateName, format!("`{}` is bound twice", **global))
-                .at(global.span.clone(), "the second one"));
+        if header.bind.0[..index]
+            .iter()
+            .any(|(earlier, _)| earlier.value == global.value)
+        {
+            return Err(Diagnostic::error(
+                Code::DuplicateName,
+                format!("`{}` is bound twice", **global),
+            )
+            .at(global.span.clone(), "the second one"));
         }
     }
     let body = (kind.parse)(&own, &tag.span)?;
-    Ok(PassEntry { name: header.name, shader: header.shader, bind: header.bind.0, kind: kind.name, body })
+    Ok(PassEntry {
+        name: header.name,
+        shader: header.shader,
+        bind: header.bind.0,
+        kind: kind.name,
+        body,
+    })
 }
 
-fn unique<'a>(what: &str, names: impl Iterator<Item = &'a Located<String>>, diagnostics: &mut Vec<Diagnostic>) {
+fn unique<'a>(
+    what: &str,
+    names: impl Iterator<Item = &'a Located<String>>,
+    diagnostics: &mut Vec<Diagnostic>,
+) {
     let mut seen: HashMap<&str, &Span> = HashMap::new();
     for name in names {
         if let Some(first) = seen.get(name.as_str()) {
             diagnostics.push(
-                Diagnostic::error(Code::DuplicateName, format!("two of the name `{}`: every {what} needs its own", name.value))
-                    .at(name.span.clone(), "the second one")
-                    .at((*first).clone(), "the first one"),
+                Diagnostic::error(
+                    Code::DuplicateName,
+                    format!(
+                        "two of the name `{}`: every {what} needs its own",
+                        name.value
+                    ),
+                )
+                .at(name.span.clone(), "the second one")
+                .at((*first).clone(), "the first one"),
             );
         } else {
             seen.insert(name.as_str(), &name.span);

@@ -136,7 +136,10 @@ impl<'de> Deserialize<'de> for Written {
             fn visit_str<E>(self, value: &str) -> Result<Written, E> {
                 Ok(Written::Word(value.to_owned()))
             }
-            fn visit_seq<A: serde::de::SeqAccess<'de>>(self, mut seq: A) -> Result<Written, A::Error> {
+            fn visit_seq<A: serde::de::SeqAccess<'de>>(
+                self,
+                mut seq: A,
+            ) -> Result<Written, A::Error> {
                 let mut values = Vec::new();
                 while let Some(value) = seq.next_element()? {
                     values.push(value);
@@ -161,17 +164,26 @@ impl Param {
             description: entry.description,
         };
         if let ParamType::Choice(words) = &param.ty {
-            let repeated = words.iter().enumerate().any(|(index, word)| words[..index].contains(word));
+            let repeated = words
+                .iter()
+                .enumerate()
+                .any(|(index, word)| words[..index].contains(word));
             if words.is_empty() || repeated {
-                return Err((place, "a Choice has at least one word, and each only once".to_owned()));
+                return Err((
+                    place,
+                    "a Choice has at least one word, and each only once".to_owned(),
+                ));
             }
         }
         if let (Some(min), Some(max)) = (param.min, param.max)
-            && !(min <= max)
+            && min.partial_cmp(&max).is_none_or(std::cmp::Ordering::is_gt)
         {
             return Err((place, format!("no value can lie in {min}..{max}")));
         }
-        match param.value_of(&entry.default.value).and_then(|value| param.check(&value).map(|()| value)) {
+        match param
+            .value_of(&entry.default.value)
+            .and_then(|value| param.check(&value).map(|()| value))
+        {
             Ok(value) => {
                 param.default = value;
                 Ok(param)
@@ -184,17 +196,27 @@ impl Param {
         let wrong = || format!("the value must be of type {}", self.ty);
         let whole = |number: f64| (number.fract() == 0.0).then_some(number).ok_or_else(wrong);
         let vector = |length: usize| match written {
-            Written::Tuple(values) if values.len() == length => {
-                Ok(ParamValue::Vec(values.iter().map(|&value| value as f32).collect()))
-            }
+            Written::Tuple(values) if values.len() == length => Ok(ParamValue::Vec(
+                values.iter().map(|&value| value as f32).collect(),
+            )),
             _ => Err(wrong()),
         };
         match (&self.ty, written) {
             (ParamType::F32, Written::Number(number)) => Ok(ParamValue::F32(*number as f32)),
-            (ParamType::I32, Written::Number(number)) => whole(*number)
-                .and_then(|n| if n >= f64::from(i32::MIN) && n <= f64::from(i32::MAX) { Ok(ParamValue::I32(n as i32)) } else { Err(wrong()) }),
-            (ParamType::U32, Written::Number(number)) => whole(*number)
-                .and_then(|n| if (0.0..=f64::from(u32::MAX)).contains(&n) { Ok(ParamValue::U32(n as u32)) } else { Err(wrong()) }),
+            (ParamType::I32, Written::Number(number)) => whole(*number).and_then(|n| {
+                if n >= f64::from(i32::MIN) && n <= f64::from(i32::MAX) {
+                    Ok(ParamValue::I32(n as i32))
+                } else {
+                    Err(wrong())
+                }
+            }),
+            (ParamType::U32, Written::Number(number)) => whole(*number).and_then(|n| {
+                if (0.0..=f64::from(u32::MAX)).contains(&n) {
+                    Ok(ParamValue::U32(n as u32))
+                } else {
+                    Err(wrong())
+                }
+            }),
             (ParamType::Bool, Written::Bool(value)) => Ok(ParamValue::Bool(*value)),
             (ParamType::Vec2, _) => vector(2),
             (ParamType::Vec3, _) => vector(3),
@@ -209,7 +231,11 @@ impl Param {
     /// # Errors
     /// What was expected.
     pub fn parse(&self, text: &str) -> Result<ParamValue, String> {
-        let number = |text: &str| text.trim().parse::<f64>().map_err(|_| format!("the value must be of type {}", self.ty));
+        let number = |text: &str| {
+            text.trim()
+                .parse::<f64>()
+                .map_err(|_| format!("the value must be of type {}", self.ty))
+        };
         let written = match self.ty {
             ParamType::Choice(_) => Written::Word(text.to_owned()),
             ParamType::Bool => match text {
@@ -237,11 +263,21 @@ impl Param {
             (ParamType::I32, ParamValue::I32(v)) => vec![f64::from(*v)],
             (ParamType::U32, ParamValue::U32(v)) => vec![f64::from(*v)],
             (ParamType::Bool, ParamValue::Bool(_)) => Vec::new(),
-            (ParamType::Vec2, ParamValue::Vec(v)) if v.len() == 2 => v.iter().map(|&v| f64::from(v)).collect(),
-            (ParamType::Vec3, ParamValue::Vec(v)) if v.len() == 3 => v.iter().map(|&v| f64::from(v)).collect(),
-            (ParamType::Vec4, ParamValue::Vec(v)) if v.len() == 4 => v.iter().map(|&v| f64::from(v)).collect(),
+            (ParamType::Vec2, ParamValue::Vec(v)) if v.len() == 2 => {
+                v.iter().map(|&v| f64::from(v)).collect()
+            }
+            (ParamType::Vec3, ParamValue::Vec(v)) if v.len() == 3 => {
+                v.iter().map(|&v| f64::from(v)).collect()
+            }
+            (ParamType::Vec4, ParamValue::Vec(v)) if v.len() == 4 => {
+                v.iter().map(|&v| f64::from(v)).collect()
+            }
             (ParamType::Choice(words), ParamValue::Choice(word)) => {
-                return if words.contains(word) { Ok(()) } else { Err(format!("must be one of {}", words.join(", "))) };
+                return if words.contains(word) {
+                    Ok(())
+                } else {
+                    Err(format!("must be one of {}", words.join(", ")))
+                };
             }
             _ => return Err(format!("the value must be of type {}", self.ty)),
         };
@@ -249,11 +285,15 @@ impl Param {
             if !number.is_finite() {
                 return Err("the value must be finite".to_owned());
             }
-            if self.min.is_some_and(|min| number < min) || self.max.is_some_and(|max| number > max) {
+            if self.min.is_some_and(|min| number < min) || self.max.is_some_and(|max| number > max)
+            {
                 return Err(match (self.min, self.max) {
                     (Some(min), Some(max)) => format!("must lie in {min}..{max}, not {number}"),
                     (Some(min), None) => format!("must be at least {min}, not {number}"),
-                    (None, max) => format!("must be at most {}, not {number}", max.unwrap_or(f64::INFINITY)),
+                    (None, max) => format!(
+                        "must be at most {}, not {number}",
+                        max.unwrap_or(f64::INFINITY)
+                    ),
                 });
             }
         }
@@ -266,9 +306,10 @@ impl Param {
             (ParamValue::U32(value), _) => Some(*value),
             (ParamValue::I32(value), _) => u32::try_from(*value).ok(),
             (ParamValue::Bool(value), _) => Some(u32::from(*value)),
-            (ParamValue::Choice(word), ParamType::Choice(words)) => {
-                words.iter().position(|known| known == word).and_then(|index| u32::try_from(index).ok())
-            }
+            (ParamValue::Choice(word), ParamType::Choice(words)) => words
+                .iter()
+                .position(|known| known == word)
+                .and_then(|index| u32::try_from(index).ok()),
             _ => None,
         }
     }

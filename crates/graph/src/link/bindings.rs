@@ -1,13 +1,12 @@
 //! Programs and their bindings: which resource each shader global is, and whether it can be.
 
-use super::{Access, LinkedPass, Linker, Usage, attachments::scalar_of};
+use super::{Access, LinkedPass, Linker, Usage};
 use crate::{
     diagnostics::{Code, Diagnostic, suggestion},
     document::materials::Filter,
-    document::params::{ParamType, ParamValue},
-    resolve::{Part, Resource, ResourceId, ResourceKind, Target},
+    resolve::{Part, ResourceId, ResourceKind, Target},
     step::Program,
-    wgsl::{Class, Global, Member, ScalarClass, Shader, TextureClass},
+    wgsl::{Class, Global, Shader, TextureClass},
 };
 use naga::ShaderStage;
 use std::sync::Arc;
@@ -35,16 +34,28 @@ pub(crate) struct LinkedBinding {
 #[derive(Clone, Debug)]
 pub(crate) enum BindTarget {
     Buffer(ResourceId),
-    Texture { target: Target, dimension: wgpu::TextureViewDimension },
+    Texture {
+        target: Target,
+        dimension: wgpu::TextureViewDimension,
+    },
     Sampler(ResourceId),
     /// The `params` uniform, already laid out.
     Params(Vec<u8>),
 }
 
 impl Linker<'_, '_> {
-    pub(super) fn program(&mut self, program: &Program, stages: &[ShaderStage], pass: &mut LinkedPass) -> Option<LinkedProgram> {
+    pub(super) fn program(
+        &mut self,
+        program: &Program,
+        stages: &[ShaderStage],
+        pass: &mut LinkedPass,
+    ) -> Option<LinkedProgram> {
         let shader = self.shader(program)?;
-        let wanted = program.shader.as_ref().map_or(&pass.name.span, |name| &name.span).clone();
+        let wanted = program
+            .shader
+            .as_ref()
+            .map_or(&pass.name.span, |name| &name.span)
+            .clone();
         let mut entries = Vec::new();
         for stage in stages {
             let name = match stage {
@@ -63,19 +74,38 @@ impl Linker<'_, '_> {
         let globals = shader.globals(&entries);
         for (bound, _) in &program.bind {
             // A kind with several shaders hands its bindings to all of them, so only what no global could be is wrong.
-            let exists = shader.module.global_variables.iter().any(|(_, global)| global.name.as_deref() == Some(bound.as_str()));
-            if !exists && program.shader.as_ref().is_some_and(|name| name.span != pass.name.span || name.value == pass.name.value) {
+            let exists = shader
+                .module
+                .global_variables
+                .iter()
+                .any(|(_, global)| global.name.as_deref() == Some(bound.as_str()));
+            if !exists
+                && program.shader.as_ref().is_some_and(|name| {
+                    name.span != pass.name.span || name.value == pass.name.value
+                })
+            {
                 let names: Vec<&str> = globals.iter().map(|global| global.name.as_str()).collect();
                 self.report(
-                    Diagnostic::error(Code::Binding, format!("`{}` has no global `{}` to bind", shader.source.file.name, bound.value))
-                        .at(bound.span.clone(), "")
-                        .suggest(bound, names),
+                    Diagnostic::error(
+                        Code::Binding,
+                        format!(
+                            "`{}` has no global `{}` to bind",
+                            shader.source.file.name, bound.value
+                        ),
+                    )
+                    .at(bound.span.clone(), "")
+                    .suggest(bound, names),
                 );
             }
         }
         self.groups_exist(&globals);
-        let mut linked =
-            LinkedProgram { constants: self.constants(program, &shader), bindings: Vec::new(), shader, entries, stages: stages.to_vec() };
+        let mut linked = LinkedProgram {
+            constants: self.constants(program, &shader),
+            bindings: Vec::new(),
+            shader,
+            entries,
+            stages: stages.to_vec(),
+        };
         let mut complete = true;
         for global in &globals {
             match self.bind(global, program, &linked, pass) {
@@ -89,64 +119,81 @@ impl Linker<'_, '_> {
 
     /// Group numbers that the adapter does not have. (One number for two globals is found when the shader is validated.)
     fn groups_exist(&mut self, globals: &[Global]) {
-        for global in globals.iter().filter(|global| global.group >= self.limits.max_bind_groups) {
+        for global in globals
+            .iter()
+            .filter(|global| global.group >= self.limits.max_bind_groups)
+        {
             self.report(
-                Diagnostic::error(Code::Limit, format!("`{}` is in @group({}), which the adapter does not have", global.name, global.group))
-                    .at(global.span.clone(), format!("its groups are 0 to {}", self.limits.max_bind_groups.saturating_sub(1)))
-                    .help("leave the numbers out: the graph gives them"),
+                Diagnostic::error(
+                    Code::Limit,
+                    format!(
+                        "`{}` is in @group({}), which the adapter does not have",
+                        global.name, global.group
+                    ),
+                )
+                .at(
+                    global.span.clone(),
+                    format!(
+                        "its groups are 0 to {}",
+                        self.limits.max_bind_groups.saturating_sub(1)
+                    ),
+                )
+                .help("leave the numbers out: the graph gives them"),
             );
         }
     }
 
-    /// Values of overridable constants: what the pass kind sets, else the param of that name.
-    fn constants(&mut self, program: &Program, shader: &Shader) -> Vec<(String, f64)> {
-        let mut constants = Vec::new();
-        for (name, key, has_default, span) in shader.overrides() {
-            let set = program.constants.iter().find(|(constant, _)| constant == name).map(|(_, value)| *value);
-            let value = set.or_else(|| {
-                let (param, value) = self.params.get(name)?;
-                match value {
-                    ParamValue::F32(value) => Some(f64::from(*value)),
-                    ParamValue::I32(value) => Some(f64::from(*value)),
-                    other => param.as_u32(other).map(f64::from),
+    fn bind(
+        &mut self,
+        global: &Global,
+        program: &Program,
+        linked: &LinkedProgram,
+        pass: &mut LinkedPass,
+    ) -> Option<LinkedBinding> {
+        let visibility = linked
+            .stages
+            .iter()
+            .fold(wgpu::ShaderStages::empty(), |all, stage| {
+                all | match stage {
+                    ShaderStage::Vertex => wgpu::ShaderStages::VERTEX,
+                    ShaderStage::Fragment => wgpu::ShaderStages::FRAGMENT,
+                    _ => wgpu::ShaderStages::COMPUTE,
                 }
             });
-            match value {
-                Some(value) => constants.push((key, value)),
-                None if has_default => {}
-                None => self.report(
-                    Diagnostic::error(Code::UnknownParam, format!("the override `{name}` has no value"))
-                        .at(span, "no param of the document is called so")
-                        .help(format!("declare a param `{name}` with a single number, or write `override {name}: … = …;`")),
-                ),
-            }
-        }
-        constants
-    }
-
-    fn bind(&mut self, global: &Global, program: &Program, linked: &LinkedProgram, pass: &mut LinkedPass) -> Option<LinkedBinding> {
-        let visibility = linked.stages.iter().fold(wgpu::ShaderStages::empty(), |all, stage| {
-            all | match stage {
-                ShaderStage::Vertex => wgpu::ShaderStages::VERTEX,
-                ShaderStage::Fragment => wgpu::ShaderStages::FRAGMENT,
-                _ => wgpu::ShaderStages::COMPUTE,
-            }
-        });
-        let finish = |target, ty| Some(LinkedBinding { group: global.group, binding: global.binding, target, ty, visibility });
+        let finish = |target, ty| {
+            Some(LinkedBinding {
+                group: global.group,
+                binding: global.binding,
+                target,
+                ty,
+                visibility,
+            })
+        };
         if let Class::Unsupported(what) = global.class {
             self.report(
-                Diagnostic::error(Code::Binding, format!("`{}` is {what}, which a graph cannot bind", global.name))
-                    .at(global.span.clone(), ""),
+                Diagnostic::error(
+                    Code::Binding,
+                    format!("`{}` is {what}, which a graph cannot bind", global.name),
+                )
+                .at(global.span.clone(), ""),
             );
             return None;
         }
-        let bound = program.bind.iter().find(|(name, _)| name.value == global.name).map(|(_, target)| target.clone());
+        let bound = program
+            .bind
+            .iter()
+            .find(|(name, _)| name.value == global.name)
+            .map(|(_, target)| target.clone());
         if let (Class::Uniform { size, members }, None) = (&global.class, &bound)
             && global.name == "params"
         {
-            let most = u64::from(self.limits.max_uniform_buffer_binding_size);
+            let most = self.limits.max_uniform_buffer_binding_size;
             if *size > most || members.is_empty() {
-                let what = if members.is_empty() { "is no struct" } else { "is too large for the adapter" };
+                let what = if members.is_empty() {
+                    "is no struct"
+                } else {
+                    "is too large for the adapter"
+                };
                 self.report(
                     Diagnostic::error(Code::Binding, format!("the uniform `params` {what}"))
                         .at(global.span.clone(), format!("{size} bytes"))
@@ -170,8 +217,16 @@ impl Linker<'_, '_> {
         };
         let resource = self.resources.get(target.id).clone();
         let wrong_kind = |this: &mut Self, needed: &str| {
-            let mut error = Diagnostic::error(Code::ResourceKind, format!("the shader's `{}` needs {needed}, but `{}` is {}", global.name, resource.name, resource.kind.describe()))
-                .at(global.span.clone(), format!("the shader declares {needed}"));
+            let mut error = Diagnostic::error(
+                Code::ResourceKind,
+                format!(
+                    "the shader's `{}` needs {needed}, but `{}` is {}",
+                    global.name,
+                    resource.name,
+                    resource.kind.describe()
+                ),
+            )
+            .at(global.span.clone(), format!("the shader declares {needed}"));
             if let Some(declared) = &resource.declared {
                 error = error.at(declared.clone(), resource.kind.describe());
             }
@@ -181,39 +236,86 @@ impl Linker<'_, '_> {
             (Class::Uniform { size, .. }, ResourceKind::Provided(provided)) if provided.uniform => {
                 if *size > provided.stride {
                     self.report(
-                        Diagnostic::error(Code::LayoutMismatch, format!("`{}` has {} bytes, the shader's type {size}", resource.name, provided.stride))
-                            .at(global.span.clone(), "import its type from the module that declares it"),
+                        Diagnostic::error(
+                            Code::LayoutMismatch,
+                            format!(
+                                "`{}` has {} bytes, the shader's type {size}",
+                                resource.name, provided.stride
+                            ),
+                        )
+                        .at(
+                            global.span.clone(),
+                            "import its type from the module that declares it",
+                        ),
                     );
                     return None;
                 }
-                (BindTarget::Buffer(target.id), uniform(*size), Usage::Buffer(wgpu::BufferUsages::UNIFORM))
+                (
+                    BindTarget::Buffer(target.id),
+                    uniform(*size),
+                    Usage::Buffer(wgpu::BufferUsages::UNIFORM),
+                )
             }
-            (Class::Storage { fixed, stride, read_only, .. }, ResourceKind::Buffer(_) | ResourceKind::Provided(_)) => {
+            (
+                Class::Storage {
+                    fixed,
+                    stride,
+                    read_only,
+                    ..
+                },
+                ResourceKind::Buffer(_) | ResourceKind::Provided(_),
+            ) => {
                 if matches!(&resource.kind, ResourceKind::Provided(provided) if provided.uniform) {
                     wrong_kind(self, "a storage buffer");
                     return None;
                 }
                 if matches!(resource.kind, ResourceKind::Provided(_)) && !read_only {
                     self.report(
-                        Diagnostic::error(Code::ResourceKind, format!("`{}` belongs to the host and cannot be written", resource.name))
-                            .at(global.span.clone(), "declare it `var<storage, read>`"),
+                        Diagnostic::error(
+                            Code::ResourceKind,
+                            format!(
+                                "`{}` belongs to the host and cannot be written",
+                                resource.name
+                            ),
+                        )
+                        .at(global.span.clone(), "declare it `var<storage, read>`"),
                     );
                     return None;
                 }
                 self.layouts.see(target.id, global);
                 let ty = wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Storage { read_only: *read_only },
+                    ty: wgpu::BufferBindingType::Storage {
+                        read_only: *read_only,
+                    },
                     has_dynamic_offset: false,
                     min_binding_size: std::num::NonZeroU64::new(fixed + stride.unwrap_or(0)),
                 };
-                (BindTarget::Buffer(target.id), ty, Usage::Buffer(wgpu::BufferUsages::STORAGE))
+                (
+                    BindTarget::Buffer(target.id),
+                    ty,
+                    Usage::Buffer(wgpu::BufferUsages::STORAGE),
+                )
             }
             (Class::Texture(class), ResourceKind::Texture(texture)) => {
-                let (ty, usage) = self.texture(global, class, (texture.format, &target.part), (linked, program), &resource)?;
+                let (ty, usage) = self.texture(
+                    global,
+                    class,
+                    (texture.format, &target.part),
+                    (linked, program),
+                    &resource,
+                )?;
                 let dimension = match class {
-                    TextureClass::Sampled { dimension, .. } | TextureClass::Storage { dimension, .. } => *dimension,
+                    TextureClass::Sampled { dimension, .. }
+                    | TextureClass::Storage { dimension, .. } => *dimension,
                 };
-                (BindTarget::Texture { target: target.clone(), dimension }, ty, Usage::Texture(usage))
+                (
+                    BindTarget::Texture {
+                        target: target.clone(),
+                        dimension,
+                    },
+                    ty,
+                    Usage::Texture(usage),
+                )
             }
             (Class::Sampler { comparison }, ResourceKind::Sampler(sampler)) => {
                 let ty = match (*comparison, sampler.compare.is_some(), sampler.filter) {
@@ -221,11 +323,22 @@ impl Linker<'_, '_> {
                     (false, false, Filter::Linear) => wgpu::SamplerBindingType::Filtering,
                     (false, false, Filter::Nearest) => wgpu::SamplerBindingType::NonFiltering,
                     _ => {
-                        wrong_kind(self, if *comparison { "a sampler with `compare`" } else { "a sampler without `compare`" });
+                        wrong_kind(
+                            self,
+                            if *comparison {
+                                "a sampler with `compare`"
+                            } else {
+                                "a sampler without `compare`"
+                            },
+                        );
                         return None;
                     }
                 };
-                (BindTarget::Sampler(target.id), wgpu::BindingType::Sampler(ty), Usage::None)
+                (
+                    BindTarget::Sampler(target.id),
+                    wgpu::BindingType::Sampler(ty),
+                    Usage::None,
+                )
             }
             (Class::Uniform { .. }, _) => {
                 wrong_kind(self, "a uniform buffer");
@@ -246,7 +359,11 @@ impl Linker<'_, '_> {
         };
         pass.accesses.push(Access {
             resource: target.id,
-            part: if matches!(resource.kind, ResourceKind::Texture(_)) { target.part } else { Part::ONE },
+            part: if matches!(resource.kind, ResourceKind::Texture(_)) {
+                target.part
+            } else {
+                Part::ONE
+            },
             reads: global.reads,
             writes: global.writes,
             covers: false,
@@ -258,187 +375,72 @@ impl Linker<'_, '_> {
     }
 
     fn unknown(&mut self, global: &Global, pass: &LinkedPass) {
-        let known: Vec<String> = self.resources.known().iter().map(|name| name.replace('.', "_")).collect();
+        let known: Vec<String> = self
+            .resources
+            .known()
+            .iter()
+            .map(|name| name.replace('.', "_"))
+            .collect();
         let mut error = Diagnostic::error(
             Code::UnknownResource,
-            format!("pass `{}` binds `{}`, but nothing is called so", *pass.name, global.name),
+            format!(
+                "pass `{}` binds `{}`, but nothing is called so",
+                *pass.name, global.name
+            ),
         )
-        .at(global.span.clone(), "no material or provided resource has this name")
+        .at(
+            global.span.clone(),
+            "no material or provided resource has this name",
+        )
         .at(pass.name.span.clone(), "bound by this pass");
         let hint = suggestion(&global.name, known.iter().map(String::as_str)).unwrap_or_default();
-        error = error.help(format!("{hint}\nor bind it: `bind: {{\"{}\": \"…\"}}`", global.name).trim().to_owned());
+        error = error.help(
+            format!("{hint}\nor bind it: `bind: {{\"{}\": \"…\"}}`", global.name)
+                .trim()
+                .to_owned(),
+        );
         self.report(error);
-    }
-
-    fn texture(
-        &mut self,
-        global: &Global,
-        class: &TextureClass,
-        (format, part): (wgpu::TextureFormat, &Part),
-        (linked, program): (&LinkedProgram, &Program),
-        resource: &Resource,
-    ) -> Option<(wgpu::BindingType, wgpu::TextureUsages)> {
-        let features = format.guaranteed_format_features(self.features);
-        let name = &resource.name;
-        let mismatch = |expected: String| {
-            let message = format!("the texture `{name}` has the format {format:?}, which the shader's `{}` cannot use", global.name);
-            let error = Diagnostic::error(Code::FormatMismatch, message).at(global.span.clone(), expected);
-            match &resource.declared {
-                Some(declared) => error.at(declared.clone(), format!("{format:?}")),
-                None => error,
-            }
-        };
-        let dimension = match class {
-            TextureClass::Sampled { dimension, .. } | TextureClass::Storage { dimension, .. } => *dimension,
-        };
-        if dimension == wgpu::TextureViewDimension::D2 && part.layers.len() > 1 {
-            self.report(
-                Diagnostic::error(Code::ResourceKind, format!("`{name}` has {} layers, the shader sees one", part.layers.len()))
-                    .at(global.span.clone(), "declare an array texture, or bind a view of one layer"),
-            );
-            return None;
-        }
-        let cube = matches!(dimension, wgpu::TextureViewDimension::Cube | wgpu::TextureViewDimension::CubeArray);
-        if cube && (part.layers.len() % 6 != 0 || dimension == wgpu::TextureViewDimension::Cube && part.layers.len() != 6) {
-            self.report(
-                Diagnostic::error(Code::ResourceKind, format!("`{name}` has {} layers, a cube has six", part.layers.len()))
-                    .at(global.span.clone(), "the shader sees a cube"),
-            );
-            return None;
-        }
-        match class {
-            TextureClass::Sampled { scalar, depth, .. } => {
-                let declared = scalar_of(format);
-                if declared != Some(*scalar) || (*depth && !format.is_depth_stencil_format()) {
-                    let what = match declared {
-                        _ if *depth => "the shader declares a depth texture".to_owned(),
-                        Some(own) => format!("the shader reads {scalar}, the texture holds {own}"),
-                        None => format!("the shader reads {scalar}"),
-                    };
-                    self.report(mismatch(what));
-                    return None;
-                }
-                let filterable = features.flags.contains(wgpu::TextureFormatFeatureFlags::FILTERABLE);
-                let is_depth = format.is_depth_stencil_format();
-                if !filterable || is_depth {
-                    for sampler in linked.shader.samplers_of(&linked.entries, global.handle) {
-                        let bound = program.bind.iter().find(|(global, _)| global.value == sampler);
-                        let target = self.resources.find_spelt(bound.map_or(&sampler, |(_, name)| &name.value));
-                        let linear = target.is_some_and(|target| {
-                            matches!(&self.resources.get(target.id).kind, ResourceKind::Sampler(entry)
-                                if entry.filter == Filter::Linear && entry.compare.is_none())
-                        });
-                        if linear {
-                            self.report(mismatch(format!("sampled through `{sampler}`, but the format cannot be filtered"))
-                                .help("use a sampler with `filter: Nearest`, textureLoad, or a filterable format"));
-                            return None;
-                        }
-                    }
-                }
-                let sample_type = match (scalar, depth) {
-                    (_, true) => wgpu::TextureSampleType::Depth,
-                    (ScalarClass::Float, _) => wgpu::TextureSampleType::Float { filterable: filterable && !is_depth },
-                    (ScalarClass::Uint, _) => wgpu::TextureSampleType::Uint,
-                    (ScalarClass::Sint, _) => wgpu::TextureSampleType::Sint,
-                };
-                let ty = wgpu::BindingType::Texture { sample_type, view_dimension: dimension, multisampled: false };
-                Some((ty, wgpu::TextureUsages::TEXTURE_BINDING))
-            }
-            TextureClass::Storage { format: declared, access, .. } => {
-                // naga's storage formats bear wgpu's names.
-                if *declared != format!("{format:?}") {
-                    self.report(mismatch(format!("the shader declares {declared}")));
-                    return None;
-                }
-                let both = *access == wgpu::StorageTextureAccess::ReadWrite;
-                let allowed = features.allowed_usages.contains(wgpu::TextureUsages::STORAGE_BINDING)
-                    && (!both || features.flags.contains(wgpu::TextureFormatFeatureFlags::STORAGE_READ_WRITE));
-                if !allowed {
-                    self.report(mismatch("the adapter offers no storage access of this kind".to_owned()).help(
-                        "R32Uint, R32Float and the Rgba formats of 8, 16 and 32 bits can be written by every adapter",
-                    ));
-                    return None;
-                }
-                if part.mips.len() > 1 {
-                    self.report(
-                        Diagnostic::error(Code::ResourceKind, format!("`{name}` has several mips, a storage texture is one"))
-                            .at(global.span.clone(), "bind a view of one mip"),
-                    );
-                    return None;
-                }
-                let ty = wgpu::BindingType::StorageTexture { access: *access, format, view_dimension: dimension };
-                Some((ty, wgpu::TextureUsages::STORAGE_BINDING))
-            }
-        }
-    }
-
-    /// Fills the `params` uniform member by member by name.
-    fn params_block(&mut self, global: &Global, size: u64, members: &[Member]) -> Option<Vec<u8>> {
-        let mut bytes = vec![0u8; usize::try_from(size).ok()?];
-        let mut complete = true;
-        for member in members {
-            let Some((param, value)) = self.params.get(&member.name) else {
-                let known: Vec<&str> = self.params.declared.iter().map(|param| param.name.as_str()).collect();
-                self.report(
-                    Diagnostic::error(Code::UnknownParam, format!("no param is called `{}`, which the shader's `params` holds", member.name))
-                        .at(global.span.clone(), "")
-                        .help(match suggestion(&member.name, known) {
-                            Some(hint) => hint,
-                            None => format!("declare it: `params: [(name: \"{}\", type: …, default: …)]`", member.name),
-                        }),
-                );
-                complete = false;
-                continue;
-            };
-            let (expected, words): ((ScalarClass, u32), Vec<u32>) = match (&param.ty, value) {
-                (_, ParamValue::F32(value)) => ((ScalarClass::Float, 1), vec![value.to_bits()]),
-                (_, ParamValue::I32(value)) => ((ScalarClass::Sint, 1), vec![value.cast_unsigned()]),
-                (_, ParamValue::Vec(values)) => {
-                    let width = values.len() as u32;
-                    ((ScalarClass::Float, width), values.iter().map(|value| value.to_bits()).collect())
-                }
-                (ParamType::U32 | ParamType::Bool | ParamType::Choice(_), value) => {
-                    ((ScalarClass::Uint, 1), vec![param.as_u32(value).unwrap_or(0)])
-                }
-                _ => continue,
-            };
-            if member.vector != Some(expected) {
-                let (scalar, width) = expected;
-                let error = Diagnostic::error(
-                    Code::LayoutMismatch,
-                    format!("param `{}` is {} × {scalar} in a shader, `params.{}` is not", param.name.value, width, member.name),
-                )
-                .at(global.span.clone(), "in this uniform")
-                .at(param.name.span.clone(), format!("declared {} here", param.ty));
-                self.report(error);
-                complete = false;
-                continue;
-            }
-            let at = usize::try_from(member.offset).ok()?;
-            for (index, word) in words.iter().enumerate() {
-                bytes.get_mut(at + index * 4..at + index * 4 + 4)?.copy_from_slice(&word.to_le_bytes());
-            }
-        }
-        complete.then_some(bytes)
     }
 
     /// The numbers of bindings that wgpu limits per stage.
     fn counts(&mut self, linked: &LinkedProgram, pass: &LinkedPass) {
-        let count = |is: fn(&wgpu::BindingType) -> bool| linked.bindings.iter().filter(|binding| is(&binding.ty)).count();
+        let count = |is: fn(&wgpu::BindingType) -> bool| {
+            linked
+                .bindings
+                .iter()
+                .filter(|binding| is(&binding.ty))
+                .count()
+        };
         let limits = self.limits;
         let checks: [(&str, usize, u32); 4] = [
             (
                 "storage buffers",
-                count(|ty| matches!(ty, wgpu::BindingType::Buffer { ty: wgpu::BufferBindingType::Storage { .. }, .. })),
+                count(|ty| {
+                    matches!(
+                        ty,
+                        wgpu::BindingType::Buffer {
+                            ty: wgpu::BufferBindingType::Storage { .. },
+                            ..
+                        }
+                    )
+                }),
                 limits.max_storage_buffers_per_shader_stage,
             ),
-            ("textures", count(|ty| matches!(ty, wgpu::BindingType::Texture { .. })), limits.max_sampled_textures_per_shader_stage),
+            (
+                "textures",
+                count(|ty| matches!(ty, wgpu::BindingType::Texture { .. })),
+                limits.max_sampled_textures_per_shader_stage,
+            ),
             (
                 "storage textures",
                 count(|ty| matches!(ty, wgpu::BindingType::StorageTexture { .. })),
                 limits.max_storage_textures_per_shader_stage,
             ),
-            ("samplers", count(|ty| matches!(ty, wgpu::BindingType::Sampler(_))), limits.max_samplers_per_shader_stage),
+            (
+                "samplers",
+                count(|ty| matches!(ty, wgpu::BindingType::Sampler(_))),
+                limits.max_samplers_per_shader_stage,
+            ),
         ];
         for (what, number, most) in checks {
             if number > most as usize {

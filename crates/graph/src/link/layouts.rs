@@ -27,8 +27,19 @@ struct Seen {
 impl Layouts {
     /// A shader sees the buffer through this global.
     pub fn see(&mut self, id: ResourceId, global: &Global) {
-        if let Class::Storage { fixed, stride, layout, .. } = &global.class {
-            let seen = Seen { fixed: *fixed, stride: *stride, layout: layout.clone(), span: global.span.clone() };
+        if let Class::Storage {
+            fixed,
+            stride,
+            layout,
+            ..
+        } = &global.class
+        {
+            let seen = Seen {
+                fixed: *fixed,
+                stride: *stride,
+                layout: layout.clone(),
+                span: global.span.clone(),
+            };
             self.seen.entry(id).or_default().push(seen);
         }
     }
@@ -40,12 +51,22 @@ impl Layouts {
     }
 
     /// The first buffer is copied onto the second: they have one size.
-    pub fn same(&mut self, from: (ResourceId, &Located<String>), to: (ResourceId, &Located<String>)) {
-        self.same.push([from, to].map(|(id, name)| (id, name.clone())));
+    pub fn same(
+        &mut self,
+        from: (ResourceId, &Located<String>),
+        to: (ResourceId, &Located<String>),
+    ) {
+        self.same
+            .push([from, to].map(|(id, name)| (id, name.clone())));
     }
 
     /// Gives every buffer its size, or says why it has none.
-    pub fn settle(self, resources: &mut Resources<'_>, limits: &wgpu::Limits, diagnostics: &mut Vec<Diagnostic>) {
+    pub fn settle(
+        self,
+        resources: &mut Resources<'_>,
+        limits: &wgpu::Limits,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) {
         for index in 0..resources.list.len() {
             let id = ResourceId(index);
             let seen = self.seen.get(&id).map_or(&[][..], Vec::as_slice);
@@ -59,30 +80,53 @@ impl Layouts {
                     for view in seen {
                         let fits = match view.stride {
                             Some(stride) => view.fixed == 0 && stride == provided.stride,
-                            None => provided.items.is_none_or(|items| view.fixed <= items.saturating_mul(provided.stride)),
+                            None => provided.items.is_none_or(|items| {
+                                view.fixed <= items.saturating_mul(provided.stride)
+                            }),
                         };
                         if !fits {
                             diagnostics.push(
-                                Diagnostic::error(Code::LayoutMismatch, format!("`{}` has items of {} bytes", resource.name, provided.stride))
-                                    .at(view.span.clone(), format!("the shader sees {}", view.layout)),
+                                Diagnostic::error(
+                                    Code::LayoutMismatch,
+                                    format!(
+                                        "`{}` has items of {} bytes",
+                                        resource.name, provided.stride
+                                    ),
+                                )
+                                .at(
+                                    view.span.clone(),
+                                    format!("the shader sees {}", view.layout),
+                                ),
                             );
                         }
                     }
                 }
-                ResourceKind::Buffer(buffer) => match self.bytes(id, buffer.count, seen, &resource.name, resource.declared.as_ref()) {
+                ResourceKind::Buffer(buffer) => match self.bytes(
+                    id,
+                    buffer.count,
+                    seen,
+                    &resource.name,
+                    resource.declared.as_ref(),
+                ) {
                     Ok(bytes) => {
-                        let most = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
+                        let most = limits
+                            .max_buffer_size
+                            .min(limits.max_storage_buffer_binding_size);
                         if bytes > most {
                             let mut error = Diagnostic::error(
                                 Code::Size,
-                                format!("`{}` needs {bytes} bytes, more than the adapter can bind", resource.name),
+                                format!(
+                                    "`{}` needs {bytes} bytes, more than the adapter can bind",
+                                    resource.name
+                                ),
                             )
                             .help(format!("its limit is {most} bytes"));
                             if let Some(span) = &resource.declared {
                                 error = error.at(span.clone(), "");
                             }
                             diagnostics.push(error);
-                        } else if let ResourceKind::Buffer(buffer) = &mut resources.list[index].kind {
+                        } else if let ResourceKind::Buffer(buffer) = &mut resources.list[index].kind
+                        {
                             buffer.bytes = bytes;
                         }
                     }
@@ -99,7 +143,9 @@ impl Layouts {
     fn equal_sizes(&self, resources: &mut Resources<'_>, diagnostics: &mut Vec<Diagnostic>) {
         let bytes = |resources: &Resources<'_>, id: ResourceId| match &resources.list[id.0].kind {
             ResourceKind::Buffer(buffer) => buffer.bytes,
-            ResourceKind::Provided(provided) => provided.items.unwrap_or(0).saturating_mul(provided.stride),
+            ResourceKind::Provided(provided) => {
+                provided.items.unwrap_or(0).saturating_mul(provided.stride)
+            }
             _ => 0,
         };
         // Copies of copies: each round sizes one more link at least.
@@ -118,10 +164,16 @@ impl Layouts {
             let (from_bytes, to_bytes) = (bytes(resources, *a), bytes(resources, *b));
             if from_bytes != to_bytes {
                 diagnostics.push(
-                    Diagnostic::error(Code::Size, format!("`{}` cannot be copied onto `{}`: they differ in size", from.value, to.value))
-                        .at(from.span.clone(), format!("{from_bytes} bytes"))
-                        .at(to.span.clone(), format!("{to_bytes} bytes"))
-                        .help("give both the same `count`"),
+                    Diagnostic::error(
+                        Code::Size,
+                        format!(
+                            "`{}` cannot be copied onto `{}`: they differ in size",
+                            from.value, to.value
+                        ),
+                    )
+                    .at(from.span.clone(), format!("{from_bytes} bytes"))
+                    .at(to.span.clone(), format!("{to_bytes} bytes"))
+                    .help("give both the same `count`"),
                 );
             }
         }
@@ -141,10 +193,15 @@ impl Layouts {
         for view in seen {
             let size = match (view.stride, count) {
                 (None, _) => view.fixed,
-                (Some(stride), Some(count)) => view.fixed.saturating_add(stride.saturating_mul(count)),
+                (Some(stride), Some(count)) => {
+                    view.fixed.saturating_add(stride.saturating_mul(count))
+                }
                 (Some(_), None) => {
-                    let mut error = Diagnostic::error(Code::Size, format!("`{name}` does not say how many items it has"))
-                        .at(view.span.clone(), "this shader sees an array of any length");
+                    let mut error = Diagnostic::error(
+                        Code::Size,
+                        format!("`{name}` does not say how many items it has"),
+                    )
+                    .at(view.span.clone(), "this shader sees an array of any length");
                     if let Some(span) = declared {
                         error = error.at(span.clone(), "give it a `count`");
                     }
@@ -154,7 +211,9 @@ impl Layouts {
             bytes = Some(bytes.unwrap_or(0).max(size));
         }
         // wgpu copies and clears in fours.
-        bytes.map(|bytes| bytes.checked_next_multiple_of(4).unwrap_or(u64::MAX).max(4)).ok_or(None)
+        bytes
+            .map(|bytes| bytes.checked_next_multiple_of(4).unwrap_or(u64::MAX).max(4))
+            .ok_or(None)
     }
 }
 
@@ -163,9 +222,12 @@ fn disagreement(name: &str, seen: &[Seen]) -> Option<Diagnostic> {
     let first = seen.first()?;
     let other = seen.iter().find(|view| view.layout != first.layout)?;
     Some(
-        Diagnostic::error(Code::LayoutMismatch, format!("two shaders see `{name}` with different layouts"))
-            .at(other.span.clone(), format!("here it is {}", other.layout))
-            .at(first.span.clone(), format!("here it is {}", first.layout))
-            .help("declare the item type once, in a shared module that both import"),
+        Diagnostic::error(
+            Code::LayoutMismatch,
+            format!("two shaders see `{name}` with different layouts"),
+        )
+        .at(other.span.clone(), format!("here it is {}", other.layout))
+        .at(first.span.clone(), format!("here it is {}", first.layout))
+        .help("declare the item type once, in a shared module that both import"),
     )
 }

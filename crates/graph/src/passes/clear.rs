@@ -1,6 +1,10 @@
 //! `Clear`: a whole texture to a value, or a whole buffer to zero.
 
-use crate::{document::located::Located, registry::{Lowering, PassKind}, step::Step};
+use crate::{
+    document::located::Located,
+    registry::{Lowering, PassKind},
+    step::Step,
+};
 use serde::Deserialize;
 
 /// Body of a `Clear` pass.
@@ -14,6 +18,9 @@ pub struct Clear {
 
 impl PassKind for Clear {
     fn lower(&self, pass: &mut Lowering<'_>) {
-        pass.step(Step::Clear { target: self.target.clone(), value: self.value });
+        pass.step(Step::Clear {
+            target: self.target.clone(),
+            value: self.value,
+        });
     }
 }

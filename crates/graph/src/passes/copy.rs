@@ -1,6 +1,10 @@
 //! `Copy`: a whole texture or buffer onto another of equal format and size.
 
-use crate::{document::located::Located, registry::{Lowering, PassKind}, step::Step};
+use crate::{
+    document::located::Located,
+    registry::{Lowering, PassKind},
+    step::Step,
+};
 use serde::Deserialize;
 
 /// Body of a `Copy` pass.
@@ -13,6 +17,9 @@ pub struct Copy {
 
 impl PassKind for Copy {
     fn lower(&self, pass: &mut Lowering<'_>) {
-        pass.step(Step::Copy { from: self.from.clone(), to: self.to.clone() });
+        pass.step(Step::Copy {
+            from: self.from.clone(),
+            to: self.to.clone(),
+        });
     }
 }

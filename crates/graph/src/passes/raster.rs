@@ -105,7 +105,10 @@ impl ColorEntry {
                 dst_factor: wgpu::BlendFactor::One,
                 operation,
             };
-            wgpu::BlendState { color: component, alpha: component }
+            wgpu::BlendState {
+                color: component,
+                alpha: component,
+            }
         };
         ColorTarget {
             target: self.target.clone(),
@@ -185,7 +188,11 @@ impl FromParam for Face {
             _ => None,
         };
         match (&param.ty, value) {
-            (ParamType::Choice(words), ParamValue::Choice(word)) if words.iter().all(|word| face(word).is_some()) => face(word),
+            (ParamType::Choice(words), ParamValue::Choice(word))
+                if words.iter().all(|word| face(word).is_some()) =>
+            {
+                face(word)
+            }
             _ => None,
         }
     }
@@ -222,14 +229,21 @@ impl PassKind for Raster {
             write: depth.write,
             bias: wgpu::DepthBiasState {
                 constant: depth.bias.constant,
-                slope_scale: depth.bias.slope_scale.as_ref().map_or(0.0, |scale| pass.value(scale, 0.0)),
+                slope_scale: depth
+                    .bias
+                    .slope_scale
+                    .as_ref()
+                    .map_or(0.0, |scale| pass.value(scale, 0.0)),
                 clamp: depth.bias.clamp,
             },
         });
         let call = match &self.draw {
             Call::Vertices(count) => DrawCall::Direct {
                 count: count.clone(),
-                instances: self.instances.clone().unwrap_or(Count::Number(Value::Literal(1))),
+                instances: self
+                    .instances
+                    .clone()
+                    .unwrap_or(Count::Number(Value::Literal(1))),
             },
             Call::Indirect(buffer) => DrawCall::Indirect(buffer.clone()),
         };
@@ -252,6 +266,13 @@ impl PassKind for Raster {
             ..wgpu::PrimitiveState::default()
         };
         let colors = self.color.iter().map(ColorEntry::target).collect();
-        pass.step(Step::Draw(Draw { program, fullscreen: false, colors, depth, call, primitive }));
+        pass.step(Step::Draw(Draw {
+            program,
+            fullscreen: false,
+            colors,
+            depth,
+            call,
+            primitive,
+        }));
     }
 }

@@ -24,7 +24,10 @@ pub(crate) struct Expanded {
 impl Expanded {
     /// The place in the author's file of a place in the expanded text.
     pub fn locate(&self, range: Range<usize>) -> Span {
-        let index = self.pieces.partition_point(|(start, ..)| *start <= range.start).saturating_sub(1);
+        let index = self
+            .pieces
+            .partition_point(|(start, ..)| *start <= range.start)
+            .saturating_sub(1);
         match self.pieces.get(index) {
             Some((start, file, offset)) => {
                 let from = (offset + range.start - start).min(file.text.len());
@@ -54,14 +57,24 @@ pub(crate) struct ShaderFiles<'a> {
 
 impl<'a> ShaderFiles<'a> {
     pub fn new(sources: &'a dyn Sources, document: &'a str) -> Self {
-        Self { sources, document, read: HashMap::new() }
+        Self {
+            sources,
+            document,
+            read: HashMap::new(),
+        }
     }
 
     fn find(&mut self, candidates: &[String]) -> Result<Option<SourceFile>, String> {
         for path in candidates {
             if !self.read.contains_key(path) {
-                let file = self.sources.read(path).map_err(|why| format!("{path}: {why}"))?;
-                self.read.insert(path.clone(), file.map(|text: Arc<str>| SourceFile::new(path.as_str(), text)));
+                let file = self
+                    .sources
+                    .read(path)
+                    .map_err(|why| format!("{path}: {why}"))?;
+                self.read.insert(
+                    path.clone(),
+                    file.map(|text: Arc<str>| SourceFile::new(path.as_str(), text)),
+                );
             }
             if let Some(Some(file)) = self.read.get(path) {
                 return Ok(Some(file.clone()));
@@ -73,7 +86,9 @@ impl<'a> ShaderFiles<'a> {
     /// The shader `name` with its imports in place; `wanted` is where the document asks for it.
     pub fn expand(&mut self, name: &str, wanted: &Span) -> Result<Expanded, Diagnostic> {
         let candidates = shader_candidates(self.document, name);
-        let missing = |message: String| Diagnostic::error(Code::MissingFile, message).at(wanted.clone(), "asked for here");
+        let missing = |message: String| {
+            Diagnostic::error(Code::MissingFile, message).at(wanted.clone(), "asked for here")
+        };
         if escapes(name) {
             return Err(missing(format!("the shader `{name}` lies outside the shader folders"))
                 .help("shaders stand beside the document or in shaders/, and are named without folder signs like `..`"));
@@ -81,11 +96,18 @@ impl<'a> ShaderFiles<'a> {
         let file = match self.find(&candidates) {
             Ok(Some(file)) => file,
             Ok(None) => {
-                return Err(missing(format!("there is no shader `{name}.wgsl`")).help(self.searched(&candidates, name)));
+                return Err(missing(format!("there is no shader `{name}.wgsl`"))
+                    .help(self.searched(&candidates, name)));
             }
-            Err(why) => return Err(missing(format!("the shader `{name}.wgsl` cannot be read")).help(why)),
+            Err(why) => {
+                return Err(missing(format!("the shader `{name}.wgsl` cannot be read")).help(why));
+            }
         };
-        let mut expanded = Expanded { text: String::new(), file: file.clone(), pieces: Vec::new() };
+        let mut expanded = Expanded {
+            text: String::new(),
+            file: file.clone(),
+            pieces: Vec::new(),
+        };
         self.append(&file, &mut expanded, &mut vec![file.name.to_string()], 0)?;
         Ok(expanded)
     }
@@ -98,14 +120,22 @@ impl<'a> ShaderFiles<'a> {
             .flat_map(|folder| self.sources.list(folder))
             .filter_map(|file| file.strip_suffix(".wgsl").map(str::to_owned))
             .collect();
-        if let Some(hint) = suggestion(name, known.iter().map(String::as_str)).filter(|hint| hint.starts_with("did")) {
+        if let Some(hint) = suggestion(name, known.iter().map(String::as_str))
+            .filter(|hint| hint.starts_with("did"))
+        {
             // Writing to a String cannot fail.
             let _ = write!(text, "; {hint}");
         }
         text
     }
 
-    fn append(&mut self, file: &SourceFile, into: &mut Expanded, seen: &mut Vec<String>, depth: usize) -> Result<(), Diagnostic> {
+    fn append(
+        &mut self,
+        file: &SourceFile,
+        into: &mut Expanded,
+        seen: &mut Vec<String>,
+        depth: usize,
+    ) -> Result<(), Diagnostic> {
         let mut at = 0;
         into.pieces.push((into.text.len(), file.clone(), 0));
         for line in file.text.split_inclusive('\n') {
@@ -116,35 +146,52 @@ impl<'a> ShaderFiles<'a> {
                 continue;
             };
             let range = start..start + line.trim_end().len();
-            let path = rest.trim().strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
+            let path = rest
+                .trim()
+                .strip_prefix('"')
+                .and_then(|rest| rest.strip_suffix('"'));
             let Some(path) = path.filter(|path| !path.is_empty()) else {
-                return Err(Diagnostic::error(Code::Shader, "an import names a file in quotes")
-                    .at(file.span(range), "")
-                    .help("write #import \"shared/camera.wgsl\""));
+                return Err(
+                    Diagnostic::error(Code::Shader, "an import names a file in quotes")
+                        .at(file.span(range), "")
+                        .help("write #import \"shared/camera.wgsl\""),
+                );
             };
             if escapes(path) {
-                return Err(Diagnostic::error(Code::Shader, format!("the import `{path}` leaves the shader folder"))
-                    .at(file.span(range), "")
-                    .help("imports name files in the importing file's folder or in shaders/"));
+                return Err(Diagnostic::error(
+                    Code::Shader,
+                    format!("the import `{path}` leaves the shader folder"),
+                )
+                .at(file.span(range), "")
+                .help("imports name files in the importing file's folder or in shaders/"));
             }
             let candidates = import_candidates(&file.name, path);
             let imported = match self.find(&candidates) {
                 Ok(Some(imported)) => imported,
                 Ok(None) => {
-                    return Err(Diagnostic::error(Code::MissingFile, format!("there is no file `{path}` to import"))
-                        .at(file.span(range), "")
-                        .help(format!("looked for {}", candidates.join(", "))));
+                    return Err(Diagnostic::error(
+                        Code::MissingFile,
+                        format!("there is no file `{path}` to import"),
+                    )
+                    .at(file.span(range), "")
+                    .help(format!("looked for {}", candidates.join(", "))));
                 }
                 Err(why) => {
-                    return Err(Diagnostic::error(Code::MissingFile, format!("`{path}` cannot be read"))
-                        .at(file.span(range), "")
-                        .help(why));
+                    return Err(Diagnostic::error(
+                        Code::MissingFile,
+                        format!("`{path}` cannot be read"),
+                    )
+                    .at(file.span(range), "")
+                    .help(why));
                 }
             };
             // Once only: this also ends cycles.
             if !seen.contains(&imported.name.to_string()) {
                 if depth == DEEPEST_IMPORT {
-                    return Err(Diagnostic::error(Code::Shader, "imports are nested too deep").at(file.span(range), ""));
+                    return Err(
+                        Diagnostic::error(Code::Shader, "imports are nested too deep")
+                            .at(file.span(range), ""),
+                    );
                 }
                 seen.push(imported.name.to_string());
                 self.append(&imported, into, seen, depth + 1)?;

@@ -2,7 +2,10 @@
 
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
-use skiagraph_graph::{Diagnostics, Graph, NoProvider, Plan, PlanRequest, Provided, Provider, ProviderError, Registry, Sources};
+use skiagraph_graph::{
+    Diagnostics, Graph, NoProvider, Plan, PlanRequest, Provided, Provider, ProviderError, Registry,
+    Sources,
+};
 use std::{collections::BTreeMap, sync::Arc};
 
 /// Files in memory.
@@ -12,7 +15,12 @@ pub struct Files(pub BTreeMap<String, String>);
 impl Files {
     /// The files of these paths and texts.
     pub fn new<const N: usize>(files: [(&str, &str); N]) -> Self {
-        Self(files.into_iter().map(|(path, text)| (path.to_owned(), text.to_owned())).collect())
+        Self(
+            files
+                .into_iter()
+                .map(|(path, text)| (path.to_owned(), text.to_owned()))
+                .collect(),
+        )
     }
 
     /// One file more.
@@ -41,23 +49,52 @@ pub struct Triangle;
 
 impl Provider for Triangle {
     fn names(&self) -> Vec<String> {
-        ["scene.positions", "scene.indices", "camera"].map(str::to_owned).to_vec()
+        ["scene.positions", "scene.indices", "camera"]
+            .map(str::to_owned)
+            .to_vec()
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {
         match name {
-            "scene.positions" => Some(Provided { items: Some(3), stride: 16, uniform: false }),
-            "scene.indices" => Some(Provided { items: Some(3), stride: 4, uniform: false }),
-            "camera" => Some(Provided { items: Some(1), stride: 64, uniform: true }),
+            "scene.positions" => Some(Provided {
+                items: Some(3),
+                stride: 16,
+                uniform: false,
+            }),
+            "scene.indices" => Some(Provided {
+                items: Some(3),
+                stride: 4,
+                uniform: false,
+            }),
+            "camera" => Some(Provided {
+                items: Some(1),
+                stride: 64,
+                uniform: true,
+            }),
             _ => None,
         }
     }
 
-    fn build(&mut self, name: &str, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<wgpu::Buffer, ProviderError> {
-        let positions: [[f32; 4]; 3] = [[-1.0, -1.0, 0.25, 1.0], [3.0, -1.0, 0.25, 1.0], [-1.0, 3.0, 0.25, 1.0]];
+    fn build(
+        &mut self,
+        name: &str,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<wgpu::Buffer, ProviderError> {
+        let positions: [[f32; 4]; 3] = [
+            [-1.0, -1.0, 0.25, 1.0],
+            [3.0, -1.0, 0.25, 1.0],
+            [-1.0, 3.0, 0.25, 1.0],
+        ];
         let (bytes, usage): (Vec<u8>, _) = match name {
-            "scene.positions" => (bytemuck::cast_slice(&positions).to_vec(), wgpu::BufferUsages::STORAGE),
-            "scene.indices" => (bytemuck::cast_slice(&[0u32, 1, 2]).to_vec(), wgpu::BufferUsages::STORAGE),
+            "scene.positions" => (
+                bytemuck::cast_slice(&positions).to_vec(),
+                wgpu::BufferUsages::STORAGE,
+            ),
+            "scene.indices" => (
+                bytemuck::cast_slice(&[0u32, 1, 2]).to_vec(),
+                wgpu::BufferUsages::STORAGE,
+            ),
             "camera" => (vec![0; 64], wgpu::BufferUsages::UNIFORM),
             _ => return Err(ProviderError(format!("there is no `{name}`"))),
         };

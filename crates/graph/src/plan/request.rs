@@ -1,0 +1,85 @@
+//! What a plan is asked for, and what it tells.
+
+use crate::{document::params::ParamValue, provider::Provider};
+use std::collections::BTreeMap;
+
+/// What a plan is made for.
+pub struct PlanRequest<'a> {
+    /// Width and height in pixels.
+    pub viewport: [u32; 2],
+    /// Values of params; where missing, the document's default.
+    pub params: BTreeMap<String, ParamValue>,
+    /// The outputs that are wanted; `None` = all that the document declares.
+    pub outputs: Option<Vec<String>>,
+    /// Materials that are to be read back beside the outputs.
+    pub captures: Vec<Capture>,
+    /// Limits that the device will have.
+    pub limits: wgpu::Limits,
+    /// Features that the device will have.
+    pub features: wgpu::Features,
+    /// Describes the provided resources.
+    pub provider: &'a dyn Provider,
+}
+
+impl<'a> PlanRequest<'a> {
+    /// A request with wgpu's default limits, no features, default params and all outputs.
+    pub fn new(viewport: [u32; 2], provider: &'a dyn Provider) -> Self {
+        Self {
+            viewport,
+            params: BTreeMap::new(),
+            outputs: None,
+            captures: Vec::new(),
+            limits: wgpu::Limits::default(),
+            features: wgpu::Features::empty(),
+            provider,
+        }
+    }
+}
+
+/// A material to be read back.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Capture {
+    /// Material, view or provided resource.
+    pub material: String,
+    /// The pass after which its content is wanted; `None` = at the end of the frame.
+    pub after: Option<String>,
+}
+
+impl Capture {
+    /// The name under which it is read back: `material` or `material@pass`.
+    pub fn name(&self) -> String {
+        match &self.after {
+            Some(pass) => format!("{}@{pass}", self.material),
+            None => self.material.clone(),
+        }
+    }
+}
+
+/// A live pass.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PassSummary {
+    /// Name.
+    pub name: String,
+    /// Kind, as the document writes it.
+    pub kind: String,
+}
+
+/// A pass that does not run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CulledPass {
+    /// Name.
+    pub name: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// Something that can be read back.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OutputSummary {
+    /// Name of the output or capture.
+    pub name: String,
+    /// Format of a texture; `None` for a buffer.
+    pub format: Option<wgpu::TextureFormat>,
+    /// Texels of a texture; `[bytes, 1]` of a buffer.
+    pub size: [u32; 2],
+}

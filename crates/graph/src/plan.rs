@@ -96,19 +96,12 @@ impl Graph {
         layouts.settle(&mut resources, &request.limits, &mut diagnostics);
         self.check_captures(request, &mut diagnostics);
         // Versions mean nothing while passes are missing.
-        if !complete
-            || diagnostics
-                .iter()
-                .any(|diagnostic| diagnostic.severity == Severity::Error)
-        {
+        if !complete || has_errors(&diagnostics) {
             return Err(Diagnostics::new(diagnostics));
         }
         let order = order(&passes, &resources, &mut diagnostics);
         let readable = self.readable(request, &mut resources, &order, &mut diagnostics);
-        if diagnostics
-            .iter()
-            .any(|diagnostic| diagnostic.severity == Severity::Error)
-        {
+        if has_errors(&diagnostics) {
             return Err(Diagnostics::new(diagnostics));
         }
         let roots: BTreeSet<usize> = readable
@@ -119,7 +112,7 @@ impl Graph {
         let schedule = schedule(&order, &live);
         let mut lifetimes = lifetimes(&passes, &schedule);
         unsized_buffers(&lifetimes, &resources, &mut diagnostics);
-        if !diagnostics.is_empty() {
+        if has_errors(&diagnostics) {
             return Err(Diagnostics::new(diagnostics));
         }
         for (_, target) in &readable {
@@ -284,6 +277,12 @@ impl Graph {
     }
 }
 
+fn has_errors(diagnostics: &[Diagnostic]) -> bool {
+    diagnostics
+        .iter()
+        .any(|diagnostic| diagnostic.severity == Severity::Error)
+}
+
 /// A buffer that is only cleared or copied has no size: no shader says what its items are.
 fn unsized_buffers(
     lifetimes: &BTreeMap<ResourceId, Lifetime>,
@@ -327,7 +326,21 @@ impl Linker<'_, '_> {
     fn capture(&mut self, capture: &Capture, graph: &Graph) -> Option<LinkedPass> {
         let name = Located::new(capture.name(), graph.place());
         let from = Located::new(capture.material.clone(), graph.place());
-        let target = self.expect(&from)?;
+        let Some(target) = self.resources.find(&from) else {
+            if !self.resources.is_broken(&from) {
+                let known = self.resources.known();
+                let message = format!(
+                    "`{}` has no material `{}` to read back",
+                    graph.path(),
+                    from.value
+                );
+                self.report(
+                    Diagnostic::error(Code::Output, message)
+                        .suggest(&from, known.iter().map(String::as_str)),
+                );
+            }
+            return None;
+        };
         let kind = match &self.resources.get(target.id).kind {
             ResourceKind::Texture(texture) => {
                 let mut copy = texture.clone();

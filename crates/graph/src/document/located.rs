@@ -12,7 +12,7 @@ use serde::{
     Deserialize, Deserializer,
     de::{DeserializeOwned, DeserializeSeed, Error as _, IntoDeserializer, MapAccess, Visitor},
 };
-use std::{cell::RefCell, fmt, ops::Deref, ops::Range};
+use std::{cell::RefCell, collections::HashSet, fmt, ops::Deref, ops::Range};
 
 /// A value that knows where it stands.
 #[derive(Clone)]
@@ -391,12 +391,11 @@ pub fn from_fields<T: DeserializeOwned>(fields: &[Field], whole: &Span) -> Resul
         }
     }
     // ron would report it before it has the place of the second one.
-    let repeats = |(index, field): &(usize, &Field)| {
-        fields[..*index]
-            .iter()
-            .any(|earlier| earlier.name.value == field.name.value)
-    };
-    if let Some((_, field)) = fields.iter().enumerate().find(repeats) {
+    let mut seen = HashSet::new();
+    if let Some(field) = fields
+        .iter()
+        .find(|field| !seen.insert(field.name.as_str()))
+    {
         return Err(twice(&field.name, field.name.span.clone()));
     }
     let node = Node {

@@ -14,7 +14,10 @@ use located::{Field, Located, Node, from_fields};
 use materials::Material;
 use params::{Param, ParamEntry};
 use serde::Deserialize;
-use std::{collections::HashMap, sync::Arc};
+use std::{
+    collections::{HashMap, HashSet},
+    sync::Arc,
+};
 use value::Pairs;
 
 /// The only document format there is.
@@ -276,11 +279,9 @@ fn pass(node: &Node, registry: &Registry) -> Result<PassEntry, Diagnostic> {
         .into_iter()
         .partition(|field| ["name", "shader", "bind"].contains(&field.name.as_str()));
     let header: Header = from_fields(&header, &tag.span)?;
-    for (index, (global, _)) in header.bind.0.iter().enumerate() {
-        if header.bind.0[..index]
-            .iter()
-            .any(|(earlier, _)| earlier.value == global.value)
-        {
+    let mut bound = HashSet::new();
+    for (global, _) in &header.bind.0 {
+        if !bound.insert(global.as_str()) {
             return Err(Diagnostic::error(
                 Code::DuplicateName,
                 format!("`{}` is bound twice", **global),

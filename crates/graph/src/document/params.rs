@@ -164,10 +164,8 @@ impl Param {
             description: entry.description,
         };
         if let ParamType::Choice(words) = &param.ty {
-            let repeated = words
-                .iter()
-                .enumerate()
-                .any(|(index, word)| words[..index].contains(word));
+            let different: std::collections::HashSet<&String> = words.iter().collect();
+            let repeated = different.len() < words.len();
             if words.is_empty() || repeated {
                 return Err((
                     place,

@@ -1,0 +1,67 @@
+//! Stores of documents and shaders: folders, layers, and what is said when a file is there but cannot be read.
+
+mod support;
+
+use skiagraph_graph::{FolderSources, LayeredSources, Sources};
+use support::Files;
+
+#[test]
+fn a_folder() {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let root = folder.path();
+    std::fs::create_dir(root.join("shaders")).expect("it can be made");
+    std::fs::write(root.join("shaders/b.wgsl"), "größer").expect("it can be written");
+    std::fs::write(root.join("shaders/a.wgsl"), [0xff]).expect("it can be written");
+    let sources = FolderSources {
+        root: root.to_owned(),
+    };
+    assert_eq!(sources.read("shaders/b.wgsl"), Ok(Some("größer".into())));
+    assert_eq!(sources.read("shaders/c.wgsl"), Ok(None));
+    assert_eq!(sources.read("shaders"), Ok(None), "a folder is no file");
+    assert_eq!(
+        sources.read("shaders/a.wgsl"),
+        Err("it is no text in UTF-8".to_owned())
+    );
+    assert_eq!(sources.list("shaders"), ["a.wgsl", "b.wgsl"]);
+    assert!(sources.list("nowhere").is_empty());
+    let absolute = root.join("shaders/b.wgsl");
+    let elsewhere = FolderSources {
+        root: root.join("shaders"),
+    };
+    assert_eq!(
+        elsewhere.read(&absolute.to_string_lossy()),
+        Ok(Some("größer".into()))
+    );
+}
+
+#[test]
+fn the_first_layer_that_has_a_file_wins() {
+    struct Unreadable;
+    impl Sources for Unreadable {
+        fn read(&self, path: &str) -> Result<Option<std::sync::Arc<str>>, String> {
+            if path == "locked" {
+                Err("locked".to_owned())
+            } else {
+                Ok(None)
+            }
+        }
+        fn list(&self, _: &str) -> Vec<String> {
+            Vec::new()
+        }
+    }
+    let upper = Files::new([("a", "upper"), ("f/x", "")]);
+    let lower = Files::new([
+        ("a", "lower"),
+        ("b", "lower"),
+        ("locked", "lower"),
+        ("f/x", ""),
+        ("f/y", ""),
+    ]);
+    let layers = LayeredSources(vec![Box::new(upper), Box::new(Unreadable), Box::new(lower)]);
+    assert_eq!(layers.read("a"), Ok(Some("upper".into())));
+    assert_eq!(layers.read("b"), Ok(Some("lower".into())));
+    assert_eq!(layers.read("c"), Ok(None));
+    // What is there but unreadable is not silently taken from elsewhere.
+    assert_eq!(layers.read("locked"), Err("locked".to_owned()));
+    assert_eq!(layers.list("f"), ["x", "y"]);
+}

@@ -1,6 +1,7 @@
 // Stage to append one shadow ray per pixel that faces the light, and to settle all other pixels; one thread per pixel.
 // Each workgroup claims its rays by one atomic, so that the count never leaves the GPU and neighbours stay together.
 
+#import "shared/camera.wgsl"
 #import "shared/light.wgsl"
 #import "shared/ray.wgsl"
 #import "shared/ids.wgsl"
@@ -55,9 +56,15 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>, @builtin(local_invocat
         slot += group_first;
         // The background has no receiver: its ray is empty.
         let reach = select(light.reach, -1.0, id == NO_PRIMITIVE);
-        rays[slot] = Ray(receiver.xyz, 0.0, light.towards, reach);
+        rays[slot] = Ray(receiver.xyz, own_rounding(receiver.xyz), light.towards, reach);
         ray_primitives[slot] = id;
         // Rays of pixels that ask nothing cost their time and change no pixel.
         ray_pixels[slot] = select(NO_PIXEL, pixel.y * viewport.x + pixel.x, asks);
     }
+}
+
+// What rounding may have moved the receiver by, half an ulp of its distance to the origin and to the eye: a surface that is met
+// sooner is the receiver's own, beyond an edge.
+fn own_rounding(receiver: vec3<f32>) -> f32 {
+    return 5.9604645e-8 * (length(receiver) + length(receiver - camera.eye));
 }

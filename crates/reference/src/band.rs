@@ -159,7 +159,7 @@ impl<'a> FuzzyRay<'a> {
         let (t, t_error) = self.distance(&corners, ball);
         let inside =
             |sign: f64, margin: f64| (0..3).all(|i| sign * edges[i] >= margin * thresholds[i]);
-        match Ray::hit_sheared(sheared, edges).filter(|hit| hit.t > 0.0) {
+        match Ray::hit_sheared(sheared, edges).filter(|hit| hit.t > self.ray.nearest) {
             Some(_) if t > t_error && (inside(1.0, 1.0) || inside(-1.0, 1.0)) => Contact::Robust,
             Some(_) => {
                 let near_open_edge = (0..3).any(|i| open[i] && edges[i].abs() < thresholds[i]);

@@ -179,7 +179,7 @@ impl<'a> Oracle<'a> {
     /// Classifies every pixel of a G-buffer. `primitives` holds the primitive id that each pixel shows, row by row from the
     /// top left, [`BACKGROUND`] for none. The receiver is where the ray through the pixel's centre meets the *plane* of that primitive: at a triangle's
     /// edge a rasteriser, which snaps vertices, may name a primitive that the centre lies slightly outside of, and the
-    /// point outside is then the receiver. Casters are two-sided and count at t > 0.
+    /// point outside is then the receiver. Casters are two-sided and count at t > 0 by more than f64 rounding.
     ///
     /// # Errors
     /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Light`], [`Error::Offset`], [`Error::Interrupted`].
@@ -328,7 +328,7 @@ impl<'a> Oracle<'a> {
         let mut occluded = false;
         self.tree.walk(&ray, stack, |caster, _| {
             if caster.primitive != excluded
-                && ray.hit(&caster.corners).is_some_and(|hit| hit.t > 0.0)
+                && ray.hit(&caster.corners).is_some_and(|hit| hit.t > ray.nearest)
             {
                 occluded = true;
                 return ControlFlow::Break(());

@@ -21,6 +21,8 @@ pub(crate) struct Ray {
     pub(crate) shear: [f64; 3],
     /// By how much boxes are widened on every side.
     pad: f64,
+    /// What f64 rounding may have moved the origin by along the ray: a surface met sooner is the origin's own, beyond an edge.
+    pub(crate) nearest: f64,
 }
 
 /// Where a ray meets a triangle.
@@ -70,6 +72,8 @@ impl Ray {
                 1.0 / d[longest],
             ],
             pad,
+            // Rounding of the origin and of t, up to grazing angles where it is met four times magnified.
+            nearest: (reach + origin.abs().max_element()) * (64.0 * f64::EPSILON),
         }
     }
 

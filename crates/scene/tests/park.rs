@@ -86,6 +86,20 @@ fn big_triangles_in_the_trees_and_tiny_ones_in_the_flowers() {
     assert!(median_area("tree 1") > 1.0, "{}", median_area("tree 1"));
 }
 
+#[test]
+fn no_flat_face_of_the_furniture_lies_along_the_light() {
+    let (scene, _) = &*PARK;
+    let towards = scene.light.towards();
+    for name in ["lawn", "bench", "planter"] {
+        let group = scene.mesh.groups.iter().find(|group| group.name == name);
+        for primitive in group.unwrap().triangles.clone() {
+            let [a, b, c] = scene.mesh.corners(primitive);
+            let cosine = (b - a).cross(c - a).normalize().dot(towards);
+            assert!(cosine.abs() > 0.03, "{name}, near {a}: {cosine}");
+        }
+    }
+}
+
 fn area([a, b, c]: [DVec3; 3]) -> f64 {
     (b - a).cross(c - a).length() / 2.0
 }
@@ -104,7 +118,7 @@ fn the_same_bits_everywhere() {
         .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
         });
-    assert_eq!(format!("{hash:016x}"), "27f2a1ac32791647");
+    assert_eq!(format!("{hash:016x}"), "f8793b64a85315ee");
 }
 
 #[test]
@@ -384,11 +398,11 @@ fn the_views_show_about_as_much_shadow_as_the_dissertations() {
             100.0 * f64::from(shadow) / f64::from(facing),
         );
         assert!(
-            (facing_here - facing_share).abs() < 10.0,
+            (facing_here - facing_share).abs() < 5.0,
             "{name}: {facing_here:.1} % face the light"
         );
         assert!(
-            (shadow_here - shadow_share).abs() < 15.0,
+            (shadow_here - shadow_share).abs() < 12.0,
             "{name}: {shadow_here:.1} % in shadow"
         );
     }

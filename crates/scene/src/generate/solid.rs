@@ -118,6 +118,50 @@ impl Builder {
         self.add(&points, &faces);
     }
 
+    /// A slab over `low`..`high`, its upper side a grid of `cells` × `cells` equal cells: f32 places a point on a triangle the
+    /// better the nearer its corners are.
+    pub fn slab(&mut self, low: DVec3, high: DVec3, cells: u32) {
+        let row = cells + 1;
+        let mut points: Vec<DVec3> = (0..row * row)
+            .map(|i| {
+                let (x, z) = (f64::from(i % row), f64::from(i / row));
+                let share = DVec3::new(x, f64::from(cells), z) / f64::from(cells);
+                low + (high - low) * share
+            })
+            .collect();
+        let mut faces = Vec::new();
+        for (x, z) in (0..cells).flat_map(|x| (0..cells).map(move |z| (x, z))) {
+            let [a, b] = [z * row + x, z * row + x + 1];
+            let [c, d] = [b + row, a + row];
+            faces.extend([[a, d, c], [a, c, b]]);
+        }
+        // Once around the grid, counter-clockwise as seen from above.
+        let rim: Vec<u32> = (0..cells)
+            .map(|i| i * row)
+            .chain((0..cells).map(|i| cells * row + i))
+            .chain((0..cells).map(|i| (cells - i) * row + cells))
+            .chain((0..cells).map(|i| cells - i))
+            .collect();
+        let below = points.len() as u32;
+        let lowered: Vec<DVec3> = rim
+            .iter()
+            .map(|&corner| points[corner as usize].with_y(low.y))
+            .collect();
+        points.extend(lowered);
+        let centre = points.len() as u32;
+        points.push(((low + high) * 0.5).with_y(low.y));
+        for (i, &corner) in rim.iter().enumerate() {
+            let next = (i + 1) % rim.len();
+            let [under, under_next] = [i, next].map(|i| below + i as u32);
+            faces.extend([
+                [under, under_next, rim[next]],
+                [under, rim[next], corner],
+                [centre, under_next, under],
+            ]);
+        }
+        self.add(&points, &faces);
+    }
+
     /// A tube of round sections along `path`, each point with its radius; the ends are flat.
     pub fn tube(&mut self, path: &[(DVec3, f64)], sides: u32) {
         let mut x = DVec3::X;

@@ -1,6 +1,6 @@
 //! The flower box: a planter and some fifty flowers of very small triangles.
 
-use super::{Builder, Frame, GAP};
+use super::{ACROSS_THE_LIGHT, Builder, Frame, GAP};
 use crate::generate::numbers::{Random, turn};
 use glam::DVec3;
 
@@ -13,7 +13,7 @@ const PITCH: f64 = 1.7;
 
 pub(super) fn flower_box(builder: &mut Builder) {
     // Its long side lies across the light, so that the shadows of all rows fall on the lawn behind.
-    let planter = Frame::upright(DVec3::new(-17.0, 0.0, 4.0), 0.152);
+    let planter = Frame::upright(DVec3::new(-17.0, 0.0, 4.0), ACROSS_THE_LIGHT);
     builder.group("planter");
     let wall = 0.4;
     let rings = [
@@ -67,7 +67,7 @@ fn leaves(builder: &mut Builder, foot: Frame, height: f64, inner: f64, random: &
         let along = (out + foot.y * rise).normalize();
         let origin = foot.at(0.0, y, 0.0) + out * inner;
         let frame = Frame::along(origin, along.cross(foot.y.cross(out)).normalize(), along);
-        builder.leaf(frame, PITCH * 0.5 - inner - 0.05, 0.3, 0.02, 12);
+        builder.leaf(frame, PITCH * 0.5 - inner - 0.05, 0.3, 0.02, 10);
     }
 }
 

@@ -1,12 +1,12 @@
 //! The bench and the lamp.
 
-use super::{Builder, Frame, GAP};
+use super::{ACROSS_THE_LIGHT, Builder, Frame, GAP};
 use glam::DVec3;
 
 /// A bench of slats on two frames, with a leaning back.
 pub(super) fn bench(builder: &mut Builder) {
     builder.group("bench");
-    let bench = Frame::upright(DVec3::new(8.0, 0.0, 18.0), 0.152);
+    let bench = Frame::upright(DVec3::new(4.0, 0.0, 15.0), ACROSS_THE_LIGHT);
     let part = |builder: &mut Builder, centre: [f64; 3], half: [f64; 3]| {
         let frame = Frame {
             origin: bench.at(centre[0], centre[1], centre[2]),
@@ -15,7 +15,9 @@ pub(super) fn bench(builder: &mut Builder) {
         builder.cuboid(frame, DVec3::from(half));
     };
     const SEAT: f64 = 5.5;
-    for x in [-8.0, 8.0] {
+    /// Where the posts stand on either side of the middle.
+    const POST: f64 = 5.5;
+    for x in [-POST, POST] {
         for z in [-2.2, 2.2] {
             part(builder, [x, GAP + 2.45, z], [0.4, 2.45, 0.4]);
         }
@@ -23,7 +25,7 @@ pub(super) fn bench(builder: &mut Builder) {
     }
     for slat in 0..5 {
         let z = -2.4 + 1.2 * f64::from(slat);
-        part(builder, [0.0, SEAT + 3.0 * GAP, z], [10.0, 0.08, 0.5]);
+        part(builder, [0.0, SEAT + 3.0 * GAP, z], [POST + 2.0, 0.08, 0.5]);
     }
     // The back leans away from the seat, its posts begin behind the last slat.
     let lean = Frame::along(
@@ -31,7 +33,7 @@ pub(super) fn bench(builder: &mut Builder) {
         (bench.y - bench.z * 0.25).normalize(),
         bench.x,
     );
-    for x in [-8.0, 8.0] {
+    for x in [-POST, POST] {
         let frame = Frame {
             origin: lean.at(x, 2.75, 0.0),
             ..lean
@@ -43,7 +45,7 @@ pub(super) fn bench(builder: &mut Builder) {
             origin: lean.at(0.0, 1.7 + 1.6 * f64::from(slat), 0.15 + GAP + 0.15),
             ..lean
         };
-        builder.cuboid(frame, DVec3::new(10.0, 0.6, 0.15));
+        builder.cuboid(frame, DVec3::new(POST + 2.0, 0.6, 0.15));
     }
 }
 
@@ -51,7 +53,7 @@ pub(super) fn bench(builder: &mut Builder) {
 pub(super) fn lamp(builder: &mut Builder) {
     builder.group("lamp");
     const SIDES: u32 = 24;
-    let foot = Frame::upright(DVec3::new(8.0, 0.0, -5.0), 0.0);
+    let foot = Frame::upright(DVec3::new(11.0, 0.0, -7.5), 0.0);
     let turned = |builder: &mut Builder, profile: &[(f64, f64)]| {
         let rings: Vec<_> = profile
             .iter()

@@ -15,6 +15,10 @@ use glam::DVec3;
 /// Free space between two parts that would touch in a real park; far below a pixel in every view.
 const GAP: f64 = 0.02;
 
+/// How bench and planter are turned, as a fraction of a full turn: their long sides lie across the light, but 10° off, so that
+/// no side face lies along it. There n · l and the shadows of neighbours would hang on the last bits.
+const ACROSS_THE_LIGHT: f64 = 0.18;
+
 /// Builds the park: about 55,000 triangles.
 pub(super) fn build() -> Mesh {
     let mut builder = Builder::default();
@@ -29,15 +33,9 @@ pub(super) fn build() -> Mesh {
 
 /// A slab whose upper side is y = 0, as large as what the nine views see of it at 16:9, and a little more.
 fn lawn(builder: &mut Builder) {
-    let half = DVec3::new(125.0, 1.0, 145.0);
-    let centre = DVec3::new(35.0, -half.y, 20.0);
-    builder.cuboid(
-        Frame {
-            origin: centre,
-            x: DVec3::X,
-            y: DVec3::Y,
-            z: DVec3::Z,
-        },
-        half,
+    builder.slab(
+        DVec3::new(-90.0, -2.0, -125.0),
+        DVec3::new(160.0, 0.0, 165.0),
+        24,
     );
 }

@@ -4,6 +4,9 @@ use super::{Builder, Frame, GAP};
 use crate::generate::numbers::{Random, turn};
 use glam::DVec3;
 
+/// Radius of a trunk at the ground.
+const TRUNK: f64 = 2.5;
+
 struct Tree {
     foot: DVec3,
     /// Centre of the crown above the foot, and its half axes across and up.
@@ -21,23 +24,23 @@ pub(super) fn trees(builder: &mut Builder) {
         (
             "tree 1",
             Tree {
-                foot: DVec3::new(-40.0, 0.0, -36.0),
-                crown: 58.0,
-                across: 24.0,
-                up: 30.0,
-                leaves: 560,
-                leaf: (1.8, 3.4),
+                foot: DVec3::new(-41.5, 0.0, -36.0),
+                crown: 55.5,
+                across: 32.0,
+                up: 26.5,
+                leaves: 466,
+                leaf: (1.44, 2.72),
                 seed: 7,
             },
         ),
         (
             "tree 2",
             Tree {
-                foot: DVec3::new(20.0, 0.0, -56.0),
-                crown: 30.0,
-                across: 14.0,
-                up: 13.0,
-                leaves: 210,
+                foot: DVec3::new(20.0, 0.0, -65.0),
+                crown: 29.0,
+                across: 18.0,
+                up: 11.0,
+                leaves: 261,
                 leaf: (1.5, 2.6),
                 seed: 11,
             },
@@ -106,7 +109,7 @@ fn grow(builder: &mut Builder, tree: &Tree) {
 /// The trunk and its branches, which begin a gap outside it.
 fn limbs(builder: &mut Builder, tree: &Tree, random: &mut Random) -> Vec<Limb> {
     let top = tree.crown + tree.up * 0.5;
-    let radius = |y: f64| 1.7 - 1.3 * (y / top);
+    let radius = |y: f64| TRUNK - 1.3 * (y / top);
     let trunk: Vec<(DVec3, f64)> = (0..=4)
         .map(|i| GAP + (top - GAP) * f64::from(i) / 4.0)
         .map(|y| (tree.foot + DVec3::Y * y, radius(y)))
@@ -115,7 +118,7 @@ fn limbs(builder: &mut Builder, tree: &Tree, random: &mut Random) -> Vec<Limb> {
     let mut limbs = vec![Limb {
         from: tree.foot,
         to: tree.foot + DVec3::Y * top,
-        radius: 1.7,
+        radius: TRUNK,
     }];
     let count = 9;
     for index in 0..count {

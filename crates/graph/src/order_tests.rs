@@ -499,6 +499,8 @@ fn shuffled(order: &Order, passes: &BTreeSet<usize>, rank: &[u32]) -> Vec<usize>
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
     /// Whatever passes read and write: the schedule is the live passes, each once, every edge obeyed, and each live pass
     /// sees exactly what it would see if the whole file ran from top to bottom.
     #[test]

@@ -55,15 +55,39 @@ fn cells(resource: ResourceId, part: &Part) -> impl Iterator<Item = Cell> + use<
         .flat_map(move |mip| layers.clone().map(move |layer| (resource, mip, layer)))
 }
 
+/// The order of all passes, from which follows which of them are live.
 pub(crate) fn order(
     passes: &[LinkedPass],
     resources: &Resources<'_>,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Order {
+    let (order, early) = walk(passes, resources, |_| true);
+    for (index, access) in early {
+        diagnostics.push(explain(index, access, passes, resources, &order));
+    }
+    order
+}
+
+/// The order among the live passes alone. A chain of overwrites that led through a culled pass is closed here: first, culled,
+/// last would else leave nothing that keeps the first before the last.
+pub(crate) fn order_of_live(
+    passes: &[LinkedPass],
+    resources: &Resources<'_>,
+    live: &[bool],
+) -> Order {
+    walk(passes, resources, |pass| live[pass]).0
+}
+
+/// Runs through the file as a sequential program and notes what depends on what, and the reads of what nobody wrote.
+fn walk<'p>(
+    passes: &'p [LinkedPass],
+    resources: &Resources<'_>,
+    runs: impl Fn(usize) -> bool,
+) -> (Order, Vec<(usize, &'p Access)>) {
     let mut edges: BTreeSet<(usize, usize, Hazard)> = BTreeSet::new();
     let mut states: BTreeMap<Cell, State> = BTreeMap::new();
     let mut early: Vec<(usize, &Access)> = Vec::new();
-    for (index, pass) in passes.iter().enumerate() {
+    for (index, pass) in passes.iter().enumerate().filter(|(index, _)| runs(*index)) {
         for access in &pass.accesses {
             let provided = matches!(
                 resources.get(access.resource).kind,
@@ -117,11 +141,7 @@ pub(crate) fn order(
         .into_iter()
         .filter_map(|(cell, state)| Some((cell, state.writer?)))
         .collect();
-    let order = Order { edges: graph, last };
-    for (index, access) in early {
-        diagnostics.push(explain(index, access, passes, resources, &order));
-    }
-    order
+    (Order { edges: graph, last }, early)
 }
 
 /// A read with nothing written above it: written never, written below, or written below by a pass that needs the reader.

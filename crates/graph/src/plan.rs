@@ -11,7 +11,7 @@ use crate::{
     graph::Graph,
     lifetime::{Lifetime, lifetimes},
     link::{LinkedPass, Linker},
-    order::{Order, order},
+    order::{Order, order, order_of_live},
     registry::Params,
     resolve::{
         Buffer, Environment, Part, Resource, ResourceId, ResourceKind, Resources, Target, resolve,
@@ -109,7 +109,7 @@ impl Graph {
             .flat_map(|(_, target)| order.final_writers(target))
             .collect();
         let live = cull::live(&order, roots);
-        let schedule = schedule(&order, &live);
+        let schedule = schedule(&order_of_live(&passes, &resources, &live), &live);
         let mut lifetimes = lifetimes(&passes, &schedule);
         unsized_buffers(&lifetimes, &resources, &mut diagnostics);
         if has_errors(&diagnostics) {

@@ -246,6 +246,39 @@ fn load_and_clear_of_a_target() {
     );
 }
 
+/// ```text
+/// first ─▶ image ◀─overwrites all─ copy ◀─ other
+/// ```
+/// A copy and a clear overwrite everything, so what was there is nobody's; a clear of one view leaves the rest.
+#[test]
+fn copies_and_clears_cover() {
+    let materials = ["image", "other"].map(texture);
+    let (first, other) = (fill("first", "image"), fill("fill_other", "other"));
+    let copy = "Copy(name: \"copy\", from: \"other\", to: \"image\")";
+    let found = plan(
+        &materials,
+        &[&first, &other, copy],
+        "(name: \"image\")",
+        &[],
+    );
+    assert_eq!(names(&found), ["fill_other", "copy"]);
+    let clear = "Clear(name: \"clear\", target: \"image\")";
+    let found = plan(
+        &materials,
+        &[&first, &other, copy, clear],
+        "(name: \"image\")",
+        &[],
+    );
+    assert_eq!(names(&found), ["clear"]);
+    let materials = ["Texture(name: \"image\", format: R32Float, size: Square(4), layers: 2, views: [(name: \"front\", layer: 0, layers: 1)])".to_owned()];
+    let all = "Clear(name: \"all\", target: \"image\")";
+    let clear = "Clear(name: \"clear\", target: \"front\")";
+    let found = plan(&materials, &[all, clear], "(name: \"image\")", &[]);
+    assert_eq!(names(&found), ["all", "clear"]);
+    let found = plan(&materials, &[all, clear], "(name: \"front\")", &[]);
+    assert_eq!(names(&found), ["clear"]);
+}
+
 /// Layers and mips by views: only the writers of the part that is read are needed.
 #[test]
 fn parts_are_independent() {

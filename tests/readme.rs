@@ -14,8 +14,13 @@ fn block(language: &str) -> String {
     let readme = fs::read_to_string(root().join("README.md")).unwrap();
     let opening = format!("```{language}\n");
     let mut blocks = readme.split(&opening).skip(1);
-    let block = blocks.next().unwrap_or_else(|| panic!("no {language} block in the README"));
-    assert!(blocks.next().is_none(), "two {language} blocks in the README");
+    let block = blocks
+        .next()
+        .unwrap_or_else(|| panic!("no {language} block in the README"));
+    assert!(
+        blocks.next().is_none(),
+        "two {language} blocks in the README"
+    );
     block.split("```").next().unwrap().to_owned()
 }
 
@@ -24,30 +29,53 @@ fn the_method_of_the_readme_is_complete_and_runs() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("facing.ron"), block("ron")).unwrap();
     fs::write(folder.path().join("facing.wgsl"), block("wgsl")).unwrap();
-    let own = FolderSources { root: folder.path().to_owned() };
+    let own = FolderSources {
+        root: folder.path().to_owned(),
+    };
     let sources = LayeredSources(vec![Box::new(own), Box::new(EmbeddedSources)]);
-    let graph = Graph::load("facing.ron", &registry(), &sources).unwrap_or_else(|error| panic!("{error}"));
+    let graph =
+        Graph::load("facing.ron", &registry(), &sources).unwrap_or_else(|error| panic!("{error}"));
     assert!(graph.warnings().is_empty(), "{:?}", graph.warnings());
 
-    let request = SceneRequest { argument: "park".to_owned(), obj: None };
+    let request = SceneRequest {
+        argument: "park".to_owned(),
+        obj: None,
+    };
     let (scene, _) = SceneLibrary::default().load(&request).unwrap();
     let scene = Arc::new(scene);
     let viewport = [64, 64];
     let mut provider = SceneProvider::new(Arc::clone(&scene));
     provider.set_view(&scene.views[0], viewport);
-    let plan = graph.plan(&PlanRequest::new(viewport, &provider)).unwrap_or_else(|error| panic!("{error}"));
-    assert!(!plan.provided().iter().any(|name| name.contains("bvh")), "nothing here traces rays");
+    let plan = graph
+        .plan(&PlanRequest::new(viewport, &provider))
+        .unwrap_or_else(|error| panic!("{error}"));
+    assert!(
+        !plan.provided().iter().any(|name| name.contains("bvh")),
+        "nothing here traces rays"
+    );
 
     let gpu = gpu::open(None).unwrap_or_else(|error| panic!("{error}"));
     let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    executor.encode(&mut encoder, &Frame { timing: false, read: &["visibility", "status"] }).unwrap();
+    executor
+        .encode(
+            &mut encoder,
+            &Frame {
+                timing: false,
+                read: &["visibility", "status"],
+            },
+        )
+        .unwrap();
     gpu.queue.submit([encoder.finish()]);
     executor.submitted(&gpu.queue).unwrap();
     let report = executor.finish().unwrap();
     let values = |index: usize| report.readbacks[index].content.as_u32().unwrap();
     for (visibility, status) in values(0).into_iter().zip(values(1)) {
-        assert_eq!(visibility, u32::from(status != 1), "lit is what faces the light");
+        assert_eq!(
+            visibility,
+            u32::from(status != 1),
+            "lit is what faces the light"
+        );
     }
     assert!(values(1).contains(&1) && values(1).contains(&2));
 }
@@ -56,7 +84,11 @@ fn the_method_of_the_readme_is_complete_and_runs() {
 fn the_embedding_of_the_readme_is_that_of_the_example() {
     let example = fs::read_to_string(root().join("crates/graph/examples/embed.rs")).unwrap();
     let lines: Vec<&str> = example.lines().map(str::trim).collect();
-    for line in block("rust").lines().map(str::trim).filter(|line| !line.is_empty()) {
+    for line in block("rust")
+        .lines()
+        .map(str::trim)
+        .filter(|line| !line.is_empty())
+    {
         assert!(lines.contains(&line), "not in the example: {line}");
     }
 }

@@ -328,7 +328,9 @@ impl<'a> Oracle<'a> {
         let mut occluded = false;
         self.tree.walk(&ray, stack, |caster, _| {
             if caster.primitive != excluded
-                && ray.hit(&caster.corners).is_some_and(|hit| hit.t > ray.nearest)
+                && ray
+                    .hit(&caster.corners)
+                    .is_some_and(|hit| hit.t > ray.nearest)
             {
                 occluded = true;
                 return ControlFlow::Break(());

@@ -33,7 +33,7 @@ pub enum ExecuteError {
         message: String,
     },
     /// The device has no memory for this.
-    #[error("the device has not enough memory for `{name}`; use a smaller --size or --map-size")]
+    #[error("the device has not enough memory for `{name}`")]
     OutOfMemory {
         /// The resource or pass.
         name: String,

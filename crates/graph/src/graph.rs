@@ -1,6 +1,7 @@
 //! [`Graph`]: a document with its shaders, ready to be planned.
 
 use crate::{
+    Plan, PlanRequest,
     diagnostics::{Code, Diagnostic, Diagnostics, Severity, suggestion},
     document::{
         self, Document,
@@ -19,7 +20,8 @@ use std::{collections::BTreeMap, collections::HashMap, collections::HashSet, syn
 #[derive(Debug)]
 pub struct Graph {
     pub(crate) document: Document,
-    pub(crate) shaders: HashMap<String, Arc<Shader>>,
+    /// `None` for those with a mistake that was reported.
+    pub(crate) shaders: HashMap<String, Option<Arc<Shader>>>,
     warnings: Vec<Diagnostic>,
 }
 
@@ -67,6 +69,45 @@ impl Graph {
         registry: &Registry,
         sources: &dyn Sources,
     ) -> Result<Self, Diagnostics> {
+        let (graph, errors) = Self::read(path, registry, sources)?;
+        if errors.is_empty() {
+            Ok(graph)
+        } else {
+            Err(Diagnostics::new(errors))
+        }
+    }
+
+    /// [`Graph::load`] and [`Graph::plan`] in one, for everything that is wrong at once: what could be read of a document is
+    /// planned even where something else in it is wrong.
+    ///
+    /// # Errors
+    /// Everything that is wrong. Reads before writes and cycles are looked for above the first pass that has a mistake.
+    pub fn check(
+        path: &str,
+        registry: &Registry,
+        sources: &dyn Sources,
+        request: &PlanRequest<'_>,
+    ) -> Result<(Self, Plan), Diagnostics> {
+        let (graph, mut errors) = Self::read(path, registry, sources)?;
+        // Without its params nothing of the document has a size.
+        let (plan, found) = match graph.document.broken.params {
+            false => graph.plan_all(request),
+            true => (None, Vec::new()),
+        };
+        errors.extend(found);
+        match plan {
+            Some(plan) if errors.is_empty() => Ok((graph, plan)),
+            // What nobody uses may be what a misspelt name was meant to be: warnings wait until the errors are gone.
+            _ => Err(Diagnostics::new(errors)),
+        }
+    }
+
+    /// What could be read of a document, and what is wrong with it.
+    fn read(
+        path: &str,
+        registry: &Registry,
+        sources: &dyn Sources,
+    ) -> Result<(Self, Vec<Diagnostic>), Diagnostics> {
         let missing =
             |message: String| Diagnostics::from(Diagnostic::error(Code::MissingFile, message));
         let text = match sources.read(path) {
@@ -122,13 +163,8 @@ impl Graph {
         let (errors, warnings): (Vec<_>, Vec<_>) = diagnostics
             .into_iter()
             .partition(|diagnostic| diagnostic.severity == Severity::Error);
-        if !errors.is_empty() {
-            return Err(Diagnostics::new(
-                errors.into_iter().chain(warnings).collect(),
-            ));
-        }
         graph.warnings = warnings;
-        Ok(graph)
+        Ok((graph, errors))
     }
 
     /// Where the document was read from.
@@ -228,21 +264,24 @@ impl Graph {
     ) {
         let path = self.document.file.name.to_string();
         let mut files = ShaderFiles::new(sources, &path);
-        let mut tried: HashSet<String> = HashSet::new();
         for name in passes
             .iter()
             .flat_map(|pass| &pass.steps)
             .filter_map(program)
             .filter_map(|program| program.shader.as_ref())
         {
-            if !tried.insert(name.value.clone()) {
+            if self.shaders.contains_key(&name.value) {
                 continue;
             }
             match files.expand(name, &name.span).and_then(Shader::new) {
                 Ok(shader) => {
-                    self.shaders.insert(name.value.clone(), Arc::new(shader));
+                    self.shaders
+                        .insert(name.value.clone(), Some(Arc::new(shader)));
                 }
-                Err(error) => diagnostics.push(error),
+                Err(error) => {
+                    self.shaders.insert(name.value.clone(), None);
+                    diagnostics.push(error);
+                }
             }
         }
     }
@@ -258,8 +297,8 @@ impl Graph {
             names_of(step, &mut |name| {
                 used.insert(name.to_owned());
             });
-            if let Some(shader) =
-                program(step).and_then(|program| self.shaders.get(&program.shader.as_ref()?.value))
+            if let Some(shader) = program(step)
+                .and_then(|program| self.shaders.get(&program.shader.as_ref()?.value)?.as_ref())
             {
                 used.extend(
                     shader

@@ -55,14 +55,16 @@ fn cells(resource: ResourceId, part: &Part) -> impl Iterator<Item = Cell> + use<
         .flat_map(move |mip| layers.clone().map(move |layer| (resource, mip, layer)))
 }
 
-/// The order of all passes, from which follows which of them are live.
+/// The order of all passes, from which follows which of them are live. Reads of what nobody wrote are reported for the first
+/// `judged` passes: below them a pass is missing that might have written it.
 pub(crate) fn order(
     passes: &[LinkedPass],
+    judged: usize,
     resources: &Resources<'_>,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Order {
     let (order, early) = walk(passes, resources, |_| true);
-    for (index, access) in early {
+    for (index, access) in early.into_iter().filter(|(index, _)| *index < judged) {
         diagnostics.push(explain(index, access, passes, resources, &order));
     }
     order
@@ -159,6 +161,19 @@ fn explain(
             other.writes && other.resource == access.resource && other.part.overlaps(&access.part)
         })
     });
+    if pass.kind == "Capture" {
+        let first = below.map(|writer| passes[writer].name.as_str());
+        return Diagnostic::error(
+            Code::Output,
+            format!(
+                "`{}` cannot be read back: nothing has written it yet",
+                *pass.name
+            ),
+        )
+        .help(first.map_or("no pass writes it".to_owned(), |first| {
+            format!("it is first written by `{first}`")
+        }));
+    }
     let Some(writer) = below else {
         let itself = access.writes
             || passes[reader]

@@ -62,7 +62,7 @@ fn with_resources<T>(use_them: impl FnOnce(&Resources<'_>) -> T) -> T {
         limits: &wgpu::Limits::default(),
         provider: &NoProvider,
     };
-    let mut resources: Resources<'_> = resolve(&[], &params, &environment, &mut Vec::new());
+    let mut resources: Resources<'_> = resolve(&[], &[], &params, &environment, &mut Vec::new());
     for index in 0..RESOURCES {
         resources.add(
             format!("r{index}"),
@@ -105,7 +105,8 @@ fn case(uses: &[Vec<Use>]) -> Case {
     };
     let passes: Vec<LinkedPass> = uses.iter().enumerate().map(pass).collect();
     let mut diagnostics = Vec::new();
-    let order = with_resources(|resources| order(&passes, resources, &mut diagnostics));
+    let order =
+        with_resources(|resources| order(&passes, passes.len(), resources, &mut diagnostics));
     Case {
         passes,
         order,

@@ -11,7 +11,7 @@ use crate::{
     graph::Graph,
     lifetime::{Lifetime, lifetimes},
     link::{LinkedPass, Linker},
-    order::{Order, order, order_of_live},
+    order::{order, order_of_live},
     registry::Params,
     resolve::{
         Buffer, Environment, Part, Resource, ResourceId, ResourceKind, Resources, Target, resolve,
@@ -39,6 +39,12 @@ impl Graph {
     /// # Errors
     /// Everything that is wrong, with its place.
     pub fn plan(&self, request: &PlanRequest<'_>) -> Result<Plan, Diagnostics> {
+        let (plan, errors) = self.plan_all(request);
+        plan.ok_or_else(|| Diagnostics::new(errors))
+    }
+
+    /// The plan, or everything that is wrong, even if some of the document could not be read.
+    pub(crate) fn plan_all(&self, request: &PlanRequest<'_>) -> (Option<Plan>, Vec<Diagnostic>) {
         let mut diagnostics = Vec::new();
         self.check_params(&request.params, &mut diagnostics);
         if request.viewport.contains(&0) {
@@ -47,7 +53,7 @@ impl Graph {
             );
         }
         if !diagnostics.is_empty() {
-            return Err(Diagnostics::new(diagnostics));
+            return (None, diagnostics);
         }
         let params = Params {
             declared: &self.document.params,
@@ -61,6 +67,7 @@ impl Graph {
         let lowered = self.lower(&request.params, &mut diagnostics);
         let mut resources = resolve(
             &self.document.materials,
+            &self.document.broken.materials,
             &params,
             &environment,
             &mut diagnostics,
@@ -80,11 +87,17 @@ impl Graph {
             &mut diagnostics,
         );
         let mut passes = Vec::new();
-        let mut complete = true;
-        for pass in &lowered {
+        // How many passes stand above the first one with a mistake: what that one writes is not known.
+        let mut sound: Option<usize> = None;
+        for (index, pass) in lowered.iter().enumerate() {
+            if self.document.broken.first_pass == Some(index) {
+                sound.get_or_insert(passes.len());
+            }
             match linker.pass(&pass.name, pass.kind, &pass.steps) {
                 Some(linked) => passes.push(linked),
-                None => complete = false,
+                None => {
+                    sound.get_or_insert(passes.len());
+                }
             }
             let after = |capture: &&Capture| capture.after.as_deref() == Some(pass.name.as_str());
             let captures: BTreeSet<&Capture> = request.captures.iter().filter(after).collect();
@@ -95,14 +108,13 @@ impl Graph {
         let layouts = std::mem::take(&mut linker.layouts);
         layouts.settle(&mut resources, &request.limits, &mut diagnostics);
         self.check_captures(request, &mut diagnostics);
-        // Versions mean nothing while passes are missing.
+        let complete = sound.is_none() && self.document.broken.first_pass.is_none();
+        let judged = sound.unwrap_or(passes.len());
+        let order = order(&passes, judged, &resources, &mut diagnostics);
+        let written = |target: &Target| !complete || !order.final_writers(target).is_empty();
+        let readable = self.readable(request, &mut resources, written, &mut diagnostics);
         if !complete || has_errors(&diagnostics) {
-            return Err(Diagnostics::new(diagnostics));
-        }
-        let order = order(&passes, &resources, &mut diagnostics);
-        let readable = self.readable(request, &mut resources, &order, &mut diagnostics);
-        if has_errors(&diagnostics) {
-            return Err(Diagnostics::new(diagnostics));
+            return (None, diagnostics);
         }
         let roots: BTreeSet<usize> = readable
             .iter()
@@ -113,7 +125,7 @@ impl Graph {
         let mut lifetimes = lifetimes(&passes, &schedule);
         unsized_buffers(&lifetimes, &resources, &mut diagnostics);
         if has_errors(&diagnostics) {
-            return Err(Diagnostics::new(diagnostics));
+            return (None, diagnostics);
         }
         for (_, target) in &readable {
             let Some(lifetime) = lifetimes.get_mut(&target.id) else {
@@ -131,7 +143,7 @@ impl Graph {
                 reason: reason(pass, &resources.list),
             })
             .collect();
-        Ok(Plan {
+        let plan = Plan {
             resources: resources.list,
             passes,
             schedule,
@@ -139,7 +151,8 @@ impl Graph {
             readable,
             culled,
             warnings: diagnostics,
-        })
+        };
+        (Some(plan), Vec::new())
     }
 
     fn check_params(
@@ -188,7 +201,7 @@ impl Graph {
         &self,
         request: &PlanRequest<'_>,
         resources: &mut Resources<'_>,
-        order: &Order,
+        written: impl Fn(&Target) -> bool,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Vec<(String, Target)> {
         let mut readable = Vec::new();
@@ -213,7 +226,7 @@ impl Graph {
             let Some(target) = resources.expect(material, diagnostics) else {
                 continue;
             };
-            if order.final_writers(&target).is_empty() {
+            if !written(&target) {
                 diagnostics.push(
                     Diagnostic::error(
                         Code::ReadBeforeWrite,
@@ -243,12 +256,10 @@ impl Graph {
             // Those after a pass were entered as resources of their own; an output of that name is there already.
             let found = resources.find(&name);
             match found {
-                Some(target) if order.final_writers(&target).is_empty() => {
-                    diagnostics.push(Diagnostic::error(
-                        Code::Output,
-                        format!("`{name}` cannot be read back: no pass writes it"),
-                    ))
-                }
+                Some(target) if !written(&target) => diagnostics.push(Diagnostic::error(
+                    Code::Output,
+                    format!("`{name}` cannot be read back: no pass writes it"),
+                )),
                 Some(target) if unreadable(resources, &target).is_some() => {
                     let why = unreadable(resources, &target).unwrap_or_default();
                     diagnostics.push(Diagnostic::error(

@@ -136,6 +136,7 @@ pub(crate) struct Environment<'a> {
 
 pub(crate) fn resolve<'a>(
     materials: &[Material],
+    unread: &[String],
     params: &Params<'_>,
     environment: &Environment<'a>,
     diagnostics: &mut Vec<Diagnostic>,
@@ -151,6 +152,7 @@ pub(crate) fn resolve<'a>(
     for name in environment.provider.names() {
         resources.spelt.insert(spelling(&name), name);
     }
+    unread.iter().for_each(|name| resources.spoil(name));
     let textures = materials.iter().filter_map(|material| match material {
         Material::Texture(entry) => Some((entry.name.as_str(), entry)),
         _ => None,

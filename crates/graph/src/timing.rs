@@ -105,8 +105,14 @@ impl Timer {
             .last()
             .unwrap_or_default();
         let span = |queries: &[&GpuTimerQueryResult]| {
-            let times: Option<Vec<_>> = queries.iter().map(|query| query.time.clone()).collect();
-            let times = times.filter(|times| !times.is_empty())?;
+            // Without timestamps between passes, copies and clears have none; their time falls between their neighbours'.
+            let times: Vec<_> = queries
+                .iter()
+                .filter_map(|query| query.time.clone())
+                .collect();
+            if times.is_empty() {
+                return None;
+            }
             let begin = times
                 .iter()
                 .map(|time| time.start)

@@ -19,18 +19,15 @@ fn folder() -> FolderSources {
 
 /// Errors of loading or planning, or the warnings where there are no errors.
 fn diagnose(path: &str, sources: &FolderSources) -> Vec<Diagnostic> {
-    let errors = |errors: Diagnostics| errors.iter().cloned().collect();
-    match Graph::load(path, &Registry::standard(), sources) {
-        Err(diagnostics) => errors(diagnostics),
-        Ok(graph) => match graph.plan(&PlanRequest::new([64, 48], &Triangle)) {
-            Err(diagnostics) => errors(diagnostics),
-            Ok(plan) => graph
-                .warnings()
-                .iter()
-                .chain(plan.warnings())
-                .cloned()
-                .collect(),
-        },
+    let request = PlanRequest::new([64, 48], &Triangle);
+    match Graph::check(path, &Registry::standard(), sources, &request) {
+        Err(diagnostics) => diagnostics.iter().cloned().collect(),
+        Ok((graph, plan)) => graph
+            .warnings()
+            .iter()
+            .chain(plan.warnings())
+            .cloned()
+            .collect(),
     }
 }
 
@@ -354,4 +351,30 @@ fn requests_that_cannot_be_met() {
             .map(|(name, value)| format!("{name}={value}: {}", known(name, value)))
             .join("\n")
     );
+}
+
+/// Comments may stand wherever white space may, and a byte order mark before everything.
+#[test]
+fn comments_and_a_byte_order_mark_are_no_mistakes() {
+    let document = "\u{feff}// a title
+(
+    format: 1, // the only one
+    /* materials */ materials: [
+        Texture(name: /* its */ \"image\", format: R32Float /* one channel */, size: Viewport // all of it
+        ), // the only one
+    ],
+    passes: [
+        Fullscreen(
+            name: \"fill\", // named like its shader
+            color: [(target: \"image\" // whole
+            )] // the last field, without a comma
+        ) // the last pass
+    ],
+    outputs: [(name: \"image\" /* as it is */)] // the last section
+) // the end";
+    let fill = include_str!("broken/fill.wgsl");
+    let files = Files::new([("graph.ron", document), ("fill.wgsl", fill)]);
+    let request = PlanRequest::new([64, 48], &Triangle);
+    let checked = Graph::check("graph.ron", &Registry::standard(), &files, &request);
+    assert_eq!(text(checked.map(|(graph, _)| graph)), "it loads");
 }

@@ -70,6 +70,11 @@ fn options() -> ron::Options {
     ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
 }
 
+/// The text of a value without the white space and comments around it. A line comment that lost its newline would not end.
+fn bare(raw: &RawValue) -> &str {
+    raw.trim().get_ron()
+}
+
 /// Byte range of `part` in the text being read, if it is part of it.
 fn range_in(text: &str, part: &str) -> Option<Range<usize>> {
     let start = (part.as_ptr() as usize).checked_sub(text.as_ptr() as usize)?;
@@ -132,7 +137,7 @@ fn word_around(text: &str, start: usize, end: usize, base: usize) -> Range<usize
 
 impl<'de, T: DeserializeOwned> Deserialize<'de> for Located<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let text = <&RawValue>::deserialize(deserializer)?.get_ron().trim();
+        let text = bare(<&RawValue>::deserialize(deserializer)?);
         let value = read_part(text).map_err(D::Error::custom)?;
         let span = READING.with_borrow(|reading| {
             let reading = reading.as_ref()?;
@@ -147,7 +152,7 @@ impl<'de, T: DeserializeOwned> Deserialize<'de> for Located<T> {
 pub(crate) fn literal<'de, T: DeserializeOwned, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Result<T, &'de str>, D::Error> {
-    let text = <&RawValue>::deserialize(deserializer)?.get_ron().trim();
+    let text = bare(<&RawValue>::deserialize(deserializer)?);
     let is_word =
         text.starts_with(|c: char| c.is_alphabetic()) && text != "true" && text != "false";
     if is_word {
@@ -181,8 +186,10 @@ pub struct Field {
 impl Node {
     /// The whole file, without what stands before its opening bracket.
     pub fn root(file: &SourceFile) -> Self {
+        // Some editors begin UTF-8 with a byte order mark.
+        let start = file.text.len() - file.text.trim_start_matches('\u{feff}').len();
         Self {
-            span: file.span(0..file.text.len()),
+            span: file.span(start..file.text.len()),
         }
     }
 
@@ -232,10 +239,7 @@ impl Node {
         impl<'de> Deserialize<'de> for Raw<'de> {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
                 let entries = <Vec<&RawValue>>::deserialize(deserializer)?;
-                Ok(Raw(entries
-                    .into_iter()
-                    .map(|entry| entry.get_ron().trim())
-                    .collect()))
+                Ok(Raw(entries.into_iter().map(bare).collect()))
             }
         }
         let raw: Raw<'_> = self.borrowed()?;
@@ -265,7 +269,7 @@ impl Node {
                     ) -> Result<Raw<'de>, A::Error> {
                         let mut fields = Vec::new();
                         while let Some(Word(key)) = map.next_key()? {
-                            fields.push((key, map.next_value::<&RawValue>()?.get_ron().trim()));
+                            fields.push((key, bare(map.next_value::<&RawValue>()?)));
                         }
                         Ok(Raw(fields))
                     }

@@ -32,6 +32,16 @@ pub(crate) struct Document {
     pub materials: Vec<Material>,
     pub passes: Vec<PassEntry>,
     pub outputs: Vec<OutputEntry>,
+    pub broken: Broken,
+}
+
+/// What could not be read, so that later phases do not take it for missing.
+#[derive(Debug, Default)]
+pub(crate) struct Broken {
+    pub params: bool,
+    pub materials: Vec<String>,
+    /// How many passes stand above the first one that could not be read.
+    pub first_pass: Option<usize>,
 }
 
 /// A pass: what every kind has, and the kind's own body.
@@ -98,6 +108,7 @@ pub(crate) fn parse(
         materials: Vec::new(),
         passes: Vec::new(),
         outputs: Vec::new(),
+        broken: Broken::default(),
     };
     match sections
         .get("format")
@@ -127,28 +138,34 @@ pub(crate) fn parse(
         });
     }
     for node in entries(sections.get("params"), diagnostics) {
-        if let Some(entry) = ok(node.parse::<ParamEntry>(), diagnostics) {
-            match Param::from_entry(entry) {
-                Ok(param) => document.params.push(param),
-                Err((name, why)) => diagnostics.push(
-                    Diagnostic::error(
-                        Code::ParamValue,
-                        format!("the default of param `{}` does not fit", *name),
-                    )
-                    .at(name.span.clone(), why),
-                ),
-            }
+        let entry = node.parse::<ParamEntry>().and_then(|entry| {
+            Param::from_entry(entry).map_err(|(name, why)| {
+                Diagnostic::error(
+                    Code::ParamValue,
+                    format!("the default of param `{}` does not fit", *name),
+                )
+                .at(name.span.clone(), why)
+            })
+        });
+        match ok(entry, diagnostics) {
+            Some(param) => document.params.push(param),
+            None => document.broken.params = true,
         }
     }
     for node in entries(sections.get("materials"), diagnostics) {
-        keep(material(&node), diagnostics, |material| {
-            document.materials.push(material)
-        });
+        match ok(material(&node), diagnostics) {
+            Some(material) => document.materials.push(material),
+            None => document.broken.materials.extend(name_of(&node)),
+        }
     }
     for node in entries(sections.get("passes"), diagnostics) {
-        keep(pass(&node, registry), diagnostics, |pass| {
-            document.passes.push(pass)
-        });
+        match ok(pass(&node, registry), diagnostics) {
+            Some(pass) => document.passes.push(pass),
+            None => {
+                let index = document.passes.len();
+                document.broken.first_pass.get_or_insert(index);
+            }
+        }
     }
     for node in entries(sections.get("outputs"), diagnostics) {
         keep(node.parse(), diagnostics, |output| {
@@ -182,7 +199,20 @@ pub(crate) fn parse(
         document.materials.iter().map(Material::name).chain(views),
         diagnostics,
     );
+    // The first of two is the one that counts, so that the second raises no more complaints.
+    let mut seen = std::collections::HashSet::new();
+    document
+        .materials
+        .retain(|material| seen.insert(material.name().value.clone()));
     Some(document)
+}
+
+/// The name of an entry that is wrong elsewhere.
+fn name_of(node: &Node) -> Option<String> {
+    let (_, body) = node.variant()?;
+    let fields = body.fields().ok()?;
+    let name = fields.iter().find(|field| *field.name == "name")?;
+    name.node.parse().ok()
 }
 
 fn ok<T>(result: Result<T, Diagnostic>, diagnostics: &mut Vec<Diagnostic>) -> Option<T> {

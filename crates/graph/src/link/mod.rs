@@ -117,7 +117,7 @@ pub(crate) enum LinkedGroups {
 /// What passes are linked against.
 pub(crate) struct Linker<'a, 'p> {
     pub resources: &'a mut Resources<'p>,
-    pub shaders: &'a HashMap<String, Arc<Shader>>,
+    pub shaders: &'a HashMap<String, Option<Arc<Shader>>>,
     pub params: &'a Params<'a>,
     pub limits: &'a wgpu::Limits,
     pub features: wgpu::Features,
@@ -128,7 +128,7 @@ pub(crate) struct Linker<'a, 'p> {
 impl<'a, 'p> Linker<'a, 'p> {
     pub fn new(
         resources: &'a mut Resources<'p>,
-        shaders: &'a HashMap<String, Arc<Shader>>,
+        shaders: &'a HashMap<String, Option<Arc<Shader>>>,
         params: &'a Params<'a>,
         (limits, features): (&'a wgpu::Limits, wgpu::Features),
         diagnostics: &'a mut Vec<Diagnostic>,
@@ -291,8 +291,8 @@ impl<'a, 'p> Linker<'a, 'p> {
 
     pub(super) fn shader(&mut self, program: &Program) -> Option<Arc<Shader>> {
         let name = program.shader.as_ref()?;
-        let shader = self.shaders.get(&name.value).cloned();
-        if shader.is_none() {
+        let loaded = self.shaders.get(&name.value);
+        if loaded.is_none() {
             // Those that the document names were loaded with it; this is a kind that names another one for other params.
             self.report(
                 Diagnostic::error(
@@ -308,6 +308,6 @@ impl<'a, 'p> Linker<'a, 'p> {
                 ),
             );
         }
-        shader
+        loaded.cloned().flatten()
     }
 }

@@ -24,6 +24,9 @@ pub struct Cli {
     pub adapter: Option<String>,
 }
 
+/// The samples of all frames are kept for the percentiles, and nobody waits for more.
+const MOST_FRAMES: i64 = 100_000;
+
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
@@ -105,16 +108,16 @@ pub struct CompareArgs {
     )]
     pub size: Vec<Size>,
     /// Shadow map sizes in texels, separated by commas: the param `map_size` of the graphs that have it.
-    #[arg(long, value_name = "N,…", value_delimiter = ',')]
+    #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
     pub map_size: Vec<u32>,
     /// A param of the graphs that have it. May be repeated.
     #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub params: Vec<Assignment>,
     /// Timed frames per run.
-    #[arg(long, default_value_t = 10, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, default_value_t = 10, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_FRAMES), allow_negative_numbers = true)]
     pub frames: u32,
     /// Frames before the timed ones.
-    #[arg(long, default_value_t = 2, value_name = "N")]
+    #[arg(long, default_value_t = 2, value_name = "N", value_parser = clap::value_parser!(u32).range(..=MOST_FRAMES), allow_negative_numbers = true)]
     pub warmup: u32,
     /// What is right: `exact` (own primitive excluded, no offset) or `offset:LENGTH` (ray origin moved towards the light).
     #[arg(long, default_value = "exact", value_name = "MODE")]
@@ -151,7 +154,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "WxH", default_value = "1024x1024")]
     pub size: Size,
     /// Shadow map size in texels: the param `map_size`.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
     pub map_size: Option<u32>,
     /// A param of the graph. May be repeated.
     #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
@@ -236,12 +239,30 @@ mod tests {
     }
 
     #[test]
+    fn a_number_out_of_range_is_told_its_range() {
+        for (line, range) in [
+            ("skiagraph compare --map-size 512,-5", "-5 is not in 1.."),
+            ("skiagraph run nsm --map-size -5", "-5 is not in 1.."),
+            ("skiagraph compare --warmup -1", "-1 is not in 0..=100000"),
+            (
+                "skiagraph compare --frames 100001",
+                "100001 is not in 1..=100000",
+            ),
+        ] {
+            let message = parse(line).unwrap_err().to_string();
+            assert!(message.contains(range), "{line}: {message}");
+        }
+    }
+
+    #[test]
     fn usage_errors_have_exit_code_2() {
         for line in [
             "skiagraph",
             "skiagraph check",
             "skiagraph compare --size 10",
             "skiagraph compare --frames 0",
+            "skiagraph compare --frames 100001",
+            "skiagraph compare --warmup 4294967295 --frames 1",
             "skiagraph run",
             "skiagraph run rt --save visibility=a.gif",
             "skiagraph compare --look 0,0,0",

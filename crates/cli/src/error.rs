@@ -1,5 +1,6 @@
 //! Everything that can end a command early, with its exit code.
 
+use crate::render;
 use skiagraph_graph::{Diagnostic, Severity};
 use std::{
     error::Error,
@@ -103,6 +104,11 @@ impl CliError {
                     error.to_string().replace('\n', "\n  ")
                 ));
                 cause = error.source();
+            }
+            if let Self::Gpu { source, .. } = self
+                && let Some(advice) = render::advice(source.as_ref())
+            {
+                text.push_str(&format!("\n  {advice}"));
             }
             // With standard error closed there is nobody left to tell.
             let _ = writeln!(io::stderr(), "{text}");

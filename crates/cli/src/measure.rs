@@ -126,7 +126,11 @@ impl Setting<'_> {
             Err(diagnostics) => return Ok(self.unavailable(method, reasons(&diagnostics))),
         };
         let what = format!("{}, {}", method.preset.name, self.where_(method));
-        let step = Step::begin(what, (self.warmup + self.frames).into(), "frames");
+        let step = Step::begin(
+            what,
+            u64::from(self.warmup) + u64::from(self.frames),
+            "frames",
+        );
         let executed = self.execute(method, plan, provider, &step);
         let run = match executed {
             Ok(Some(executed)) => Run {
@@ -144,7 +148,7 @@ impl Setting<'_> {
                     source: Box::new(error),
                 });
             }
-            Err(error) => self.unavailable(method, render::chain(&error)),
+            Err(error) => self.unavailable(method, render::explain(&error)),
         };
         step.end();
         Ok(run)
@@ -226,11 +230,7 @@ impl Setting<'_> {
         visibility: &[u32],
         status: &[u32],
     ) -> Result<Images, CliError> {
-        let stem = format!(
-            "{}-{}",
-            slug(&method.preset.name),
-            self.where_(method).replace(' ', "-")
-        );
+        let stem = stem(method, self.view, self.reference.viewport);
         let reference = self.reference;
         let save = |kind: &str, image: Result<Image, skiagraph_reference::Error>| {
             let name = format!("{stem}-{kind}.png");
@@ -271,14 +271,31 @@ impl Setting<'_> {
         }
     }
 
-    /// View, viewport and map size as in file names and progress lines.
+    /// View, viewport and map size as in progress lines.
     fn where_(&self, method: &Method) -> String {
-        let [width, height] = self.reference.viewport;
-        let map = method
-            .map_size
-            .map_or(String::new(), |size| format!(" map{size}"));
-        format!("{} {width}x{height}{map}", slug(self.view))
+        place(method, self.view, self.reference.viewport)
     }
+}
+
+fn place(method: &Method, view: &str, [width, height]: [u32; 2]) -> String {
+    let map = method
+        .map_size
+        .map_or(String::new(), |size| format!(" map{size}"));
+    format!("{} {width}x{height}{map}", slug(view))
+}
+
+/// What the names of a run's pictures begin with.
+pub fn stem(method: &Method, view: &str, viewport: [u32; 2]) -> String {
+    format!(
+        "{}-{}",
+        slug(&method.preset.name),
+        place(method, view, viewport).replace(' ', "-")
+    )
+}
+
+/// What the name of the reference's picture begins with.
+pub fn reference_stem(view: &str, [width, height]: [u32; 2]) -> String {
+    format!("reference-{}-{width}x{height}", slug(view))
 }
 
 /// The errors in one line each, for a table's footnote.

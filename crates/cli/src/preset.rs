@@ -1,6 +1,7 @@
 //! From the arguments `nsm` or `my/method.ron` to loaded graphs.
 
 use crate::{
+    commands::check::all_at_once,
     error::{CliError, colour, count_errors, note},
     parse::Assignment,
 };
@@ -53,12 +54,17 @@ pub fn load_all(arguments: &[String], sources: &dyn Sources) -> Result<Vec<Prese
         if presets.iter().any(|preset| preset.name == *argument) {
             continue;
         }
-        match Graph::load(&locate(argument, sources)?, &registry, sources) {
+        let path = locate(argument, sources)?;
+        match Graph::load(&path, &registry, sources) {
             Ok(graph) => presets.push(Preset {
                 name: argument.clone(),
                 graph,
             }),
-            Err(diagnostics) => faults.add(argument, &diagnostics),
+            // What planning would find besides is shown in the same go.
+            Err(diagnostics) => {
+                let all = all_at_once(&path, &registry, sources).err();
+                faults.add(argument, &all.unwrap_or(diagnostics));
+            }
         }
     }
     faults.none_or_error().map(|()| presets)
@@ -80,6 +86,12 @@ pub fn locate(argument: &str, sources: &dyn Sources) -> Result<String, CliError>
     match sources.read(&path) {
         Ok(Some(_)) => Ok(path),
         Ok(None) if is_path => Err(CliError::Input(format!("there is no file `{argument}`"))),
+        Ok(None) if Path::new(argument).is_dir() => Err(CliError::Input(format!(
+            "`{argument}` is a folder; a graph is given as a path that ends in .ron"
+        ))),
+        Ok(None) if Path::new(argument).is_file() => Err(CliError::Input(format!(
+            "`{argument}` is no .ron file; a graph is given as a path that ends in .ron"
+        ))),
         Ok(None) => {
             let known = names(sources);
             let hint = closest(argument, known.iter().map(String::as_str))

@@ -1,4 +1,4 @@
-//! Progress on standard error: a bar on a terminal, a line per finished step elsewhere.
+//! Progress on standard error: a bar on a terminal, a line at the begin and the end of each step elsewhere.
 
 use crate::error::note;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -17,6 +17,9 @@ pub struct Step {
 impl Step {
     /// Begins a step of `total` parts, counted in `unit`.
     pub fn begin(what: String, total: u64, unit: &str) -> Self {
+        if !io::stderr().is_terminal() {
+            note(&format!("starting {what}"));
+        }
         let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
         let template =
             format!("{{msg:40!}} {{wide_bar:.cyan/dim}} {{pos}}/{{len}} {unit} {{elapsed:>4}}");

@@ -102,6 +102,9 @@ pub struct Times {
 /// Runs `warmup` frames, then `frames` timed ones, every pass in every frame. `done` hears how many frames are over.
 /// `None` if Ctrl-C came first.
 ///
+/// # Panics
+/// If `frames` is 0, which the arguments forbid.
+///
 /// # Errors
 /// Those of the executor.
 pub fn time(
@@ -112,7 +115,7 @@ pub fn time(
     done: impl Fn(u64),
 ) -> Result<Option<Times>, ExecuteError> {
     let mut samples = Samples::default();
-    for index in 0..warmup + frames {
+    for index in 0..u64::from(warmup) + u64::from(frames) {
         if interrupt::raised() {
             return Ok(None);
         }
@@ -125,12 +128,12 @@ pub fn time(
                 ..Frame::default()
             },
         )?;
-        if index >= warmup {
+        if index >= u64::from(warmup) {
             samples.add(report, wall);
         }
-        done(u64::from(index) + 1);
+        done(index + 1);
     }
-    Ok(samples.times())
+    Ok(Some(samples.times()))
 }
 
 #[derive(Default)]
@@ -166,22 +169,20 @@ impl Samples {
         }
     }
 
-    fn times(self) -> Option<Times> {
+    fn times(self) -> Times {
         let passes = self.names.into_iter().zip(self.gpu).zip(self.cpu);
         let passes = passes
-            .map(|((name, gpu), cpu)| {
-                Some(Pass {
-                    name,
-                    gpu_ms: Spread::of_all(&gpu),
-                    cpu_ms: Spread::of(&cpu)?,
-                })
+            .map(|((name, gpu), cpu)| Pass {
+                name,
+                gpu_ms: Spread::of_all(&gpu),
+                cpu_ms: Spread::of(&cpu).expect("a pass is named by its first sample"),
             })
-            .collect::<Option<Vec<_>>>()?;
+            .collect();
         let frame = FrameTimes {
             gpu_ms: Spread::of_all(&self.frame_gpu),
-            wall_ms: Spread::of(&self.frame_wall)?,
+            wall_ms: Spread::of(&self.frame_wall).expect("at least one frame is timed"),
         };
-        Some(Times { passes, frame })
+        Times { passes, frame }
     }
 }
 
@@ -209,6 +210,23 @@ pub fn read(
         .collect())
 }
 
+/// Which arguments may avert an error.
+pub fn advice(error: &(dyn Error + 'static)) -> Option<&'static str> {
+    match error.downcast_ref() {
+        Some(ExecuteError::OutOfMemory { .. }) => Some("use a smaller --size or --map-size"),
+        _ => None,
+    }
+}
+
+/// An error, its causes and what may avert it in one line.
+pub fn explain(error: &(dyn Error + 'static)) -> String {
+    let text = chain(error);
+    match advice(error) {
+        Some(advice) => format!("{text}; {advice}"),
+        None => text,
+    }
+}
+
 /// An error and its causes in one line.
 pub fn chain(error: &dyn Error) -> String {
     let mut text = error.to_string();
@@ -218,4 +236,17 @@ pub fn chain(error: &dyn Error) -> String {
         cause = error.source();
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn out_of_memory_comes_with_advice_and_nothing_else_does() {
+        let full = ExecuteError::OutOfMemory { name: "map".into() };
+        assert!(explain(&full).ends_with("; use a smaller --size or --map-size"));
+        let other = ExecuteError::Readback { name: "map".into() };
+        assert_eq!(explain(&other), chain(&other));
+    }
 }

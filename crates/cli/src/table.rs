@@ -43,6 +43,9 @@ pub fn group(results: &Results, runs: &[Run], look: Look) -> String {
     text
 }
 
+/// A band of more than one pixel in so many of those facing the light leaves too much open.
+const MOST_BAND: u128 = 1000;
+
 fn heading(results: &Results, run: &Run, look: Look) -> String {
     let Run {
         view,
@@ -52,12 +55,17 @@ fn heading(results: &Results, run: &Run, look: Look) -> String {
         ..
     } = run;
     let title = format!(
-        "{}, {} triangles · view {view} · {width}x{height}",
+        "{}, {} {} · view {view} · {width}x{height}",
         results.scene.name,
-        thousands(results.scene.triangles)
+        thousands(results.scene.triangles),
+        if results.scene.triangles == 1 {
+            "triangle"
+        } else {
+            "triangles"
+        }
     );
     let adapter = &results.adapter;
-    let lines = [
+    let mut lines = vec![
         format!(
             "{} · {} · {}",
             adapter.name, adapter.backend, adapter.driver
@@ -82,11 +90,20 @@ fn heading(results: &Results, run: &Run, look: Look) -> String {
             percent(*band, pixels.facing_light)
         ),
     ];
+    if u128::from(*band) * MOST_BAND > u128::from(pixels.facing_light) {
+        lines.push(
+            "warning: the band is larger than 0.1 % of PFL; what lies in it is not proven".into(),
+        );
+    }
     match look {
         Look::Terminal => format!("{title}\n{}\n", lines.join("\n")),
         Look::Markdown => format!(
             "### {title}\n\n{}\n\n",
-            lines.map(|line| format!("- {line}")).join("\n")
+            lines
+                .iter()
+                .map(|line| format!("- {line}"))
+                .collect::<Vec<_>>()
+                .join("\n")
         ),
     }
 }
@@ -155,9 +172,7 @@ fn passes(runs: &[Run], look: Look) -> String {
         let Some(measured) = &run.measured else {
             continue;
         };
-        let method = run
-            .map_size
-            .map_or(run.preset.clone(), |size| format!("{} {size}", run.preset));
+        let method_name = method(run);
         let whole = ("whole frame", measured.frame.gpu_ms, None);
         let rows = measured
             .passes
@@ -168,7 +183,7 @@ fn passes(runs: &[Run], look: Look) -> String {
             let row = vec![
                 // On a terminal the eye finds groups by their first line; a Markdown row may be quoted alone.
                 if index == 0 || look == Look::Markdown {
-                    method.clone()
+                    method_name.clone()
                 } else {
                     String::new()
                 },
@@ -189,6 +204,9 @@ fn footnotes(results: &Results, runs: &[Run]) -> Vec<String> {
     if let Some(reason) = &results.adapter.gpu_unavailable {
         notes.push(format!("No GPU times: {reason}"));
     }
+    if results.adapter.gpu_unavailable.is_none() {
+        notes.extend(runs.iter().filter_map(times_missing));
+    }
     notes.extend(runs.iter().filter_map(|run| {
         Some(format!(
             "{} is unavailable: {}",
@@ -197,6 +215,35 @@ fn footnotes(results: &Results, runs: &[Run]) -> Vec<String> {
         ))
     }));
     notes
+}
+
+/// Preset and map size, as a row's name.
+fn method(run: &Run) -> String {
+    run.map_size
+        .map_or(run.preset.clone(), |size| format!("{} {size}", run.preset))
+}
+
+/// Which GPU times a run lacks on an adapter whose timestamps are true.
+fn times_missing(run: &Run) -> Option<String> {
+    let measured = run.measured.as_ref()?;
+    let untimed: Vec<&str> = measured
+        .passes
+        .iter()
+        .filter(|pass| pass.gpu_ms.is_none())
+        .map(|pass| pass.name.as_str())
+        .collect();
+    let untimed = untimed.join(", ");
+    let why = match (measured.frame.gpu_ms, untimed.as_str()) {
+        (Some(_), "") => return None,
+        (Some(_), _) => {
+            format!(
+                "the whole frame is timed over its other passes, there are no GPU times of {untimed}"
+            )
+        }
+        (None, "") => "no GPU time of the whole frame: some frames had none".into(),
+        (None, _) => format!("no GPU time of the whole frame: there are none of {untimed}"),
+    };
+    Some(format!("{}: {why}", method(run)))
 }
 
 /// An empty table whose first `left` columns hold words.
@@ -300,6 +347,38 @@ mod tests {
     fn markdown_holds_the_same() {
         let results = sample();
         insta::assert_snapshot!(group(&results, &results.runs, Look::Markdown));
+    }
+
+    #[test]
+    fn a_band_of_more_than_a_thousandth_is_warned_of() {
+        let mut results = sample();
+        let warned = |results: &Results, look| {
+            group(results, &results.runs, look).contains("the band is larger than 0.1 % of PFL")
+        };
+        for (band, expected) in [(0, false), (100, false), (101, true)] {
+            results.runs.iter_mut().for_each(|run| run.band = band);
+            for look in [Look::Terminal, Look::Markdown] {
+                assert_eq!(
+                    warned(&results, look),
+                    expected,
+                    "{band} of 100,000, {look:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_pass_without_a_gpu_time_is_named() {
+        let mut results = sample();
+        let passes = |run: &mut Run| run.measured.as_mut().map(|m| m.passes[0].gpu_ms = None);
+        passes(&mut results.runs[0]);
+        let text = group(&results, &results.runs, Look::Terminal);
+        for note in [
+            "nsm 1024: the whole frame is timed over its other passes, there are no GPU times of gbuffer\n",
+            "rt: no GPU time of the whole frame: there are none of gbuffer, trace_rays\n",
+        ] {
+            assert!(text.contains(note), "{text}");
+        }
     }
 
     #[test]

@@ -190,6 +190,34 @@ fn without_an_adapter_every_gpu_command_ends_with_3_and_the_way_out() {
 }
 
 #[test]
+fn files_that_would_overwrite_each_other_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let save = "run nsm --save visibility=x.png --save status=./x.png";
+    let save: Vec<&str> = save.split(' ').collect();
+    let output = skiagraph(folder.path(), &save);
+    assert_exit(&output, 2);
+    let text = stderr(&output);
+    assert!(
+        text.contains("visibility") && text.contains("status") && text.contains("x.png"),
+        "{text}"
+    );
+}
+
+#[test]
+fn check_tells_folders_and_other_files_from_presets() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("graphs")).unwrap();
+    fs::write(folder.path().join("facing.wgsl"), "").unwrap();
+    let output = skiagraph(folder.path(), &["check", "graphs", "facing.wgsl"]);
+    assert_exit(&output, 1);
+    let text = stderr(&output);
+    assert!(
+        text.contains("`graphs` is a folder") && text.contains("`facing.wgsl` is no .ron file"),
+        "{text}"
+    );
+}
+
+#[test]
 fn lists_are_printed_and_a_closed_pipe_is_no_failure() {
     let folder = tempfile::tempdir().unwrap();
     let presets = skiagraph(folder.path(), &["presets"]);

@@ -259,6 +259,39 @@ fn outputs_that_break_the_contract_are_named_and_the_others_measured() {
 }
 
 #[test]
+fn graphs_whose_pictures_would_overwrite_each_other_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("a")).unwrap();
+    fs::write(folder.path().join("a/b.ron"), LIT).unwrap();
+    fs::write(folder.path().join("a-b.ron"), LIT).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+        .args("compare a/b.ron a-b.ron --size 8x8 --frames 1 --out results".split(' '))
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        text.contains("`a/b.ron`") && text.contains("`a-b.ron`"),
+        "{text}"
+    );
+    assert!(!folder.path().join("results").exists(), "nothing ran");
+}
+
+#[test]
+fn an_offset_beyond_all_proportion_is_refused_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+        .args("compare nsm --size 8x8 --frames 1 --oracle offset:1e300 --out .".split(' '))
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(text.contains("offset is 1e300"), "{text}");
+}
+
+#[test]
 fn a_buffer_has_no_picture_but_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let save = |file: &str| {

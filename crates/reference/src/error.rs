@@ -62,6 +62,16 @@ pub enum Error {
     /// The offset of [`OracleMode::Offset`](crate::OracleMode::Offset) is negative or not finite.
     #[error("the oracle's offset is {0}; expected a finite length of at least 0, in scene units")]
     Offset(f64),
+    /// The offset of [`OracleMode::Offset`](crate::OracleMode::Offset) is out of all proportion to the mesh.
+    #[error(
+        "the oracle's offset is {length:e}, a million times the scene and more; expected at most {most:.3e}, in scene units"
+    )]
+    OffsetTooLong {
+        /// The offset, in scene units.
+        length: f64,
+        /// The longest one for this mesh: a million times the diagonal of its box.
+        most: f64,
+    },
     /// Text that is neither `exact` nor `offset:LENGTH`.
     #[error(
         "`{0}` is no oracle mode; expected `exact` or `offset:LENGTH` with a length of at least 0 in scene units, such as `offset:0.03`"

@@ -69,6 +69,9 @@ pub struct Progress<'a> {
     pub interrupted: &'a AtomicBool,
 }
 
+/// The longest offset in extents of the mesh: far beyond it rays miss by rounding alone.
+const MOST_EXTENTS: f64 = 1e6;
+
 static NEVER: AtomicBool = AtomicBool::new(false);
 
 impl Default for Progress<'_> {
@@ -182,7 +185,8 @@ impl<'a> Oracle<'a> {
     /// point outside is then the receiver. Casters are two-sided and count at t > 0 by more than f64 rounding.
     ///
     /// # Errors
-    /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Light`], [`Error::Offset`], [`Error::Interrupted`].
+    /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Light`], [`Error::Offset`],
+    /// [`Error::OffsetTooLong`], [`Error::Interrupted`].
     pub fn shade(
         &self,
         camera: &Camera,
@@ -202,6 +206,12 @@ impl<'a> Oracle<'a> {
             && !(length.is_finite() && length >= 0.0)
         {
             return Err(Error::Offset(length));
+        }
+        if let OracleMode::Offset(length) = mode
+            && let Some(most) = self.tree.extent().map(|extent| extent * MOST_EXTENTS)
+            && length > most
+        {
+            return Err(Error::OffsetTooLong { length, most });
         }
         let answers = per_pixel(viewport, progress, |x, y, stack| {
             let primitive = primitives[x as usize + y as usize * viewport[0] as usize];

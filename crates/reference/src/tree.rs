@@ -91,6 +91,11 @@ impl<'a> Tree<'a> {
         })
     }
 
+    /// Diagonal of the mesh's box; `None` without triangles.
+    pub(crate) fn extent(&self) -> Option<f64> {
+        self.bounds.map(|(min, max)| (max - min).length())
+    }
+
     /// Calls `visit` with the current end of the ray and every triangle whose box the ray enters,
     /// nearer boxes first. `visit` may shorten the ray, or end the walk by `Break`. `stack` is scratch memory.
     pub(crate) fn walk(

@@ -236,6 +236,12 @@ fn wrong_input_is_an_error() {
         shade(down, &[0; 8], OracleMode::Offset(-1.0)),
         Some(Error::Offset(-1.0))
     );
+    for far in [1e9, 1e300, f64::MAX] {
+        assert!(matches!(
+            shade(down, &[0; 8], OracleMode::Offset(far)),
+            Some(Error::OffsetTooLong { length, .. }) if length == far
+        ));
+    }
     assert!(matches!(
         shade(light(0.0, 0.0, 0.0), &[0; 8], OracleMode::Exact),
         Some(Error::Light { .. })

@@ -39,7 +39,7 @@ pub enum SceneError {
         total: usize,
     },
     /// A group to be left out is not in the OBJ file.
-    #[error("{}: there is no group {name:?} to leave out; the file's groups are {}", path.display(), shorten(groups))]
+    #[error("{}: there is no group {name:?} to leave out; {}", path.display(), list_groups(groups))]
     NoSuchGroup {
         /// The OBJ file.
         path: PathBuf,
@@ -49,7 +49,13 @@ pub enum SceneError {
         groups: Vec<String>,
     },
     /// An OBJ file without a single face.
-    #[error("{}: no triangles: the file holds {faces} faces, {lines} lines and {points} points", path.display())]
+    #[error(
+        "{}: no triangles: the file holds {}, {} and {}",
+        path.display(),
+        plural(*faces, "face", "faces"),
+        plural(*lines, "line", "lines"),
+        plural(*points, "point", "points")
+    )]
     NoTriangles {
         /// The OBJ file.
         path: PathBuf,
@@ -80,8 +86,9 @@ pub enum SceneError {
     },
     /// The mesh of a scene file is in none of the places searched.
     #[error(
-        "the mesh {file:?} of scene {scene:?} was not found; searched\n{}it can be downloaded: {source_text}\nput it at {file:?} below a folder that the environment variable SKIAGRAPH_ASSETS names",
-        list_places(searched)
+        "the mesh {file:?} of scene {scene:?} was not found; searched\n{}{}put it at {file:?} below a folder that the environment variable SKIAGRAPH_ASSETS names",
+        list_places(searched),
+        download(source_text.as_deref())
     )]
     MeshNotFound {
         /// The scene's name.
@@ -91,7 +98,15 @@ pub enum SceneError {
         /// Every path tried, in order.
         searched: Vec<PathBuf>,
         /// Where the scene file says it can be had.
-        source_text: String,
+        source_text: Option<String>,
+    },
+    /// A mesh's name leads to a folder.
+    #[error("the mesh of scene {scene:?}: {} is a folder, expected an .obj file", path.display())]
+    MeshIsFolder {
+        /// The scene's name.
+        scene: String,
+        /// The folder.
+        path: PathBuf,
     },
     /// No scene of that name, and no file of that path.
     #[error("no scene {argument:?}: it is neither the path of a .ron or .obj file, nor the name of a .ron file in {}, nor one of the built-in scenes {}", folder.display(), builtin.join(", "))]
@@ -195,13 +210,15 @@ impl fmt::Display for FaceProblem {
             Self::NoSuchVertex { written, available } => {
                 write!(
                     f,
-                    "names vertex {written}, but {available} vertices stand above it"
+                    "names vertex {written}, but {} above it",
+                    plural(*available, "vertex stands", "vertices stand")
                 )
             }
             Self::NoSuchNormal { written, available } => {
                 write!(
                     f,
-                    "names normal {written}, but {available} normals stand above it"
+                    "names normal {written}, but {} above it",
+                    plural(*available, "normal stands", "normals stand")
                 )
             }
             Self::NotACorner(text) => {
@@ -220,11 +237,27 @@ impl fmt::Display for FaceProblem {
     }
 }
 
+/// A count with its noun.
+pub(crate) fn plural(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
+fn download(source: Option<&str>) -> String {
+    source.map_or_else(String::new, |source| {
+        format!("it can be downloaded: {source}\n")
+    })
+}
+
+fn list_groups(names: &[String]) -> String {
+    if names.is_empty() {
+        "the file has no groups".to_owned()
+    } else {
+        format!("the file's groups are {}", shorten(names))
+    }
+}
+
 fn list_faults(faults: &[FaceFault], total: usize) -> String {
-    let mut text = format!(
-        "{total} {} cannot be used",
-        if total == 1 { "face" } else { "faces" }
-    );
+    let mut text = format!("{} cannot be used", plural(total, "face", "faces"));
     for fault in faults {
         text += &format!("\n  {} {}", fault.face, fault.problem);
     }

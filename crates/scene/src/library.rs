@@ -208,6 +208,12 @@ impl SceneLibrary {
             } => {
                 let places = self.mesh_places(mesh, file);
                 let Some(place) = places.iter().find(|place| place.is_file()) else {
+                    if let Some(folder) = places.iter().find(|place| place.is_dir()) {
+                        return Err(SceneError::MeshIsFolder {
+                            scene: scene.name,
+                            path: folder.clone(),
+                        });
+                    }
                     return Err(SceneError::MeshNotFound {
                         scene: scene.name,
                         file: mesh.clone(),

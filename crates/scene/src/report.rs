@@ -1,6 +1,6 @@
 //! What an import did to a mesh, for those who want to know what they are looking at.
 
-use crate::error::{FACES_SHOWN, FaceRef};
+use crate::error::{FACES_SHOWN, FaceRef, plural};
 use std::{fmt, path::PathBuf};
 
 /// Counts and warnings of an import. A generated mesh has an empty report.
@@ -56,7 +56,7 @@ impl Degenerate {
         writeln!(
             f,
             "{} {what}: {}{}",
-            self.triangles,
+            plural(self.triangles, "triangle", "triangles"),
             faces.join(", "),
             if self.triangles > faces.len() {
                 ", …"
@@ -83,20 +83,21 @@ impl ImportReport {
 impl fmt::Display for ImportReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.dropped
-            .describe("triangles dropped, two corners being the same point", f)?;
-        self.zero_area.describe("triangles without area kept", f)?;
+            .describe("dropped, two corners being the same point", f)?;
+        self.zero_area.describe("without area kept", f)?;
         if self.normals_replaced > 0 {
             writeln!(
                 f,
-                "{} corner normals without a direction replaced by the triangle's own",
-                self.normals_replaced
+                "{} without a direction replaced by the triangle's own",
+                plural(self.normals_replaced, "corner normal", "corner normals")
             )?;
         }
         if self.points + self.lines > 0 {
             writeln!(
                 f,
-                "{} points and {} lines left out",
-                self.points, self.lines
+                "{} and {} left out",
+                plural(self.points, "point", "points"),
+                plural(self.lines, "line", "lines")
             )?;
         }
         Ok(())

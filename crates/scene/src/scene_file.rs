@@ -54,8 +54,9 @@ pub enum MeshSource {
         /// How polygons are split.
         #[serde(default)]
         quads: QuadDiagonal,
-        /// Where the file can be downloaded, for the message that it is missing.
-        source: String,
+        /// Where the file can be downloaded, for the message that it is missing; absent for a mesh of one's own.
+        #[serde(default, deserialize_with = "given")]
+        source: Option<String>,
     },
     /// A mesh that this crate generates, by name; see [`crate::generate`].
     Generated(#[serde(deserialize_with = "generator")] String),
@@ -118,6 +119,11 @@ impl<'de> Deserialize<'de> for View {
         view.check().map_err(D::Error::custom)?;
         Ok(view)
     }
+}
+
+/// A string where `None` is said by leaving it out: RON would ask for `Some("…")`.
+fn given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<String>, D::Error> {
+    String::deserialize(deserializer).map(Some)
 }
 
 fn format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {

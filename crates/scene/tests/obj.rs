@@ -125,7 +125,7 @@ fn degenerate_triangles_are_reported_by_group_and_face() {
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 1, 3], [0, 1, 2]]); // numbered as the faces name them
     assert_snapshot!(report, @r#"
     2 triangles dropped, two corners being the same point: face 2 of group "roof" (line 8), face 2 of group "wall" (line 11)
-    1 triangles without area kept: face 1 of group "wall" (line 10)
+    1 triangle without area kept: face 1 of group "wall" (line 10)
     "#);
 }
 
@@ -139,7 +139,7 @@ fn a_tiny_area_is_an_area() {
 fn points_and_lines_are_counted_not_drawn() {
     let (mesh, report) = parse(format!("{SQUARE}p 1\nl 1 2 3\nl 1 2\nf 1 2\nf 1 2 3\n"));
     assert_eq!(mesh.triangles, [[0, 1, 2]]);
-    assert_snapshot!(report, @"1 points and 3 lines left out");
+    assert_snapshot!(report, @"1 point and 3 lines left out");
     assert_eq!((report.points, report.lines), (1, 3));
 }
 
@@ -169,7 +169,7 @@ fn odd_but_valid_text() {
 #[test]
 fn broken_files_are_explained() {
     assert_snapshot!(error(""), @"house.obj: no triangles: the file holds 0 faces, 0 lines and 0 points");
-    assert_snapshot!(error("v 1 2 3\nl 1 1\n"), @"house.obj: no triangles: the file holds 0 faces, 1 lines and 0 points");
+    assert_snapshot!(error("v 1 2 3\nl 1 1\n"), @"house.obj: no triangles: the file holds 0 faces, 1 line and 0 points");
     assert_snapshot!(error("v 1 2 3\nv 1 zwei 3\n"), @r#"house.obj:2: position parse error in "v 1 zwei 3""#);
     assert_snapshot!(error("v 1 2"), @r#"house.obj:1: position parse error in "v 1 2""#);
     assert_snapshot!(error("v 1 2 3 0\n"), @r#"house.obj:1: scaling (w) by zero in "v 1 2 3 0""#);
@@ -189,7 +189,7 @@ fn broken_faces_are_named() {
     "#);
     assert_snapshot!(error(format!("{SQUARE}vn 0 0 1\nf 1//1 2//1 3//2\n")), @r#"
     house.obj: 1 face cannot be used
-      face 1 of group "unnamed" (line 6) names normal 2, but 1 normals stand above it
+      face 1 of group "unnamed" (line 6) names normal 2, but 1 normal stands above it
     "#);
     assert_snapshot!(error(format!("{SQUARE}f 1/2/3/4 2 3\nf 1 2 x\nf 1 2 3.5\nf // 1 2\n")), @r#"
     house.obj: 4 faces cannot be used

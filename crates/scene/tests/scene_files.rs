@@ -204,6 +204,35 @@ fn meshes_are_searched_beside_the_scene_file_first() {
 }
 
 #[test]
+fn a_mesh_of_ones_own_has_no_source_and_a_folder_is_no_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("s.ron");
+    let library = SceneLibrary::default();
+    let error = |mesh: &str| {
+        fs::write(&scene, GOOD.replace(r#"Generated("park")"#, mesh)).unwrap();
+        let error = library.load(&request(&scene)).unwrap_err().to_string();
+        error
+            .replace(&folder.path().display().to_string(), "OWN")
+            .replace('\\', "/")
+    };
+    assert_snapshot!(error(r#"Obj(file: "t.obj")"#), @r#"
+    the mesh "t.obj" of scene "garden" was not found; searched
+      OWN/t.obj
+    put it at "t.obj" below a folder that the environment variable SKIAGRAPH_ASSETS names
+    "#);
+    fs::create_dir(folder.path().join("t.obj")).unwrap();
+    assert_snapshot!(error(r#"Obj(file: "t.obj")"#), @r#"the mesh of scene "garden": OWN/t.obj is a folder, expected an .obj file"#);
+    fs::write(folder.path().join("u.obj"), TRIANGLE).unwrap();
+    assert_snapshot!(error(r#"Obj(file: "u.obj", leave_out: ["roof"])"#), @r#"OWN/u.obj: there is no group "roof" to leave out; the file has no groups"#);
+    fs::write(
+        &scene,
+        GOOD.replace(r#"Generated("park")"#, r#"Obj(file: "u.obj")"#),
+    )
+    .unwrap();
+    assert_eq!(library.load(&request(&scene)).unwrap().1.faces, 1);
+}
+
+#[test]
 fn a_bare_obj_needs_a_view_and_a_light() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("T.OBJ");

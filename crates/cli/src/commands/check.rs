@@ -6,7 +6,7 @@ use crate::{
     preset::{self, Faults},
 };
 use glam::{DVec3, Vec3};
-use skiagraph_graph::{Graph, PlanRequest};
+use skiagraph_graph::{Diagnostics, Graph, Plan, PlanRequest, Registry, Sources};
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
 use std::sync::Arc;
@@ -18,9 +18,6 @@ use std::sync::Arc;
 pub fn check(args: &CheckArgs) -> Result<(), CliError> {
     let sources = preset::sources();
     let registry = skiagraph_passes::registry();
-    let (scene, view) = one_triangle();
-    let mut provider = SceneProvider::new(Arc::new(scene));
-    provider.set_view(&view, VIEWPORT);
     let mut faults = Faults::default();
     let mut fine = Vec::new();
     let mut missing = Vec::new();
@@ -32,11 +29,7 @@ pub fn check(args: &CheckArgs) -> Result<(), CliError> {
                 continue;
             }
         };
-        let planned = Graph::load(&path, &registry, &sources).and_then(|graph| {
-            let plan = graph.plan(&PlanRequest::new(VIEWPORT, &provider))?;
-            Ok((graph, plan))
-        });
-        match planned {
+        match all_at_once(&path, &registry, &sources) {
             Ok((graph, plan)) => {
                 preset::warn(&graph, plan.warnings());
                 let passes = plan.passes().len();
@@ -60,6 +53,23 @@ pub fn check(args: &CheckArgs) -> Result<(), CliError> {
 }
 
 const VIEWPORT: [u32; 2] = [64, 64];
+
+/// Everything that is wrong with a graph, as far as it can be said without a scene and an adapter.
+pub fn all_at_once(
+    path: &str,
+    registry: &Registry,
+    sources: &dyn Sources,
+) -> Result<(Graph, Plan), Diagnostics> {
+    let (scene, view) = one_triangle();
+    let mut provider = SceneProvider::new(Arc::new(scene));
+    provider.set_view(&view, VIEWPORT);
+    Graph::check(
+        path,
+        registry,
+        sources,
+        &PlanRequest::new(VIEWPORT, &provider),
+    )
+}
 
 /// The least scene that has all that a provider may be asked for.
 fn one_triangle() -> (Scene, View) {

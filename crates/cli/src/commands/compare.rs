@@ -5,10 +5,11 @@ use crate::{
     contract,
     error::{CliError, note, print},
     interrupt,
-    measure::{Method, Setting, slug},
+    measure::{Method, Setting, reference_stem, stem},
     parse::Size,
     picture,
     preset::{self, Faults, Preset},
+    progress::Step,
     reference::{self, Primary},
     render,
     results::{Results, Scene as SceneResult},
@@ -19,7 +20,11 @@ use skiagraph_graph::{LayeredSources, gpu::Gpu};
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Image, Oracle};
 use skiagraph_scene::{DirectionalLight, View};
-use std::{collections::BTreeSet, fs, sync::Arc};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    sync::Arc,
+};
 
 /// Runs the comparison; whatever is measured is on disk at once.
 ///
@@ -40,6 +45,7 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
     let primary = Primary::load(&sources)?;
     let gpu = render::open(adapter)?;
     let Stage { scene, views } = Stage::load(&args.scene)?;
+    check_pictures(&methods, &views, args)?;
     let scene = Arc::new(scene);
     let provider = SceneProvider::new(scene.clone());
     check_plans(&gpu, &primary, &methods, args, &provider)?;
@@ -60,7 +66,9 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
         warmup: args.warmup,
         runs: Vec::new(),
     };
+    let step = Step::begin(format!("hierarchy of {}", scene.name), 1, "steps");
     let oracle = Oracle::new(&scene.mesh);
+    step.end();
     let planned = views.len() * unique(&args.size).len() * methods.len();
     let mut comparison = Comparison {
         args,
@@ -132,9 +140,11 @@ impl Comparison<'_> {
     ) -> Result<(), CliError> {
         let camera = view.camera(viewport);
         self.provider.set_view(view, viewport);
-        let ids = self.primary.ids(&self.gpu, viewport, &mut self.provider)?;
         let [width, height] = viewport;
         let what = format!("{} {width}x{height}", view.name);
+        let step = Step::begin(format!("visible triangles, {what}"), 1, "frames");
+        let ids = self.primary.ids(&self.gpu, viewport, &mut self.provider)?;
+        step.end();
         let reference = reference::judge(
             &self.oracle,
             &camera,
@@ -143,10 +153,7 @@ impl Comparison<'_> {
             self.args.oracle,
             &what,
         )?;
-        let name = format!(
-            "reference-{}-{width}x{height}-visibility.png",
-            slug(&view.name)
-        );
+        let name = format!("{}-visibility.png", reference_stem(&view.name, viewport));
         let image = Image::visibility(viewport, &reference.visibility(), &reference.status())
             .map_err(|error| CliError::Input(format!("no picture {name}: {error}")))?;
         picture::save(&self.args.out.join(name), &image)?;
@@ -266,6 +273,34 @@ fn check_plans(
     Err(CliError::Input(
         misfits.into_iter().collect::<Vec<_>>().join("\nerror: "),
     ))
+}
+
+/// Refuses runs that would overwrite each other's pictures, before anything runs.
+fn check_pictures(methods: &[Method], views: &[View], args: &CompareArgs) -> Result<(), CliError> {
+    let mut owners: BTreeMap<String, String> = BTreeMap::new();
+    for view in views {
+        for Size(viewport) in unique(&args.size) {
+            let reference = (
+                reference_stem(&view.name, viewport),
+                format!("the reference on view `{}`", view.name),
+            );
+            let runs = methods.iter().map(|method| {
+                (
+                    stem(method, &view.name, viewport),
+                    format!("`{}` on view `{}`", method.preset.name, view.name),
+                )
+            });
+            for (stem, owner) in runs.chain([reference]) {
+                if let Some(other) = owners.get(&stem) {
+                    return Err(CliError::Input(format!(
+                        "the pictures of {other} and of {owner} would overwrite each other: both are called {stem}-….png\n  rename one, or compare them one after the other with another --out"
+                    )));
+                }
+                owners.insert(stem, owner);
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The list without repeats, in its own order.

@@ -77,7 +77,7 @@ fn chosen(gpu: &gpu::Gpu) -> String {
     text
 }
 
-const FEATURES: [(wgpu::Features, &str); 5] = [
+const FEATURES: [(wgpu::Features, &str); 4] = [
     (
         wgpu::Features::TIMESTAMP_QUERY,
         "timestamps: GPU time of each pass",
@@ -89,10 +89,6 @@ const FEATURES: [(wgpu::Features, &str); 5] = [
     (
         wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES,
         "timestamps inside passes: the way around drivers that time compute wrongly",
-    ),
-    (
-        wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES,
-        "storage textures beyond the standard formats",
     ),
     (
         wgpu::Features::FLOAT32_FILTERABLE,

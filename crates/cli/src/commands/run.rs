@@ -15,6 +15,7 @@ use skiagraph_graph::{Capture, Content, Executor, Plan, PlanRequest, gpu::Gpu};
 use skiagraph_passes::SceneProvider;
 use std::{
     collections::{BTreeMap, BTreeSet},
+    path::{Component, PathBuf},
     slice,
     sync::Arc,
 };
@@ -35,6 +36,7 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
             "--save takes the picture of one view; give its name instead of `all`".into(),
         ));
     }
+    check_files(&args.save)?;
     let gpu = render::open(adapter)?;
     let stage = Stage::load(&args.scene)?;
     let scene = Arc::new(stage.scene);
@@ -80,6 +82,28 @@ fn capture(save: &Save) -> Capture {
         material: save.material.clone(),
         after: save.after.clone(),
     }
+}
+
+/// Refuses two saves into one file.
+fn check_files(saves: &[Save]) -> Result<(), CliError> {
+    let place = |save: &Save| -> PathBuf {
+        let parts = save.file.components();
+        parts.filter(|part| *part != Component::CurDir).collect()
+    };
+    for (index, save) in saves.iter().enumerate() {
+        if let Some(earlier) = saves[..index]
+            .iter()
+            .find(|other| place(other) == place(save))
+        {
+            return Err(CliError::Usage(format!(
+                "--save {} and --save {} both write {}; give each a file of its own",
+                capture(earlier).name(),
+                capture(save).name(),
+                save.file.display()
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// Refuses the picture of a buffer before anything is rendered.
@@ -142,7 +166,11 @@ fn story(plan: &Plan) -> String {
     for pass in plan.culled() {
         text.push_str(&format!("  left out {}: {}\n", pass.name, pass.reason));
     }
-    text.push_str(&format!("  built for it: {}\n", plan.provided().join(", ")));
+    let provided = match &plan.provided()[..] {
+        [] => "nothing".into(),
+        names => names.join(", "),
+    };
+    text.push_str(&format!("  built for it: {provided}\n"));
     text.push_str(&format!(
         "  materials: {}, {} saved by sharing\n",
         bytes(plan.memory_bytes()),

@@ -34,4 +34,3 @@ fi
 
 scripts/setup.sh --release
 cargo run --quiet --release --locked --bin skiagraph -- compare "$@"
-printf '\nThe pictures, results.json and results.csv are in %s\n' "$out" >&2

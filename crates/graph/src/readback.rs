@@ -86,24 +86,12 @@ impl Content {
             wgpu::TextureFormat::R16Float => Some(
                 bytes
                     .chunks_exact(2)
-                    .map(|b| half_to_f32(u16::from_le_bytes([b[0], b[1]])))
+                    .map(|b| half::f16::from_le_bytes([b[0], b[1]]).to_f32())
                     .collect(),
             ),
             _ => None,
         }
     }
-}
-
-/// IEEE 754 half to single precision.
-fn half_to_f32(half: u16) -> f32 {
-    let (sign, exponent, mantissa) = (half >> 15, (half >> 10) & 0x1f, half & 0x3ff);
-    let magnitude = match exponent {
-        0 => f32::from(mantissa) * 2f32.powi(-24),
-        31 if mantissa == 0 => f32::INFINITY,
-        31 => f32::NAN,
-        _ => (1.0 + f32::from(mantissa) / 1024.0) * 2f32.powi(i32::from(exponent) - 15),
-    };
-    if sign == 1 { -magnitude } else { magnitude }
 }
 
 /// A readback under way.

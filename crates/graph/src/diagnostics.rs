@@ -73,6 +73,10 @@ codes! {
     Cycle = "cycle",
     /// A pass samples a texture that it draws to.
     FeedbackLoop = "feedback-loop",
+    /// Passes that must run or be skipped together have different run conditions.
+    RunCondition = "run-condition",
+    /// What the host imports does not serve what passes do with it.
+    Import = "import",
     /// A limit of the adapter, or a feature that it lacks.
     Limit = "limit",
     /// A material that no pass uses.

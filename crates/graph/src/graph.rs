@@ -4,7 +4,7 @@ use crate::{
     Plan, PlanRequest,
     diagnostics::{Code, Diagnostic, Diagnostics, Severity, suggestion},
     document::{
-        self, Document,
+        self, Document, Run,
         located::Located,
         materials::{BufferEntry, Count, Material, Size, TextureEntry},
         params::{Param, ParamValue},
@@ -17,9 +17,11 @@ use crate::{
 use std::{collections::BTreeMap, collections::HashMap, collections::HashSet, sync::Arc};
 
 /// A document that was read, with all shaders that its passes name. No GPU has been touched.
-#[derive(Debug)]
+///
+/// Cheap to clone.
+#[derive(Clone, Debug)]
 pub struct Graph {
-    pub(crate) document: Document,
+    pub(crate) document: Arc<Document>,
     /// `None` for those with a mistake that was reported.
     pub(crate) shaders: HashMap<String, Option<Arc<Shader>>>,
     warnings: Vec<Diagnostic>,
@@ -57,6 +59,8 @@ pub(crate) struct LoweredPass {
     pub kind: &'static str,
     pub steps: Vec<Step>,
     pub scratch: Vec<(String, u64)>,
+    pub run: Run,
+    pub overwrites: Vec<Located<String>>,
 }
 
 impl Graph {
@@ -153,7 +157,7 @@ impl Graph {
             );
         }
         let mut graph = Self {
-            document,
+            document: Arc::new(document),
             shaders: HashMap::new(),
             warnings: Vec::new(),
         };
@@ -251,6 +255,8 @@ impl Graph {
                 kind: pass.kind,
                 steps: lowering.steps,
                 scratch: lowering.scratch,
+                run: pass.run.clone(),
+                overwrites: pass.overwrites.clone(),
             }
         };
         self.document.passes.iter().map(lower).collect()

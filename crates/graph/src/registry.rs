@@ -169,6 +169,16 @@ impl FromParam for f32 {
     }
 }
 
+impl FromParam for bool {
+    const EXPECTED: &'static str = "a Bool";
+    fn from_param(_: &Param, value: &ParamValue) -> Option<Self> {
+        match value {
+            ParamValue::Bool(value) => Some(*value),
+            _ => None,
+        }
+    }
+}
+
 /// How an entry of a kind is read.
 type Parse = fn(&[Field], &Span) -> Result<Arc<dyn PassKind>, Diagnostic>;
 

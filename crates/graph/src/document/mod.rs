@@ -44,12 +44,44 @@ pub(crate) struct Broken {
     pub first_pass: Option<usize>,
 }
 
+/// In which frames a pass runs.
+#[derive(Clone, Debug, Default, Deserialize)]
+pub(crate) enum Run {
+    /// In every one.
+    #[default]
+    Always,
+    /// In the first one.
+    Once,
+    /// In those before which something changed that it reads.
+    OnChange,
+    /// In those in which a param is true.
+    When(Located<String>),
+}
+
+impl PartialEq for Run {
+    fn eq(&self, other: &Self) -> bool {
+        self.to_string() == other.to_string()
+    }
+}
+
+impl std::fmt::Display for Run {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::When(param) => write!(f, "When({:?})", param.value),
+            other => write!(f, "{other:?}"),
+        }
+    }
+}
+
 /// A pass: what every kind has, and the kind's own body.
 #[derive(Clone, Debug)]
 pub(crate) struct PassEntry {
     pub name: Located<String>,
     pub shader: Option<Located<String>>,
     pub bind: Vec<(Located<String>, Located<String>)>,
+    pub run: Run,
+    /// What the author promises that the pass writes all of.
+    pub overwrites: Vec<Located<String>>,
     pub kind: &'static str,
     pub body: Arc<dyn PassKind>,
 }
@@ -288,6 +320,10 @@ fn pass(node: &Node, registry: &Registry) -> Result<PassEntry, Diagnostic> {
         shader: Option<Located<String>>,
         #[serde(default)]
         bind: Pairs,
+        #[serde(default)]
+        run: Run,
+        #[serde(default)]
+        overwrites: Vec<Located<String>>,
     }
     let Some((tag, body)) = node.variant() else {
         return Err(
@@ -304,10 +340,9 @@ fn pass(node: &Node, registry: &Registry) -> Result<PassEntry, Diagnostic> {
         .at(tag.span.clone(), "no pass kind of this name is registered")
         .suggest(&tag, registry.kinds()));
     };
-    let (header, own): (Vec<Field>, Vec<Field>) = body
-        .fields()?
-        .into_iter()
-        .partition(|field| ["name", "shader", "bind"].contains(&field.name.as_str()));
+    let (header, own): (Vec<Field>, Vec<Field>) = body.fields()?.into_iter().partition(|field| {
+        ["name", "shader", "bind", "run", "overwrites"].contains(&field.name.as_str())
+    });
     let header: Header = from_fields(&header, &tag.span)?;
     let mut bound = HashSet::new();
     for (global, _) in &header.bind.0 {
@@ -324,6 +359,8 @@ fn pass(node: &Node, registry: &Registry) -> Result<PassEntry, Diagnostic> {
         name: header.name,
         shader: header.shader,
         bind: header.bind.0,
+        run: header.run,
+        overwrites: header.overwrites,
         kind: kind.name,
         body,
     })

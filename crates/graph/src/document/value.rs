@@ -1,6 +1,7 @@
 //! Values that several entries share: a literal or a param, comparison functions, named pairs.
 
 use super::located::{self, Located};
+use crate::resolve::previous;
 use serde::{
     Deserialize, Deserializer,
     de::{DeserializeOwned, MapAccess, Visitor},
@@ -63,6 +64,34 @@ impl From<Compare> for wgpu::CompareFunction {
     }
 }
 
+/// What a pass reads: `"name"`, or `Previous("name")` for what it held at the end of the frame before.
+#[derive(Clone, Debug)]
+pub(crate) struct Reference(pub Located<String>);
+
+impl<'de> Deserialize<'de> for Reference {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        /// The name, in either spelling.
+        struct Name(String);
+        impl<'de> Deserialize<'de> for Name {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                #[derive(Deserialize)]
+                #[serde(rename = "name")]
+                enum Words {
+                    Previous(String),
+                }
+                Ok(Self(match located::literal(deserializer)? {
+                    Ok(name) => name,
+                    Err(word) => match located::word::<Words, D::Error>(word)? {
+                        Words::Previous(name) => previous(&name),
+                    },
+                }))
+            }
+        }
+        let Located { value, span } = Located::<Name>::deserialize(deserializer)?;
+        Ok(Self(Located::new(value.0, span)))
+    }
+}
+
 /// A RON map of names to names in file order, duplicates kept (ron itself drops them without a word).
 #[derive(Clone, Debug, Default)]
 pub struct Pairs(pub Vec<(Located<String>, Located<String>)>);
@@ -73,12 +102,12 @@ impl<'de> Deserialize<'de> for Pairs {
         impl<'de> Visitor<'de> for Map {
             type Value = Pairs;
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a map of names, {\"a\": \"b\", …}")
+                f.write_str("a map of names, {\"a\": \"b\", \"c\": Previous(\"d\"), …}")
             }
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Pairs, A::Error> {
                 let mut pairs = Vec::new();
-                while let Some(pair) = map.next_entry()? {
-                    pairs.push(pair);
+                while let Some((global, Reference(name))) = map.next_entry()? {
+                    pairs.push((global, name));
                 }
                 Ok(Pairs(pairs))
             }

@@ -166,7 +166,10 @@ impl Graph {
         let schedule = schedule(&order_of_live(&passes, &resources, &live), &live);
         let mut lifetimes = lifetimes(&passes, &schedule);
         unsized_buffers(&lifetimes, &resources, &mut diagnostics);
-        let conditions = conditions(&passes, &schedule, &resources.list, &mut diagnostics);
+        // Whether conditions agree must not depend on which outputs are asked for.
+        let all: Vec<usize> = (0..passes.len()).collect();
+        conditions(&passes, &all, &resources.list, &mut diagnostics);
+        let conditions = conditions(&passes, &schedule, &resources.list, &mut Vec::new());
         for (_, target) in &readable {
             let Some(lifetime) = lifetimes.get_mut(&target.id) else {
                 continue;

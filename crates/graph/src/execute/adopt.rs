@@ -3,6 +3,7 @@
 use super::{ExecuteError, Executor, incremental::Contents, pass::MadePass, poison::Poison};
 use crate::{
     document::params::ParamValue,
+    link::LinkedStep,
     memory::Memory,
     plan::Plan,
     provider::Provider,
@@ -91,6 +92,7 @@ impl Executor {
         let bound: Vec<Option<usize>> = (0..passes.len()).map(|at| kept.bound(at)).collect();
         for (at, pass) in passes.iter_mut().enumerate() {
             pass.memory.versions = kept.versions(at);
+            pass.memory.stale = bound[at].is_none_or(|before| self.passes[before].memory.stale);
             let linked = &plan.passes[plan.schedule[at]];
             match kept.before(at) {
                 Some(before) => {
@@ -175,7 +177,7 @@ impl Executor {
             for (buffer, bytes) in made.uploads(pass) {
                 self.queue.write_buffer(buffer, 0, bytes);
             }
-            made.memory.versions = None;
+            made.memory.stale = true;
             uploads.push(pass.name.value.clone());
         }
         uploads
@@ -243,13 +245,36 @@ impl Kept<'_> {
     fn is_unchanged(&self, at: usize, before: usize) -> bool {
         let pass = &self.plan.passes[self.plan.schedule[at]];
         let old = &self.old.plan.passes[self.old.plan.schedule[before]];
-        pass.steps == old.steps
-            && pass.accesses.len() == old.accesses.len()
+        pass.steps == old.steps && self.has_its_memory(at, before)
+    }
+
+    /// Whether everything that a pass uses is in the memory that it was in before.
+    fn has_its_memory(&self, at: usize, before: usize) -> bool {
+        let pass = &self.plan.passes[self.plan.schedule[at]];
+        let old = &self.old.plan.passes[self.old.plan.schedule[before]];
+        pass.accesses.len() == old.accesses.len()
             && pass.accesses.iter().zip(&old.accesses).all(|(new, old)| {
                 new.resource == old.resource
                     && self.former(new.resource) == Some(old.resource)
                     && self.is_same(new.resource)
             })
+    }
+
+    /// Whether a pass still does what it did, whatever its params: then what it made is still there.
+    fn is_kept(&self, at: usize) -> bool {
+        let Some(before) = self.before(at) else {
+            return false;
+        };
+        let pass = &self.plan.passes[self.plan.schedule[at]];
+        let old = &self.old.plan.passes[self.old.plan.schedule[before]];
+        let shader = |step: &LinkedStep| step.program().map(|program| program.shader.clone());
+        pass.steps.len() == old.steps.len()
+            && pass
+                .steps
+                .iter()
+                .zip(&old.steps)
+                .all(|(new, old)| shader(new) == shader(old))
+            && self.has_its_memory(at, before)
     }
 
     /// The position before of a pass that needs no binding.
@@ -260,13 +285,12 @@ impl Kept<'_> {
 
     /// What a pass saw when it ran last, if what it made then is still there.
     fn versions(&self, at: usize) -> Option<Vec<u64>> {
-        let before = self.bound(at)?;
-        let memory = &self.old.passes[before].memory;
-        let passes = &self.plan.conditions.group;
+        let memory = &self.old.passes[self.before(at)?].memory;
+        let groups = &self.plan.conditions.group;
         let same_inputs = super::pass::inputs(self.plan, at) == memory.inputs;
-        let whole_group = (0..passes.len())
-            .filter(|other| passes[*other] == passes[at])
-            .all(|other| self.bound(other).is_some());
+        let whole_group = (0..groups.len())
+            .filter(|other| groups[*other] == groups[at])
+            .all(|other| self.is_kept(other));
         memory
             .versions
             .clone()

@@ -114,7 +114,7 @@ impl Contents {
                     self.seen(plan, *id) != *seen
                         || writers.get(id).is_some_and(|&writer| runs[writer])
                 });
-                changed.any(|changed| changed)
+                made.memory.stale || changed.any(|changed| changed)
             }
         }
     }
@@ -155,6 +155,7 @@ impl Contents {
                 Origin::Previous(_) => before.seen(plan, *id),
                 _ => self.seen(plan, *id),
             };
+            passes[at].memory.stale = false;
             passes[at].memory.versions =
                 Some(passes[at].memory.inputs.iter().map(version).collect());
             for access in plan.passes[pass]

@@ -34,6 +34,8 @@ pub(super) struct Seen {
     pub inputs: Vec<ResourceId>,
     /// `None` if it has not run, or what it made is lost.
     pub versions: Option<Vec<u64>>,
+    /// Whether its params or state are others than when it ran.
+    pub stale: bool,
 }
 
 impl MadePass {
@@ -87,6 +89,7 @@ impl MadePass {
             memory: Seen {
                 inputs: inputs(plan, at),
                 versions: None,
+                stale: false,
             },
         })
     }

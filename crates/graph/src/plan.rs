@@ -447,19 +447,23 @@ fn check_imports(
     request: &PlanRequest<'_>,
     diagnostics: &mut Vec<Diagnostic>,
 ) {
+    fn names<T>(of: &str, flags: impl Iterator<Item = (&'static str, T)>) -> String {
+        let names: Vec<String> = flags.map(|(name, _)| format!("{of}::{name}")).collect();
+        names.join(" | ")
+    }
     for pass in schedule.iter().map(|&pass| &passes[pass]) {
         for access in &pass.accesses {
             let name = &resources[access.resource.0].name;
-            let lacking = match (request.imports.get(name), access.usage) {
+            let lacking = match (request.imports.get(name).copied(), access.usage) {
                 (Some(Import::Texture { usage, .. }), Usage::Texture(needed))
                     if !usage.contains(needed) =>
                 {
-                    format!("TextureUsages::{needed:?}")
+                    names("TextureUsages", needed.difference(usage).iter_names())
                 }
                 (Some(Import::Buffer { usage, .. }), Usage::Buffer(needed))
                     if !usage.contains(needed) =>
                 {
-                    format!("BufferUsages::{needed:?}")
+                    names("BufferUsages", needed.difference(usage).iter_names())
                 }
                 _ => continue,
             };

@@ -66,7 +66,7 @@ impl<'a> Method<'a> {
     }
 
     /// All params with the values that it runs with.
-    fn all_params(&self) -> BTreeMap<String, serde_json::Value> {
+    pub fn all_params(&self) -> BTreeMap<String, serde_json::Value> {
         let params = self.preset.graph.params().iter();
         let value = |param: &Param| {
             json(

@@ -2,7 +2,7 @@
 
 mod request;
 
-pub use request::{Capture, CulledPass, OutputSummary, PassSummary, PlanRequest};
+pub use request::{Capture, CulledPass, MemoryEntry, OutputSummary, PassSummary, PlanRequest};
 
 use crate::{
     cull,
@@ -448,16 +448,42 @@ impl Plan {
         self.readable.iter().map(summary).collect()
     }
 
+    /// The graph's own textures and buffers with what they take, in the order of the document.
+    pub fn memory(&self) -> Vec<MemoryEntry> {
+        let entry = |id: &ResourceId| {
+            let Resource { name, kind, .. } = &self.resources[id.0];
+            let (format, size, mips, layers, bytes) = match kind {
+                ResourceKind::Texture(texture) => (
+                    Some(texture.format),
+                    texture.size,
+                    texture.mips,
+                    texture.layers,
+                    texture.bytes(),
+                ),
+                ResourceKind::Buffer(Buffer { bytes, .. }) => {
+                    let edge = u32::try_from(*bytes).unwrap_or(u32::MAX);
+                    (None, [edge, 1], 1, 1, *bytes)
+                }
+                ResourceKind::Sampler(_) | ResourceKind::Provided(_) => return None,
+            };
+            Some(MemoryEntry {
+                name: name.clone(),
+                format,
+                size,
+                mips,
+                layers,
+                bytes,
+                shared_with: Vec::new(),
+            })
+        };
+        self.lifetimes.keys().filter_map(entry).collect()
+    }
+
     /// Bytes of the graph's own textures and buffers.
     pub fn memory_bytes(&self) -> u64 {
-        let bytes = |id: &ResourceId| match &self.resources[id.0].kind {
-            ResourceKind::Texture(texture) => texture.bytes(),
-            ResourceKind::Buffer(buffer) => buffer.bytes,
-            _ => 0,
-        };
-        self.lifetimes
-            .keys()
-            .map(bytes)
+        let entries = self.memory().into_iter();
+        entries
+            .map(|entry| entry.bytes)
             .fold(0, u64::saturating_add)
     }
 

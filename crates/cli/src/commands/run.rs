@@ -3,7 +3,7 @@
 use crate::{
     args::RunArgs,
     error::{CliError, print},
-    files::write_whole,
+    files::{check_writable, write_whole},
     parse::{Encoding, Save},
     picture::{self, Picture},
     preset::{self, Faults, Preset},
@@ -15,8 +15,6 @@ use skiagraph_graph::{Capture, Content, Executor, Plan, PlanRequest, gpu::Gpu};
 use skiagraph_passes::SceneProvider;
 use std::{
     collections::{BTreeMap, BTreeSet},
-    path::{Component, PathBuf},
-    slice,
     sync::Arc,
 };
 
@@ -25,18 +23,19 @@ use std::{
 /// # Errors
 /// A faulty graph, a scene that cannot be loaded, no GPU, a file that cannot be written.
 pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
-    let sources = preset::sources();
-    let [preset] = &preset::load_all(slice::from_ref(&args.preset), &sources)?[..] else {
-        return Err(CliError::Input("no graph".into()));
-    };
-    preset::check_names(slice::from_ref(preset), &args.params)?;
-    let params = preset::params(preset, &args.params, args.map_size)?;
-    if args.scene.view.as_deref() == Some("all") && !args.save.is_empty() {
+    let RunArgs { graph: args, save } = args;
+    let (preset, params) = &preset::load_one(args, &preset::sources())?;
+    if args.scene.view.as_deref() == Some("all") && !save.is_empty() {
         return Err(CliError::Usage(
             "--save takes the picture of one view; give its name instead of `all`".into(),
         ));
     }
-    check_files(&args.save)?;
+    let writer = |save: &Save| format!("--save {}", capture(save).name());
+    let files: Vec<_> = save
+        .iter()
+        .map(|save| (writer(save), save.file.as_path()))
+        .collect();
+    check_writable(&files)?;
     let gpu = render::open(adapter)?;
     let stage = Stage::load(&args.scene)?;
     let scene = Arc::new(stage.scene);
@@ -45,7 +44,7 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
         provider.set_view(view, args.size.0);
         let mut request = PlanRequest::new(args.size.0, &provider);
         request.params = params.clone();
-        request.captures = captures(preset, &args.save);
+        request.captures = captures(preset, save);
         request.limits = gpu.device.limits();
         request.features = gpu.device.features();
         let plan = preset
@@ -53,7 +52,7 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
             .plan(&request)
             .map_err(|diagnostics| Faults::of(&preset.name, &diagnostics))?;
         preset::warn(&preset.graph, plan.warnings());
-        check_pictures(&plan, &args.save)?;
+        check_pictures(&plan, save)?;
         print(&format!(
             "{} on {}, view {}, {}\n{}",
             preset.name,
@@ -62,8 +61,8 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
             args.size,
             story(&plan)
         ))?;
-        let contents = render(&gpu, plan, &mut provider, &args.save, preset)?;
-        for save in &args.save {
+        let contents = render(&gpu, plan, &mut provider, save, preset)?;
+        for save in save {
             let name = capture(save).name();
             let Some(content) = contents.get(&name) else {
                 return Err(CliError::Input(format!(
@@ -82,28 +81,6 @@ fn capture(save: &Save) -> Capture {
         material: save.material.clone(),
         after: save.after.clone(),
     }
-}
-
-/// Refuses two saves into one file.
-fn check_files(saves: &[Save]) -> Result<(), CliError> {
-    let place = |save: &Save| -> PathBuf {
-        let parts = save.file.components();
-        parts.filter(|part| *part != Component::CurDir).collect()
-    };
-    for (index, save) in saves.iter().enumerate() {
-        if let Some(earlier) = saves[..index]
-            .iter()
-            .find(|other| place(other) == place(save))
-        {
-            return Err(CliError::Usage(format!(
-                "--save {} and --save {} both write {}; give each a file of its own",
-                capture(earlier).name(),
-                capture(save).name(),
-                save.file.display()
-            )));
-        }
-    }
-    Ok(())
 }
 
 /// Refuses the picture of a buffer before anything is rendered.

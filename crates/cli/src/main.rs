@@ -4,6 +4,7 @@
 //! host program can do as well.
 
 mod args;
+mod check_json;
 mod commands;
 mod contract;
 mod csv_table;

@@ -81,17 +81,17 @@ pub fn profile(args: &ProfileArgs, adapter: Option<&str>) -> Result<(), CliError
         warmup: args.warmup,
     };
     let (passes, memory) = (plan.passes(), memory(&plan));
-    let step = Step::begin(
-        format!("{}, {} {}", preset.name, view.name, graph.size),
-        u64::from(args.warmup) + u64::from(args.frames),
-        "frames",
-    );
     let refused = |error| CliError::Gpu {
         graph: preset.name.clone(),
         source: Box::new(error),
     };
     let mut executor =
         Executor::new(&gpu.device, &gpu.queue, plan, &mut provider).map_err(refused)?;
+    let step = Step::begin(
+        format!("{}, {} {}", preset.name, view.name, graph.size),
+        u64::from(args.warmup) + u64::from(args.frames),
+        "frames",
+    );
     let reach = |frames| step.reach(frames);
     let timed = render::sample(&gpu, &mut executor, args.warmup, args.frames, reach);
     let timed = timed.map_err(refused)?;

@@ -12,6 +12,7 @@ mod date;
 mod error;
 mod files;
 mod interrupt;
+mod items;
 mod measure;
 mod parse;
 mod picture;

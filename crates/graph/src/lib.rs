@@ -39,7 +39,10 @@ pub use document::{
 };
 pub use execute::{ExecuteError, Executor, Frame, FrameReport};
 pub use graph::{Graph, ParamError};
-pub use plan::{Capture, CulledPass, MemoryEntry, OutputSummary, PassSummary, Plan, PlanRequest};
+pub use plan::{
+    Capture, CulledPass, Field, Item, MemoryEntry, OutputSummary, PassSummary, Plan, PlanRequest,
+    Scalar,
+};
 pub use provider::{NoProvider, Provided, Provider, ProviderError};
 pub use readback::{Content, Readback};
 pub use registry::{Lowering, PassKind, Registry};

@@ -1,7 +1,9 @@
 //! [`Plan`]: a graph on a viewport with values for its params, checked against an adapter's limits. Pure data.
 
+mod origin;
 mod request;
 
+pub use origin::{Field, Item, Scalar};
 pub use request::{Capture, CulledPass, MemoryEntry, OutputSummary, PassSummary, PlanRequest};
 
 use crate::{
@@ -10,8 +12,9 @@ use crate::{
     document::{located::Located, params::ParamValue},
     graph::Graph,
     lifetime::{Lifetime, lifetimes},
-    link::{LinkedPass, Linker},
+    link::{Access, BindTarget, LinkedPass, LinkedStep, Linker},
     order::{order, order_of_live},
+    provider::Provided,
     registry::Params,
     resolve::{
         Buffer, Environment, Part, Resource, ResourceId, ResourceKind, Resources, Target, resolve,
@@ -256,6 +259,13 @@ impl Graph {
             // Those after a pass were entered as resources of their own; an output of that name is there already.
             let found = resources.find(&name);
             match found {
+                Some(target)
+                    if matches!(resources.get(target.id).kind, ResourceKind::Provided(_)) =>
+                {
+                    let help = format!("name a pass that binds it: `{name}@PASS`");
+                    let message = format!("`{name}` is provided, not written by a pass");
+                    diagnostics.push(Diagnostic::error(Code::Output, message).help(help));
+                }
                 Some(target) if !written(&target) => diagnostics.push(Diagnostic::error(
                     Code::Output,
                     format!("`{name}` cannot be read back: no pass writes it"),
@@ -361,6 +371,13 @@ impl Linker<'_, '_> {
                 ResourceKind::Texture(copy)
             }
             ResourceKind::Buffer(buffer) => ResourceKind::Buffer(buffer.clone()),
+            ResourceKind::Provided(Provided { items: None, .. }) => {
+                let message = format!("`{}` cannot be read back", from.value);
+                let help =
+                    "its size is known only once it is built, and the copy is planned before";
+                self.report(Diagnostic::error(Code::Output, message).help(help));
+                return None;
+            }
             ResourceKind::Provided(_) => ResourceKind::Buffer(Buffer::default()),
             ResourceKind::Sampler(_) => {
                 self.diagnostics.push(Diagnostic::error(

@@ -4,15 +4,20 @@ use crate::{
     args::RunArgs,
     error::{CliError, print},
     files::{check_writable, write_whole},
+    items,
     parse::{Encoding, Save},
-    picture::{self, Picture},
+    picture::{self, Picture, Planes},
     preset::{self, Faults, Preset},
     render,
     stage::Stage,
-    table::bytes,
+    table::{bytes, thousands},
 };
-use skiagraph_graph::{Capture, Content, Executor, Plan, PlanRequest, gpu::Gpu};
-use skiagraph_passes::SceneProvider;
+use skiagraph_graph::{Capture, Content, Executor, Item, Plan, PlanRequest, gpu::Gpu};
+use skiagraph_passes::{
+    SceneProvider,
+    provider::{CAMERA, LIGHT},
+};
+use skiagraph_scene::View;
 use std::{
     collections::{BTreeMap, BTreeSet},
     sync::Arc,
@@ -52,7 +57,11 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
             .plan(&request)
             .map_err(|diagnostics| Faults::of(&preset.name, &diagnostics))?;
         preset::warn(&preset.graph, plan.warnings());
-        check_pictures(&plan, save)?;
+        check_encodings(&plan, save)?;
+        let readings: Vec<Reading> = save
+            .iter()
+            .map(|save| Reading::of(&plan, save, view))
+            .collect();
         print(&format!(
             "{} on {}, view {}, {}\n{}",
             preset.name,
@@ -62,7 +71,7 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
             story(&plan)
         ))?;
         let contents = render(&gpu, plan, &mut provider, save, preset)?;
-        for save in save {
+        for (save, reading) in save.iter().zip(readings) {
             let name = capture(save).name();
             let Some(content) = contents.get(&name) else {
                 return Err(CliError::Input(format!(
@@ -70,7 +79,7 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
                     preset.name
                 )));
             };
-            print(&write(save, content)?)?;
+            print(&write(save, content, &reading)?)?;
         }
     }
     Ok(())
@@ -83,21 +92,47 @@ fn capture(save: &Save) -> Capture {
     }
 }
 
-/// Refuses the picture of a buffer before anything is rendered.
-fn check_pictures(plan: &Plan, saves: &[Save]) -> Result<(), CliError> {
+/// Refuses the picture of a buffer and the items of a texture before anything is rendered.
+fn check_encodings(plan: &Plan, saves: &[Save]) -> Result<(), CliError> {
     let outputs = plan.outputs();
-    for save in saves.iter().filter(|save| save.encoding == Encoding::Png) {
+    for save in saves {
         let name = capture(save).name();
-        if outputs
-            .iter()
-            .any(|output| output.name == name && output.format.is_none())
-        {
-            return Err(CliError::Input(format!(
-                "`{name}` is a buffer and has no picture; save it as .bin"
-            )));
-        }
+        let Some(output) = outputs.iter().find(|output| output.name == name) else {
+            continue;
+        };
+        let refused = match (save.encoding, output.format) {
+            (Encoding::Png, None) => "is a buffer and has no picture; save it as .csv or .bin",
+            (Encoding::Csv, Some(_)) => "is a texture and has no items; save it as .png or .bin",
+            _ => continue,
+        };
+        return Err(CliError::Input(format!("`{name}` {refused}")));
     }
     Ok(())
+}
+
+/// How the contents of one save are to be read.
+struct Reading {
+    /// The camera whose depths they are, if they are depths.
+    planes: Option<Planes>,
+    /// The items of a buffer.
+    item: Option<Item>,
+}
+
+impl Reading {
+    fn of(plan: &Plan, save: &Save, view: &View) -> Self {
+        let name = capture(save).name();
+        let behind = plan.provided_behind(&name);
+        // A pass that also knows the light may well draw from there.
+        let is_camera = behind.contains(CAMERA) && !behind.contains(LIGHT);
+        let planes = || Planes {
+            near: view.near,
+            far: view.far,
+        };
+        Self {
+            planes: is_camera.then(planes),
+            item: plan.item(&name),
+        }
+    }
 }
 
 /// What of the saves the graph does not hand out anyway.
@@ -156,22 +191,35 @@ fn story(plan: &Plan) -> String {
     text
 }
 
-fn write(save: &Save, content: &Content) -> Result<String, CliError> {
+fn write(save: &Save, content: &Content, reading: &Reading) -> Result<String, CliError> {
     let file = save.file.display();
     match save.encoding {
         Encoding::Png => {
-            let picture = Picture::of(&save.material, content).map_err(|reason| {
-                CliError::Input(format!(
-                    "--save {}: `{}` {reason}",
-                    save.material, save.material
-                ))
-            })?;
+            let picture =
+                Picture::of(&save.material, content, reading.planes).map_err(|reason| {
+                    CliError::Input(format!(
+                        "--save {}: `{}` {reason}",
+                        save.material, save.material
+                    ))
+                })?;
             picture::save(&save.file, &picture.image)?;
             let [width, height] = picture.image.size;
             Ok(format!(
                 "  saved {file}: {width}x{height}, {}\n",
                 picture.legend
             ))
+        }
+        Encoding::Csv => {
+            let raw = content.bytes();
+            let table = items::to_csv(raw, reading.item.as_ref())
+                .map_err(|error| CliError::write(&save.file, error))?;
+            write_whole(&save.file, &table)?;
+            let (stride, what) = match &reading.item {
+                Some(item) => (item.stride, "items as the shader declares them"),
+                None => (4, "words, each read as u32, i32 and f32"),
+            };
+            let lines = thousands((raw.len() / stride.max(1)) as u64);
+            Ok(format!("  saved {file}: {lines} {what}\n"))
         }
         Encoding::Raw => {
             let (raw, what) = match content {

@@ -1,9 +1,11 @@
 //! [`Plan`]: a graph on a viewport with values for its params, checked against an adapter's limits. Pure data.
 
+mod origin;
 mod request;
 
+pub use origin::{Field, Item, Scalar};
 use request::Request;
-pub use request::{Capture, CulledPass, OutputSummary, PassSummary, PlanRequest};
+pub use request::{Capture, CulledPass, MemoryEntry, OutputSummary, PassSummary, PlanRequest};
 
 use crate::{
     conditions::{Conditions, conditions},
@@ -12,10 +14,10 @@ use crate::{
     document::{Run, located::Located, params::ParamValue, value::Value},
     graph::Graph,
     lifetime::{Lifetime, lifetimes},
-    link::{Access, LinkedPass, Linker, Usage},
+    link::{Access, BindTarget, LinkedPass, LinkedStep, Linker, Usage},
     order::{Order, order, order_of_live},
     pool::{Slot, Slots, bytes, slots},
-    provider::Import,
+    provider::{Import, Provided},
     registry::Params,
     resolve::{
         Buffer, Environment, Origin, Part, Resource, ResourceId, ResourceKind, Resources, Target,
@@ -343,6 +345,13 @@ impl Graph {
             // Those after a pass were entered as resources of their own; an output of that name is there already.
             let found = resources.find(&name);
             match found {
+                Some(target)
+                    if matches!(resources.get(target.id).kind, ResourceKind::Provided(_)) =>
+                {
+                    let help = format!("name a pass that binds it: `{name}@PASS`");
+                    let message = format!("`{name}` is provided, not written by a pass");
+                    diagnostics.push(Diagnostic::error(Code::Output, message).help(help));
+                }
                 Some(target) if !written(&target) => diagnostics.push(Diagnostic::error(
                     Code::Output,
                     format!("`{name}` cannot be read back: no pass writes it"),
@@ -537,6 +546,13 @@ impl Linker<'_, '_> {
                 ResourceKind::Texture(copy)
             }
             ResourceKind::Buffer(buffer) => ResourceKind::Buffer(buffer.clone()),
+            ResourceKind::Provided(Provided { items: None, .. }) => {
+                let message = format!("`{}` cannot be read back", from.value);
+                let help =
+                    "its size is known only once it is built, and the copy is planned before";
+                self.report(Diagnostic::error(Code::Output, message).help(help));
+                return None;
+            }
             ResourceKind::Provided(_) => ResourceKind::Buffer(Buffer::default()),
             ResourceKind::Sampler(_) => {
                 self.diagnostics.push(Diagnostic::error(
@@ -658,6 +674,40 @@ impl Plan {
             }
         };
         self.readable.iter().map(summary).collect()
+    }
+
+    /// The graph's own textures and buffers with what they take, in the order of the document.
+    pub fn memory(&self) -> Vec<MemoryEntry> {
+        let entry = |id: &ResourceId| {
+            let resource = &self.resources[id.0];
+            let slot = self.slots.of.get(id)?;
+            let (format, size, mips, layers) = match &resource.kind {
+                ResourceKind::Texture(texture) => (
+                    Some(texture.format),
+                    texture.size,
+                    texture.mips,
+                    texture.layers,
+                ),
+                _ => {
+                    let edge = u32::try_from(bytes(resource)).unwrap_or(u32::MAX);
+                    (None, [edge, 1], 1, 1)
+                }
+            };
+            let others = self.slots.list[*slot].tenants.iter();
+            Some(MemoryEntry {
+                name: resource.name.clone(),
+                format,
+                size,
+                mips,
+                layers,
+                bytes: bytes(resource).saturating_mul(self.versions(*id) as u64),
+                shared_with: others
+                    .filter(|other| *other != id)
+                    .map(|other| self.resources[other.0].name.clone())
+                    .collect(),
+            })
+        };
+        self.lifetimes.keys().filter_map(entry).collect()
     }
 
     /// Bytes of the graph's own textures and buffers. One that is also read as it was in the frame before takes its size twice.

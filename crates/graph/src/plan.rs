@@ -1,10 +1,12 @@
 //! [`Plan`]: a graph on a viewport with values for its params, checked against an adapter's limits. Pure data.
 
+mod memory;
 mod origin;
 mod request;
 
+pub use memory::MemoryEntry;
 pub use origin::{Field, Item, Scalar};
-pub use request::{Capture, CulledPass, MemoryEntry, OutputSummary, PassSummary, PlanRequest};
+pub use request::{Capture, CulledPass, OutputSummary, PassSummary, PlanRequest};
 
 use crate::{
     cull,
@@ -463,50 +465,6 @@ impl Plan {
             }
         };
         self.readable.iter().map(summary).collect()
-    }
-
-    /// The graph's own textures and buffers with what they take, in the order of the document.
-    pub fn memory(&self) -> Vec<MemoryEntry> {
-        let entry = |id: &ResourceId| {
-            let Resource { name, kind, .. } = &self.resources[id.0];
-            let (format, size, mips, layers, bytes) = match kind {
-                ResourceKind::Texture(texture) => (
-                    Some(texture.format),
-                    texture.size,
-                    texture.mips,
-                    texture.layers,
-                    texture.bytes(),
-                ),
-                ResourceKind::Buffer(Buffer { bytes, .. }) => {
-                    let edge = u32::try_from(*bytes).unwrap_or(u32::MAX);
-                    (None, [edge, 1], 1, 1, *bytes)
-                }
-                ResourceKind::Sampler(_) | ResourceKind::Provided(_) => return None,
-            };
-            Some(MemoryEntry {
-                name: name.clone(),
-                format,
-                size,
-                mips,
-                layers,
-                bytes,
-                shared_with: Vec::new(),
-            })
-        };
-        self.lifetimes.keys().filter_map(entry).collect()
-    }
-
-    /// Bytes of the graph's own textures and buffers.
-    pub fn memory_bytes(&self) -> u64 {
-        let entries = self.memory().into_iter();
-        entries
-            .map(|entry| entry.bytes)
-            .fold(0, u64::saturating_add)
-    }
-
-    /// Bytes saved by resources that share memory. None do so far.
-    pub fn saved_bytes(&self) -> u64 {
-        0
     }
 
     /// What is suspicious.

@@ -1,11 +1,14 @@
 //! [`Plan`]: a graph on a viewport with values for its params, checked against an adapter's limits. Pure data.
 
+mod imports;
+mod memory;
 mod origin;
 mod request;
 
+pub use memory::MemoryEntry;
 pub use origin::{Field, Item, Scalar};
 use request::Request;
-pub use request::{Capture, CulledPass, MemoryEntry, OutputSummary, PassSummary, PlanRequest};
+pub use request::{Capture, CulledPass, OutputSummary, PassSummary, PlanRequest};
 
 use crate::{
     conditions::{Conditions, conditions},
@@ -16,8 +19,8 @@ use crate::{
     lifetime::{Lifetime, lifetimes},
     link::{Access, BindTarget, LinkedPass, LinkedStep, Linker, Usage},
     order::{Order, order, order_of_live},
-    pool::{Slot, Slots, bytes, slots},
-    provider::{Import, Provided},
+    pool::{Slots, slots},
+    provider::Provided,
     registry::Params,
     resolve::{
         Buffer, Environment, Origin, Part, Resource, ResourceId, ResourceKind, Resources, Target,
@@ -41,6 +44,8 @@ pub struct Plan {
     pub(crate) readable: Vec<(String, Target)>,
     pub(crate) conditions: Conditions,
     pub(crate) slots: Slots,
+    /// The resources that are also read as they were in the frame before.
+    pub(crate) histories: BTreeSet<ResourceId>,
     pub(crate) graph: Graph,
     pub(crate) request: Request,
     culled: Vec<CulledPass>,
@@ -201,7 +206,7 @@ impl Graph {
             of_base.textures |= textures;
             of_base.buffers |= buffers;
         }
-        check_imports(
+        imports::check(
             &passes,
             &schedule,
             &resources.list,
@@ -236,6 +241,7 @@ impl Graph {
             readable,
             conditions,
             slots,
+            histories: previous.iter().map(|(_, base)| *base).collect(),
             graph: self.clone(),
             request: Request::of(request),
             culled,
@@ -448,50 +454,6 @@ fn never_written(
     }
 }
 
-/// What the host imports must have been made for what passes do with it.
-fn check_imports(
-    passes: &[LinkedPass],
-    schedule: &[usize],
-    resources: &[Resource],
-    request: &PlanRequest<'_>,
-    diagnostics: &mut Vec<Diagnostic>,
-) {
-    fn names<T>(of: &str, flags: impl Iterator<Item = (&'static str, T)>) -> String {
-        let names: Vec<String> = flags.map(|(name, _)| format!("{of}::{name}")).collect();
-        names.join(" | ")
-    }
-    for pass in schedule.iter().map(|&pass| &passes[pass]) {
-        for access in &pass.accesses {
-            let name = &resources[access.resource.0].name;
-            let lacking = match (request.imports.get(name).copied(), access.usage) {
-                (Some(Import::Texture { usage, .. }), Usage::Texture(needed))
-                    if !usage.contains(needed) =>
-                {
-                    names("TextureUsages", needed.difference(usage).iter_names())
-                }
-                (Some(Import::Buffer { usage, .. }), Usage::Buffer(needed))
-                    if !usage.contains(needed) =>
-                {
-                    names("BufferUsages", needed.difference(usage).iter_names())
-                }
-                _ => continue,
-            };
-            diagnostics.push(
-                Diagnostic::error(
-                    Code::Import,
-                    format!(
-                        "the import `{name}` was not made for what pass `{}` does",
-                        *pass.name
-                    ),
-                )
-                .at(access.span.clone(), "used here")
-                .at(pass.name.span.clone(), "by this pass")
-                .help(format!("the host must make it with {lacking} besides")),
-            );
-        }
-    }
-}
-
 /// Adds the usages by which memory is filled with a pattern: depths are cleared, all else is copied to.
 fn poisonable(kind: &ResourceKind, lifetime: &mut Lifetime) {
     match kind {
@@ -674,69 +636,6 @@ impl Plan {
             }
         };
         self.readable.iter().map(summary).collect()
-    }
-
-    /// The graph's own textures and buffers with what they take, in the order of the document.
-    pub fn memory(&self) -> Vec<MemoryEntry> {
-        let entry = |id: &ResourceId| {
-            let resource = &self.resources[id.0];
-            let slot = self.slots.of.get(id)?;
-            let (format, size, mips, layers) = match &resource.kind {
-                ResourceKind::Texture(texture) => (
-                    Some(texture.format),
-                    texture.size,
-                    texture.mips,
-                    texture.layers,
-                ),
-                _ => {
-                    let edge = u32::try_from(bytes(resource)).unwrap_or(u32::MAX);
-                    (None, [edge, 1], 1, 1)
-                }
-            };
-            let others = self.slots.list[*slot].tenants.iter();
-            Some(MemoryEntry {
-                name: resource.name.clone(),
-                format,
-                size,
-                mips,
-                layers,
-                bytes: bytes(resource).saturating_mul(self.versions(*id) as u64),
-                shared_with: others
-                    .filter(|other| *other != id)
-                    .map(|other| self.resources[other.0].name.clone())
-                    .collect(),
-            })
-        };
-        self.lifetimes.keys().filter_map(entry).collect()
-    }
-
-    /// Bytes of the graph's own textures and buffers. One that is also read as it was in the frame before takes its size twice.
-    pub fn memory_bytes(&self) -> u64 {
-        let slots = self.slots.list.iter().map(|slot| self.slot_bytes(slot));
-        slots.fold(0, u64::saturating_add)
-    }
-
-    /// Bytes that would be needed besides if no two resources shared memory.
-    pub fn saved_bytes(&self) -> u64 {
-        let of_slot =
-            |slot: &Slot| (slot.tenants.len() as u64 - 1).saturating_mul(self.slot_bytes(slot));
-        self.slots
-            .list
-            .iter()
-            .map(of_slot)
-            .fold(0, u64::saturating_add)
-    }
-
-    fn slot_bytes(&self, slot: &Slot) -> u64 {
-        let tenant = slot.tenants[0];
-        bytes(&self.resources[tenant.0]).saturating_mul(self.versions(tenant) as u64)
-    }
-
-    /// How many allocations a resource has: two if it is also read as it was in the frame before.
-    pub(crate) fn versions(&self, id: ResourceId) -> usize {
-        let is_previous =
-            |other: &ResourceId| self.resources[other.0].origin == Origin::Previous(id);
-        1 + usize::from(self.lifetimes.keys().any(is_previous))
     }
 
     /// The position of a pass in the schedule.

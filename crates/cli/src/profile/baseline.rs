@@ -183,10 +183,14 @@ fn differences(old: &Conditions, new: &Conditions) -> Vec<Difference> {
             ("viewport", format!("{width}x{height}")),
         ]
     };
-    let names: BTreeSet<&String> = old.params.keys().chain(new.params.keys()).collect();
+    let names: BTreeSet<&str> = old
+        .params()
+        .chain(new.params())
+        .map(|(name, _)| name)
+        .collect();
     let param = |conditions: &Conditions, name: &str| {
-        let value = conditions.params.get(name);
-        value.map_or_else(|| "–".to_owned(), ToString::to_string)
+        let value = conditions.params().find(|(known, _)| *known == name);
+        value.map_or_else(|| "–".to_owned(), |(_, value)| value)
     };
     let params = names
         .into_iter()

@@ -32,12 +32,11 @@ impl Profile {
             preset,
             view,
             viewport: [width, height],
-            params,
             warmup,
             ..
         } = &self.conditions;
+        let params = self.conditions.params();
         let params: Vec<String> = params
-            .iter()
             .map(|(name, value)| format!("{name}={value}"))
             .collect();
         let conditions = [

@@ -121,7 +121,7 @@ mod tests {
 
     fn refused(text: String) -> String {
         let file = SourceFile::new("old.json", text);
-        let fault = parse(&file).err().expect("refused");
+        let fault = parse(&file).expect_err("refused");
         let error = fault.in_file(&file);
         assert_eq!(error.exit_code(), 1);
         error.to_string()

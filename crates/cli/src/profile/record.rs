@@ -59,6 +59,18 @@ pub struct Conditions {
     pub warmup: u32,
 }
 
+impl Conditions {
+    /// The params as `--set` takes them: `cull=front`.
+    pub fn params(&self) -> impl Iterator<Item = (&str, String)> {
+        self.params.iter().map(|(name, value)| {
+            let text = value
+                .as_str()
+                .map_or_else(|| value.to_string(), str::to_owned);
+            (name.as_str(), text)
+        })
+    }
+}
+
 /// One pass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PassProfile {

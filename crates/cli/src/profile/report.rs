@@ -98,12 +98,12 @@ fn conditions(profile: &Profile) -> String {
         preset,
         view,
         viewport: [width, height],
-        params,
         frames: asked,
         warmup,
+        ..
     } = &profile.conditions;
+    let params = profile.conditions.params();
     let params: Vec<String> = params
-        .iter()
         .map(|(name, value)| format!("{name} = {value}"))
         .collect();
     let params = match params.is_empty() {

@@ -138,22 +138,3 @@ pub struct OutputSummary {
     /// Texels of a texture; `[bytes, 1]` of a buffer.
     pub size: [u32; 2],
 }
-
-/// One of the graph's own textures or buffers, and the memory it takes.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct MemoryEntry {
-    /// The material, or a pass's own buffer.
-    pub name: String,
-    /// Format of a texture; `None` for a buffer.
-    pub format: Option<wgpu::TextureFormat>,
-    /// Width and height in texels of a texture's mip 0; `[bytes, 1]` of a buffer.
-    pub size: [u32; 2],
-    /// Mip levels of a texture; 1 for a buffer.
-    pub mips: u32,
-    /// Array layers of a texture; 1 for a buffer.
-    pub layers: u32,
-    /// What its texels or items take; drivers may add to it.
-    pub bytes: u64,
-    /// Materials that live in the same memory at other times of the frame; the memory is as large as the largest of them.
-    pub shared_with: Vec<String>,
-}

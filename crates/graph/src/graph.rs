@@ -4,10 +4,11 @@ use crate::{
     Plan, PlanRequest,
     diagnostics::{Code, Diagnostic, Diagnostics, Severity, suggestion},
     document::{
-        self, Document,
+        self, Document, Run,
         located::Located,
         materials::{BufferEntry, Count, Material, Size, TextureEntry},
         params::{Param, ParamValue},
+        value::Value,
     },
     registry::{Lowering, Params, Registry},
     source::{SourceFile, Sources, Span},
@@ -55,6 +56,8 @@ pub enum ParamError {
 pub(crate) struct LoweredPass {
     pub name: Located<String>,
     pub kind: &'static str,
+    pub run: Run,
+    pub overwrites: Vec<Located<String>>,
     pub steps: Vec<Step>,
     pub scratch: Vec<(String, u64)>,
 }
@@ -246,9 +249,14 @@ impl Graph {
             };
             pass.body.lower(&mut lowering);
             diagnostics.append(&mut lowering.diagnostics);
+            if let Run::When(name) = &pass.run {
+                params.value::<bool>(&Value::Param(name.clone()), diagnostics);
+            }
             LoweredPass {
                 name: pass.name.clone(),
                 kind: pass.kind,
+                run: pass.run.clone(),
+                overwrites: pass.overwrites.clone(),
                 steps: lowering.steps,
                 scratch: lowering.scratch,
             }

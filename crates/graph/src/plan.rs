@@ -93,6 +93,9 @@ impl Graph {
             if self.document.broken.first_pass == Some(index) {
                 sound.get_or_insert(passes.len());
             }
+            for name in &pass.overwrites {
+                linker.resources.expect(name, linker.diagnostics);
+            }
             match linker.pass(&pass.name, pass.kind, &pass.steps) {
                 Some(linked) => passes.push(linked),
                 None => {

@@ -14,7 +14,8 @@ use crate::{
 use serde::de::DeserializeOwned;
 use std::{collections::BTreeMap, fmt, sync::Arc};
 
-/// The body of a pass of some kind. Its fields are what the RON entry holds beside `name`, `shader` and `bind`.
+/// The body of a pass of some kind. Its fields are what the RON entry holds beside `name`, `shader`, `bind`,
+/// `run` and `overwrites`.
 pub trait PassKind: fmt::Debug + Send + Sync {
     /// Says which GPU work the pass is, in order. Called without a GPU, more than once; it must depend on nothing but the
     /// body and the params, and the shaders it names must not depend on params.
@@ -164,6 +165,16 @@ impl FromParam for f32 {
             ParamValue::F32(value) => Some(*value),
             ParamValue::U32(value) => Some(*value as f32),
             ParamValue::I32(value) => Some(*value as f32),
+            _ => None,
+        }
+    }
+}
+
+impl FromParam for bool {
+    const EXPECTED: &'static str = "a Bool";
+    fn from_param(_: &Param, value: &ParamValue) -> Option<Self> {
+        match value {
+            ParamValue::Bool(value) => Some(*value),
             _ => None,
         }
     }

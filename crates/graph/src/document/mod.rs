@@ -50,8 +50,25 @@ pub(crate) struct PassEntry {
     pub name: Located<String>,
     pub shader: Option<Located<String>>,
     pub bind: Vec<(Located<String>, Located<String>)>,
+    pub run: Run,
+    /// What the author promises that the pass writes in every texel or item.
+    pub overwrites: Vec<Located<String>>,
     pub kind: &'static str,
     pub body: Arc<dyn PassKind>,
+}
+
+/// In which frames a pass runs.
+#[derive(Clone, Debug, Default, Deserialize)]
+pub(crate) enum Run {
+    /// In every frame.
+    #[default]
+    Always,
+    /// In the first frame after planning.
+    Once,
+    /// In frames where something that it reads has changed.
+    OnChange,
+    /// In frames where a Bool param is true.
+    When(Located<String>),
 }
 
 /// A result of the graph.
@@ -288,7 +305,12 @@ fn pass(node: &Node, registry: &Registry) -> Result<PassEntry, Diagnostic> {
         shader: Option<Located<String>>,
         #[serde(default)]
         bind: Pairs,
+        #[serde(default)]
+        run: Run,
+        #[serde(default)]
+        overwrites: Vec<Located<String>>,
     }
+    const HEADER: [&str; 5] = ["name", "shader", "bind", "run", "overwrites"];
     let Some((tag, body)) = node.variant() else {
         return Err(
             Diagnostic::error(Code::Syntax, "a pass begins with its kind")
@@ -307,7 +329,7 @@ fn pass(node: &Node, registry: &Registry) -> Result<PassEntry, Diagnostic> {
     let (header, own): (Vec<Field>, Vec<Field>) = body
         .fields()?
         .into_iter()
-        .partition(|field| ["name", "shader", "bind"].contains(&field.name.as_str()));
+        .partition(|field| HEADER.contains(&field.name.as_str()));
     let header: Header = from_fields(&header, &tag.span)?;
     let mut bound = HashSet::new();
     for (global, _) in &header.bind.0 {
@@ -324,6 +346,8 @@ fn pass(node: &Node, registry: &Registry) -> Result<PassEntry, Diagnostic> {
         name: header.name,
         shader: header.shader,
         bind: header.bind.0,
+        run: header.run,
+        overwrites: header.overwrites,
         kind: kind.name,
         body,
     })

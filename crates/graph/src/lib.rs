@@ -2,7 +2,7 @@
 //!
 //! A document names *materials* (textures, buffers, samplers) and *passes*; bindings and access come from the shaders by
 //! reflection, order from what passes read and write. The phases are one file each, in this order:
-//! [`document`], `resolve`, `wgsl` (reflection), `link`, `order`, `cull`, `schedule`, `lifetime`, `allocate`, `execute`.
+//! [`document`] (with `include`), `instantiate`, `resolve`, `wgsl` (reflection), `link`, `order`, `cull`, `schedule`, `lifetime`, `allocate`, `execute`.
 //! All before `allocate` are pure functions on plain data and need no GPU.
 //!
 //! The crate knows no scenes and no shadows: what a graph does not make itself comes from a [`Provider`].
@@ -14,6 +14,8 @@ pub mod document;
 mod execute;
 pub mod gpu;
 mod graph;
+mod include;
+mod instantiate;
 mod lifetime;
 mod link;
 mod memory;
@@ -39,6 +41,7 @@ pub use document::{
 };
 pub use execute::{ExecuteError, Executor, Frame, FrameReport};
 pub use graph::{Graph, ParamError};
+pub use instantiate::Fallback;
 pub use plan::{Capture, CulledPass, OutputSummary, PassSummary, Plan, PlanRequest};
 pub use provider::{NoProvider, Provided, Provider, ProviderError};
 pub use readback::{Content, Readback};

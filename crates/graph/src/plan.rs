@@ -9,10 +9,10 @@ use crate::{
     diagnostics::{Code, Diagnostic, Diagnostics, Severity},
     document::{located::Located, params::ParamValue},
     graph::Graph,
+    instantiate::{Fallback, LoweredPass, Purpose, instantiate},
     lifetime::{Lifetime, lifetimes},
     link::{LinkedPass, Linker},
     order::{order, order_of_live},
-    registry::Params,
     resolve::{
         Buffer, Environment, Part, Resource, ResourceId, ResourceKind, Resources, Target, resolve,
     },
@@ -30,6 +30,7 @@ pub struct Plan {
     pub(crate) lifetimes: BTreeMap<ResourceId, Lifetime>,
     pub(crate) readable: Vec<(String, Target)>,
     culled: Vec<CulledPass>,
+    fallbacks: Vec<Fallback>,
     warnings: Vec<Diagnostic>,
 }
 
@@ -40,7 +41,7 @@ impl Graph {
     /// Everything that is wrong, with its place.
     pub fn plan(&self, request: &PlanRequest<'_>) -> Result<Plan, Diagnostics> {
         let (plan, errors) = self.plan_all(request);
-        plan.ok_or_else(|| Diagnostics::new(errors))
+        plan.ok_or_else(|| self.diagnostics(errors))
     }
 
     /// The plan, or everything that is wrong, even if some of the document could not be read.
@@ -55,23 +56,28 @@ impl Graph {
         if !diagnostics.is_empty() {
             return (None, diagnostics);
         }
-        let params = Params {
-            declared: &self.document.params,
-            values: &request.params,
-        };
+        let purpose = Purpose::Plan(&request.params, request.features);
+        let instance = instantiate(&self.document, &purpose, &mut diagnostics);
+        let lacks = |diagnostic: &Diagnostic| diagnostic.code == Code::Feature;
+        if diagnostics.iter().any(lacks) {
+            // On a device that cannot run the graph nothing else is worth knowing.
+            diagnostics.retain(lacks);
+            return (None, diagnostics);
+        }
         let environment = Environment {
             viewport: request.viewport,
             limits: &request.limits,
             provider: request.provider,
         };
-        let lowered = self.lower(&request.params, &mut diagnostics);
+        let lowered = &instance.passes;
         let mut resources = resolve(
-            &self.document.materials,
-            &self.document.broken.materials,
-            &params,
+            &instance.materials,
+            &instance.unread,
+            &instance.params,
             &environment,
             &mut diagnostics,
         );
+        resources.hide(&instance.hidden);
         for (name, bytes) in lowered.iter().flat_map(|pass| &pass.scratch) {
             let kind = ResourceKind::Buffer(Buffer {
                 count: Some(bytes / 4),
@@ -82,7 +88,7 @@ impl Graph {
         let mut linker = Linker::new(
             &mut resources,
             &self.shaders,
-            &params,
+            &instance.params,
             (&request.limits, request.features),
             &mut diagnostics,
         );
@@ -90,9 +96,10 @@ impl Graph {
         // How many passes stand above the first one with a mistake: what that one writes is not known.
         let mut sound: Option<usize> = None;
         for (index, pass) in lowered.iter().enumerate() {
-            if self.document.broken.first_pass == Some(index) {
+            if instance.first_broken == Some(index) {
                 sound.get_or_insert(passes.len());
             }
+            linker.enter(&pass.scope);
             for name in &pass.overwrites {
                 linker.resources.expect(name, linker.diagnostics);
             }
@@ -110,8 +117,8 @@ impl Graph {
         }
         let layouts = std::mem::take(&mut linker.layouts);
         layouts.settle(&mut resources, &request.limits, &mut diagnostics);
-        self.check_captures(request, &mut diagnostics);
-        let complete = sound.is_none() && self.document.broken.first_pass.is_none();
+        check_captures(request, lowered, &mut diagnostics);
+        let complete = sound.is_none() && instance.first_broken.is_none();
         let judged = sound.unwrap_or(passes.len());
         let order = order(&passes, judged, &resources, &mut diagnostics);
         let written = |target: &Target| !complete || !order.final_writers(target).is_empty();
@@ -153,6 +160,7 @@ impl Graph {
             lifetimes,
             readable,
             culled,
+            fallbacks: instance.fallbacks,
             warnings: diagnostics,
         };
         (Some(plan), Vec::new())
@@ -172,30 +180,6 @@ impl Graph {
                 Err(error) => Some(Diagnostic::error(Code::UnknownParam, error.to_string())),
             };
             diagnostics.extend(problem);
-        }
-    }
-
-    fn check_captures(&self, request: &PlanRequest<'_>, diagnostics: &mut Vec<Diagnostic>) {
-        let passes: Vec<&str> = self
-            .document
-            .passes
-            .iter()
-            .map(|pass| pass.name.as_str())
-            .collect();
-        for pass in request
-            .captures
-            .iter()
-            .filter_map(|capture| capture.after.as_deref())
-        {
-            if !passes.contains(&pass) {
-                diagnostics.push(
-                    Diagnostic::error(
-                        Code::Output,
-                        format!("there is no pass `{pass}` to read a material after"),
-                    )
-                    .suggest(pass, passes.iter().copied()),
-                );
-            }
         }
     }
 
@@ -288,6 +272,29 @@ impl Graph {
             }
         }
         readable
+    }
+}
+
+fn check_captures(
+    request: &PlanRequest<'_>,
+    lowered: &[LoweredPass],
+    diagnostics: &mut Vec<Diagnostic>,
+) {
+    let passes: Vec<&str> = lowered.iter().map(|pass| pass.name.as_str()).collect();
+    for pass in request
+        .captures
+        .iter()
+        .filter_map(|capture| capture.after.as_deref())
+    {
+        if !passes.contains(&pass) {
+            diagnostics.push(
+                Diagnostic::error(
+                    Code::Output,
+                    format!("there is no pass `{pass}` to read a material after"),
+                )
+                .suggest(pass, passes.iter().copied()),
+            );
+        }
     }
 }
 
@@ -415,6 +422,11 @@ impl Plan {
     /// The passes that do not run.
     pub fn culled(&self) -> &[CulledPass] {
         &self.culled
+    }
+
+    /// The params that got another value because the device lacks a feature.
+    pub fn fallbacks(&self) -> &[Fallback] {
+        &self.fallbacks
     }
 
     /// The provided resources that live passes bind; only these are built.

@@ -1,0 +1,190 @@
+//! Scopes: what a name means in a document, which may be included under a prefix, renamed, or several times.
+//!
+//! A name is looked for among the document's own, then among those of the document that includes it, and so on outwards.
+//! What no scope knows is left as it is: a provided resource, or a mistake that the linker reports.
+
+use crate::{document::located::Located, registry::Params, resolve::spelling};
+use std::{collections::HashMap, sync::Arc};
+
+/// Index of a scope in [`Scopes`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ScopeId(pub usize);
+
+/// The names of one instance of a document, or of a group.
+#[derive(Debug)]
+pub(super) struct Scope {
+    pub parent: Option<ScopeId>,
+    /// What the names of passes and materials begin with in the whole graph.
+    pub prefix: String,
+    /// The materials are those of the including document: there is no prefix of one's own.
+    pub joins: bool,
+    /// The including document's names for some of the materials.
+    pub renames: HashMap<String, Located<String>>,
+    pub index: Option<u32>,
+    pub params: Arc<Params>,
+    /// The document's folder, where its shaders are looked for.
+    pub folder: Arc<str>,
+    names: HashMap<String, String>,
+    /// Names as a shader spells them.
+    spelt: HashMap<String, String>,
+}
+
+/// Where a material comes to stand.
+pub(super) enum Place {
+    /// Under a name of its own in the whole graph.
+    New(String),
+    /// It is a material of an outer document, connected by this rename.
+    Connected(String, Located<String>),
+}
+
+/// All scopes of a graph; the first is that of the root document.
+#[derive(Debug, Default)]
+pub(crate) struct Scopes(pub(super) Vec<Scope>);
+
+impl Scope {
+    pub fn new(
+        parent: Option<ScopeId>,
+        prefix: String,
+        params: Arc<Params>,
+        folder: Arc<str>,
+    ) -> Self {
+        Self {
+            parent,
+            prefix,
+            joins: false,
+            renames: HashMap::new(),
+            index: None,
+            params,
+            folder,
+            names: HashMap::new(),
+            spelt: HashMap::new(),
+        }
+    }
+
+    fn insert(&mut self, name: &str, full: &str) {
+        // The first of a name stays; a second one is reported where materials are declared.
+        self.names
+            .entry(name.to_owned())
+            .or_insert_with(|| full.to_owned());
+        self.spelt
+            .entry(spelling(name))
+            .or_insert_with(|| full.to_owned());
+    }
+
+    pub fn knows(&self, name: &str) -> bool {
+        self.names.contains_key(name)
+    }
+
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.names.keys().map(String::as_str)
+    }
+}
+
+/// Splits `name[N]`.
+pub(crate) fn split_layer(name: &str) -> Option<(&str, u32)> {
+    let (base, layer) = name.strip_suffix(']')?.rsplit_once('[')?;
+    Some((base, layer.parse().ok()?))
+}
+
+/// The name with `[index]` replaced by the index of the repeat.
+pub(super) fn indexed(name: &str, index: Option<u32>) -> String {
+    match index {
+        Some(index) => name.replace("[index]", &format!("[{index}]")),
+        None => name.to_owned(),
+    }
+}
+
+impl Scopes {
+    pub(super) fn add(&mut self, scope: Scope) -> ScopeId {
+        self.0.push(scope);
+        ScopeId(self.0.len() - 1)
+    }
+
+    pub(super) fn get(&self, id: ScopeId) -> &Scope {
+        &self.0[id.0]
+    }
+
+    /// The scope and those around it, from the inside out.
+    fn outwards(&self, id: ScopeId) -> impl Iterator<Item = &Scope> {
+        let around = |scope: &&Scope| scope.parent.map(|parent| self.get(parent));
+        std::iter::successors(Some(self.get(id)), around)
+    }
+
+    /// The index of the innermost repeat.
+    pub fn index(&self, id: ScopeId) -> Option<u32> {
+        self.outwards(id).find_map(|scope| scope.index)
+    }
+
+    /// What a name stands for in the whole graph, if a scope knows it; `name[N]` is a layer of `name`, unless a material is
+    /// called just so.
+    fn find(&self, id: ScopeId, name: &str) -> Option<String> {
+        self.outwards(id).find_map(|scope| {
+            if let Some(full) = scope.names.get(name) {
+                return Some(full.clone());
+            }
+            let (base, layer) = split_layer(name)?;
+            Some(format!("{}[{layer}]", scope.names.get(base)?))
+        })
+    }
+
+    /// What a name in a document stands for in the whole graph.
+    pub fn full_name(&self, id: ScopeId, index: Option<u32>, name: &str) -> String {
+        let name = indexed(name, index);
+        self.find(id, &name).unwrap_or(name)
+    }
+
+    /// What a shader's global of that name stands for in the whole graph, if a scope knows it.
+    pub fn full_name_of_global(&self, id: ScopeId, global: &str) -> Option<&str> {
+        self.outwards(id)
+            .find_map(|scope| scope.names.get(global).or_else(|| scope.spelt.get(global)))
+            .map(String::as_str)
+    }
+
+    /// Where a material that the document of a scope calls `name` comes to stand.
+    pub(super) fn place(&self, mut id: ScopeId, name: &str) -> Place {
+        let mut name = name.to_owned();
+        loop {
+            let scope = self.get(id);
+            match (scope.parent, scope.renames.get(&name)) {
+                (Some(parent), Some(outer)) => {
+                    if let Some(full) = self.find(parent, outer) {
+                        return Place::Connected(full, outer.clone());
+                    }
+                    name = outer.value.clone();
+                    id = parent;
+                }
+                (Some(parent), None) if scope.joins => id = parent,
+                _ => return Place::New(format!("{}{name}", scope.prefix)),
+            }
+        }
+    }
+
+    /// Makes a material known in the scope of its document under its own name, and around it under what is left of its full
+    /// name.
+    pub(super) fn publish(&mut self, id: ScopeId, name: &str, full: &str) {
+        self.0[id.0].insert(name, full);
+        let mut around = self.get(id).parent;
+        while let Some(id) = around {
+            let scope = &mut self.0[id.0];
+            around = scope.parent;
+            if let Some(rest) = full.strip_prefix(&scope.prefix) {
+                let rest = rest.to_owned();
+                scope.insert(&rest, full);
+            }
+        }
+    }
+
+    /// Makes a material that is one of an outer document known in the scope of its document.
+    pub(super) fn connect(&mut self, id: ScopeId, name: &str, full: &str) {
+        self.0[id.0].insert(name, full);
+        // Documents that join hand it on: what includes them without a prefix sees their names.
+        let mut at = id;
+        while let (true, Some(parent)) = (self.get(at).joins, self.get(at).parent) {
+            if self.get(at).renames.contains_key(name) {
+                break;
+            }
+            self.0[parent.0].insert(name, full);
+            at = parent;
+        }
+    }
+}

@@ -12,37 +12,36 @@ use crate::{
     registry::{FromParam, Params},
     source::Span,
 };
-use std::sync::Arc;
+use std::{collections::HashMap, sync::Arc};
 
 impl Builder<'_, '_> {
     /// Enters the materials of a document.
     pub(super) fn declare(&mut self, document: &Document, scope: ScopeId) {
         for name in &document.broken.materials {
-            match self.scopes.place(scope, name) {
-                Place::New(full) => {
-                    self.scopes.publish(scope, name, &full);
-                    self.unread.push(full);
-                }
-                Place::Connected(full, _) => self.scopes.connect(scope, name, &full),
+            let place = self.scopes.place(scope, name);
+            self.scopes.publish(&place);
+            if place.connected.is_none() {
+                self.unread.push(place.full);
             }
         }
         for material in &document.materials {
             if self.materials.len() >= MOST {
                 return self.full(material.name(), "materials");
             }
-            match self.scopes.place(scope, material.name()) {
-                Place::New(full) => self.enter(material, full, scope),
-                Place::Connected(full, by) => self.connect(material, full, &by, scope),
+            let place = self.scopes.place(scope, material.name());
+            match &place.connected {
+                None => self.enter(material, place, scope),
+                Some(by) => self.connect(material, &place, by, scope),
             }
         }
     }
 
-    fn enter(&mut self, material: &Material, full: String, scope: ScopeId) {
+    fn enter(&mut self, material: &Material, place: Place, scope: ScopeId) {
         let mut entered = material.clone();
-        let name = material.name();
-        self.scopes.publish(scope, name, &full);
+        self.scopes.publish(&place);
+        let full = place.full;
         let number = self.materials.len();
-        if !self.claim(&full, &name.span, number) {
+        if !self.claim(&full, &material.name().span, number) {
             return;
         }
         match &mut entered {
@@ -60,10 +59,10 @@ impl Builder<'_, '_> {
 
     /// Gives a view its name in the whole graph.
     fn view(&mut self, name: &mut Located<String>, texture: usize, scope: ScopeId) {
-        let (Place::New(full) | Place::Connected(full, _)) = self.scopes.place(scope, name);
-        self.scopes.publish(scope, name, &full);
-        self.claim(&full, &name.span, texture);
-        name.value = full;
+        let place = self.scopes.place(scope, name);
+        self.scopes.publish(&place);
+        self.claim(&place.full, &name.span, texture);
+        name.value = place.full;
     }
 
     /// Whether a name is still free; reports it if not.
@@ -78,23 +77,23 @@ impl Builder<'_, '_> {
     }
 
     /// A material that is one of an outer document.
-    fn connect(&mut self, material: &Material, full: String, by: &Located<String>, scope: ScopeId) {
-        let name = material.name();
-        let mut whole = full.as_str();
-        while let (false, Some((base, _))) = (self.declared.contains_key(whole), split_layer(whole))
-        {
-            whole = base;
-        }
+    fn connect(
+        &mut self,
+        material: &Material,
+        place: &Place,
+        by: &Located<String>,
+        scope: ScopeId,
+    ) {
         // One with a mistake that was reported is not declared.
-        let Some((place, number)) = self.declared.get(whole).cloned() else {
-            return self.scopes.connect(scope, name, &full);
+        let Some((declared, number)) = self.declared.get(self.whole(&place.full)).cloned() else {
+            return self.scopes.publish(place);
         };
         let outer = &self.materials[number].0;
-        if let Some(error) = mismatch(material, outer, (by, &full, place)) {
+        if let Some(error) = mismatch(material, outer, (by, &place.full, declared)) {
             self.diagnostics.push(error);
             return self.spoil(material, scope);
         }
-        self.scopes.connect(scope, name, &full);
+        self.scopes.publish(place);
         let Material::Texture(texture) = material else {
             return;
         };
@@ -107,6 +106,15 @@ impl Builder<'_, '_> {
         }
     }
 
+    /// The name without the layers that it may end in.
+    fn whole<'n>(&self, mut name: &'n str) -> &'n str {
+        while let (false, Some((whole, _))) = (self.declared.contains_key(name), split_layer(name))
+        {
+            name = whole;
+        }
+        name
+    }
+
     /// Nothing more is said about a material with a mistake.
     fn spoil(&mut self, material: &Material, scope: ScopeId) {
         let mut names = vec![material.name()];
@@ -114,8 +122,7 @@ impl Builder<'_, '_> {
             names.extend(texture.views.iter().map(|view| &view.name));
         }
         for name in names {
-            let full = format!("{}{}", self.scopes.get(scope).prefix, **name);
-            self.scopes.connect(scope, name, &full);
+            let full = self.scopes.hide(scope, name);
             self.unread.push(full);
         }
     }
@@ -146,6 +153,16 @@ impl Builder<'_, '_> {
 
     /// Names and params in sizes and counts become names of the whole graph and numbers.
     pub(super) fn settle_materials(&mut self) -> Vec<Material> {
+        // A material that is connected with a layer or a view is as large as that.
+        let mut views: HashMap<String, String> = HashMap::new();
+        for (material, _) in &self.materials {
+            if let Material::Texture(texture) = material {
+                let first_mip = texture.views.iter().filter(|view| view.mip == 0);
+                views.extend(
+                    first_mip.map(|view| (view.name.value.clone(), texture.name.value.clone())),
+                );
+            }
+        }
         let mut settled = Vec::new();
         for (mut material, scope) in std::mem::take(&mut self.materials) {
             let params = Arc::clone(&self.scopes.get(scope).params);
@@ -162,7 +179,11 @@ impl Builder<'_, '_> {
                     match &mut texture.size.value {
                         Size::Viewport => {}
                         Size::ViewportTimes(factor) => fix(factor, &params, diagnostics),
-                        Size::Like(name) => translate(name),
+                        Size::Like(name) => {
+                            translate(name);
+                            let whole = self.whole(name);
+                            name.value = views.get(whole).unwrap_or(&whole.to_owned()).clone();
+                        }
                         Size::Square(edge) => fix(edge, &params, diagnostics),
                         Size::Texels(width, height) => {
                             fix(width, &params, diagnostics);

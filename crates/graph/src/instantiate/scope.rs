@@ -30,11 +30,13 @@ pub(super) struct Scope {
 }
 
 /// Where a material comes to stand.
-pub(super) enum Place {
-    /// Under a name of its own in the whole graph.
-    New(String),
-    /// It is a material of an outer document, connected by this rename.
-    Connected(String, Located<String>),
+pub(super) struct Place {
+    /// Its name in the whole graph.
+    pub full: String,
+    /// The rename that makes it a material of an outer document; `None`: it is one of its own.
+    pub connected: Option<Located<String>>,
+    /// The scopes that it is handed through, from its document's own outwards, with its name in each.
+    via: Vec<(ScopeId, String)>,
 }
 
 /// All scopes of a graph; the first is that of the root document.
@@ -143,48 +145,79 @@ impl Scopes {
     /// Where a material that the document of a scope calls `name` comes to stand.
     pub(super) fn place(&self, mut id: ScopeId, name: &str) -> Place {
         let mut name = name.to_owned();
+        let mut via = Vec::new();
         loop {
             let scope = self.get(id);
+            via.push((id, name.clone()));
             match (scope.parent, scope.renames.get(&name)) {
                 (Some(parent), Some(outer)) => {
                     if let Some(full) = self.find(parent, outer) {
-                        return Place::Connected(full, outer.clone());
+                        let connected = Some(outer.clone());
+                        return Place {
+                            full,
+                            connected,
+                            via,
+                        };
                     }
                     name = outer.value.clone();
                     id = parent;
                 }
                 (Some(parent), None) if scope.joins => id = parent,
-                _ => return Place::New(format!("{}{name}", scope.prefix)),
+                (parent, _) => {
+                    let full = format!("{}{name}", scope.prefix);
+                    match self.renamed_around(parent, &full) {
+                        Some(renamed) => (id, name) = renamed,
+                        None => {
+                            return Place {
+                                full,
+                                connected: None,
+                                via,
+                            };
+                        }
+                    }
+                }
             }
         }
     }
 
-    /// Makes a material known in the scope of its document under its own name, and around it under what is left of its full
-    /// name.
-    pub(super) fn publish(&mut self, id: ScopeId, name: &str, full: &str) {
-        self.0[id.0].insert(name, full);
-        let mut around = self.get(id).parent;
+    /// The document around that was given another name for what it knows as `prefix.name`, and that name.
+    fn renamed_around(&self, mut around: Option<ScopeId>, full: &str) -> Option<(ScopeId, String)> {
+        while let Some(id) = around {
+            let scope = self.get(id);
+            let rest = full.strip_prefix(&scope.prefix)?;
+            if scope.renames.contains_key(rest) {
+                return Some((id, rest.to_owned()));
+            }
+            around = scope.parent;
+        }
+        None
+    }
+
+    /// Makes a material known under its name in each scope that it is handed through, and around these under what is left
+    /// of its full name.
+    pub(super) fn publish(&mut self, place: &Place) {
+        for (id, name) in &place.via {
+            self.0[id.0].insert(name, &place.full);
+        }
+        if place.connected.is_some() {
+            return;
+        }
+        let mut around = place.via.last().map(|(id, _)| *id);
         while let Some(id) = around {
             let scope = &mut self.0[id.0];
             around = scope.parent;
-            if let Some(rest) = full.strip_prefix(&scope.prefix) {
+            if let Some(rest) = place.full.strip_prefix(&scope.prefix) {
                 let rest = rest.to_owned();
-                scope.insert(&rest, full);
+                scope.insert(&rest, &place.full);
             }
         }
     }
 
-    /// Makes a material that is one of an outer document known in the scope of its document.
-    pub(super) fn connect(&mut self, id: ScopeId, name: &str, full: &str) {
-        self.0[id.0].insert(name, full);
-        // Documents that join hand it on: what includes them without a prefix sees their names.
-        let mut at = id;
-        while let (true, Some(parent)) = (self.get(at).joins, self.get(at).parent) {
-            if self.get(at).renames.contains_key(name) {
-                break;
-            }
-            self.0[parent.0].insert(name, full);
-            at = parent;
-        }
+    /// Makes a material with a mistake known to its document alone, and returns its full name.
+    pub(super) fn hide(&mut self, id: ScopeId, name: &str) -> String {
+        let scope = &mut self.0[id.0];
+        let full = format!("{}{name}", scope.prefix);
+        scope.insert(name, &full);
+        full
     }
 }

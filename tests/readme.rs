@@ -63,6 +63,7 @@ fn the_method_of_the_readme_is_complete_and_runs() {
             &Frame {
                 timing: false,
                 read: &["visibility", "status"],
+                ..Frame::default()
             },
         )
         .unwrap();

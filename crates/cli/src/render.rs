@@ -125,6 +125,7 @@ pub fn time(
             executor,
             &Frame {
                 timing: true,
+                all: true,
                 ..Frame::default()
             },
         )?;

@@ -30,6 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         &Frame {
             timing: true,
             read: &["rings"],
+            ..Frame::default()
         },
     )?;
     queue.submit([encoder.finish()]); // the host's frame, with whatever else is in it

@@ -75,6 +75,10 @@ codes! {
     Cycle = "cycle",
     /// A pass samples a texture that it draws to.
     FeedbackLoop = "feedback-loop",
+    /// Passes that must run or be skipped together have different run conditions.
+    RunCondition = "run-condition",
+    /// What the host imports does not serve what passes do with it.
+    Import = "import",
     /// A limit of the adapter.
     Limit = "limit",
     /// A feature that the document requires and the device does not have, or that wgpu does not know.

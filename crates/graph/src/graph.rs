@@ -22,9 +22,11 @@ use std::{
 };
 
 /// A document that was read, with all shaders that its passes name. No GPU has been touched.
-#[derive(Debug)]
+///
+/// Cheap to clone.
+#[derive(Clone, Debug)]
 pub struct Graph {
-    pub(crate) document: Document,
+    pub(crate) document: Arc<Document>,
     pub(crate) shaders: Shaders,
     /// Every include, the nested ones too, with the path of what it includes.
     includes: Vec<(String, Span)>,
@@ -164,13 +166,13 @@ impl Graph {
         document.include_depth = includes.attach(&mut document.entries, &mut diagnostics);
         let mut graph = Self {
             features: includes.features() | document.features(),
-            document,
+            document: Arc::new(document),
             shaders: HashMap::new(),
             includes: includes.places,
             warnings: Vec::new(),
         };
         let mut found = Vec::new();
-        let instance = instantiate(&graph.document, &Purpose::Load, &mut found);
+        let instance = instantiate(&graph.document, Purpose::Load, &mut found);
         // What is not known of a param may be in the one that could not be read.
         found.retain(|found| !graph.document.broken.params || found.code != Code::UnknownParam);
         diagnostics.append(&mut found);

@@ -2,12 +2,14 @@
 //!
 //! A document names *materials* (textures, buffers, samplers) and *passes*; bindings and access come from the shaders by
 //! reflection, order from what passes read and write. The phases are one file each, in this order:
-//! [`document`] (with `include`), `instantiate`, `resolve`, `wgsl` (reflection), `link`, `order`, `cull`, `schedule`, `lifetime`, `allocate`, `execute`.
+//! [`document`] (with `include`), `instantiate`, `resolve`, `wgsl` (reflection), `link`, `order`, `cull`, `schedule`, `lifetime`,
+//! `conditions`, `pool`, `allocate`, `execute`.
 //! All before `allocate` are pure functions on plain data and need no GPU.
 //!
 //! The crate knows no scenes and no shadows: what a graph does not make itself comes from a [`Provider`].
 
 mod allocate;
+mod conditions;
 mod cull;
 pub mod diagnostics;
 pub mod document;
@@ -24,6 +26,7 @@ mod order;
 mod order_tests;
 mod passes;
 mod plan;
+mod pool;
 mod provider;
 mod readback;
 pub mod registry;
@@ -39,11 +42,11 @@ pub use document::{
     located::Located,
     params::{Param, ParamType, ParamValue},
 };
-pub use execute::{ExecuteError, Executor, Frame, FrameReport};
+pub use execute::{ExecuteError, Executor, Frame, FrameReport, Renewed};
 pub use graph::{Graph, ParamError};
 pub use instantiate::Fallback;
 pub use plan::{Capture, CulledPass, OutputSummary, PassSummary, Plan, PlanRequest};
-pub use provider::{NoProvider, Provided, Provider, ProviderError};
+pub use provider::{Import, NoProvider, Provided, Provider, ProviderError};
 pub use readback::{Content, Readback};
 pub use registry::{Lowering, PassKind, Registry};
 pub use source::{FolderSources, LayeredSources, SourceFile, Sources, Span};

@@ -11,6 +11,10 @@ use std::collections::BTreeMap;
 pub(crate) struct Lifetime {
     pub textures: wgpu::TextureUsages,
     pub buffers: wgpu::BufferUsages,
+    /// Position in the schedule of the first pass that uses it.
+    pub first: usize,
+    /// Position of the last one.
+    pub last: usize,
 }
 
 /// Only resources that a scheduled pass touches have a lifetime, and only those are made.
@@ -19,12 +23,15 @@ pub(crate) fn lifetimes(
     schedule: &[usize],
 ) -> BTreeMap<ResourceId, Lifetime> {
     let mut lifetimes: BTreeMap<ResourceId, Lifetime> = BTreeMap::new();
-    for &pass in schedule {
+    for (at, &pass) in schedule.iter().enumerate() {
         for access in &passes[pass].accesses {
             let lifetime = lifetimes.entry(access.resource).or_insert(Lifetime {
                 textures: wgpu::TextureUsages::empty(),
                 buffers: wgpu::BufferUsages::empty(),
+                first: at,
+                last: at,
             });
+            lifetime.last = at;
             match access.usage {
                 Usage::Texture(usage) => lifetime.textures |= usage,
                 Usage::Buffer(usage) => lifetime.buffers |= usage,

@@ -4,30 +4,87 @@ use crate::{
     document::materials::{Address, Filter, SamplerEntry},
     execute::{ExecuteError, scoped},
     plan::Plan,
-    provider::Provider,
-    resolve::{Part, ResourceId, ResourceKind, Target},
+    provider::{Import, Provider},
+    resolve::{Origin, Part, Resource, ResourceId, ResourceKind, Target},
 };
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A texture or buffer on the device.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Physical {
+    Texture(wgpu::Texture),
+    Buffer(wgpu::Buffer),
+}
+
+/// Which of its two allocations a resource is written to in a frame, and which one holds what it was before; both the same in a
+/// frame that does not write it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Versions {
+    pub current: usize,
+    pub previous: usize,
+}
+
+/// Resources that are also read as they were in the frame before.
+pub(crate) type Histories = BTreeMap<ResourceId, Versions>;
+
+/// One allocation that resources take turns in, or two of one resource with a history.
+struct Made {
+    label: String,
+    usage: (wgpu::TextureUsages, wgpu::BufferUsages),
+    versions: Vec<Physical>,
+}
 
 /// Textures, buffers and samplers of a plan.
 #[derive(Default)]
 pub(crate) struct Memory {
-    textures: BTreeMap<ResourceId, wgpu::Texture>,
-    buffers: BTreeMap<ResourceId, wgpu::Buffer>,
+    slots: Vec<Made>,
+    of: BTreeMap<ResourceId, usize>,
+    /// What a resource is last frame's version of.
+    bases: BTreeMap<ResourceId, ResourceId>,
+    /// Provided resources and imports; the latter from when the host has handed them over.
+    host: BTreeMap<ResourceId, Physical>,
     samplers: BTreeMap<ResourceId, wgpu::Sampler>,
+    /// Versions of the provided resources.
+    provided: BTreeMap<ResourceId, u64>,
 }
 
 impl Memory {
-    pub fn texture(&self, id: ResourceId) -> Result<&wgpu::Texture, ExecuteError> {
-        self.textures.get(&id).ok_or(ExecuteError::Internal(
-            "a texture that a live pass uses was not made",
-        ))
+    /// The texture or buffer behind a resource in a frame; `None` for an import that is not there yet.
+    fn find(&self, id: ResourceId, histories: &Histories) -> Option<&Physical> {
+        if let Some(host) = self.host.get(&id) {
+            return Some(host);
+        }
+        let (base, version) = match self.bases.get(&id) {
+            Some(base) => (*base, histories.get(base)?.previous),
+            None => (id, histories.get(&id).map_or(0, |version| version.current)),
+        };
+        self.slots.get(*self.of.get(&base)?)?.versions.get(version)
     }
 
-    pub fn buffer(&self, id: ResourceId) -> Result<&wgpu::Buffer, ExecuteError> {
-        self.buffers.get(&id).ok_or(ExecuteError::Internal(
-            "a buffer that a live pass uses was not made",
-        ))
+    pub fn texture(
+        &self,
+        id: ResourceId,
+        histories: &Histories,
+    ) -> Result<&wgpu::Texture, ExecuteError> {
+        match self.find(id, histories) {
+            Some(Physical::Texture(texture)) => Ok(texture),
+            _ => Err(ExecuteError::Internal(
+                "a texture that a live pass uses was not made",
+            )),
+        }
+    }
+
+    pub fn buffer(
+        &self,
+        id: ResourceId,
+        histories: &Histories,
+    ) -> Result<&wgpu::Buffer, ExecuteError> {
+        match self.find(id, histories) {
+            Some(Physical::Buffer(buffer)) => Ok(buffer),
+            _ => Err(ExecuteError::Internal(
+                "a buffer that a live pass uses was not made",
+            )),
+        }
     }
 
     pub fn sampler(&self, id: ResourceId) -> Result<&wgpu::Sampler, ExecuteError> {
@@ -41,10 +98,11 @@ impl Memory {
         &self,
         target: &Target,
         dimension: wgpu::TextureViewDimension,
+        histories: &Histories,
     ) -> Result<wgpu::TextureView, ExecuteError> {
         let Part { mips, layers } = &target.part;
         Ok(self
-            .texture(target.id)?
+            .texture(target.id, histories)?
             .create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(dimension),
                 base_mip_level: mips.start,
@@ -55,66 +113,229 @@ impl Memory {
             }))
     }
 
-    /// Makes every resource with a lifetime; provided ones are asked of the provider, and only here.
+    /// Makes every resource with a lifetime; provided ones are asked of the provider, and only here. What `old` has of the same
+    /// name and make is taken over with its content.
     pub fn new(
         plan: &Plan,
+        old: Option<(&Plan, &Memory)>,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         provider: &mut dyn Provider,
     ) -> Result<Self, ExecuteError> {
-        let mut memory = Self::default();
-        for (&id, lifetime) in &plan.lifetimes {
+        let mut memory = Self {
+            of: plan.slots.of.clone(),
+            ..Self::default()
+        };
+        let mut taken = BTreeSet::new();
+        for slot in &plan.slots.list {
+            let made = memory.slot(
+                plan,
+                &slot.tenants,
+                old.map(|(_, memory)| memory),
+                &mut taken,
+                device,
+            )?;
+            memory.slots.push(made);
+        }
+        for &id in plan.lifetimes.keys() {
             let resource = &plan.resources[id.0];
-            match &resource.kind {
-                ResourceKind::Texture(texture) => {
-                    let made = scoped(device, &resource.name, || {
-                        device.create_texture(&wgpu::TextureDescriptor {
-                            label: Some(&resource.name),
-                            size: wgpu::Extent3d {
-                                width: texture.size[0],
-                                height: texture.size[1],
-                                depth_or_array_layers: texture.layers,
-                            },
-                            mip_level_count: texture.mips,
-                            sample_count: 1,
-                            dimension: wgpu::TextureDimension::D2,
-                            format: texture.format,
-                            usage: lifetime.textures,
-                            view_formats: &[],
-                        })
-                    })?;
-                    memory.textures.insert(id, made);
+            match (&resource.kind, resource.origin) {
+                (_, Origin::Previous(base)) => {
+                    memory.bases.insert(id, base);
                 }
-                ResourceKind::Buffer(buffer) => {
-                    let made = scoped(device, &resource.name, || {
-                        device.create_buffer(&wgpu::BufferDescriptor {
-                            label: Some(&resource.name),
-                            size: buffer.bytes,
-                            usage: lifetime.buffers,
-                            mapped_at_creation: false,
-                        })
-                    })?;
-                    memory.buffers.insert(id, made);
+                (ResourceKind::Sampler(entry), _) => {
+                    let made = sampler(device, &resource.name, entry);
+                    memory.samplers.insert(id, made);
                 }
-                ResourceKind::Sampler(entry) => {
-                    memory
-                        .samplers
-                        .insert(id, sampler(device, &resource.name, entry));
+                (ResourceKind::Provided(_), _) => {
+                    memory.refresh(id, resource, old, device, queue, provider)?;
                 }
-                ResourceKind::Provided(_) => {
-                    let built = scoped(device, &resource.name, || {
-                        provider.build(&resource.name, device, queue)
-                    })?;
-                    let buffer = built.map_err(|why| ExecuteError::Provider {
-                        name: resource.name.clone(),
-                        why: why.0,
-                    })?;
-                    memory.buffers.insert(id, buffer);
+                (_, Origin::Host) => {
+                    if let Some(import) = old.and_then(|old| kept_import(plan, &resource.name, old))
+                    {
+                        memory.host.insert(id, import);
+                    }
                 }
+                _ => {}
             }
         }
         Ok(memory)
     }
+
+    fn slot(
+        &self,
+        plan: &Plan,
+        tenants: &[ResourceId],
+        old: Option<&Memory>,
+        taken: &mut BTreeSet<usize>,
+        device: &wgpu::Device,
+    ) -> Result<Made, ExecuteError> {
+        let id = tenants[0];
+        let resource = &plan.resources[id.0];
+        let lifetime = &plan.lifetimes[&id];
+        let names: Vec<&str> = tenants
+            .iter()
+            .map(|tenant| plan.resources[tenant.0].name.as_str())
+            .collect();
+        let label = names.join(" / ");
+        let usage = (lifetime.textures, lifetime.buffers);
+        let count = plan.versions(id);
+        let slots = old.map_or(&[][..], |old| &old.slots);
+        let kept = slots.iter().enumerate().find(|(index, made)| {
+            made.label == label
+                && made.usage == usage
+                && made.versions.len() == count
+                && made
+                    .versions
+                    .iter()
+                    .all(|version| is_made(version, resource))
+                && !taken.contains(index)
+        });
+        if let Some((index, made)) = kept {
+            taken.insert(index);
+            return Ok(Made {
+                label,
+                usage,
+                versions: made.versions.clone(),
+            });
+        }
+        let make = || match &resource.kind {
+            ResourceKind::Texture(texture) => {
+                Physical::Texture(device.create_texture(&wgpu::TextureDescriptor {
+                    label: Some(&label),
+                    size: wgpu::Extent3d {
+                        width: texture.size[0],
+                        height: texture.size[1],
+                        depth_or_array_layers: texture.layers,
+                    },
+                    mip_level_count: texture.mips,
+                    sample_count: 1,
+                    dimension: wgpu::TextureDimension::D2,
+                    format: texture.format,
+                    usage: usage.0,
+                    view_formats: &[],
+                }))
+            }
+            ResourceKind::Buffer(buffer) => {
+                Physical::Buffer(device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some(&label),
+                    size: buffer.bytes,
+                    usage: usage.1,
+                    mapped_at_creation: false,
+                }))
+            }
+            _ => unreachable!("only textures and buffers have slots"),
+        };
+        let versions = (0..count)
+            .map(|_| scoped(device, &label, make))
+            .collect::<Result<_, _>>()?;
+        Ok(Made {
+            label,
+            usage,
+            versions,
+        })
+    }
+
+    /// Asks the provider for a resource if it has another version than the one that is there.
+    pub fn refresh(
+        &mut self,
+        id: ResourceId,
+        resource: &Resource,
+        old: Option<(&Plan, &Memory)>,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        provider: &mut dyn Provider,
+    ) -> Result<(), ExecuteError> {
+        let version = provider.version(&resource.name);
+        self.provided.insert(id, version);
+        if let Some((plan, memory)) = old {
+            let known = memory
+                .host
+                .iter()
+                .find(|(id, _)| plan.resources[id.0].name == resource.name);
+            if let Some((known, physical)) = known
+                && memory.provided.get(known) == Some(&version)
+            {
+                self.host.insert(id, physical.clone());
+                return Ok(());
+            }
+        }
+        let built = scoped(device, &resource.name, || {
+            provider.build(&resource.name, device, queue)
+        })?;
+        let buffer = built.map_err(|why| ExecuteError::Provider {
+            name: resource.name.clone(),
+            why: why.0,
+        })?;
+        self.host.insert(id, Physical::Buffer(buffer));
+        Ok(())
+    }
+
+    /// The provided resources with the versions that are there.
+    pub fn provided(&self) -> impl Iterator<Item = (ResourceId, u64)> + '_ {
+        self.provided.iter().map(|(id, version)| (*id, *version))
+    }
+
+    /// What the host gave for a provided resource or an import.
+    pub fn host(&self, id: ResourceId) -> Option<&Physical> {
+        self.host.get(&id)
+    }
+
+    /// Sets an import; whether it is another one than before.
+    pub fn import(&mut self, id: ResourceId, physical: Physical) -> bool {
+        self.host.insert(id, physical.clone()) != Some(physical)
+    }
+
+    /// Whether a resource has the very memory in two states of an executor, and so its content.
+    pub fn same(&self, id: ResourceId, other: &Memory, of_other: ResourceId) -> bool {
+        let versions = |memory: &Memory, id: ResourceId| -> Option<Vec<Physical>> {
+            if let Some(host) = memory.host.get(&id) {
+                return Some(vec![host.clone()]);
+            }
+            let base = memory.bases.get(&id).unwrap_or(&id);
+            Some(memory.slots[*memory.of.get(base)?].versions.clone())
+        };
+        let (a, b) = (versions(self, id), versions(other, of_other));
+        a.is_some() && a == b
+    }
+}
+
+/// Whether a texture or buffer is what a plan says of a resource.
+fn is_made(physical: &Physical, resource: &Resource) -> bool {
+    match (physical, &resource.kind) {
+        (Physical::Texture(texture), ResourceKind::Texture(wanted)) => {
+            texture.format() == wanted.format
+                && [texture.width(), texture.height()] == wanted.size
+                && texture.mip_level_count() == wanted.mips
+                && texture.depth_or_array_layers() == wanted.layers
+        }
+        (Physical::Buffer(buffer), ResourceKind::Buffer(wanted)) => buffer.size() == wanted.bytes,
+        _ => false,
+    }
+}
+
+/// An import that was handed over before, if it is still described the same way.
+fn kept_import(plan: &Plan, name: &str, (of, memory): (&Plan, &Memory)) -> Option<Physical> {
+    let described = |plan: &Plan| plan.request.imports.get(name).copied();
+    if described(plan) != described(of) {
+        return None;
+    }
+    let (_, physical) = memory
+        .host
+        .iter()
+        .find(|(id, _)| of.resources[id.0].name == name)?;
+    Some(physical.clone())
+}
+
+/// Why a texture or buffer is not what the host said that it would import.
+pub(crate) fn differs(physical: &Physical, described: &Import) -> Option<String> {
+    let given = match (physical, described) {
+        (Physical::Texture(texture), Import::Texture { .. }) => Import::texture(texture),
+        (Physical::Buffer(buffer), Import::Buffer { items, .. }) => Import::buffer(buffer, *items),
+        (Physical::Texture(_), _) => return Some("it was planned as a buffer".to_owned()),
+        (Physical::Buffer(_), _) => return Some("it was planned as a texture".to_owned()),
+    };
+    (given != *described).then(|| format!("it was planned as {described:?}, and is {given:?}"))
 }
 
 fn sampler(device: &wgpu::Device, name: &str, entry: &SamplerEntry) -> wgpu::Sampler {

@@ -3,7 +3,8 @@
 use crate::{
     diagnostics::{Code, Diagnostic},
     link::{Access, LinkedPass},
-    resolve::{Part, ResourceId, ResourceKind, Resources, Target},
+    plan::CAPTURE,
+    resolve::{Origin, Part, ResourceId, ResourceKind, Resources, Target},
 };
 use petgraph::{
     graph::{DiGraph, NodeIndex},
@@ -91,10 +92,9 @@ fn walk<'p>(
     let mut early: Vec<(usize, &Access)> = Vec::new();
     for (index, pass) in passes.iter().enumerate().filter(|(index, _)| runs(*index)) {
         for access in &pass.accesses {
-            let provided = matches!(
-                resources.get(access.resource).kind,
-                ResourceKind::Provided(_) | ResourceKind::Sampler(_)
-            );
+            let resource = resources.get(access.resource);
+            let has_content =
+                resource.origin != Origin::Own || matches!(resource.kind, ResourceKind::Sampler(_));
             for cell in cells(access.resource, &access.part) {
                 let state = states.entry(cell).or_default();
                 let mut edge = |from: usize, hazard| {
@@ -109,7 +109,7 @@ fn walk<'p>(
                         edge(writer, Hazard::ReadAfterWrite)
                     }
                     None if access.reads
-                        && !provided
+                        && !has_content
                         && !early.iter().any(|(pass, other)| {
                             *pass == index && other.resource == access.resource
                         }) =>
@@ -161,7 +161,7 @@ fn explain(
             other.writes && other.resource == access.resource && other.part.overlaps(&access.part)
         })
     });
-    if pass.kind == "Capture" {
+    if pass.kind == CAPTURE {
         let first = below.map(|writer| passes[writer].name.as_str());
         return Diagnostic::error(
             Code::Output,

@@ -3,7 +3,7 @@
 use crate::{
     cull,
     diagnostics::{Code, Diagnostic},
-    document::located::Located,
+    document::{Run, located::Located},
     link::{Access, LinkedPass, Usage},
     order::{Hazard, Order, order, order_of_live},
     provider::NoProvider,
@@ -57,6 +57,7 @@ fn with_resources<T>(use_them: impl FnOnce(&Resources<'_>) -> T) -> T {
         viewport: [8, 8],
         limits: &wgpu::Limits::default(),
         provider: &NoProvider,
+        imports: &BTreeMap::new(),
     };
     let mut resources: Resources<'_> = resolve(&[], &[], &params, &environment, &mut Vec::new());
     for index in 0..RESOURCES {
@@ -97,6 +98,8 @@ fn case(uses: &[Vec<Use>]) -> Case {
             kind: "Test",
             steps: Vec::new(),
             accesses,
+            run: Run::Always,
+            enabled: true,
         }
     };
     let passes: Vec<LinkedPass> = uses.iter().enumerate().map(pass).collect();
@@ -127,7 +130,7 @@ impl Case {
                 part,
             })
         });
-        let live = cull::live(&self.order, roots);
+        let live = cull::live(&self.order, roots, |_| None);
         let order = with_resources(|resources| order_of_live(&self.passes, resources, &live));
         (live, order)
     }

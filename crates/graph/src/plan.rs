@@ -2,24 +2,32 @@
 
 mod request;
 
+use request::Request;
 pub use request::{Capture, CulledPass, OutputSummary, PassSummary, PlanRequest};
 
 use crate::{
+    conditions::{Conditions, conditions},
     cull,
     diagnostics::{Code, Diagnostic, Diagnostics, Severity},
     document::{located::Located, params::ParamValue},
     graph::Graph,
     instantiate::{Fallback, LoweredPass, Purpose, instantiate},
     lifetime::{Lifetime, lifetimes},
-    link::{LinkedPass, Linker},
-    order::{order, order_of_live},
+    link::{Access, LinkedPass, Linker, Usage},
+    order::{Order, order, order_of_live},
+    pool::{Slot, Slots, bytes, slots},
+    provider::Import,
     resolve::{
-        Buffer, Environment, Part, Resource, ResourceId, ResourceKind, Resources, Target, resolve,
+        Buffer, Environment, Origin, Part, Resource, ResourceId, ResourceKind, Resources, Target,
+        resolve,
     },
     schedule::schedule,
     step::Step,
 };
 use std::collections::{BTreeMap, BTreeSet};
+
+/// The kind of a pass that keeps a material as it stands after another pass.
+pub(crate) const CAPTURE: &str = "Capture";
 
 /// A graph that is ready to be allocated: live passes in order, every resource with its size and uses.
 #[derive(Debug)]
@@ -29,6 +37,10 @@ pub struct Plan {
     pub(crate) schedule: Vec<usize>,
     pub(crate) lifetimes: BTreeMap<ResourceId, Lifetime>,
     pub(crate) readable: Vec<(String, Target)>,
+    pub(crate) conditions: Conditions,
+    pub(crate) slots: Slots,
+    pub(crate) graph: Graph,
+    pub(crate) request: Request,
     culled: Vec<CulledPass>,
     fallbacks: Vec<Fallback>,
     warnings: Vec<Diagnostic>,
@@ -56,8 +68,13 @@ impl Graph {
         if !diagnostics.is_empty() {
             return (None, diagnostics);
         }
-        let purpose = Purpose::Plan(&request.params, request.features);
-        let instance = instantiate(&self.document, &purpose, &mut diagnostics);
+        let outside = request.imports.keys().cloned();
+        let purpose = Purpose::Plan {
+            values: &request.params,
+            features: request.features,
+            outside: outside.chain(request.provider.names()).collect(),
+        };
+        let instance = instantiate(&self.document, purpose, &mut diagnostics);
         let lacks = |diagnostic: &Diagnostic| diagnostic.code == Code::Feature;
         if diagnostics.iter().any(lacks) {
             // On a device that cannot run the graph nothing else is worth knowing.
@@ -68,6 +85,7 @@ impl Graph {
             viewport: request.viewport,
             limits: &request.limits,
             provider: request.provider,
+            imports: &request.imports,
         };
         let lowered = &instance.passes;
         let mut resources = resolve(
@@ -100,11 +118,13 @@ impl Graph {
                 sound.get_or_insert(passes.len());
             }
             linker.enter(&pass.scope);
-            for name in &pass.overwrites {
-                linker.resources.expect(name, linker.diagnostics);
-            }
             match linker.pass(&pass.name, pass.kind, &pass.steps) {
-                Some(linked) => passes.push(linked),
+                Some(mut linked) => {
+                    linked.enabled = pass.enabled;
+                    linked.run = pass.run.clone();
+                    linker.overwrites(&mut linked, &pass.overwrites);
+                    passes.push(linked);
+                }
                 None => {
                     sound.get_or_insert(passes.len());
                 }
@@ -112,38 +132,104 @@ impl Graph {
             let after = |capture: &&Capture| capture.after.as_deref() == Some(pass.name.as_str());
             let captures: BTreeSet<&Capture> = request.captures.iter().filter(after).collect();
             for capture in captures {
-                passes.extend(linker.capture(capture, self));
+                passes.extend(linker.capture(capture, pass, self));
             }
         }
+        linker.resources.nearby.clear();
         let layouts = std::mem::take(&mut linker.layouts);
         layouts.settle(&mut resources, &request.limits, &mut diagnostics);
         check_captures(request, lowered, &mut diagnostics);
         let complete = sound.is_none() && instance.first_broken.is_none();
         let judged = sound.unwrap_or(passes.len());
         let order = order(&passes, judged, &resources, &mut diagnostics);
+        if complete {
+            never_written(&passes, &resources, &order, &mut diagnostics);
+        }
         let written = |target: &Target| !complete || !order.final_writers(target).is_empty();
         let readable = self.readable(request, &mut resources, written, &mut diagnostics);
         if !complete || has_errors(&diagnostics) {
             return (None, diagnostics);
         }
+        // What the host imports is written for the host.
+        let imports = passes.iter().enumerate().filter(|(_, pass)| {
+            let is_import = |access: &Access| {
+                access.writes && resources.get(access.resource).origin == Origin::Host
+            };
+            pass.accesses.iter().any(is_import)
+        });
         let roots: BTreeSet<usize> = readable
             .iter()
             .flat_map(|(_, target)| order.final_writers(target))
+            .chain(imports.map(|(index, _)| index))
             .collect();
-        let live = cull::live(&order, roots);
+        let live = cull::live(&order, roots, |pass| {
+            let of = |access: &Access| match resources.get(access.resource).origin {
+                Origin::Previous(id) => order.final_writers(&Target {
+                    id,
+                    part: access.part.clone(),
+                }),
+                _ => BTreeSet::new(),
+            };
+            passes[pass]
+                .accesses
+                .iter()
+                .flat_map(of)
+                .collect::<Vec<_>>()
+        });
         let schedule = schedule(&order_of_live(&passes, &resources, &live), &live);
         let mut lifetimes = lifetimes(&passes, &schedule);
         unsized_buffers(&lifetimes, &resources, &mut diagnostics);
-        if has_errors(&diagnostics) {
-            return (None, diagnostics);
-        }
+        // Whether conditions agree must not depend on which outputs are asked for.
+        let all: Vec<usize> = (0..passes.len()).collect();
+        conditions(&passes, &all, &resources.list, &mut diagnostics);
+        let conditions = conditions(&passes, &schedule, &resources.list, &mut Vec::new());
         for (_, target) in &readable {
             let Some(lifetime) = lifetimes.get_mut(&target.id) else {
                 continue;
             };
-            lifetime.textures |= wgpu::TextureUsages::COPY_SRC;
+            lifetime.textures |=
+                wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
             lifetime.buffers |= wgpu::BufferUsages::COPY_SRC;
         }
+        if request.poison.is_some() {
+            for (id, lifetime) in &mut lifetimes {
+                poisonable(&resources.get(*id).kind, lifetime);
+            }
+        }
+        // Two versions of one resource are made alike, and a version can be read although nobody asks for the other.
+        let previous: Vec<(ResourceId, ResourceId)> = lifetimes
+            .keys()
+            .filter_map(|id| match resources.get(*id).origin {
+                Origin::Previous(base) => Some((*id, base)),
+                _ => None,
+            })
+            .collect();
+        for (id, base) in &previous {
+            let (textures, buffers) = (lifetimes[id].textures, lifetimes[id].buffers);
+            let Some(of_base) = lifetimes.get_mut(base) else {
+                continue;
+            };
+            of_base.textures |= textures;
+            of_base.buffers |= buffers;
+        }
+        check_imports(
+            &passes,
+            &schedule,
+            &resources.list,
+            request,
+            &mut diagnostics,
+        );
+        if has_errors(&diagnostics) {
+            return (None, diagnostics);
+        }
+        let kept: BTreeSet<ResourceId> = conditions
+            .kept
+            .iter()
+            .copied()
+            .chain(readable.iter().map(|(_, target)| target.id))
+            .chain(previous.iter().map(|(_, base)| *base))
+            .collect();
+        let slots = slots(&passes, &schedule, &resources.list, &lifetimes, &kept);
         let culled = passes
             .iter()
             .zip(&live)
@@ -159,6 +245,10 @@ impl Graph {
             schedule,
             lifetimes,
             readable,
+            conditions,
+            slots,
+            graph: self.clone(),
+            request: Request::of(request),
             culled,
             fallbacks: instance.fallbacks,
             warnings: diagnostics,
@@ -329,6 +419,95 @@ fn unsized_buffers(
     }
 }
 
+/// Reads of last frame's version of what no frame writes.
+fn never_written(
+    passes: &[LinkedPass],
+    resources: &Resources<'_>,
+    order: &Order,
+    diagnostics: &mut Vec<Diagnostic>,
+) {
+    for pass in passes {
+        for access in &pass.accesses {
+            let Origin::Previous(id) = resources.get(access.resource).origin else {
+                continue;
+            };
+            let part = access.part.clone();
+            if !order.final_writers(&Target { id, part }).is_empty() {
+                continue;
+            }
+            let name = &resources.get(id).name;
+            diagnostics.push(
+                Diagnostic::error(
+                    Code::ReadBeforeWrite,
+                    format!(
+                        "pass `{}` reads `{name}` of the frame before, but no pass writes it",
+                        *pass.name
+                    ),
+                )
+                .at(access.span.clone(), "read here")
+                .at(pass.name.span.clone(), "by this pass")
+                .help(format!("let a pass write `{name}`")),
+            );
+        }
+    }
+}
+
+/// What the host imports must have been made for what passes do with it.
+fn check_imports(
+    passes: &[LinkedPass],
+    schedule: &[usize],
+    resources: &[Resource],
+    request: &PlanRequest<'_>,
+    diagnostics: &mut Vec<Diagnostic>,
+) {
+    fn names<T>(of: &str, flags: impl Iterator<Item = (&'static str, T)>) -> String {
+        let names: Vec<String> = flags.map(|(name, _)| format!("{of}::{name}")).collect();
+        names.join(" | ")
+    }
+    for pass in schedule.iter().map(|&pass| &passes[pass]) {
+        for access in &pass.accesses {
+            let name = &resources[access.resource.0].name;
+            let lacking = match (request.imports.get(name).copied(), access.usage) {
+                (Some(Import::Texture { usage, .. }), Usage::Texture(needed))
+                    if !usage.contains(needed) =>
+                {
+                    names("TextureUsages", needed.difference(usage).iter_names())
+                }
+                (Some(Import::Buffer { usage, .. }), Usage::Buffer(needed))
+                    if !usage.contains(needed) =>
+                {
+                    names("BufferUsages", needed.difference(usage).iter_names())
+                }
+                _ => continue,
+            };
+            diagnostics.push(
+                Diagnostic::error(
+                    Code::Import,
+                    format!(
+                        "the import `{name}` was not made for what pass `{}` does",
+                        *pass.name
+                    ),
+                )
+                .at(access.span.clone(), "used here")
+                .at(pass.name.span.clone(), "by this pass")
+                .help(format!("the host must make it with {lacking} besides")),
+            );
+        }
+    }
+}
+
+/// Adds the usages by which memory is filled with a pattern: depths are cleared, all else is copied to.
+fn poisonable(kind: &ResourceKind, lifetime: &mut Lifetime) {
+    match kind {
+        ResourceKind::Texture(texture) if texture.format.is_depth_stencil_format() => {
+            lifetime.textures |= wgpu::TextureUsages::RENDER_ATTACHMENT;
+        }
+        ResourceKind::Texture(_) => lifetime.textures |= wgpu::TextureUsages::COPY_DST,
+        ResourceKind::Buffer(_) => lifetime.buffers |= wgpu::BufferUsages::COPY_DST,
+        _ => {}
+    }
+}
+
 /// Why the content of a resource cannot come back to the host.
 fn unreadable(resources: &Resources<'_>, target: &Target) -> Option<String> {
     match &resources.get(target.id).kind {
@@ -344,7 +523,12 @@ fn unreadable(resources: &Resources<'_>, target: &Target) -> Option<String> {
 
 impl Linker<'_, '_> {
     /// A copy of a material as it stands after the pass that was linked last.
-    fn capture(&mut self, capture: &Capture, graph: &Graph) -> Option<LinkedPass> {
+    fn capture(
+        &mut self,
+        capture: &Capture,
+        after: &LoweredPass,
+        graph: &Graph,
+    ) -> Option<LinkedPass> {
         let name = Located::new(capture.name(), graph.place());
         let from = Located::new(capture.material.clone(), graph.place());
         let Some(target) = self.resources.find(&from) else {
@@ -381,14 +565,39 @@ impl Linker<'_, '_> {
             }
         };
         self.resources.add(name.value.clone(), None, kind);
-        self.pass(
-            &name,
-            "Capture",
-            &[Step::Copy {
-                from,
-                to: name.clone(),
-            }],
-        )
+        let steps = [Step::Copy {
+            from,
+            to: name.clone(),
+        }];
+        let mut pass = self.pass(&name, CAPTURE, &steps)?;
+        pass.enabled = after.enabled;
+        pass.run = after.run.clone();
+        Some(pass)
+    }
+
+    /// Takes the author's word that a pass writes all of some resources.
+    fn overwrites(&mut self, pass: &mut LinkedPass, names: &[Located<String>]) {
+        for name in names {
+            let Some(target) = self.expect(name) else {
+                continue;
+            };
+            let mut written = false;
+            for access in &mut pass.accesses {
+                if access.writes && access.resource == target.id && access.part == target.part {
+                    written = true;
+                    access.covers = true;
+                }
+            }
+            if !written {
+                self.report(
+                    Diagnostic::error(
+                        Code::ResourceKind,
+                        format!("pass `{}` does not write `{}`", *pass.name, name.value),
+                    )
+                    .at(name.span.clone(), "said to be overwritten"),
+                );
+            }
+        }
     }
 }
 
@@ -463,22 +672,82 @@ impl Plan {
         self.readable.iter().map(summary).collect()
     }
 
-    /// Bytes of the graph's own textures and buffers.
+    /// Bytes of the graph's own textures and buffers. One that is also read as it was in the frame before takes its size twice.
     pub fn memory_bytes(&self) -> u64 {
-        let bytes = |id: &ResourceId| match &self.resources[id.0].kind {
-            ResourceKind::Texture(texture) => texture.bytes(),
-            ResourceKind::Buffer(buffer) => buffer.bytes,
-            _ => 0,
-        };
-        self.lifetimes
-            .keys()
-            .map(bytes)
+        let slots = self.slots.list.iter().map(|slot| self.slot_bytes(slot));
+        slots.fold(0, u64::saturating_add)
+    }
+
+    /// Bytes that would be needed besides if no two resources shared memory.
+    pub fn saved_bytes(&self) -> u64 {
+        let of_slot =
+            |slot: &Slot| (slot.tenants.len() as u64 - 1).saturating_mul(self.slot_bytes(slot));
+        self.slots
+            .list
+            .iter()
+            .map(of_slot)
             .fold(0, u64::saturating_add)
     }
 
-    /// Bytes saved by resources that share memory. None do so far.
-    pub fn saved_bytes(&self) -> u64 {
-        0
+    fn slot_bytes(&self, slot: &Slot) -> u64 {
+        let tenant = slot.tenants[0];
+        bytes(&self.resources[tenant.0]).saturating_mul(self.versions(tenant) as u64)
+    }
+
+    /// How many allocations a resource has: two if it is also read as it was in the frame before.
+    pub(crate) fn versions(&self, id: ResourceId) -> usize {
+        let is_previous =
+            |other: &ResourceId| self.resources[other.0].origin == Origin::Previous(id);
+        1 + usize::from(self.lifetimes.keys().any(is_previous))
+    }
+
+    /// The position of a pass in the schedule.
+    pub(crate) fn position(&self, name: &str) -> Option<usize> {
+        self.schedule
+            .iter()
+            .position(|&pass| self.passes[pass].name.value == name)
+    }
+
+    /// The graph that was planned.
+    pub fn graph(&self) -> &Graph {
+        &self.graph
+    }
+
+    /// Width and height of the viewport in pixels.
+    pub fn viewport(&self) -> [u32; 2] {
+        self.request.viewport
+    }
+
+    /// The value of a param in this plan.
+    pub fn param(&self, name: &str) -> Option<&ParamValue> {
+        let default = || {
+            let params = self.graph.params().iter();
+            params
+                .clone()
+                .find(|param| param.name.value == name)
+                .map(|param| &param.default)
+        };
+        self.request.params.get(name).or_else(default)
+    }
+
+    /// This plan for another viewport.
+    ///
+    /// # Errors
+    /// Everything that is wrong then.
+    pub fn with_viewport(&self, viewport: [u32; 2]) -> Result<Self, Diagnostics> {
+        let mut request = self.request.again();
+        request.viewport = viewport;
+        self.graph.plan(&request)
+    }
+
+    /// This plan with another value of a param.
+    ///
+    /// # Errors
+    /// Everything that is wrong then.
+    pub fn with_param(&self, name: &str, value: ParamValue) -> Result<Self, Diagnostics> {
+        let mut request = self.request.again();
+        request.params.insert(name.to_owned(), value);
+        self.graph.plan(&request)
     }
 
     /// What is suspicious.

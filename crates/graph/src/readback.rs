@@ -2,11 +2,14 @@
 
 use crate::{
     execute::ExecuteError,
-    memory::Memory,
+    memory::{Histories, Memory},
     plan::Plan,
-    resolve::{ResourceKind, Target},
+    resolve::{Part, ResourceKind, Target},
 };
-use std::sync::mpsc::{Receiver, channel};
+use std::{
+    sync::mpsc::{Receiver, channel},
+    time::Duration,
+};
 
 /// An output or capture on the host.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,51 +97,95 @@ impl Content {
     }
 }
 
+/// After the device was polled the mapping is done, but where several threads poll one device another one may still be about to
+/// say so.
+const CALLBACK: Duration = Duration::from_secs(10);
+
+/// What is read back.
+enum Source {
+    Texture {
+        texture: wgpu::Texture,
+        part: Part,
+        size: [u32; 2],
+        /// Bytes of a row in the staging buffer.
+        row: u32,
+    },
+    Buffer(wgpu::Buffer),
+}
+
 /// A readback under way.
 pub(crate) struct Pending {
     name: String,
     staging: wgpu::Buffer,
-    texture: Option<(wgpu::TextureFormat, [u32; 2], u32)>,
+    source: Source,
     mapped: Option<Receiver<Result<(), wgpu::BufferAsyncError>>>,
 }
 
-/// Encodes the copy of an output into a staging buffer.
-pub(crate) fn copy(
-    device: &wgpu::Device,
-    encoder: &mut wgpu::CommandEncoder,
-    plan: &Plan,
-    memory: &Memory,
-    name: &str,
-) -> Result<Pending, ExecuteError> {
-    let Some((_, target)) = plan.readable.iter().find(|(known, _)| known == name) else {
-        let known: Vec<&str> = plan
-            .readable
-            .iter()
-            .map(|(name, _)| name.as_str())
-            .collect();
-        return Err(ExecuteError::NoSuchOutput {
-            name: name.to_owned(),
-            known: known.join(", "),
-        });
-    };
-    let staging = |size: u64| {
-        device.create_buffer(&wgpu::BufferDescriptor {
+impl Pending {
+    /// Makes the staging buffer of an output or capture.
+    pub fn new(
+        device: &wgpu::Device,
+        plan: &Plan,
+        memory: &Memory,
+        histories: &Histories,
+        name: &str,
+    ) -> Result<Self, ExecuteError> {
+        let Some((_, target)) = plan.readable.iter().find(|(known, _)| known == name) else {
+            let known: Vec<&str> = plan
+                .readable
+                .iter()
+                .map(|(name, _)| name.as_str())
+                .collect();
+            return Err(ExecuteError::NoSuchOutput {
+                name: name.to_owned(),
+                known: known.join(", "),
+            });
+        };
+        let Target { id, part } = target;
+        let (source, size) = match &plan.resources[id.0].kind {
+            ResourceKind::Texture(texture) => {
+                let size = texture.size.map(|edge| (edge >> part.mips.start).max(1));
+                let texel = texture.format.block_copy_size(None).unwrap_or(4);
+                let row = (size[0] * texel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+                let source = Source::Texture {
+                    texture: memory.texture(*id, histories)?.clone(),
+                    part: part.clone(),
+                    size,
+                    row,
+                };
+                (source, u64::from(row) * u64::from(size[1]))
+            }
+            _ => {
+                let buffer = memory.buffer(*id, histories)?.clone();
+                let size = buffer.size();
+                (Source::Buffer(buffer), size)
+            }
+        };
+        let staging = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("readback"),
             size,
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
+        });
+        Ok(Self {
+            name: name.to_owned(),
+            staging,
+            source,
+            mapped: None,
         })
-    };
-    let Target { id, part } = target;
-    let (staging, texture) = match &plan.resources[id.0].kind {
-        ResourceKind::Texture(texture) => {
-            let size = texture.size.map(|edge| (edge >> part.mips.start).max(1));
-            let texel = texture.format.block_copy_size(None).unwrap_or(4);
-            let row = (size[0] * texel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-            let staging = staging(u64::from(row) * u64::from(size[1]));
-            encoder.copy_texture_to_buffer(
+    }
+
+    /// Encodes the copy into the staging buffer.
+    pub fn copy(&self, encoder: &mut wgpu::CommandEncoder) {
+        match &self.source {
+            Source::Texture {
+                texture,
+                part,
+                size,
+                row,
+            } => encoder.copy_texture_to_buffer(
                 wgpu::TexelCopyTextureInfo {
-                    texture: memory.texture(*id)?,
+                    texture,
                     mip_level: part.mips.start,
                     origin: wgpu::Origin3d {
                         x: 0,
@@ -148,10 +195,10 @@ pub(crate) fn copy(
                     aspect: wgpu::TextureAspect::All,
                 },
                 wgpu::TexelCopyBufferInfo {
-                    buffer: &staging,
+                    buffer: &self.staging,
                     layout: wgpu::TexelCopyBufferLayout {
                         offset: 0,
-                        bytes_per_row: Some(row),
+                        bytes_per_row: Some(*row),
                         rows_per_image: None,
                     },
                 },
@@ -160,25 +207,13 @@ pub(crate) fn copy(
                     height: size[1],
                     depth_or_array_layers: 1,
                 },
-            );
-            (staging, Some((texture.format, size, row)))
+            ),
+            Source::Buffer(buffer) => {
+                encoder.copy_buffer_to_buffer(buffer, 0, &self.staging, 0, buffer.size());
+            }
         }
-        _ => {
-            let buffer = memory.buffer(*id)?;
-            let staging = staging(buffer.size());
-            encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, buffer.size());
-            (staging, None)
-        }
-    };
-    Ok(Pending {
-        name: name.to_owned(),
-        staging,
-        texture,
-        mapped: None,
-    })
-}
+    }
 
-impl Pending {
     /// Starts the mapping; the frame must have been submitted.
     pub fn map(&mut self) {
         let (send, receive) = channel();
@@ -197,7 +232,7 @@ impl Pending {
         };
         let mapped = self.mapped.as_ref().ok_or_else(failed)?;
         mapped
-            .try_recv()
+            .recv_timeout(CALLBACK)
             .map_err(|_| failed())?
             .map_err(|_| failed())?;
         let bytes = self
@@ -205,8 +240,11 @@ impl Pending {
             .get_mapped_range(..)
             .map_err(|_| failed())?
             .to_vec();
-        let content = match self.texture {
-            Some((format, size, row)) => {
+        let content = match self.source {
+            Source::Texture {
+                texture, size, row, ..
+            } => {
+                let format = texture.format();
                 let tight = (size[0] * format.block_copy_size(None).unwrap_or(4)) as usize;
                 let rows = bytes
                     .chunks(row as usize)
@@ -219,7 +257,7 @@ impl Pending {
                     bytes: rows,
                 }
             }
-            None => Content::Buffer(bytes),
+            Source::Buffer(_) => Content::Buffer(bytes),
         };
         Ok(Readback {
             name: self.name,

@@ -9,13 +9,13 @@ use crate::{
         materials::{BufferEntry, Count, Material, SamplerEntry, TextureEntry},
     },
     instantiate::split_layer,
-    provider::{Provided, Provider},
+    provider::{Import, Provided, Provider},
     registry::Params,
     source::Span,
 };
 use sizes::Sizes;
 use std::{
-    collections::{HashMap, HashSet},
+    collections::{BTreeMap, HashMap, HashSet},
     ops::Range,
 };
 
@@ -30,6 +30,18 @@ pub(crate) struct Resource {
     /// Where it is declared; provided resources and a pass's own buffers are not.
     pub declared: Option<Span>,
     pub kind: ResourceKind,
+    pub origin: Origin,
+}
+
+/// Whose content a resource holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// The graph's own, made by its passes in every frame.
+    Own,
+    /// The host's: an import or a provided resource. It has content before the first pass.
+    Host,
+    /// What another resource held at the end of the frame before.
+    Previous(ResourceId),
 }
 
 #[derive(Clone, Debug)]
@@ -126,6 +138,10 @@ pub(crate) struct Resources<'a> {
     broken: HashSet<String>,
     /// What unknown names begin with that are no mistake, because an include that would have brought them has one.
     hidden: Vec<String>,
+    /// What the document that is looked at calls some of them.
+    pub nearby: Vec<String>,
+    /// Last frame's versions, by the resource that they are versions of.
+    previous: HashMap<ResourceId, ResourceId>,
     provider: &'a dyn Provider,
     viewport: [u32; 2],
 }
@@ -135,6 +151,7 @@ pub(crate) struct Environment<'a> {
     pub viewport: [u32; 2],
     pub limits: &'a wgpu::Limits,
     pub provider: &'a dyn Provider,
+    pub imports: &'a BTreeMap<String, Import>,
 }
 
 pub(crate) fn resolve<'a>(
@@ -150,6 +167,8 @@ pub(crate) fn resolve<'a>(
         spelt: HashMap::new(),
         broken: HashSet::new(),
         hidden: Vec::new(),
+        nearby: Vec::new(),
+        previous: HashMap::new(),
         provider: environment.provider,
         viewport: environment.viewport,
     };
@@ -157,6 +176,7 @@ pub(crate) fn resolve<'a>(
         resources.spelt.insert(spelling(&name), name);
     }
     unread.iter().for_each(|name| resources.spoil(name));
+    resources.add_imports(materials, environment.imports, diagnostics);
     let textures = materials.iter().filter_map(|material| match material {
         Material::Texture(entry) => Some((entry.name.as_str(), entry)),
         _ => None,
@@ -200,6 +220,16 @@ pub(crate) fn resolve<'a>(
     resources
 }
 
+/// The name under which last frame's version of `name` stands: as the document writes it, without quotes.
+pub(crate) fn previous(name: &str) -> String {
+    format!("Previous({name})")
+}
+
+/// What a name is last frame's version of.
+pub(crate) fn previous_of(name: &str) -> Option<&str> {
+    name.strip_prefix("Previous(")?.strip_suffix(')')
+}
+
 /// A name as a WGSL identifier.
 pub(crate) fn spelling(name: &str) -> String {
     // `cascade[0].depth` is `cascade_0_depth`.
@@ -225,12 +255,104 @@ impl Resources<'_> {
         };
         self.names.insert(name.clone(), Target { id, part });
         self.spelt.insert(spelling(&name), name.clone());
+        let origin = match kind {
+            ResourceKind::Provided(_) => Origin::Host,
+            _ => Origin::Own,
+        };
         self.list.push(Resource {
             name,
             declared,
             kind,
+            origin,
         });
         id
+    }
+
+    /// Enters what the host imports. A material of the same name would hide it.
+    fn add_imports(
+        &mut self,
+        materials: &[Material],
+        imports: &BTreeMap<String, Import>,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) {
+        for (name, import) in imports {
+            if let Some(material) = materials.iter().find(|m| m.name().as_str() == name) {
+                diagnostics.push(
+                    Diagnostic::error(
+                        Code::DuplicateName,
+                        format!("the host imports `{name}`, which is a material of the document"),
+                    )
+                    .at(material.name().span.clone(), "declared here")
+                    .help("import it under another name, or remove the material"),
+                );
+                continue;
+            }
+            let kind = match *import {
+                Import::Texture {
+                    format,
+                    size,
+                    mips,
+                    layers,
+                    ..
+                } => ResourceKind::Texture(Texture {
+                    format,
+                    size,
+                    mips,
+                    layers,
+                }),
+                Import::Buffer { bytes, items, .. } => ResourceKind::Buffer(Buffer {
+                    count: items,
+                    bytes,
+                }),
+            };
+            let id = self.add(name.clone(), None, kind);
+            self.list[id.0].origin = Origin::Host;
+        }
+    }
+
+    /// The resource whose layout and size a resource has: itself, or what it is last frame's version of.
+    pub fn base(&self, id: ResourceId) -> ResourceId {
+        match self.list[id.0].origin {
+            Origin::Previous(base) => base,
+            _ => id,
+        }
+    }
+
+    /// Gives last frame's versions the sizes of what they are versions of.
+    pub fn settle_previous(&mut self) {
+        for (base, previous) in &self.previous {
+            self.list[previous.0].kind = self.list[base.0].kind.clone();
+        }
+    }
+
+    /// What `Previous("name")` stands for; `None` if `name` is nothing that has a version of last frame.
+    fn find_previous(&mut self, name: &str, of: &str) -> Option<Target> {
+        let base = self.find(of)?;
+        let kind = match &self.list[base.id.0] {
+            Resource {
+                kind: kind @ (ResourceKind::Texture(_) | ResourceKind::Buffer(_)),
+                origin: Origin::Own,
+                ..
+            } => kind.clone(),
+            _ => return None,
+        };
+        let id = match self.previous.get(&base.id) {
+            Some(id) => *id,
+            None => {
+                let declared = self.list[base.id.0].declared.clone();
+                let whole = previous(&self.list[base.id.0].name);
+                let id = self.add(whole, declared, kind);
+                self.list[id.0].origin = Origin::Previous(base.id);
+                self.previous.insert(base.id, id);
+                id
+            }
+        };
+        let target = Target {
+            id,
+            part: base.part,
+        };
+        self.names.insert(name.to_owned(), target.clone());
+        Some(target)
     }
 
     /// Marks a name as declared with a mistake.
@@ -388,6 +510,9 @@ impl Resources<'_> {
         if let Some(target) = self.names.get(name) {
             return Some(target.clone());
         }
+        if let Some(of) = previous_of(name) {
+            return self.find_previous(name, &of.to_owned());
+        }
         if let Some(layer) = self.layer(name) {
             return layer;
         }
@@ -439,6 +564,9 @@ impl Resources<'_> {
         if found.is_some() || self.is_broken(name) {
             return found;
         }
+        if let Some(of) = previous_of(name) {
+            return self.explain_previous(name, of, diagnostics);
+        }
         let whole = split_layer(name).map(|(whole, _)| whole.to_owned());
         if whole.as_ref().is_some_and(|whole| self.is_broken(whole)) {
             return None;
@@ -477,10 +605,35 @@ impl Resources<'_> {
         None
     }
 
+    /// Says why there is no last frame's version of `of`.
+    fn explain_previous(
+        &mut self,
+        name: &Located<String>,
+        of: &str,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Option<Target> {
+        let base = self.expect(&Located::new(of.to_owned(), name.span.clone()), diagnostics)?;
+        let resource = self.get(base.id);
+        let what = match resource.origin {
+            Origin::Host => "the host's",
+            _ => resource.kind.describe(),
+        };
+        diagnostics.push(
+            Diagnostic::error(
+                Code::ResourceKind,
+                format!("`{of}` has no version of the frame before"),
+            )
+            .at(name.span.clone(), format!("it is {what}"))
+            .help("only textures and buffers of the document have one; copy it into one"),
+        );
+        None
+    }
+
     /// Every name there is, materials first.
     pub fn known(&self) -> Vec<String> {
         let mut names: Vec<String> = self.names.keys().cloned().collect();
         names.sort();
+        names.splice(0..0, self.nearby.iter().cloned());
         let provided: Vec<String> = self
             .provider
             .names()

@@ -192,7 +192,7 @@ pub fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, Execut
                 &mut encoder,
                 &Frame {
                     timing: true,
-                    read: &[],
+                    ..Frame::default()
                 },
             )?;
             let start = Instant::now();

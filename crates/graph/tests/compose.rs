@@ -478,6 +478,7 @@ fn run(files: &Files, captures: &[&str]) -> BTreeMap<String, Vec<f32>> {
             &Frame {
                 timing: false,
                 read: &read,
+                ..Frame::default()
             },
         )
         .unwrap_or_else(|error| panic!("{error}"));

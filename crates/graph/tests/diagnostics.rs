@@ -6,9 +6,12 @@
 mod support;
 
 use skiagraph_graph::{
-    Code, Diagnostic, Diagnostics, FolderSources, Graph, PlanRequest, Registry, diagnostics,
+    Code, Diagnostic, Diagnostics, FolderSources, Graph, Import, PlanRequest, Registry, diagnostics,
 };
-use std::{collections::BTreeSet, path::Path};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
 use support::{Files, Triangle, load};
 
 fn folder() -> FolderSources {
@@ -19,7 +22,28 @@ fn folder() -> FolderSources {
 
 /// Errors of loading or planning, or the warnings where there are no errors.
 fn diagnose(path: &str, sources: &FolderSources) -> Vec<Diagnostic> {
-    let request = PlanRequest::new([64, 48], &Triangle);
+    let mut request = PlanRequest::new([64, 48], &Triangle);
+    // What a host might hand over, made for too little.
+    request.imports = BTreeMap::from([
+        (
+            "host.image".to_owned(),
+            Import::Texture {
+                format: wgpu::TextureFormat::R32Float,
+                size: [64, 48],
+                mips: 1,
+                layers: 1,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            },
+        ),
+        (
+            "host.items".to_owned(),
+            Import::Buffer {
+                bytes: 12,
+                items: Some(3),
+                usage: wgpu::BufferUsages::COPY_SRC,
+            },
+        ),
+    ]);
     match Graph::check(path, &Registry::standard(), sources, &request) {
         Err(diagnostics) => diagnostics.iter().cloned().collect(),
         Ok((graph, plan)) => graph
@@ -374,7 +398,28 @@ fn comments_and_a_byte_order_mark_are_no_mistakes() {
 ) // the end";
     let fill = include_str!("broken/fill.wgsl");
     let files = Files::new([("graph.ron", document), ("fill.wgsl", fill)]);
-    let request = PlanRequest::new([64, 48], &Triangle);
+    let mut request = PlanRequest::new([64, 48], &Triangle);
+    // What a host might hand over, made for too little.
+    request.imports = BTreeMap::from([
+        (
+            "host.image".to_owned(),
+            Import::Texture {
+                format: wgpu::TextureFormat::R32Float,
+                size: [64, 48],
+                mips: 1,
+                layers: 1,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            },
+        ),
+        (
+            "host.items".to_owned(),
+            Import::Buffer {
+                bytes: 12,
+                items: Some(3),
+                usage: wgpu::BufferUsages::COPY_SRC,
+            },
+        ),
+    ]);
     let checked = Graph::check("graph.ron", &Registry::standard(), &files, &request);
     assert_eq!(text(checked.map(|(graph, _)| graph)), "it loads");
 }

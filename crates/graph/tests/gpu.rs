@@ -40,7 +40,14 @@ fn frame(executor: &mut Executor, timing: bool, read: &[&str]) -> FrameReport {
         .device
         .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     executor
-        .encode(&mut encoder, &Frame { timing, read })
+        .encode(
+            &mut encoder,
+            &Frame {
+                timing,
+                read,
+                ..Frame::default()
+            },
+        )
         .unwrap_or_else(|error| panic!("{error}"));
     GPU.queue.submit([encoder.finish()]);
     executor
@@ -581,6 +588,7 @@ fn frames_that_are_not_finished_one_by_one() {
                 &Frame {
                     timing: false,
                     read: &["image"],
+                    ..Frame::default()
                 },
             )
             .unwrap_or_else(|error| panic!("{error}"));
@@ -594,6 +602,7 @@ fn frames_that_are_not_finished_one_by_one() {
                 &Frame {
                     timing,
                     read: &["image"],
+                    ..Frame::default()
                 },
             )
             .unwrap_or_else(|error| panic!("{error}"));
@@ -633,6 +642,7 @@ fn an_output_that_the_plan_does_not_have() {
             &Frame {
                 timing: false,
                 read: &["imgae"],
+                ..Frame::default()
             },
         )
         .expect_err("there is none");

@@ -492,6 +492,7 @@ fn what_plans_runs_or_is_refused() {
                             &Frame {
                                 timing: true,
                                 read: &read,
+                                ..Frame::default()
                             },
                         )
                         .map_err(|error| TestCaseError::fail(error.to_string()))?;

@@ -358,6 +358,7 @@ fn params_and_overrides_arrive() {
                 &Frame {
                     timing: false,
                     read: &["words"],
+                    ..Frame::default()
                 },
             )
             .unwrap_or_else(|error| panic!("{error}"));

@@ -43,12 +43,15 @@ const NAMES: [&str; 8] = [
 /// | `light` | [`LightUniform`] |
 ///
 /// What was built stays and is shared by all graphs that are executed with the same provider, which therefore belongs to
-/// the device that it was first used with. wgpu binds no buffer of size zero: an array of an empty scene holds one zero
+/// the device that it was first used with; [`set_view`](SceneProvider::set_view) changes the one camera that they all see. wgpu binds no buffer of size zero: an array of an empty scene holds one zero
 /// item, its hierarchy one leaf around a triangle without area, which no ray hits; [`Provider::describe`] still says 0 items, so
 /// that nothing is drawn.
 pub struct SceneProvider {
     scene: Arc<Scene>,
     camera: CameraUniform,
+    /// How often the camera was set, and which of these is in its buffer.
+    camera_version: u64,
+    camera_uploaded: u64,
     buffers: BTreeMap<&'static str, wgpu::Buffer>,
     built: Vec<&'static str>,
 }
@@ -59,6 +62,8 @@ impl SceneProvider {
         Self {
             scene,
             camera: CameraUniform::default(),
+            camera_version: 0,
+            camera_uploaded: 0,
             buffers: BTreeMap::new(),
             built: Vec::new(),
         }
@@ -69,10 +74,11 @@ impl SceneProvider {
         &self.scene
     }
 
-    /// The camera of executors made from now on; those made before keep the one they have.
+    /// The camera of executors made from now on, and of others from their next
+    /// [`refresh`](skiagraph_graph::Executor::refresh) on.
     pub fn set_view(&mut self, view: &View, viewport: [u32; 2]) {
         self.camera = CameraUniform::from(&view.camera(viewport));
-        self.buffers.remove(CAMERA);
+        self.camera_version += 1;
     }
 
     /// Names of the resources that were built, in the order in which they first were.
@@ -107,7 +113,7 @@ impl SceneProvider {
         let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some(name),
             contents: content,
-            usage: usage | wgpu::BufferUsages::COPY_SRC,
+            usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
         });
         self.buffers.insert(name, buffer);
         Ok(())
@@ -204,11 +210,19 @@ impl Provider for SceneProvider {
         }
     }
 
+    fn version(&self, name: &str) -> u64 {
+        if name == CAMERA {
+            self.camera_version
+        } else {
+            0
+        }
+    }
+
     fn build(
         &mut self,
         name: &str,
         device: &wgpu::Device,
-        _queue: &wgpu::Queue,
+        queue: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
         let known = NAMES.into_iter().find(|&known| known == name);
         let name = known.ok_or_else(|| Error::Unknown {
@@ -219,6 +233,10 @@ impl Provider for SceneProvider {
         if !self.buffers.contains_key(name) {
             self.upload_named(name, device)
                 .map_err(|error| error.to_string())?;
+        }
+        if name == CAMERA && self.camera_uploaded != self.camera_version {
+            queue.write_buffer(&self.buffers[name], 0, bytemuck::bytes_of(&self.camera));
+            self.camera_uploaded = self.camera_version;
         }
         if !self.built.contains(&name) {
             self.built.push(name);

@@ -5,14 +5,14 @@ use super::{
     located::{Field, Located, Node, from_fields},
     ok,
     params::Written,
-    value::{Map, Pairs, Value},
+    value::{Map, Reference, Value},
 };
 use crate::{
     diagnostics::{Code, Diagnostic},
     registry::{PassKind, Registry},
 };
 use serde::Deserialize;
-use std::sync::Arc;
+use std::{fmt, sync::Arc};
 
 /// One entry, at its place in the sequential program.
 #[derive(Debug)]
@@ -55,6 +55,21 @@ pub(crate) enum Run {
     OnChange,
     /// In frames where a Bool param is true.
     When(Located<String>),
+}
+
+impl PartialEq for Run {
+    fn eq(&self, other: &Self) -> bool {
+        self.to_string() == other.to_string()
+    }
+}
+
+impl fmt::Display for Run {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::When(param) => write!(f, "When({:?})", param.value),
+            other => write!(f, "{other:?}"),
+        }
+    }
 }
 
 /// Another document whose passes stand here.
@@ -133,7 +148,7 @@ fn pass(tag: &Located<String>, body: &Node, registry: &Registry) -> Result<PassE
         #[serde(default)]
         shader: Option<Located<String>>,
         #[serde(default)]
-        bind: Pairs,
+        bind: Map<Reference>,
         #[serde(default)]
         run: Run,
         #[serde(default)]
@@ -147,7 +162,7 @@ fn pass(tag: &Located<String>, body: &Node, registry: &Registry) -> Result<PassE
         .into_iter()
         .partition(|field| HEADER.contains(&field.name.as_str()));
     let header: Header = from_fields(&header, &tag.span)?;
-    let bind = header.bind.unique("bound")?;
+    let bind = header.bind.unique("bound")?.into_iter();
     let kind = registry.get(tag).ok_or_else(|| {
         Diagnostic::error(
             Code::UnknownVariant,
@@ -158,7 +173,9 @@ fn pass(tag: &Located<String>, body: &Node, registry: &Registry) -> Result<PassE
     Ok(PassEntry {
         name: header.name,
         shader: header.shader,
-        bind,
+        bind: bind
+            .map(|(global, Reference(name))| (global, name))
+            .collect(),
         run: header.run,
         overwrites: header.overwrites,
         repeat: header.repeat,
@@ -177,7 +194,7 @@ fn include(tag: &Located<String>, body: &Node) -> Result<IncludeEntry, Diagnosti
         #[serde(default)]
         params: Map<Located<Value<Written>>>,
         #[serde(default)]
-        materials: Pairs,
+        materials: Map<Located<String>>,
         #[serde(default)]
         repeat: Repeat,
     }

@@ -1,7 +1,10 @@
 //! Values that several entries share: a literal or a param, comparison functions, named pairs.
 
 use super::located::{self, Located};
-use crate::diagnostics::{Code, Diagnostic};
+use crate::{
+    diagnostics::{Code, Diagnostic},
+    resolve::previous,
+};
 use serde::{
     Deserialize, Deserializer,
     de::{DeserializeOwned, MapAccess, Visitor},
@@ -64,12 +67,37 @@ impl From<Compare> for wgpu::CompareFunction {
     }
 }
 
+/// What a pass reads: `"name"`, or `Previous("name")` for what it held at the end of the frame before.
+#[derive(Clone, Debug)]
+pub(crate) struct Reference(pub Located<String>);
+
+impl<'de> Deserialize<'de> for Reference {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        /// The name, in either spelling.
+        struct Name(String);
+        impl<'de> Deserialize<'de> for Name {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                #[derive(Deserialize)]
+                #[serde(rename = "name")]
+                enum Words {
+                    Previous(String),
+                }
+                Ok(Self(match located::literal(deserializer)? {
+                    Ok(name) => name,
+                    Err(word) => match located::word::<Words, D::Error>(word)? {
+                        Words::Previous(name) => previous(&name),
+                    },
+                }))
+            }
+        }
+        let Located { value, span } = Located::<Name>::deserialize(deserializer)?;
+        Ok(Self(Located::new(value.0, span)))
+    }
+}
+
 /// A RON map of names to values in file order, duplicates kept (ron itself drops them without a word).
 #[derive(Clone, Debug)]
 pub struct Map<V>(pub Vec<(Located<String>, V)>);
-
-/// A map of names to names.
-pub type Pairs = Map<Located<String>>;
 
 impl<V> Default for Map<V> {
     fn default() -> Self {

@@ -20,7 +20,7 @@ use crate::{
 use scope::{Scope, indexed};
 pub(crate) use scope::{ScopeId, Scopes, split_layer};
 use std::{
-    collections::{BTreeMap, HashMap},
+    collections::{BTreeMap, HashMap, HashSet},
     sync::Arc,
 };
 
@@ -62,8 +62,10 @@ pub struct Fallback {
 pub(crate) struct LoweredPass {
     pub name: Located<String>,
     pub kind: &'static str,
-    /// The name in `When` is a param of [`PassScope::params`].
+    /// The name in `When` is the root document's for the param, or has the prefix of its document: equal conditions are equal.
     pub run: Run,
+    /// The value of the param in `When`; true without one.
+    pub enabled: bool,
     pub overwrites: Vec<Located<String>>,
     pub steps: Vec<Step>,
     pub scratch: Vec<(String, u64)>,
@@ -91,28 +93,45 @@ impl PassScope {
         let known = self.scopes.full_name_of_global(self.id, name);
         known.unwrap_or(name)
     }
+
+    /// The names that its document has besides those of the whole graph, sorted.
+    pub fn names(&self) -> Vec<String> {
+        self.scopes.names_within(self.id)
+    }
 }
 
 /// What a document is instantiated for.
 pub(crate) enum Purpose<'a> {
     /// To find all shaders and mistakes: whatever may be repeated is there once at least.
     Load,
-    /// To be planned, for a device with these features.
-    Plan(&'a BTreeMap<String, ParamValue>, wgpu::Features),
+    /// To be planned.
+    Plan {
+        values: &'a BTreeMap<String, ParamValue>,
+        /// Those that the device has.
+        features: wgpu::Features,
+        /// Names of what the host provides and imports.
+        outside: HashSet<String>,
+    },
 }
 
 /// Flattens a document with all that it includes.
 pub(crate) fn instantiate(
     document: &Document,
-    purpose: &Purpose<'_>,
+    purpose: Purpose<'_>,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Instance {
+    let none = BTreeMap::new();
+    let (values, features, outside) = match purpose {
+        Purpose::Load => (&none, None, HashSet::new()),
+        Purpose::Plan {
+            values,
+            features,
+            outside,
+        } => (values, Some(features), outside),
+    };
     let mut builder = Builder {
-        features: match purpose {
-            Purpose::Load => None,
-            Purpose::Plan(_, features) => Some(*features),
-        },
-        scopes: Scopes::default(),
+        features,
+        scopes: Scopes::new(outside),
         materials: Vec::new(),
         declared: HashMap::new(),
         unread: Vec::new(),
@@ -123,11 +142,6 @@ pub(crate) fn instantiate(
         spent: 0,
         is_full: false,
         diagnostics,
-    };
-    let none = BTreeMap::new();
-    let values = match purpose {
-        Purpose::Load => &none,
-        Purpose::Plan(values, _) => values,
     };
     let mut params = bind::root(&document.params, values);
     builder.require(document, &mut params, "");
@@ -377,9 +391,15 @@ fn lower(
     };
     entry.body.lower(&mut lowering);
     diagnostics.append(&mut lowering.diagnostics);
-    if let Run::When(name) = &entry.run {
+    let (mut run, mut enabled) = (entry.run.clone(), true);
+    if let Run::When(name) = &mut run {
         let condition = Value::Param(name.clone());
-        scope.params.value::<bool>(&condition, diagnostics);
+        enabled = scope.params.value(&condition, diagnostics).unwrap_or(true);
+        let root = scope
+            .params
+            .bound(name)
+            .and_then(|bound| bound.root.clone());
+        name.value = root.unwrap_or_else(|| format!("{}{}", scope.prefix, name.value));
     }
     let (mut steps, mut overwrites) = (lowering.steps, entry.overwrites.clone());
     // A pass's own buffers begin with its name, whatever that is in the whole graph.
@@ -405,7 +425,8 @@ fn lower(
     LoweredPass {
         name: Located::new(pending.name.clone(), entry.name.span.clone()),
         kind: entry.kind,
-        run: entry.run.clone(),
+        run,
+        enabled,
         overwrites,
         steps,
         scratch,

@@ -3,8 +3,15 @@
 //! A name is looked for among the document's own, then among those of the document that includes it, and so on outwards.
 //! What no scope knows is left as it is: a provided resource, or a mistake that the linker reports.
 
-use crate::{document::located::Located, registry::Params, resolve::spelling};
-use std::{collections::HashMap, sync::Arc};
+use crate::{
+    document::located::Located,
+    registry::Params,
+    resolve::{previous, previous_of, spelling},
+};
+use std::{
+    collections::{HashMap, HashSet},
+    sync::Arc,
+};
 
 /// Index of a scope in [`Scopes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,8 +47,12 @@ pub(super) struct Place {
 }
 
 /// All scopes of a graph; the first is that of the root document.
-#[derive(Debug, Default)]
-pub(crate) struct Scopes(pub(super) Vec<Scope>);
+#[derive(Debug)]
+pub(crate) struct Scopes {
+    list: Vec<Scope>,
+    /// Names of what the host provides and imports.
+    outside: HashSet<String>,
+}
 
 impl Scope {
     pub fn new(
@@ -97,13 +108,20 @@ pub(super) fn indexed(name: &str, index: Option<u32>) -> String {
 }
 
 impl Scopes {
+    pub(super) fn new(outside: HashSet<String>) -> Self {
+        Self {
+            list: Vec::new(),
+            outside,
+        }
+    }
+
     pub(super) fn add(&mut self, scope: Scope) -> ScopeId {
-        self.0.push(scope);
-        ScopeId(self.0.len() - 1)
+        self.list.push(scope);
+        ScopeId(self.list.len() - 1)
     }
 
     pub(super) fn get(&self, id: ScopeId) -> &Scope {
-        &self.0[id.0]
+        &self.list[id.0]
     }
 
     /// The scope and those around it, from the inside out.
@@ -131,8 +149,20 @@ impl Scopes {
 
     /// What a name in a document stands for in the whole graph.
     pub fn full_name(&self, id: ScopeId, index: Option<u32>, name: &str) -> String {
+        if let Some(of) = previous_of(name) {
+            return previous(&self.full_name(id, index, of));
+        }
         let name = indexed(name, index);
         self.find(id, &name).unwrap_or(name)
+    }
+
+    /// All names that are known in a scope and not in the whole graph, sorted.
+    pub fn names_within(&self, id: ScopeId) -> Vec<String> {
+        let inner = self.outwards(id).filter(|scope| scope.parent.is_some());
+        let mut names: Vec<String> = inner.flat_map(Scope::names).map(str::to_owned).collect();
+        names.sort();
+        names.dedup();
+        names
     }
 
     /// What a shader's global of that name stands for in the whole graph, if a scope knows it.
@@ -151,7 +181,8 @@ impl Scopes {
             via.push((id, name.clone()));
             match (scope.parent, scope.renames.get(&name)) {
                 (Some(parent), Some(outer)) => {
-                    if let Some(full) = self.find(parent, outer) {
+                    let outside = || self.outside.get(outer.as_str()).cloned();
+                    if let Some(full) = self.find(parent, outer).or_else(outside) {
                         let connected = Some(outer.clone());
                         return Place {
                             full,
@@ -197,14 +228,14 @@ impl Scopes {
     /// of its full name.
     pub(super) fn publish(&mut self, place: &Place) {
         for (id, name) in &place.via {
-            self.0[id.0].insert(name, &place.full);
+            self.list[id.0].insert(name, &place.full);
         }
         if place.connected.is_some() {
             return;
         }
         let mut around = place.via.last().map(|(id, _)| *id);
         while let Some(id) = around {
-            let scope = &mut self.0[id.0];
+            let scope = &mut self.list[id.0];
             around = scope.parent;
             if let Some(rest) = place.full.strip_prefix(&scope.prefix) {
                 let rest = rest.to_owned();
@@ -215,7 +246,7 @@ impl Scopes {
 
     /// Makes a material with a mistake known to its document alone, and returns its full name.
     pub(super) fn hide(&mut self, id: ScopeId, name: &str) -> String {
-        let scope = &mut self.0[id.0];
+        let scope = &mut self.list[id.0];
         let full = format!("{}{name}", scope.prefix);
         scope.insert(name, &full);
         full

@@ -287,6 +287,7 @@ impl Linker<'_, '_> {
             );
             return None;
         }
+        self.writable(&target, name, &name.span);
         Some((target, texture))
     }
 

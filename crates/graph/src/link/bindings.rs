@@ -12,7 +12,7 @@ use naga::ShaderStage;
 use std::sync::Arc;
 
 /// A shader with its entry points, constants and bindings.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LinkedProgram {
     pub shader: Arc<Shader>,
     /// Entry points in stage order (vertex, fragment; or compute).
@@ -22,7 +22,7 @@ pub(crate) struct LinkedProgram {
     pub bindings: Vec<LinkedBinding>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LinkedBinding {
     pub group: u32,
     pub binding: u32,
@@ -31,7 +31,7 @@ pub(crate) struct LinkedBinding {
     pub visibility: wgpu::ShaderStages,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum BindTarget {
     Buffer(ResourceId),
     Texture {
@@ -40,7 +40,17 @@ pub(crate) enum BindTarget {
     },
     Sampler(ResourceId),
     /// The `params` uniform, already laid out.
-    Params(Vec<u8>),
+    Params(Block),
+}
+
+/// The bytes of a `params` uniform. Two of one size are equal: other bytes are an upload, not another binding.
+#[derive(Clone, Debug)]
+pub(crate) struct Block(pub Vec<u8>);
+
+impl PartialEq for Block {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.len() == other.0.len()
+    }
 }
 
 impl Linker<'_, '_> {
@@ -203,7 +213,7 @@ impl Linker<'_, '_> {
                 return None;
             }
             let block = self.params_block(global, *size, members)?;
-            return finish(BindTarget::Params(block), uniform(*size));
+            return finish(BindTarget::Params(Block(block)), uniform(*size));
         }
         let target = match &bound {
             Some(name) => self.expect(name)?,
@@ -283,7 +293,7 @@ impl Linker<'_, '_> {
                     );
                     return None;
                 }
-                self.layouts.see(target.id, global);
+                self.layouts.see(self.resources.base(target.id), global);
                 let ty = wgpu::BindingType::Buffer {
                     ty: wgpu::BufferBindingType::Storage {
                         read_only: *read_only,
@@ -358,6 +368,9 @@ impl Linker<'_, '_> {
                 return None;
             }
         };
+        if global.writes {
+            self.writable(&target, &resource.name, &global.span);
+        }
         pass.accesses.push(Access {
             resource: target.id,
             part: if matches!(resource.kind, ResourceKind::Texture(_)) {

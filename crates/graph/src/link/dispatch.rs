@@ -39,7 +39,8 @@ impl Linker<'_, '_> {
             );
             return None;
         }
-        self.layouts.at_least(target.id, bytes, name.span.clone());
+        self.layouts
+            .at_least(self.resources.base(target.id), bytes, name.span.clone());
         pass.accesses.push(Access {
             resource: target.id,
             part: target.part,

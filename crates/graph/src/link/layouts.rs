@@ -3,7 +3,7 @@
 use crate::{
     diagnostics::{Code, Diagnostic},
     document::located::Located,
-    resolve::{ResourceId, ResourceKind, Resources},
+    resolve::{Origin, ResourceId, ResourceKind, Resources},
     source::Span,
     wgsl::{Class, Global},
 };
@@ -101,6 +101,26 @@ impl Layouts {
                         }
                     }
                 }
+                ResourceKind::Buffer(_) if matches!(resource.origin, Origin::Previous(_)) => {}
+                ResourceKind::Buffer(buffer) if resource.origin == Origin::Host => {
+                    let have = buffer.bytes;
+                    let least = self.least.get(&id).map(|(bytes, span)| (*bytes, span));
+                    let needs = seen
+                        .iter()
+                        .map(|view| (view.fixed + view.stride.unwrap_or(0), &view.span));
+                    for (bytes, span) in needs.chain(least).filter(|(bytes, _)| *bytes > have) {
+                        diagnostics.push(
+                            Diagnostic::error(
+                                Code::LayoutMismatch,
+                                format!(
+                                    "the import `{}` has {have} bytes, {bytes} are needed",
+                                    resource.name
+                                ),
+                            )
+                            .at(span.clone(), "needed here"),
+                        );
+                    }
+                }
                 ResourceKind::Buffer(buffer) => match self.bytes(
                     id,
                     buffer.count,
@@ -137,6 +157,7 @@ impl Layouts {
             }
         }
         self.equal_sizes(resources, diagnostics);
+        resources.settle_previous();
     }
 
     /// A buffer that no shader sees has the size of what it is copied from or to; others must agree.

@@ -11,11 +11,11 @@ mod transfers;
 
 use crate::{
     diagnostics::{Code, Diagnostic, Severity},
-    document::located::Located,
+    document::{Run, located::Located},
     graph::Shaders,
     instantiate::PassScope,
     registry::Params,
-    resolve::{Part, Resource, ResourceId, Resources, Target},
+    resolve::{Origin, Part, Resource, ResourceId, Resources, Target},
     source::Span,
     step::{Draw, DrawCall, Program, Step},
     wgsl::Shader,
@@ -32,6 +32,9 @@ pub(crate) struct LinkedPass {
     pub kind: &'static str,
     pub steps: Vec<LinkedStep>,
     pub accesses: Vec<Access>,
+    pub run: Run,
+    /// The value of the param of [`Run::When`].
+    pub enabled: bool,
 }
 
 /// One use of a part of a resource by a step.
@@ -57,7 +60,7 @@ pub(crate) enum Usage {
     None,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum LinkedStep {
     Draw(LinkedDraw),
     Dispatch {
@@ -79,7 +82,28 @@ pub(crate) enum LinkedStep {
     ClearBuffer(ResourceId),
 }
 
-#[derive(Clone, Debug)]
+impl LinkedStep {
+    /// The shader and bindings of a draw or dispatch.
+    pub fn program(&self) -> Option<&LinkedProgram> {
+        match self {
+            Self::Draw(LinkedDraw { program, .. }) | Self::Dispatch { program, .. } => {
+                Some(program)
+            }
+            _ => None,
+        }
+    }
+
+    /// The bytes of the `params` uniform.
+    pub fn params(&self) -> Option<&[u8]> {
+        let bindings = &self.program()?.bindings;
+        bindings.iter().find_map(|binding| match &binding.target {
+            BindTarget::Params(block) => Some(&block.0[..]),
+            _ => None,
+        })
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LinkedDraw {
     pub program: LinkedProgram,
     pub fullscreen: bool,
@@ -89,7 +113,7 @@ pub(crate) struct LinkedDraw {
     pub primitive: wgpu::PrimitiveState,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LinkedColor {
     pub target: Target,
     pub format: wgpu::TextureFormat,
@@ -97,20 +121,20 @@ pub(crate) struct LinkedColor {
     pub blend: Option<wgpu::BlendState>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LinkedDepth {
     pub target: Target,
     pub clear: Option<f32>,
     pub state: wgpu::DepthStencilState,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum LinkedCall {
     Direct { vertices: u32, instances: u32 },
     Indirect(ResourceId),
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum LinkedGroups {
     Fixed([u32; 3]),
     Indirect(ResourceId),
@@ -162,6 +186,8 @@ impl<'a, 'p> Linker<'a, 'p> {
             kind,
             steps: Vec::new(),
             accesses: Vec::new(),
+            run: Run::Always,
+            enabled: true,
         };
         let before = self.errors();
         for (index, step) in steps.iter().enumerate() {
@@ -178,6 +204,7 @@ impl<'a, 'p> Linker<'a, 'p> {
 
     /// From here on, passes of this scope are linked.
     pub fn enter(&mut self, scope: &'a PassScope) {
+        self.resources.nearby = scope.names();
         self.scope = Some(scope);
         self.params = &scope.params;
     }
@@ -207,7 +234,7 @@ impl<'a, 'p> Linker<'a, 'p> {
         self.diagnostics.push(diagnostic);
     }
 
-    pub(super) fn expect(&mut self, name: &Located<String>) -> Option<Target> {
+    pub(crate) fn expect(&mut self, name: &Located<String>) -> Option<Target> {
         self.resources.expect(name, self.diagnostics)
     }
 
@@ -217,6 +244,23 @@ impl<'a, 'p> Linker<'a, 'p> {
         'a: 'n,
     {
         self.scope.map_or(name, |scope| scope.global(name))
+    }
+
+    /// Last frame's version of a resource is there to be read.
+    fn writable(&mut self, target: &Target, name: &str, span: &Span) {
+        if let Origin::Previous(base) = self.resources.get(target.id).origin {
+            let of = self.resources.get(base).name.clone();
+            self.report(
+                Diagnostic::error(
+                    Code::ResourceKind,
+                    format!("last frame's version of `{of}` cannot be written"),
+                )
+                .at(span.clone(), "written here")
+                .help(format!(
+                    "write `{of}`: the next frame finds it under `{name}`"
+                )),
+            );
+        }
     }
 
     fn draw(&mut self, draw: &Draw, pass: &mut LinkedPass) -> Option<LinkedDraw> {

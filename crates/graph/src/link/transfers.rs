@@ -15,6 +15,7 @@ impl Linker<'_, '_> {
         pass: &mut LinkedPass,
     ) -> Option<LinkedStep> {
         let (source, target) = (self.expect(from)?, self.expect(to)?);
+        self.writable(&target, to, &to.span);
         let mismatch = |what: String| {
             Diagnostic::error(
                 Code::FormatMismatch,
@@ -63,7 +64,8 @@ impl Linker<'_, '_> {
                 )
             }
             (ResourceKind::Buffer(_) | ResourceKind::Provided(_), ResourceKind::Buffer(_)) => {
-                self.layouts.same((source.id, from), (target.id, to));
+                let sized = self.resources.base(source.id);
+                self.layouts.same((sized, from), (target.id, to));
                 let usage = (
                     Usage::Buffer(wgpu::BufferUsages::COPY_SRC),
                     Usage::Buffer(wgpu::BufferUsages::COPY_DST),
@@ -109,6 +111,7 @@ impl Linker<'_, '_> {
         pass: &mut LinkedPass,
     ) -> Option<LinkedStep> {
         let target = self.expect(name)?;
+        self.writable(&target, name, &name.span);
         let (usage, step) = match &self.resources.get(target.id).kind {
             ResourceKind::Texture(texture) => {
                 let format = texture.format;

@@ -1,7 +1,7 @@
-//! `Copy`: a whole texture or buffer onto another of equal format and size.
+//! `Copy`: a whole texture or buffer (or last frame's version of one) onto another of equal format and size.
 
 use crate::{
-    document::located::Located,
+    document::{located::Located, value::Reference},
     registry::{Lowering, PassKind},
     step::Step,
 };
@@ -11,14 +11,14 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Copy {
-    from: Located<String>,
+    from: Reference,
     to: Located<String>,
 }
 
 impl PassKind for Copy {
     fn lower(&self, pass: &mut Lowering<'_>) {
         pass.step(Step::Copy {
-            from: self.from.clone(),
+            from: self.from.0.clone(),
             to: self.to.clone(),
         });
     }

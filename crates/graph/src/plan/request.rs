@@ -1,6 +1,9 @@
 //! What a plan is asked for, and what it tells.
 
-use crate::{document::params::ParamValue, provider::Provider};
+use crate::{
+    document::params::ParamValue,
+    provider::{Described, Import, Provider},
+};
 use std::collections::BTreeMap;
 
 /// What a plan is made for.
@@ -17,6 +20,11 @@ pub struct PlanRequest<'a> {
     pub limits: wgpu::Limits,
     /// Features that the device will have.
     pub features: wgpu::Features,
+    /// What the host will import, by name.
+    pub imports: BTreeMap<String, Import>,
+    /// Fills memory between uses with a pattern made of this byte: a graph whose outputs change with it reads what it has not
+    /// written. Costs time; for finding mistakes.
+    pub poison: Option<u8>,
     /// Describes the provided resources.
     pub provider: &'a dyn Provider,
 }
@@ -31,7 +39,54 @@ impl<'a> PlanRequest<'a> {
             captures: Vec::new(),
             limits: wgpu::Limits::default(),
             features: wgpu::Features::empty(),
+            imports: BTreeMap::new(),
+            poison: None,
             provider,
+        }
+    }
+}
+
+/// A [`PlanRequest`] that a plan keeps, so that it can be made again with something changed.
+#[derive(Clone, Debug)]
+pub(crate) struct Request {
+    pub viewport: [u32; 2],
+    pub params: BTreeMap<String, ParamValue>,
+    pub outputs: Option<Vec<String>>,
+    pub captures: Vec<Capture>,
+    pub limits: wgpu::Limits,
+    pub features: wgpu::Features,
+    pub imports: BTreeMap<String, Import>,
+    pub poison: Option<u8>,
+    provider: Described,
+}
+
+impl Request {
+    pub fn of(request: &PlanRequest<'_>) -> Self {
+        Self {
+            viewport: request.viewport,
+            params: request.params.clone(),
+            outputs: request.outputs.clone(),
+            captures: request.captures.clone(),
+            limits: request.limits.clone(),
+            features: request.features,
+            imports: request.imports.clone(),
+            poison: request.poison,
+            provider: Described::by(request.provider),
+        }
+    }
+
+    /// The request to plan with; provided resources are as they were described.
+    pub fn again(&self) -> PlanRequest<'_> {
+        PlanRequest {
+            viewport: self.viewport,
+            params: self.params.clone(),
+            outputs: self.outputs.clone(),
+            captures: self.captures.clone(),
+            limits: self.limits.clone(),
+            features: self.features,
+            imports: self.imports.clone(),
+            poison: self.poison,
+            provider: &self.provider,
         }
     }
 }

@@ -25,6 +25,15 @@ pub(crate) struct Shader {
     pub(super) layouter: Layouter,
 }
 
+/// Shaders of one text are one.
+impl PartialEq for Shader {
+    fn eq(&self, other: &Self) -> bool {
+        self.source.text == other.source.text
+    }
+}
+
+impl Eq for Shader {}
+
 /// A resource global.
 #[derive(Clone, Debug)]
 pub(crate) struct Global {

@@ -145,7 +145,7 @@ fn check_takes_presets_and_all_of_ours_are_fine() {
     let folder = tempfile::tempdir().unwrap();
     let output = skiagraph(
         folder.path(),
-        &["check", "rt", "nsm", "pipelines/shared/primitive.ron"],
+        &["check", "rt", "nsm", "pipelines/shared/gbuffer.ron"],
     );
     assert_exit(&output, 0);
     assert_eq!(stdout(&output).lines().count(), 3);

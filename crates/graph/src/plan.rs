@@ -14,14 +14,14 @@ use crate::{
     conditions::{Conditions, conditions},
     cull,
     diagnostics::{Code, Diagnostic, Diagnostics, Severity},
-    document::{Run, located::Located, params::ParamValue, value::Value},
+    document::{located::Located, params::ParamValue},
     graph::Graph,
+    instantiate::{Fallback, LoweredPass, Purpose, instantiate},
     lifetime::{Lifetime, lifetimes},
-    link::{Access, BindTarget, LinkedPass, LinkedStep, Linker, Usage},
+    link::{Access, BindTarget, LinkedPass, LinkedStep, Linker},
     order::{Order, order, order_of_live},
     pool::{Slots, slots},
     provider::Provided,
-    registry::Params,
     resolve::{
         Buffer, Environment, Origin, Part, Resource, ResourceId, ResourceKind, Resources, Target,
         resolve,
@@ -49,6 +49,7 @@ pub struct Plan {
     pub(crate) graph: Graph,
     pub(crate) request: Request,
     culled: Vec<CulledPass>,
+    fallbacks: Vec<Fallback>,
     warnings: Vec<Diagnostic>,
 }
 
@@ -59,7 +60,7 @@ impl Graph {
     /// Everything that is wrong, with its place.
     pub fn plan(&self, request: &PlanRequest<'_>) -> Result<Plan, Diagnostics> {
         let (plan, errors) = self.plan_all(request);
-        plan.ok_or_else(|| Diagnostics::new(errors))
+        plan.ok_or_else(|| self.diagnostics(errors))
     }
 
     /// The plan, or everything that is wrong, even if some of the document could not be read.
@@ -74,24 +75,34 @@ impl Graph {
         if !diagnostics.is_empty() {
             return (None, diagnostics);
         }
-        let params = Params {
-            declared: &self.document.params,
+        let outside = request.imports.keys().cloned();
+        let purpose = Purpose::Plan {
             values: &request.params,
+            features: request.features,
+            outside: outside.chain(request.provider.names()).collect(),
         };
+        let instance = instantiate(&self.document, purpose, &mut diagnostics);
+        let lacks = |diagnostic: &Diagnostic| diagnostic.code == Code::Feature;
+        if diagnostics.iter().any(lacks) {
+            // On a device that cannot run the graph nothing else is worth knowing.
+            diagnostics.retain(lacks);
+            return (None, diagnostics);
+        }
         let environment = Environment {
             viewport: request.viewport,
             limits: &request.limits,
             provider: request.provider,
             imports: &request.imports,
         };
-        let lowered = self.lower(&request.params, &mut diagnostics);
+        let lowered = &instance.passes;
         let mut resources = resolve(
-            &self.document.materials,
-            &self.document.broken.materials,
-            &params,
+            &instance.materials,
+            &instance.unread,
+            &instance.params,
             &environment,
             &mut diagnostics,
         );
+        resources.hide(&instance.hidden);
         for (name, bytes) in lowered.iter().flat_map(|pass| &pass.scratch) {
             let kind = ResourceKind::Buffer(Buffer {
                 count: Some(bytes / 4),
@@ -102,7 +113,7 @@ impl Graph {
         let mut linker = Linker::new(
             &mut resources,
             &self.shaders,
-            &params,
+            &instance.params,
             (&request.limits, request.features),
             &mut diagnostics,
         );
@@ -110,12 +121,13 @@ impl Graph {
         // How many passes stand above the first one with a mistake: what that one writes is not known.
         let mut sound: Option<usize> = None;
         for (index, pass) in lowered.iter().enumerate() {
-            if self.document.broken.first_pass == Some(index) {
+            if instance.first_broken == Some(index) {
                 sound.get_or_insert(passes.len());
             }
+            linker.enter(&pass.scope);
             match linker.pass(&pass.name, pass.kind, &pass.steps) {
                 Some(mut linked) => {
-                    linked.enabled = linker.enabled(&pass.run);
+                    linked.enabled = pass.enabled;
                     linked.run = pass.run.clone();
                     linker.overwrites(&mut linked, &pass.overwrites);
                     passes.push(linked);
@@ -127,13 +139,14 @@ impl Graph {
             let after = |capture: &&Capture| capture.after.as_deref() == Some(pass.name.as_str());
             let captures: BTreeSet<&Capture> = request.captures.iter().filter(after).collect();
             for capture in captures {
-                passes.extend(linker.capture(capture, &pass.run, self));
+                passes.extend(linker.capture(capture, pass, self));
             }
         }
+        linker.resources.nearby.clear();
         let layouts = std::mem::take(&mut linker.layouts);
         layouts.settle(&mut resources, &request.limits, &mut diagnostics);
-        self.check_captures(request, &mut diagnostics);
-        let complete = sound.is_none() && self.document.broken.first_pass.is_none();
+        check_captures(request, lowered, &mut diagnostics);
+        let complete = sound.is_none() && instance.first_broken.is_none();
         let judged = sound.unwrap_or(passes.len());
         let order = order(&passes, judged, &resources, &mut diagnostics);
         if complete {
@@ -245,6 +258,7 @@ impl Graph {
             graph: self.clone(),
             request: Request::of(request),
             culled,
+            fallbacks: instance.fallbacks,
             warnings: diagnostics,
         };
         (Some(plan), Vec::new())
@@ -264,30 +278,6 @@ impl Graph {
                 Err(error) => Some(Diagnostic::error(Code::UnknownParam, error.to_string())),
             };
             diagnostics.extend(problem);
-        }
-    }
-
-    fn check_captures(&self, request: &PlanRequest<'_>, diagnostics: &mut Vec<Diagnostic>) {
-        let passes: Vec<&str> = self
-            .document
-            .passes
-            .iter()
-            .map(|pass| pass.name.as_str())
-            .collect();
-        for pass in request
-            .captures
-            .iter()
-            .filter_map(|capture| capture.after.as_deref())
-        {
-            if !passes.contains(&pass) {
-                diagnostics.push(
-                    Diagnostic::error(
-                        Code::Output,
-                        format!("there is no pass `{pass}` to read a material after"),
-                    )
-                    .suggest(pass, passes.iter().copied()),
-                );
-            }
         }
     }
 
@@ -390,6 +380,29 @@ impl Graph {
     }
 }
 
+fn check_captures(
+    request: &PlanRequest<'_>,
+    lowered: &[LoweredPass],
+    diagnostics: &mut Vec<Diagnostic>,
+) {
+    let passes: Vec<&str> = lowered.iter().map(|pass| pass.name.as_str()).collect();
+    for pass in request
+        .captures
+        .iter()
+        .filter_map(|capture| capture.after.as_deref())
+    {
+        if !passes.contains(&pass) {
+            diagnostics.push(
+                Diagnostic::error(
+                    Code::Output,
+                    format!("there is no pass `{pass}` to read a material after"),
+                )
+                .suggest(pass, passes.iter().copied()),
+            );
+        }
+    }
+}
+
 fn has_errors(diagnostics: &[Diagnostic]) -> bool {
     diagnostics
         .iter()
@@ -481,7 +494,12 @@ fn unreadable(resources: &Resources<'_>, target: &Target) -> Option<String> {
 
 impl Linker<'_, '_> {
     /// A copy of a material as it stands after the pass that was linked last.
-    fn capture(&mut self, capture: &Capture, run: &Run, graph: &Graph) -> Option<LinkedPass> {
+    fn capture(
+        &mut self,
+        capture: &Capture,
+        after: &LoweredPass,
+        graph: &Graph,
+    ) -> Option<LinkedPass> {
         let name = Located::new(capture.name(), graph.place());
         let from = Located::new(capture.material.clone(), graph.place());
         let Some(target) = self.resources.find(&from) else {
@@ -530,20 +548,9 @@ impl Linker<'_, '_> {
             to: name.clone(),
         }];
         let mut pass = self.pass(&name, CAPTURE, &steps)?;
-        pass.enabled = self.enabled(run);
-        pass.run = run.clone();
+        pass.enabled = after.enabled;
+        pass.run = after.run.clone();
         Some(pass)
-    }
-
-    /// The value of the param that a pass is run by.
-    fn enabled(&mut self, run: &Run) -> bool {
-        match run {
-            Run::When(param) => {
-                let param = Value::Param(param.clone());
-                self.params.value(&param, self.diagnostics).unwrap_or(true)
-            }
-            _ => true,
-        }
     }
 
     /// Takes the author's word that a pass writes all of some resources.
@@ -602,6 +609,11 @@ impl Plan {
     /// The passes that do not run.
     pub fn culled(&self) -> &[CulledPass] {
         &self.culled
+    }
+
+    /// The params that got another value because the device lacks a feature.
+    pub fn fallbacks(&self) -> &[Fallback] {
+        &self.fallbacks
     }
 
     /// The provided resources that live passes bind; only these are built.

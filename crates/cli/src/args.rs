@@ -46,6 +46,12 @@ pub enum Command {
     /// Check graphs and their shaders. Needs no GPU.
     #[command(after_help = "Example:\n  skiagraph check my_method.ron pipelines/*.ron")]
     Check(CheckArgs),
+    /// Draw a graph: passes in order, materials and their lifetimes, what depends on what, what is culled and why. Needs no GPU.
+    #[command(after_help = "Examples:\n  skiagraph graph nsm --out nsm.svg\n  \
+        skiagraph graph my_method.ron --outputs visibility --size 1920x1080 --out my_method.svg\n  \
+        skiagraph graph rt --format dot | dot -Tpng -o rt.png\n  \
+        skiagraph graph rt --format json")]
+    Graph(GraphArgs),
     /// List the built-in shadow methods and their params.
     #[command(after_help = "Example:\n  skiagraph presets")]
     Presets,
@@ -170,6 +176,43 @@ pub struct CheckArgs {
     /// Graphs (.ron), or presets by name.
     #[arg(value_name = "FILE.ron", required = true)]
     pub graphs: Vec<String>,
+}
+
+/// `skiagraph graph`.
+#[derive(Args, Debug)]
+pub struct GraphArgs {
+    /// Preset by name, or a graph (.ron).
+    #[arg(value_name = "PRESET|FILE.ron")]
+    pub preset: String,
+    /// What is drawn. Without it: what the ending of --out names, else svg.
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub format: Option<Drawn>,
+    /// File to write. Without it: standard output.
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Viewport size in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1024x1024")]
+    pub size: Size,
+    /// Shadow map size in texels: the param `map_size`.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
+    pub map_size: Option<u32>,
+    /// A param of the graph. May be repeated.
+    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub params: Vec<Assignment>,
+    /// Outputs that are wanted, separated by commas; what only others need is culled. Without it: all.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub outputs: Vec<String>,
+}
+
+/// How a graph is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Drawn {
+    /// A chart of lifetimes, for a browser.
+    Svg,
+    /// Nodes and links, for Graphviz.
+    Dot,
+    /// The plan as data, for scripts.
+    Json,
 }
 
 #[cfg(test)]

@@ -32,6 +32,7 @@ fn main() -> ExitCode {
         Command::Compare(args) => commands::compare::compare(args, adapter),
         Command::Run(args) => commands::run::run(args, adapter),
         Command::Check(args) => commands::check::check(args),
+        Command::Graph(args) => commands::graph::graph(args),
         Command::Presets => commands::presets::presets(),
         Command::Scenes => commands::scenes::scenes(),
         Command::Doctor => commands::doctor::doctor(adapter),

@@ -11,6 +11,7 @@ mod allocate;
 mod cull;
 pub mod diagnostics;
 pub mod document;
+pub mod draw;
 mod execute;
 pub mod gpu;
 mod graph;
@@ -37,6 +38,7 @@ pub use document::{
     located::Located,
     params::{Param, ParamType, ParamValue},
 };
+pub use draw::Drawing;
 pub use execute::{ExecuteError, Executor, Frame, FrameReport};
 pub use graph::{Graph, ParamError};
 pub use plan::{Capture, CulledPass, OutputSummary, PassSummary, Plan, PlanRequest};

@@ -210,8 +210,8 @@ fn head(canvas: &mut Canvas, column: &Column<'_>, top: f64) {
         None => (FAINT, FAINT),
     };
     canvas.add(format_args!(
-        r#"<g transform="translate({:.1} {:.1}) rotate(-{SLANT})"><title>{}</title><text font-size="{NAME}" font-weight="bold" fill="{name}">{}</text><text y="12" font-size="{SMALL}" fill="{detail}">{}</text></g>"#,
-        column.x + 1.0,
+        r#"<g transform="translate({:.1} {:.1}) rotate(-{SLANT})"><title>{}</title><text font-size="{NAME}" font-weight="bold" fill="{name}">{}</text><text y="11" font-size="{SMALL}" fill="{detail}">{}</text></g>"#,
+        column.x - 1.0,
         top - 6.0,
         xml(&column.material.name),
         xml(&column.name),
@@ -255,6 +255,15 @@ fn label(canvas: &mut Canvas, row: &Row<'_>, layout: &Layout<'_>) {
             None => xml(&row.name),
         }
     ));
+    if let Some(reach) = row.reach.filter(|_| !row.begins.is_empty()) {
+        canvas.text(
+            reach + 12.0,
+            base - 1.0,
+            SMALL,
+            &format!(r#"fill="{FAINT}""#),
+            &row.begins,
+        );
+    }
     canvas.text(
         layout.abouts,
         base,
@@ -373,7 +382,7 @@ fn bracket(canvas: &mut Canvas, group: &Group, layout: &Layout<'_>) {
         .map(|row| row.band.y + row.band.height);
     let bottom = bottom.fold(layout.top, f64::max);
     canvas.add(format_args!(
-        r##"<g><title>{}</title><rect x="{from:.1}" y="{:.1}" width="{:.1}" height="{:.1}" rx="6" fill="#e69f00" fill-opacity="0.16" stroke="#e69f00"/></g>"##,
+        r##"<g><title>{}</title><rect x="{from:.1}" y="{:.1}" width="{:.1}" height="{:.1}" rx="6" fill="#e69f00" fill-opacity="0.10" stroke="#e69f00"/></g>"##,
         xml(&group.title),
         layout.top,
         to - from,

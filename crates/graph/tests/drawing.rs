@@ -4,7 +4,10 @@
 mod generated;
 mod support;
 
-use skiagraph_graph::{Drawing, PlanRequest, draw::Hazard};
+use skiagraph_graph::{
+    Capture, Drawing, PlanRequest,
+    draw::{Hazard, Origin},
+};
 use support::{Files, Triangle, load};
 
 /// The drawing of a plan at 64×32.
@@ -68,6 +71,33 @@ fn the_data_of_a_small_graph() {
 #[test]
 fn the_nodes_and_links_of_a_small_graph() {
     insta::assert_snapshot!(drawing(&small(), Some(&["result"])).to_dot());
+}
+
+/// A copy that a capture asked for is a pass of its own, and keeps alive what would else be culled.
+#[test]
+fn a_capture_is_seen_too() {
+    let graph = load(&small()).unwrap_or_else(|errors| panic!("{errors}"));
+    let mut request = PlanRequest::new([64, 32], &Triangle);
+    request.outputs = Some(vec!["result".to_owned()]);
+    request.captures = vec![Capture {
+        material: "shown".to_owned(),
+        after: Some("show".to_owned()),
+    }];
+    let plan = graph
+        .plan(&request)
+        .unwrap_or_else(|errors| panic!("{errors}"));
+    let drawing = plan.drawing();
+    assert!(drawing.passes.iter().all(|pass| pass.culled.is_none()));
+    let copy = drawing.passes.iter().find(|pass| pass.kind == "Capture");
+    let copied = drawing
+        .materials
+        .iter()
+        .find(|material| material.origin == Origin::Capture);
+    let (copy, copied) = copy
+        .zip(copied)
+        .expect("the capture makes a pass and a material");
+    assert_eq!((&*copy.name, &*copied.name), ("shown@show", "shown@show"));
+    assert_eq!(copied.outputs, ["shown@show"]);
 }
 
 /// The words that a reader sees, hover titles not among them.

@@ -1,6 +1,6 @@
 //! The plan as nodes and links, for Graphviz.
 
-use super::{Access, Drawing, Hazard, Material, Origin, text};
+use super::{Access, Drawing, Hazard, Material, Origin, text, words};
 use std::{collections::BTreeMap, fmt::Write};
 
 /// What stands below one prefix.
@@ -111,7 +111,7 @@ pub(super) fn render(drawing: &Drawing) -> String {
             "{} [shape=ellipse, style=\"{style}\", fillcolor={}, label={}];",
             id("material", &material.name),
             quoted(fill(material)),
-            quoted(&format!("{}\n{}", material.name, text::detail(material)))
+            quoted(&format!("{}\n{}", material.name, words::detail(material)))
         );
         match material.origin {
             Origin::Declared => root.at(&material.name).nodes.push(node),
@@ -177,7 +177,7 @@ fn part(access: &Access, drawing: &Drawing) -> String {
         .part
         .as_ref()
         .zip(material)
-        .map(|(part, material)| text::part(part, material));
+        .map(|(part, material)| words::part(part, material));
     let comma = if access.reads && access.writes {
         ", "
     } else {

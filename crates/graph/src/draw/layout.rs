@@ -4,6 +4,7 @@ use super::{
     Access, Drawing, Edge, Hazard, Material, Pass,
     legend::{self, Item},
     text,
+    words::{self, MOST},
 };
 use std::collections::{BTreeMap, HashMap};
 
@@ -19,8 +20,6 @@ const ROW: f64 = 26.0;
 const LINE: f64 = 14.0;
 /// Room between the last head and the first row.
 const NECK: f64 = 16.0;
-/// Characters of a name; longer ones are cut, and whole in their titles.
-const MOST: usize = 36;
 /// Rows from which on the column heads are too far away, and what begins in a row is named there too.
 const FAR: usize = 12;
 
@@ -47,8 +46,6 @@ pub(super) struct Row<'a> {
     pub middle: f64,
     /// Its last mark; a line leads there from its name.
     pub reach: Option<f64>,
-    /// What begins to live here, to be written behind the last mark.
-    pub begins: String,
 }
 
 /// A material.
@@ -109,6 +106,8 @@ pub(super) struct Layout<'a> {
     pub rows: Vec<Row<'a>>,
     pub columns: Vec<Column<'a>>,
     pub marks: Vec<Mark>,
+    /// Names of materials where they begin, in charts so long that the heads are far away.
+    pub beginnings: Vec<(f64, f64, String)>,
     pub arcs: Vec<Arc<'a>>,
     pub groups: Vec<Group>,
     /// Height of the outputs' arrows.
@@ -164,14 +163,14 @@ impl<'a> Layout<'a> {
         let widest =
             |measure: &dyn Fn(&Pass) -> f64| all().map(|pass| measure(pass)).fold(0.0, f64::max);
         let abouts = names + widest(&|pass| text::bold(&text::cut(&pass.name, MOST), NAME)) + 12.0;
-        let lanes = abouts + widest(&|pass| text::width(&about(pass), SMALL)) + 14.0;
+        let lanes = abouts + widest(&|pass| text::width(&words::about(pass), SMALL)) + 14.0;
 
         let heads: Vec<(String, String)> = materials
             .iter()
             .map(|material| {
                 (
                     text::cut(&material.name, MOST),
-                    text::cut(&text::detail(material), 2 * MOST),
+                    text::cut(&words::detail(material), 2 * MOST),
                 )
             })
             .collect();
@@ -195,7 +194,7 @@ impl<'a> Layout<'a> {
             drawing,
             width,
             height: 0.0,
-            summary: summary(drawing, live.len()),
+            summary: words::summary(drawing, live.len()),
             legend,
             top,
             spine,
@@ -205,6 +204,7 @@ impl<'a> Layout<'a> {
             rows: Vec::new(),
             columns: Vec::new(),
             marks: Vec::new(),
+            beginnings: Vec::new(),
             arcs: Vec::new(),
             groups: Vec::new(),
             outputs: None,
@@ -223,7 +223,7 @@ impl<'a> Layout<'a> {
             y += 34.0
                 + materials
                     .iter()
-                    .map(|material| text::width(&renamed(material), SMALL) * rise)
+                    .map(|material| text::width(&words::renamed(material), SMALL) * rise)
                     .fold(0.0, f64::max);
         }
         if !culled.is_empty() {
@@ -291,7 +291,7 @@ impl<'a> Layout<'a> {
         self.rows.push(Row {
             pass,
             name: text::cut(&pass.name, MOST),
-            about: about(pass),
+            about: words::about(pass),
             reason,
             band: Area {
                 x: MARGIN / 2.0,
@@ -307,7 +307,6 @@ impl<'a> Layout<'a> {
             },
             middle: y + ROW / 2.0,
             reach: None,
-            begins: String::new(),
         });
         y + height
     }
@@ -344,8 +343,8 @@ impl<'a> Layout<'a> {
                 let part = access
                     .part
                     .as_ref()
-                    .map(|part| format!(" ({})", text::part(part, material)));
-                format!("{}{}", text::verb(access), part.unwrap_or_default())
+                    .map(|part| format!(" ({})", words::part(part, material)));
+                format!("{}{}", words::verb(access), part.unwrap_or_default())
             };
             let clauses: Vec<String> = accesses.iter().map(clause).collect();
             self.marks.push(Mark {
@@ -354,45 +353,42 @@ impl<'a> Layout<'a> {
                 reads: accesses.iter().any(|access| access.reads),
                 writes: accesses.iter().any(|access| access.writes),
                 runs: row.pass.position.is_some(),
-                note: note(&accesses, material),
+                note: words::note(&accesses, material),
                 title: format!("{} {} {}", row.pass.name, clauses.join(", "), material.name),
             });
         }
     }
 
-    /// Names what begins to live in a row behind its last mark, where nothing is in the way and the page has room.
+    /// Names what begins to live in a row behind its mark, where nothing is in the way and the page has room. Neighbours that begin
+    /// together are named together.
     fn name_beginnings(&mut self, live: usize) {
         if live <= FAR {
             return;
         }
-        for (position, row) in self.rows.iter_mut().enumerate().take(live) {
-            let begins = |column: &&Column<'_>| {
-                column
-                    .material
-                    .lifetime
-                    .is_some_and(|[first, _]| first == position)
-                    && !column.material.origin.is_given()
+        for (position, row) in self.rows.iter().enumerate().take(live) {
+            let begins = |column: &Column<'_>| {
+                let first = column.material.lifetime.map(|[first, _]| first);
+                first == Some(position) && !column.material.origin.is_given()
             };
-            let names: Vec<&str> = self
-                .columns
-                .iter()
-                .filter(begins)
-                .map(|column| column.material.name.as_str())
-                .collect();
-            let Some(reach) = row.reach.filter(|_| !names.is_empty()) else {
-                continue;
-            };
-            let names = text::cut(&names.join(", "), MOST);
-            let end = reach + 12.0 + text::width(&names, SMALL);
-            let crossed = self.columns.iter().any(|column| {
-                column.x > reach
-                    && column.x - COLUMN < end
-                    && column
+            for run in self.columns.chunk_by(|a, b| begins(a) == begins(b)) {
+                let Some(last) = run.last().filter(|column| begins(column)) else {
+                    continue;
+                };
+                let names: Vec<&str> = run
+                    .iter()
+                    .map(|column| column.material.name.as_str())
+                    .collect();
+                let text = text::cut(&names.join(", "), MOST);
+                let [x, end] = [last.x + 12.0, last.x + 12.0 + text::width(&text, SMALL)];
+                let crosses = |column: &Column<'_>| {
+                    let lives = column
                         .bar
-                        .is_some_and(|[from, to]| from <= row.middle && row.middle <= to)
-            });
-            if !crossed && end < self.width {
-                row.begins = names;
+                        .is_some_and(|[from, to]| from <= row.middle && row.middle <= to);
+                    column.x > last.x && column.x - 8.0 < end && lives
+                };
+                if !self.columns.iter().any(crosses) && end < self.width {
+                    self.beginnings.push((x, row.middle, text));
+                }
             }
         }
     }
@@ -461,285 +457,4 @@ fn order<'a>(drawing: &'a Drawing, live: &[&Pass]) -> Vec<&'a Material> {
         )
     });
     materials
-}
-
-/// Kind, shaders and condition of a pass. A shader of the pass's own name is what everybody expects.
-fn about(pass: &Pass) -> String {
-    let stem = |path: &str| {
-        let file = path.rsplit('/').next().unwrap_or(path);
-        file.strip_suffix(".wgsl").unwrap_or(file).to_owned()
-    };
-    let own = pass.name.rsplit('.').next().unwrap_or(&pass.name);
-    let shaders: Vec<String> = pass
-        .shaders
-        .iter()
-        .map(|path| stem(path))
-        .filter(|shader| shader != own)
-        .collect();
-    let mut parts = vec![pass.kind.clone()];
-    if !shaders.is_empty() {
-        parts.push(shaders.join(", "));
-    }
-    parts.extend(pass.run.as_ref().map(|run| format!("run: {run}")));
-    text::cut(&parts.join(" · "), MOST)
-}
-
-/// Names of the outputs that are not called like their material.
-pub(super) fn renamed(material: &Material) -> String {
-    let names: Vec<&str> = material
-        .outputs
-        .iter()
-        .map(String::as_str)
-        .filter(|name| *name != material.name)
-        .collect();
-    text::cut(&names.join(", "), MOST)
-}
-
-/// `m0→m1` for a pass that reads one mip and writes the next.
-fn note(accesses: &[&Access], material: &Material) -> String {
-    let short = |access: &Access| {
-        let part = access.part.as_ref()?;
-        let range = |letter: char, range: &std::ops::Range<u32>| match range.len() {
-            1 => format!("{letter}{}", range.start),
-            _ => format!("{letter}{}–{}", range.start, range.end.saturating_sub(1)),
-        };
-        let mips = (material.mips > 1).then(|| range('m', &part.mips));
-        let layers = (material.layers > 1).then(|| range('l', &part.layers));
-        Some([mips, layers].into_iter().flatten().collect::<String>())
-    };
-    let read = accesses
-        .iter()
-        .find(|access| access.reads && !access.writes)
-        .and_then(|access| short(access));
-    let written: Vec<String> = accesses
-        .iter()
-        .filter(|access| access.writes)
-        .filter_map(|access| short(access))
-        .collect();
-    let written = match &written[..] {
-        [] => None,
-        [one] => Some(one.clone()),
-        [first, ..] => Some(format!("{first}…")),
-    };
-    match (read, written) {
-        (Some(read), Some(written)) => format!("{read}→{written}"),
-        (read, written) => read.or(written).unwrap_or_default(),
-    }
-}
-
-fn summary(drawing: &Drawing, live: usize) -> String {
-    let made = drawing
-        .materials
-        .iter()
-        .filter(|material| material.lifetime.is_some() && !material.origin.is_given())
-        .count();
-    let mut parts = vec![format!(
-        "{} in order of execution",
-        text::plural(live, "pass", "passes")
-    )];
-    let culled = drawing.passes.len() - live;
-    if culled > 0 {
-        parts.push(format!("{culled} culled"));
-    }
-    parts.push(format!(
-        "{}, {}",
-        text::plural(made, "material", "materials"),
-        text::bytes(drawing.memory_bytes)
-    ));
-    if drawing.saved_bytes > 0 {
-        parts.push(format!(
-            "{} saved by sharing",
-            text::bytes(drawing.saved_bytes)
-        ));
-    }
-    parts.join(" · ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::draw::{Kind, Origin, Reason};
-
-    /// A chain of passes, each of which reads what the one above wrote; every third does not run, and all even materials share.
-    fn chain(passes: usize) -> Drawing {
-        let mut drawing = Drawing::default();
-        let mut position = 0;
-        for index in 0..passes {
-            let runs = index % 3 != 2;
-            drawing.passes.push(Pass {
-                name: format!("pass_{index}_{}", "x".repeat(index % 50)),
-                kind: "Compute".into(),
-                shaders: vec!["shaders/work.wgsl".into()],
-                file: "graph.ron".into(),
-                line: index,
-                position: runs.then_some(position),
-                culled: (!runs)
-                    .then(|| "nothing that an output needs reads what it writes ".repeat(6)),
-                run: None,
-            });
-            drawing.materials.push(Material {
-                name: format!("material_{index}"),
-                kind: Kind::Buffer,
-                origin: Origin::Declared,
-                format: None,
-                size: None,
-                mips: 1,
-                layers: 1,
-                bytes: Some(1 << 20),
-                lifetime: runs.then_some([position, position]),
-                outputs: Vec::new(),
-                memory: (runs && index % 2 == 0).then_some(0),
-            });
-            drawing.accesses.push(Access {
-                pass: drawing.passes[index].name.clone(),
-                material: format!("material_{index}"),
-                reads: false,
-                writes: true,
-                part: None,
-            });
-            if index > 0 {
-                drawing.edges.push(Edge {
-                    from: drawing.passes[index - 1].name.clone(),
-                    to: drawing.passes[index].name.clone(),
-                    because: vec![Reason {
-                        hazard: Hazard::ReadAfterWrite,
-                        materials: Vec::new(),
-                    }],
-                    implied: false,
-                });
-            }
-            position += usize::from(runs);
-        }
-        drawing
-    }
-
-    fn overlap(a: &Area, b: &Area) -> bool {
-        a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height
-    }
-
-    #[test]
-    fn no_label_meets_another_and_all_stand_on_the_page() {
-        for passes in [1, 5, 40, 200] {
-            let drawing = chain(passes);
-            let layout = Layout::new(&drawing);
-            assert_eq!(layout.rows.len(), passes);
-            for (index, row) in layout.rows.iter().enumerate() {
-                for other in &layout.rows[..index] {
-                    assert!(!overlap(&row.band, &other.band) && !overlap(&row.label, &other.label));
-                }
-                let name = text::bold(&row.name, NAME);
-                assert!(
-                    layout.names + name < layout.abouts,
-                    "{} runs into its kind",
-                    row.name
-                );
-                assert!(
-                    layout.abouts + text::width(&row.about, SMALL) < layout.lanes,
-                    "{}",
-                    row.about
-                );
-                assert!(row.band.y + row.band.height < layout.height);
-                assert!(row.band.y > layout.top, "below the heads");
-                let lines = row
-                    .reason
-                    .iter()
-                    .map(|line| layout.names + text::width(line, SMALL));
-                assert!(lines.fold(0.0, f64::max) < layout.width, "{:?}", row.reason);
-            }
-            for pair in layout.columns.windows(2) {
-                assert!(
-                    pair[1].x - pair[0].x >= COLUMN - 0.01,
-                    "columns stand apart"
-                );
-            }
-            assert!(layout.legend.iter().all(|(_, y, _)| *y < layout.top));
-            assert!(layout.arcs.iter().all(|arc| layout.spine - arc.swing > 0.0));
-        }
-    }
-
-    #[test]
-    fn what_shares_memory_stands_side_by_side_and_what_is_not_made_last() {
-        let drawing = chain(12);
-        let layout = Layout::new(&drawing);
-        let names: Vec<&str> = layout
-            .columns
-            .iter()
-            .map(|column| column.material.name.as_str())
-            .collect();
-        let order = [0, 4, 6, 10, 1, 3, 7, 9, 2, 5, 8, 11].map(|index| format!("material_{index}"));
-        assert_eq!(names, order);
-        let [group] = &layout.groups[..] else {
-            panic!("one group")
-        };
-        assert_eq!(
-            (group.from, group.to),
-            (layout.columns[0].x, layout.columns[3].x)
-        );
-        let title = "material_0, material_4, material_6, material_10 share 1.0 MiB";
-        assert_eq!(group.title, title);
-    }
-
-    #[test]
-    fn a_name_that_nothing_declares_is_left_out() {
-        let mut drawing = chain(4);
-        drawing.materials.clear();
-        drawing.passes.remove(1);
-        let layout = Layout::new(&drawing);
-        assert!(layout.columns.is_empty() && layout.marks.is_empty());
-        // 0 → 1 has lost its end, 1 → 2 and 2 → 3 have an end that does not run.
-        assert!(layout.arcs.is_empty());
-    }
-
-    #[test]
-    fn a_mark_names_the_mips_it_reads_and_writes() {
-        let mut drawing = chain(1);
-        drawing.materials[0].mips = 3;
-        let part = |mips: std::ops::Range<u32>| Some(crate::draw::Part { mips, layers: 0..1 });
-        drawing.accesses[0].part = part(2..3);
-        let read = Access {
-            reads: true,
-            writes: false,
-            part: part(0..2),
-            ..drawing.accesses[0].clone()
-        };
-        drawing.accesses.push(read);
-        let layout = Layout::new(&drawing);
-        let [mark] = &layout.marks[..] else {
-            panic!("one mark per pass and material")
-        };
-        assert_eq!(mark.note, "m0–1→m2");
-        assert_eq!(
-            mark.title,
-            "pass_0_ writes (mip 2), reads (mips 0–1) material_0"
-        );
-    }
-
-    /// In a long chart what begins in a row is named there; a name that would cross a bar is not written.
-    #[test]
-    fn beginnings_are_named_where_nothing_is_in_the_way() {
-        let mut drawing = chain(60);
-        drawing
-            .materials
-            .iter_mut()
-            .for_each(|material| material.memory = None);
-        let begins = |drawing: &Drawing| {
-            let layout = Layout::new(drawing);
-            layout
-                .rows
-                .iter()
-                .map(|row| row.begins.clone())
-                .collect::<Vec<_>>()
-        };
-        assert_eq!(begins(&drawing)[2], "material_3");
-        assert!(
-            begins(&chain(9)).iter().all(String::is_empty),
-            "a short chart has its heads in sight"
-        );
-        // material_6 stands beside material_0, whose memory it takes over, and material_1 lives on to its right.
-        drawing.materials[0].memory = Some(0);
-        drawing.materials[6].memory = Some(0);
-        assert_eq!(begins(&drawing)[4], "material_6");
-        drawing.materials[1].lifetime = Some([1, 30]);
-        assert_eq!(begins(&drawing)[4], "");
-    }
 }

@@ -6,9 +6,12 @@
 mod dot;
 mod gather;
 mod layout;
+#[cfg(test)]
+mod layout_tests;
 mod legend;
 mod svg;
 mod text;
+mod words;
 
 use serde::Serialize;
 use std::ops::Range;

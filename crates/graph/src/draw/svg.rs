@@ -2,9 +2,10 @@
 
 use super::{
     Edge, Hazard, Pass, Reason,
-    layout::{Arc, COLUMN, Column, Group, Layout, MARGIN, Mark, NAME, Row, SLANT, SMALL, renamed},
+    layout::{Arc, COLUMN, Column, Group, Layout, MARGIN, Mark, NAME, Row, SLANT, SMALL},
     legend::{Item, SIGN, Tint},
-    text::{self, xml},
+    text::xml,
+    words,
 };
 use std::fmt::Write;
 
@@ -96,6 +97,12 @@ pub(super) fn render(layout: &Layout<'_>) -> String {
     for row in &layout.rows {
         label(&mut canvas, row, layout);
     }
+    for (x, y, name) in &layout.beginnings {
+        // The white rim keeps it apart from the line of its row.
+        let style =
+            format!(r##"fill="{FAINT}" stroke="#ffffff" stroke-width="3" paint-order="stroke""##);
+        canvas.text(*x, y + 3.5, SMALL, &style, name);
+    }
     for arc in &layout.arcs {
         edge(&mut canvas, arc, layout.spine);
     }
@@ -167,7 +174,7 @@ fn bar(canvas: &mut Canvas, column: &Column<'_>, layout: &Layout<'_>) {
         canvas.add(format_args!("<g><title>{}</title>", xml(&title)));
         arrow(canvas, column.x, y);
         canvas.add(format_args!("</g>"));
-        let other = renamed(material);
+        let other = words::renamed(material);
         if !other.is_empty() {
             canvas.add(format_args!(
                 r#"<text transform="translate({:.1} {:.1}) rotate({SLANT})" font-size="{SMALL}">{}</text>"#,
@@ -201,7 +208,7 @@ fn story(column: &Column<'_>, layout: &Layout<'_>) -> String {
         Some([first, last]) => format!("; used from {} to {}", name(first), name(last)),
         None => "; no pass that runs uses it".to_owned(),
     };
-    format!("{}: {}{life}", material.name, text::detail(material))
+    format!("{}: {}{life}", material.name, words::detail(material))
 }
 
 fn head(canvas: &mut Canvas, column: &Column<'_>, top: f64) {
@@ -255,15 +262,6 @@ fn label(canvas: &mut Canvas, row: &Row<'_>, layout: &Layout<'_>) {
             None => xml(&row.name),
         }
     ));
-    if let Some(reach) = row.reach.filter(|_| !row.begins.is_empty()) {
-        canvas.text(
-            reach + 12.0,
-            base - 1.0,
-            SMALL,
-            &format!(r#"fill="{FAINT}""#),
-            &row.begins,
-        );
-    }
     canvas.text(
         layout.abouts,
         base,

@@ -1,7 +1,5 @@
 //! Words in drawings: escaped, measured without a font, and numbers as people read them.
 
-use super::{Access, Kind, Material, Origin, Part};
-
 /// Text for XML, attributes included. Characters that XML cannot hold become U+FFFD.
 pub(super) fn xml(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
@@ -88,62 +86,6 @@ pub(super) fn bytes(bytes: u64) -> String {
 /// `1 pass`, `2 passes`.
 pub(super) fn plural(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
-}
-
-/// What a material is, in a few words.
-pub(super) fn detail(material: &Material) -> String {
-    let what = match (material.kind, &material.format, material.size) {
-        (Kind::Texture, Some(format), Some([width, height])) => {
-            let mut what = format!("{format} {width}×{height}");
-            if material.layers > 1 {
-                what.push_str(&format!(" × {} layers", material.layers));
-            }
-            if material.mips > 1 {
-                what.push_str(&format!(", {} mips", material.mips));
-            }
-            what
-        }
-        (Kind::Texture, ..) => "texture".to_owned(),
-        (Kind::Buffer, ..) => "buffer".to_owned(),
-        (Kind::Sampler, ..) => "sampler".to_owned(),
-    };
-    match (material.origin, material.bytes) {
-        (Origin::Provided, _) => format!("{what}, provided"),
-        (Origin::Imported, _) => format!("{what}, imported"),
-        (Origin::Declared | Origin::Scratch | Origin::Capture, _)
-            if material.lifetime.is_none() =>
-        {
-            format!("{what}, not made")
-        }
-        (_, Some(size)) => format!("{what}, {}", bytes(size)),
-        (_, None) => what,
-    }
-}
-
-/// What a pass does with a material.
-pub(super) fn verb(access: &Access) -> &'static str {
-    match (access.reads, access.writes) {
-        (true, true) => "reads and writes",
-        (false, true) => "writes",
-        // A sampler is bound, and nobody calls that reading; but neither is it anything else.
-        _ => "reads",
-    }
-}
-
-/// `mip 1, layers 0–3` of a texture with these mips and layers.
-pub(super) fn part(part: &Part, material: &Material) -> String {
-    let range = |one: &str, range: &std::ops::Range<u32>| match range.len() {
-        1 => format!("{one} {}", range.start),
-        _ => format!("{one}s {}–{}", range.start, range.end.saturating_sub(1)),
-    };
-    let mut parts = Vec::new();
-    if material.mips > 1 {
-        parts.push(range("mip", &part.mips));
-    }
-    if material.layers > 1 {
-        parts.push(range("layer", &part.layers));
-    }
-    parts.join(", ")
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use super::{
     Access, Drawing, Edge, Hazard, Kind, Material, Origin, Part, Pass, Reason,
     layout::{Area, COLUMN, Layout, NAME, SMALL},
+    legend::Item,
     text,
 };
 
@@ -153,6 +154,8 @@ fn a_mark_names_the_mips_it_reads_and_writes() {
         panic!("one mark per pass and material")
     };
     assert_eq!(mark.note, "m0–1→m2");
+    let both = |(_, _, item): &(f64, f64, Item)| *item == Item::Both;
+    assert!(layout.legend.iter().any(both), "the sign is explained");
     assert_eq!(
         mark.title,
         "pass_0_ writes (mip 2), reads (mips 0–1) material_0"

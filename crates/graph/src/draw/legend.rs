@@ -5,6 +5,7 @@ use super::{
     layout::{MARGIN, SMALL},
     text,
 };
+use std::collections::HashMap;
 
 /// A sign that is explained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,12 +96,13 @@ pub(super) fn place(drawing: &Drawing, top: f64, room: f64) -> (Vec<(f64, f64, I
 
 /// Marks and bars in the first line, edges in the second.
 fn items(drawing: &Drawing) -> [Vec<Item>; 2] {
-    let access = |reads, writes| {
-        drawing
-            .accesses
-            .iter()
-            .any(|access| (access.reads, access.writes) == (reads, writes))
-    };
+    // A pass has one mark per material, whichever parts it reads and writes.
+    let mut uses: HashMap<(&str, &str), (bool, bool)> = HashMap::new();
+    for access in &drawing.accesses {
+        let (reads, writes) = uses.entry((&access.pass, &access.material)).or_default();
+        (*reads, *writes) = (*reads || access.reads, *writes || access.writes);
+    }
+    let access = |reads, writes| uses.values().any(|of_one| *of_one == (reads, writes));
     let bar = |tint| {
         let lives = |material: &&super::Material| material.lifetime.is_some();
         drawing

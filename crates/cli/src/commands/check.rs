@@ -99,15 +99,21 @@ pub fn all_at_once(
     registry: &Registry,
     sources: &dyn Sources,
 ) -> Result<(Graph, Plan), Diagnostics> {
-    let (scene, view) = one_triangle();
-    let mut provider = SceneProvider::new(Arc::new(scene));
-    provider.set_view(&view, VIEWPORT);
+    let provider = provider(VIEWPORT);
     Graph::check(
         path,
         registry,
         sources,
         &PlanRequest::new(VIEWPORT, &provider),
     )
+}
+
+/// Describes all that a scene can give, without a scene.
+pub fn provider(viewport: [u32; 2]) -> SceneProvider {
+    let (scene, view) = one_triangle();
+    let mut provider = SceneProvider::new(Arc::new(scene));
+    provider.set_view(&view, viewport);
+    provider
 }
 
 /// The least scene that has all that a provider may be asked for.

@@ -63,12 +63,11 @@ pub fn all_at_once(
     let (scene, view) = one_triangle();
     let mut provider = SceneProvider::new(Arc::new(scene));
     provider.set_view(&view, VIEWPORT);
-    Graph::check(
-        path,
-        registry,
-        sources,
-        &PlanRequest::new(VIEWPORT, &provider),
-    )
+    let mut request = PlanRequest::new(VIEWPORT, &provider);
+    // Without an adapter, those that the graph requires are taken to be there; all of them if it does not even say which.
+    request.features = Graph::load(path, registry, sources)
+        .map_or(wgpu::Features::all(), |graph| graph.features());
+    Graph::check(path, registry, sources, &request)
 }
 
 /// The least scene that has all that a provider may be asked for.

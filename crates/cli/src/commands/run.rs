@@ -37,7 +37,7 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
         ));
     }
     check_files(&args.save)?;
-    let gpu = render::open(adapter)?;
+    let gpu = render::open(adapter, preset.graph.features())?;
     let stage = Stage::load(&args.scene)?;
     let scene = Arc::new(stage.scene);
     let mut provider = SceneProvider::new(scene.clone());

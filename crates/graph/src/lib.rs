@@ -45,7 +45,10 @@ pub use document::{
 pub use execute::{ExecuteError, Executor, Frame, FrameReport, Renewed};
 pub use graph::{Graph, ParamError};
 pub use instantiate::Fallback;
-pub use plan::{Capture, CulledPass, OutputSummary, PassSummary, Plan, PlanRequest};
+pub use plan::{
+    Capture, CulledPass, Field, Item, MemoryEntry, OutputSummary, PassSummary, Plan, PlanRequest,
+    Scalar,
+};
 pub use provider::{Import, NoProvider, Provided, Provider, ProviderError};
 pub use readback::{Content, Readback};
 pub use registry::{Lowering, PassKind, Registry};

@@ -1,7 +1,12 @@
 //! [`Plan`]: a graph on a viewport with values for its params, checked against an adapter's limits. Pure data.
 
+mod imports;
+mod memory;
+mod origin;
 mod request;
 
+pub use memory::MemoryEntry;
+pub use origin::{Field, Item, Scalar};
 use request::Request;
 pub use request::{Capture, CulledPass, OutputSummary, PassSummary, PlanRequest};
 
@@ -13,10 +18,10 @@ use crate::{
     graph::Graph,
     instantiate::{Fallback, LoweredPass, Purpose, instantiate},
     lifetime::{Lifetime, lifetimes},
-    link::{Access, LinkedPass, Linker, Usage},
+    link::{Access, BindTarget, LinkedPass, LinkedStep, Linker},
     order::{Order, order, order_of_live},
-    pool::{Slot, Slots, bytes, slots},
-    provider::Import,
+    pool::{Slots, slots},
+    provider::Provided,
     resolve::{
         Buffer, Environment, Origin, Part, Resource, ResourceId, ResourceKind, Resources, Target,
         resolve,
@@ -39,6 +44,8 @@ pub struct Plan {
     pub(crate) readable: Vec<(String, Target)>,
     pub(crate) conditions: Conditions,
     pub(crate) slots: Slots,
+    /// The resources that are also read as they were in the frame before.
+    pub(crate) histories: BTreeSet<ResourceId>,
     pub(crate) graph: Graph,
     pub(crate) request: Request,
     culled: Vec<CulledPass>,
@@ -214,7 +221,7 @@ impl Graph {
             of_base.textures |= textures;
             of_base.buffers |= buffers;
         }
-        check_imports(
+        imports::check(
             &passes,
             &schedule,
             &resources.list,
@@ -249,6 +256,7 @@ impl Graph {
             readable,
             conditions,
             slots,
+            histories: previous.iter().map(|(_, base)| *base).collect(),
             graph: self.clone(),
             request: Request::of(request),
             culled,
@@ -335,6 +343,13 @@ impl Graph {
             // Those after a pass were entered as resources of their own; an output of that name is there already.
             let found = resources.find(&name);
             match found {
+                Some(target)
+                    if matches!(resources.get(target.id).kind, ResourceKind::Provided(_)) =>
+                {
+                    let help = format!("name a pass that binds it: `{name}@PASS`");
+                    let message = format!("`{name}` is provided, not written by a pass");
+                    diagnostics.push(Diagnostic::error(Code::Output, message).help(help));
+                }
                 Some(target) if !written(&target) => diagnostics.push(Diagnostic::error(
                     Code::Output,
                     format!("`{name}` cannot be read back: no pass writes it"),
@@ -454,50 +469,6 @@ fn never_written(
     }
 }
 
-/// What the host imports must have been made for what passes do with it.
-fn check_imports(
-    passes: &[LinkedPass],
-    schedule: &[usize],
-    resources: &[Resource],
-    request: &PlanRequest<'_>,
-    diagnostics: &mut Vec<Diagnostic>,
-) {
-    fn names<T>(of: &str, flags: impl Iterator<Item = (&'static str, T)>) -> String {
-        let names: Vec<String> = flags.map(|(name, _)| format!("{of}::{name}")).collect();
-        names.join(" | ")
-    }
-    for pass in schedule.iter().map(|&pass| &passes[pass]) {
-        for access in &pass.accesses {
-            let name = &resources[access.resource.0].name;
-            let lacking = match (request.imports.get(name).copied(), access.usage) {
-                (Some(Import::Texture { usage, .. }), Usage::Texture(needed))
-                    if !usage.contains(needed) =>
-                {
-                    names("TextureUsages", needed.difference(usage).iter_names())
-                }
-                (Some(Import::Buffer { usage, .. }), Usage::Buffer(needed))
-                    if !usage.contains(needed) =>
-                {
-                    names("BufferUsages", needed.difference(usage).iter_names())
-                }
-                _ => continue,
-            };
-            diagnostics.push(
-                Diagnostic::error(
-                    Code::Import,
-                    format!(
-                        "the import `{name}` was not made for what pass `{}` does",
-                        *pass.name
-                    ),
-                )
-                .at(access.span.clone(), "used here")
-                .at(pass.name.span.clone(), "by this pass")
-                .help(format!("the host must make it with {lacking} besides")),
-            );
-        }
-    }
-}
-
 /// Adds the usages by which memory is filled with a pattern: depths are cleared, all else is copied to.
 fn poisonable(kind: &ResourceKind, lifetime: &mut Lifetime) {
     match kind {
@@ -557,6 +528,13 @@ impl Linker<'_, '_> {
                 ResourceKind::Texture(copy)
             }
             ResourceKind::Buffer(buffer) => ResourceKind::Buffer(buffer.clone()),
+            ResourceKind::Provided(Provided { items: None, .. }) => {
+                let message = format!("`{}` cannot be read back", from.value);
+                let help =
+                    "its size is known only once it is built, and the copy is planned before";
+                self.report(Diagnostic::error(Code::Output, message).help(help));
+                return None;
+            }
             ResourceKind::Provided(_) => ResourceKind::Buffer(Buffer::default()),
             ResourceKind::Sampler(_) => {
                 self.diagnostics.push(Diagnostic::error(
@@ -672,35 +650,6 @@ impl Plan {
             }
         };
         self.readable.iter().map(summary).collect()
-    }
-
-    /// Bytes of the graph's own textures and buffers. One that is also read as it was in the frame before takes its size twice.
-    pub fn memory_bytes(&self) -> u64 {
-        let slots = self.slots.list.iter().map(|slot| self.slot_bytes(slot));
-        slots.fold(0, u64::saturating_add)
-    }
-
-    /// Bytes that would be needed besides if no two resources shared memory.
-    pub fn saved_bytes(&self) -> u64 {
-        let of_slot =
-            |slot: &Slot| (slot.tenants.len() as u64 - 1).saturating_mul(self.slot_bytes(slot));
-        self.slots
-            .list
-            .iter()
-            .map(of_slot)
-            .fold(0, u64::saturating_add)
-    }
-
-    fn slot_bytes(&self, slot: &Slot) -> u64 {
-        let tenant = slot.tenants[0];
-        bytes(&self.resources[tenant.0]).saturating_mul(self.versions(tenant) as u64)
-    }
-
-    /// How many allocations a resource has: two if it is also read as it was in the frame before.
-    pub(crate) fn versions(&self, id: ResourceId) -> usize {
-        let is_previous =
-            |other: &ResourceId| self.resources[other.0].origin == Origin::Previous(id);
-        1 + usize::from(self.lifetimes.keys().any(is_previous))
     }
 
     /// The position of a pass in the schedule.

@@ -125,7 +125,7 @@ fn a_new_camera_renews_what_depends_on_the_camera() {
     let mut provider = graphs::provider(&scene, &scene.views[0], viewport);
     let mut executor = start(&mut provider);
     let outputs = ["visibility", "status"];
-    let mut next = |executor: &mut Executor| graphs::frame(&gpu, executor, &outputs);
+    let next = |executor: &mut Executor| graphs::frame(&gpu, executor, &outputs);
 
     let first = next(&mut executor);
     assert_eq!(first.skipped, [""; 0]);

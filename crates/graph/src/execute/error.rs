@@ -40,8 +40,18 @@ pub enum ExecuteError {
         why: String,
     },
     /// An import that the plan does not know.
-    #[error("the plan has no import `{name}` that a live pass uses; it has {known}")]
+    #[error("the plan has no import `{name}`; it has {known}")]
     NoSuchImport {
+        /// The name.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+    /// What changed is neither an import nor a provided resource.
+    #[error(
+        "neither an import nor a provided resource is called `{name}`; live passes use {known}"
+    )]
+    NotOfHost {
         /// The name.
         name: String,
         /// What there is.

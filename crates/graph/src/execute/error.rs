@@ -58,7 +58,9 @@ pub enum ExecuteError {
         known: String,
     },
     /// An import is not what the plan was made for.
-    #[error("`{name}` cannot be imported: {why}; plan again with what it is")]
+    #[error(
+        "`{name}` cannot be imported where another was planned for: {why}; plan again with what it is"
+    )]
     Import {
         /// The name.
         name: String,

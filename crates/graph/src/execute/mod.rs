@@ -317,6 +317,8 @@ impl Executor {
     /// If the device was lost.
     pub fn finish(&mut self) -> Result<FrameReport, ExecuteError> {
         wait(&self.device)?;
+        // A device that was destroyed is waited for without complaint, but has no query buffers to take times from.
+        alive(&self.device)?;
         let timing = self.timed.then(|| self.timer.take(&self.cpu));
         let readbacks = std::mem::take(&mut self.pending)
             .into_iter()

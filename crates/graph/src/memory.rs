@@ -247,7 +247,6 @@ impl Memory {
         provider: &mut dyn Provider,
     ) -> Result<(), ExecuteError> {
         let version = provider.version(&resource.name);
-        self.provided.insert(id, version);
         if let Some((plan, memory)) = old {
             let known = memory
                 .host
@@ -257,6 +256,7 @@ impl Memory {
                 && memory.provided.get(known) == Some(&version)
             {
                 self.host.insert(id, physical.clone());
+                self.provided.insert(id, version);
                 return Ok(());
             }
         }
@@ -267,7 +267,9 @@ impl Memory {
             name: resource.name.clone(),
             why: why.0,
         })?;
+        // Only now: what could not be built is asked for again.
         self.host.insert(id, Physical::Buffer(buffer));
+        self.provided.insert(id, version);
         Ok(())
     }
 

@@ -1,65 +1,16 @@
-//! What a host program relies on: imports, views of outputs, changes of a plan, errors that leave everything as it was.
+//! What a host program relies on: imports, views of outputs, provided resources, errors before anything is encoded.
 
 mod support;
 
 use skiagraph_graph::{
-    ExecuteError, Executor, Frame, FrameReport, Graph, Import, NoProvider, ParamValue, Plan,
-    PlanRequest, Provided, Provider, ProviderError, Renewed, gpu,
+    ExecuteError, Executor, Frame, Graph, Import, NoProvider, Plan, PlanRequest, Provided,
+    Provider, ProviderError, gpu,
 };
-use std::sync::LazyLock;
-use support::{Files, load};
+use support::{
+    Files,
+    host::{GPU, encoder, executor, frame, numbers, planned, request},
+};
 use wgpu::util::DeviceExt;
-
-static GPU: LazyLock<gpu::Gpu> =
-    LazyLock::new(|| gpu::open(None).unwrap_or_else(|error| panic!("{error}")));
-
-fn request(provider: &dyn Provider) -> PlanRequest<'_> {
-    let mut request = PlanRequest::new([8, 8], provider);
-    request.limits = GPU.device.limits();
-    request
-}
-
-fn planned(files: &Files, request: &PlanRequest<'_>) -> Plan {
-    let graph = load(files).unwrap_or_else(|errors| panic!("{errors}"));
-    graph
-        .plan(request)
-        .unwrap_or_else(|errors| panic!("{errors}"))
-}
-
-fn executor(files: &Files, request: &PlanRequest<'_>) -> Executor {
-    let plan = planned(files, request);
-    Executor::new(&GPU.device, &GPU.queue, plan, &mut NoProvider)
-        .unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn encoder() -> wgpu::CommandEncoder {
-    GPU.device.create_command_encoder(&Default::default())
-}
-
-fn frame(executor: &mut Executor, read: &[&str]) -> FrameReport {
-    let mut encoder = encoder();
-    let frame = Frame {
-        read,
-        ..Frame::default()
-    };
-    executor
-        .encode(&mut encoder, &frame)
-        .unwrap_or_else(|error| panic!("{error}"));
-    GPU.queue.submit([encoder.finish()]);
-    executor
-        .submitted(&GPU.queue)
-        .unwrap_or_else(|error| panic!("{error}"));
-    executor.finish().unwrap_or_else(|error| panic!("{error}"))
-}
-
-/// The numbers of an output after a frame.
-fn numbers(executor: &mut Executor, output: &str) -> Vec<u32> {
-    let report = frame(executor, &[output]);
-    report.readbacks[0]
-        .content
-        .as_u32()
-        .expect("it holds numbers")
-}
 
 /// The numbers in a buffer of the host.
 fn content(buffer: &wgpu::Buffer, mut encoder: wgpu::CommandEncoder) -> Vec<u32> {
@@ -328,6 +279,48 @@ fn a_pass_that_writes_for_the_host_runs() {
     assert_eq!(content(&counter, encoder()), [25, 6]);
 }
 
+/// An output may be an import. Whether it can be read back is up to the host, and said before anything is encoded.
+#[test]
+fn an_import_is_read_back_if_it_was_made_for_that() {
+    let files = Files::new([
+        (
+            "graph.ron",
+            "(format: 1, passes: [Fullscreen(name: \"draw\", color: [(target: \"host.image\")])], outputs: [(name: \"host.image\")])",
+        ),
+        (
+            "draw.wgsl",
+            "@fragment fn fragment() -> @location(0) u32 { return 3u; }",
+        ),
+    ]);
+    let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
+    for (usage, is_readable) in [
+        (drawn, false),
+        (drawn | wgpu::TextureUsages::COPY_SRC, true),
+    ] {
+        let image = texture(&Kind { usage, ..KIND }, 0);
+        let mut request = request(&NoProvider);
+        let described = Import::texture(&image);
+        request.imports.insert("host.image".to_owned(), described);
+        let mut executor = executor(&files, &request);
+        executor.import_texture("host.image", &image).unwrap();
+        let read = Frame {
+            read: &["host.image"],
+            ..Frame::default()
+        };
+        match executor.encode(&mut encoder(), &read) {
+            Ok(()) => assert!(is_readable),
+            Err(error) => {
+                assert!(!is_readable);
+                let why = "`host.image` cannot be read back: the host must make it with TextureUsages::COPY_SRC";
+                assert_eq!(error.to_string(), why);
+                frame(&mut executor, &[]);
+                continue;
+            }
+        }
+        assert_eq!(numbers(&mut executor, "host.image"), [3; 64]);
+    }
+}
+
 /// The host's own pass reads the outputs in the encoder in which the graph made them.
 #[test]
 fn the_host_binds_what_the_graph_made() {
@@ -441,269 +434,39 @@ fn another_viewport_with_other_imports() {
     );
 }
 
-/// Every kind of place that a param can stand in, each with its own.
-fn params() -> Files {
-    Files::new([
-        (
-            "graph.ron",
-            "(
-                format: 1,
-                params: [
-                    (name: \"gain\", type: U32, default: 1, max: 100),
-                    (name: \"offset\", type: U32, default: 0),
-                    (name: \"both\", type: U32, default: 0),
-                    (name: \"face\", type: Choice([\"none\", \"front\", \"back\"]), default: \"none\"),
-                    (name: \"slope\", type: F32, default: 0),
-                    (name: \"far\", type: F32, default: 1, min: 0, max: 1),
-                    (name: \"edge\", type: U32, default: 8),
-                    (name: \"layers\", type: U32, default: 2, min: 2),
-                    (name: \"items\", type: U32, default: 64, min: 1),
-                    (name: \"corners\", type: U32, default: 3),
-                    (name: \"enabled\", type: Bool, default: true),
-                ],
-                materials: [
-                    Texture(name: \"depth\", format: Depth32Float, size: Square(Param(\"edge\"))),
-                    Texture(name: \"stack\", format: R32Uint, size: Texels(4, 4), layers: Param(\"layers\")),
-                    Buffer(name: \"list\", count: Param(\"items\")),
-                    Buffer(name: \"sometimes\", count: 1),
-                    Texture(name: \"image\", format: R32Uint, size: Viewport),
-                ],
-                passes: [
-                    Raster(name: \"draw\", draw: Vertices(Param(\"corners\")), cull: Param(\"face\"),
-                        depth: (target: \"depth\", load: Clear(Param(\"far\")), bias: (slope_scale: Param(\"slope\")))),
-                    Compute(name: \"pile\", dispatch: Over(\"stack\")),
-                    Compute(name: \"fill\", dispatch: Over(\"list\")),
-                    Compute(name: \"switch\", run: When(\"enabled\"), dispatch: Groups(1, 1, 1), bind: {\"old\": Previous(\"sometimes\")}),
-                    Fullscreen(name: \"shade\", color: [(target: \"image\")]),
-                ],
-                outputs: [(name: \"image\"), (name: \"depth\"), (name: \"stack\"), (name: \"list\"), (name: \"sometimes\")],
-            )",
-        ),
-        (
-            "draw.wgsl",
-            "@vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-                 return vec4<f32>(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.5, 1.0);
-             }",
-        ),
-        (
-            "pile.wgsl",
-            "var stack: texture_storage_2d_array<r32uint, write>;
-             @compute @workgroup_size(4, 4) fn main(@builtin(global_invocation_id) at: vec3<u32>) {
-                 for (var layer = 0u; layer < textureNumLayers(stack); layer++) { textureStore(stack, at.xy, layer, vec4(layer)); }
-             }",
-        ),
-        (
-            "fill.wgsl",
-            "var<storage, read_write> list: array<u32>;
-             @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-                 if id.x < arrayLength(&list) { list[id.x] = id.x; }
-             }",
-        ),
-        (
-            "switch.wgsl",
-            "var<storage, read> old: array<u32>;
-             var<storage, read_write> sometimes: array<u32>;
-             @compute @workgroup_size(1) fn main() { sometimes[0] = old[0] + 1u; }",
-        ),
-        (
-            "shade.wgsl",
-            "struct Params { gain: u32, both: u32 }
-             var<uniform> params: Params;
-             override offset: u32;
-             override both: u32;
-             @fragment fn fragment() -> @location(0) u32 { return 7u * params.gain + offset + params.both + both; }",
-        ),
-    ])
-}
-
-/// The table of docs/embedding.md, row by row: what a change of a param comes to, and the image after it.
-#[test]
-fn a_param_costs_what_follows_from_it() {
-    let mut executor = executor(&params(), &request(&NoProvider));
-    assert_eq!(numbers(&mut executor, "image"), [7; 64]);
-    let number = ParamValue::U32;
-    let nothing: &[&str] = &[];
-    let rows = [
-        // param, value, uploads, pipelines, resources, image
-        ("gain", number(2), &["shade"][..], nothing, nothing, 14),
-        ("gain", number(2), nothing, nothing, nothing, 14),
-        ("offset", number(3), nothing, &["shade"], nothing, 17),
-        ("both", number(1), &["shade"], &["shade"], nothing, 19),
-        (
-            "face",
-            ParamValue::Choice("back".to_owned()),
-            nothing,
-            &["draw"],
-            nothing,
-            19,
-        ),
-        (
-            "slope",
-            ParamValue::F32(1.5),
-            nothing,
-            &["draw"],
-            nothing,
-            19,
-        ),
-        ("far", ParamValue::F32(0.75), nothing, nothing, nothing, 19),
-        ("corners", number(6), nothing, nothing, nothing, 19),
-        ("edge", number(32), nothing, nothing, &["depth"], 19),
-        ("layers", number(4), nothing, nothing, &["stack"], 19),
-        ("items", number(100), nothing, nothing, &["list"], 19),
-        (
-            "enabled",
-            ParamValue::Bool(false),
-            nothing,
-            nothing,
-            nothing,
-            19,
-        ),
-    ];
-    for (name, value, uploads, pipelines, resources, image) in rows {
-        let renewed = executor
-            .set_param(name, value.clone(), &mut NoProvider)
-            .unwrap_or_else(|error| panic!("{error}"));
-        let expected = Renewed {
-            uploads: uploads.iter().map(|name| (*name).to_owned()).collect(),
-            pipelines: pipelines.iter().map(|name| (*name).to_owned()).collect(),
-            resources: resources.iter().map(|name| (*name).to_owned()).collect(),
-        };
-        assert_eq!(renewed, expected, "{name} = {value}");
-        assert_eq!(executor.plan().param(name), Some(&value));
-        assert_eq!(
-            numbers(&mut executor, "image"),
-            [image; 64],
-            "{name} = {value}"
-        );
-    }
-    // What these changes were for has happened.
-    let report = frame(&mut executor, &["depth", "list", "sometimes"]);
-    assert_eq!(report.skipped, ["switch"]);
-    let depth = report.readbacks[0].content.as_f32().unwrap();
-    assert_eq!(depth.len(), 32 * 32);
-    assert_eq!(report.readbacks[1].content.as_u32().unwrap().len(), 100);
-    assert_eq!(
-        report.readbacks[2].content.as_u32().unwrap(),
-        [12],
-        "it ran in each frame until it was switched off"
-    );
-}
-
-/// ```text
-/// Previous(total) ─▶ count ─▶ total ; Viewport ─▶ image
-/// ```
-fn counter(step: &str) -> Files {
-    Files::new([
-        (
-            "graph.ron",
-            "(format: 1, params: [(name: \"most\", type: U32, default: 5, max: 9)],
-              materials: [Buffer(name: \"total\", count: 1), Texture(name: \"image\", format: R32Uint, size: Viewport)],
-              passes: [Compute(name: \"count\", dispatch: Groups(1, 1, 1), bind: {\"old\": Previous(\"total\")}), Fullscreen(name: \"draw\", color: [(target: \"image\")])],
-              outputs: [(name: \"total\"), (name: \"image\")])",
-        ),
-        ("draw.wgsl", "@fragment fn fragment() -> @location(0) u32 { return 1u; }"),
-    ])
-    .with(
-        "count.wgsl",
-        format!(
-            "struct Params {{ most: u32 }} var<uniform> params: Params;
-             var<storage, read> old: array<u32>; var<storage, read_write> total: array<u32>;
-             @compute @workgroup_size(1) fn main() {{ total[0] = old[0] + {step}; }}"
-        ),
-    )
-}
-
-/// The device refuses what the plan's limits allowed.
-fn boundless() -> PlanRequest<'static> {
-    let mut request = request(&NoProvider);
-    request.limits.max_texture_dimension_2d = 1 << 20;
-    request
-}
-
-#[test]
-fn what_fails_changes_nothing() {
-    let mut executor = executor(&counter("1u"), &boundless());
-    let mut expected = 1;
-    assert_eq!(numbers(&mut executor, "total"), [expected]);
-    type Change = fn(&mut Executor) -> Result<Renewed, ExecuteError>;
-    let changes: [(&str, Change); 6] = [
-        ("the viewport has no pixels", |executor| {
-            executor.resize([0, 8], &mut NoProvider)
-        }),
-        ("`image` could not be made", |executor| {
-            executor.resize([1 << 19, 8], &mut NoProvider)
-        }),
-        ("did you mean `most`", |executor| {
-            executor.set_param("mast", ParamValue::U32(1), &mut NoProvider)
-        }),
-        ("must be at most 9", |executor| {
-            executor.set_param("most", ParamValue::U32(10), &mut NoProvider)
-        }),
-        ("must be of type u32", |executor| {
-            executor.set_param("most", ParamValue::F32(1.0), &mut NoProvider)
-        }),
-        ("`image` could not be made", |executor| {
-            let mut request = boundless();
-            request.viewport = [1 << 19, 8];
-            executor.replace_graph(planned(&counter("100u"), &request), &mut NoProvider)
-        }),
-    ];
-    for (why, change) in changes {
-        let message = change(&mut executor).expect_err(why).to_string();
-        assert!(message.contains(why), "{message}\nshould say: {why}");
-        expected += 1;
-        assert_eq!(numbers(&mut executor, "total"), [expected], "after {why}");
-        assert_eq!(numbers(&mut executor, "image"), [1; 64], "after {why}");
-        expected += 1;
-        assert_eq!(executor.plan().viewport(), [8, 8]);
-    }
-}
-
-#[test]
-fn an_edited_shader_keeps_what_was_there() {
-    let mut executor = executor(&counter("1u"), &request(&NoProvider));
-    assert_eq!(numbers(&mut executor, "total"), [1]);
-    assert_eq!(numbers(&mut executor, "total"), [2]);
-    let plan = planned(&counter("10u"), &request(&NoProvider));
-    let renewed = executor.replace_graph(plan, &mut NoProvider).unwrap();
-    let only = Renewed {
-        pipelines: vec!["count".to_owned()],
-        ..Renewed::default()
-    };
-    assert_eq!(renewed, only);
-    assert_eq!(numbers(&mut executor, "total"), [12]);
-}
-
-/// The report is that of the frame, whatever the executor's plan is by then.
-#[test]
-fn a_frame_that_was_encoded_before_a_change_is_reported_after_it() {
-    let mut executor = executor(&params(), &request(&NoProvider));
-    let mut encoder = encoder();
-    let timed = Frame {
-        timing: true,
-        read: &["image"],
-        ..Frame::default()
-    };
-    executor.encode(&mut encoder, &timed).unwrap();
-    GPU.queue.submit([encoder.finish()]);
-    executor.submitted(&GPU.queue).unwrap();
-    let plan = planned(&sums(), &sums_request());
-    executor.replace_graph(plan, &mut NoProvider).unwrap();
-    let report = executor.finish().unwrap();
-    let timing = report.timing.expect("times were asked for");
-    let names: Vec<&str> = timing
-        .passes
-        .iter()
-        .map(|pass| pass.name.as_str())
-        .collect();
-    assert_eq!(names, ["draw", "pile", "fill", "switch", "shade"]);
-    assert_eq!(report.readbacks[0].content.as_u32().unwrap(), [7; 64]);
-}
-
 /// Gives one number under the name `host.number`, another buffer for each version.
 struct Number {
     version: u64,
+    is_there: bool,
     built: u32,
+}
+
+impl Number {
+    fn new() -> Self {
+        Self {
+            version: 0,
+            is_there: true,
+            built: 0,
+        }
+    }
+}
+
+/// ```text
+/// host.number ─▶ take (OnChange) ─▶ copy
+/// ```
+fn taker() -> Files {
+    Files::new([
+        (
+            "graph.ron",
+            "(format: 1, materials: [Buffer(name: \"copy\", count: 1)],
+              passes: [Compute(name: \"take\", run: OnChange, dispatch: Groups(1, 1, 1))], outputs: [(name: \"copy\")])",
+        ),
+        (
+            "take.wgsl",
+            "var<storage, read> host_number: array<u32>; var<storage, read_write> copy: array<u32>;
+             @compute @workgroup_size(1) fn main() { copy[0] = host_number[0]; }",
+        ),
+    ])
 }
 
 impl Provider for Number {
@@ -733,6 +496,9 @@ impl Provider for Number {
         if name == "host.unused" {
             return Err(ProviderError("nobody should ask for it".to_owned()));
         }
+        if !self.is_there {
+            return Err(ProviderError("it is still loading".to_owned()));
+        }
         self.built += 1;
         Ok(buffer(
             &[100 + self.version as u32],
@@ -743,23 +509,8 @@ impl Provider for Number {
 
 #[test]
 fn provided_resources_change_when_the_host_says_so() {
-    let files = Files::new([
-        (
-            "graph.ron",
-            "(format: 1, materials: [Buffer(name: \"copy\", count: 1)],
-              passes: [Compute(name: \"take\", run: OnChange, dispatch: Groups(1, 1, 1))], outputs: [(name: \"copy\")])",
-        ),
-        (
-            "take.wgsl",
-            "var<storage, read> host_number: array<u32>; var<storage, read_write> copy: array<u32>;
-             @compute @workgroup_size(1) fn main() { copy[0] = host_number[0]; }",
-        ),
-    ]);
-    let mut provider = Number {
-        version: 0,
-        built: 0,
-    };
-    let plan = planned(&files, &request(&provider));
+    let mut provider = Number::new();
+    let plan = planned(&taker(), &request(&provider));
     let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider).unwrap();
     let step = |executor: &mut Executor, ran: bool, number: u32| {
         let report = frame(executor, &["copy"]);
@@ -773,6 +524,16 @@ fn provided_resources_change_when_the_host_says_so() {
     step(&mut executor, false, 100);
     provider.version = 1;
     step(&mut executor, false, 100); // nobody has said so yet
+    provider.is_there = false;
+    let error = executor.refresh(&mut provider).expect_err("it fails");
+    assert!(
+        error
+            .to_string()
+            .contains("`host.number` could not be built: it is still loading"),
+        "{error}"
+    );
+    step(&mut executor, false, 100);
+    provider.is_there = true;
     executor.refresh(&mut provider).unwrap();
     step(&mut executor, true, 101);
     step(&mut executor, false, 101);
@@ -875,7 +636,7 @@ fn lose_the_device(before: bool) {
         (
             "replace_graph",
             executor
-                .replace_graph(plan(&params(), &boundless()), none)
+                .replace_graph(plan(&sums(), &request), none)
                 .map(|_| ()),
         ),
         (
@@ -906,9 +667,9 @@ fn plans_and_executors_can_go_to_other_threads() {
     shared::<Plan>();
     sent::<Graph>();
     shared::<Graph>();
-    let planning = std::thread::spawn(|| planned(&params(), &request(&NoProvider)));
+    let planning = std::thread::spawn(|| planned(&taker(), &request(&Number::new())));
     let plan = planning.join().expect("planning does not panic");
-    let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut NoProvider).unwrap();
-    let frames = std::thread::spawn(move || numbers(&mut executor, "image"));
-    assert_eq!(frames.join().expect("encoding does not panic"), [7; 64]);
+    let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut Number::new()).unwrap();
+    let frames = std::thread::spawn(move || numbers(&mut executor, "copy"));
+    assert_eq!(frames.join().expect("encoding does not panic"), [100]);
 }

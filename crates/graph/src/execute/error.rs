@@ -90,6 +90,14 @@ pub enum ExecuteError {
         /// What there is.
         known: String,
     },
+    /// A readback of something that the host made for other purposes.
+    #[error("`{name}` cannot be read back: the host must make it with {usage}")]
+    NotReadable {
+        /// The output.
+        name: String,
+        /// What it lacks.
+        usage: &'static str,
+    },
     /// A readback did not arrive.
     #[error("the content of `{name}` could not be read back")]
     Readback {

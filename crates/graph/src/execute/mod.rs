@@ -206,7 +206,7 @@ impl Executor {
     /// Asks the provider for every resource of another [version](Provider::version) than before.
     ///
     /// # Errors
-    /// If one cannot be built.
+    /// If one cannot be built, or the device is lost. The rest stays as it was and is asked for again the next time.
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
         let known: Vec<(ResourceId, u64)> = self.memory.provided().collect();
         for (id, version) in known {
@@ -214,6 +214,7 @@ impl Executor {
             if provider.version(&resource.name) == version {
                 continue;
             }
+            alive(&self.device)?;
             let before = self.memory.host(id).cloned();
             self.memory
                 .refresh(id, resource, None, &self.device, &self.queue, provider)?;

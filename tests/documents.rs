@@ -93,7 +93,7 @@ fn the_steps_of_a_frame_are_passes() {
     let nsm = ["create_shadow_map", "primitive", "surface", "shadow_lookup"];
     assert_eq!(live(&plan("pipelines/nsm.ron", None)), nsm);
     assert_eq!(
-        live(&plan("pipelines/shared/primitive.ron", None)),
+        live(&plan("pipelines/shared/gbuffer.ron", Some(&["primitive"]))),
         ["primitive"]
     );
 }

@@ -43,8 +43,24 @@ pub enum Command {
         skiagraph run my_method.ron --scene sponza --save status=status.bin"
     )]
     Run(RunArgs),
+    /// Time every pass of one graph over many frames, and list what its materials take.
+    #[command(
+        after_help = "Examples:\n  skiagraph profile nsm --scene park --frames 100\n  \
+        skiagraph profile nsm --json before.json\n  \
+        skiagraph profile nsm --set map_size=512 --baseline before.json\n  \
+        skiagraph profile my_method.ron --csv passes.csv --trace frames.json   # open frames.json in ui.perfetto.dev\n\n\
+        docs/profiling.md says how to read the tables and the trace."
+    )]
+    Profile(ProfileArgs),
     /// Check graphs and their shaders. Needs no GPU.
-    #[command(after_help = "Example:\n  skiagraph check my_method.ron pipelines/*.ron")]
+    #[command(
+        after_help = "Examples:\n  skiagraph check my_method.ron pipelines/*.ron\n  \
+        skiagraph check my_method.ron --format json\n\n\
+        The JSON is {\"schema\": 1, \"files\": [{\"file\", \"passes\", \"diagnostics\": [{\"code\", \"severity\", \"message\", \"labels\",\n\
+        \"help\"}]}]}; `passes` is null where there are errors. A label is {\"file\", \"line\", \"column\", \"end_line\", \"end_column\",\n\
+        \"text\"}, counted from 1 in lines and characters; the end is the first place behind. The first label is the mistake's own\n\
+        place. Exit codes are those of --format text."
+    )]
     Check(CheckArgs),
     /// List the built-in shadow methods and their params.
     #[command(after_help = "Example:\n  skiagraph presets")]
@@ -141,9 +157,9 @@ pub enum Format {
     Json,
 }
 
-/// `skiagraph run`.
+/// One graph, what it draws, and with which params.
 #[derive(Args, Debug)]
-pub struct RunArgs {
+pub struct GraphArgs {
     /// Preset by name, or a graph (.ron).
     #[arg(value_name = "PRESET|FILE.ron")]
     pub preset: String,
@@ -159,9 +175,44 @@ pub struct RunArgs {
     /// A param of the graph. May be repeated.
     #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub params: Vec<Assignment>,
-    /// Save an output or a material, after a pass or at the end, as .png or raw .bin. May be repeated.
+}
+
+/// `skiagraph run`.
+#[derive(Args, Debug)]
+pub struct RunArgs {
+    /// What is run.
+    #[command(flatten)]
+    pub graph: GraphArgs,
+    /// Save an output, a material or a view of one, after a pass or at the end: .png a picture, .bin raw bytes, .csv the words of
+    /// a buffer. May be repeated.
     #[arg(long, value_name = "MATERIAL[@PASS]=FILE")]
     pub save: Vec<Save>,
+}
+
+/// `skiagraph profile`.
+#[derive(Args, Debug)]
+pub struct ProfileArgs {
+    /// What is timed.
+    #[command(flatten)]
+    pub graph: GraphArgs,
+    /// Timed frames.
+    #[arg(long, default_value_t = 30, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_FRAMES), allow_negative_numbers = true)]
+    pub frames: u32,
+    /// Frames before the timed ones.
+    #[arg(long, default_value_t = 3, value_name = "N", value_parser = clap::value_parser!(u32).range(..=MOST_FRAMES), allow_negative_numbers = true)]
+    pub warmup: u32,
+    /// Write a line per pass and one for the frame.
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Write every timed frame in the Trace Event Format, for ui.perfetto.dev or chrome://tracing.
+    #[arg(long, value_name = "FILE")]
+    pub trace: Option<PathBuf>,
+    /// Write everything, samples included: what --baseline reads.
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Compare with what an earlier --json wrote.
+    #[arg(long, value_name = "OLD.json")]
+    pub baseline: Option<PathBuf>,
 }
 
 /// `skiagraph check`.
@@ -170,6 +221,18 @@ pub struct CheckArgs {
     /// Graphs (.ron), or presets by name.
     #[arg(value_name = "FILE.ron", required = true)]
     pub graphs: Vec<String>,
+    /// How diagnostics are printed: text on standard error, or json on standard output.
+    #[arg(long, value_enum, default_value_t = CheckFormat::Text)]
+    pub format: CheckFormat,
+}
+
+/// How diagnostics are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum CheckFormat {
+    /// For people: source lines with the mistakes underlined, on standard error.
+    Text,
+    /// For programs: one JSON object on standard output.
+    Json,
 }
 
 #[cfg(test)]
@@ -268,6 +331,10 @@ mod tests {
             "skiagraph compare --look 0,0,0",
             "skiagraph compare --oracle offset:-1",
             "skiagraph compare --oracle embree",
+            "skiagraph profile",
+            "skiagraph profile rt nsm",
+            "skiagraph profile nsm --frames 0",
+            "skiagraph check a.ron --format yaml",
         ] {
             assert_eq!(parse(line).unwrap_err().exit_code(), 2, "{line}");
         }

@@ -59,11 +59,14 @@ impl Results {
             count(|m| m.memory_bytes),
             count(|m| m.saved_bytes),
             run.unavailable.clone().unwrap_or_default(),
+            ms(measured
+                .and_then(|m| m.cached.as_ref())
+                .and_then(|cached| cached.frame.gpu_ms)),
         ]
     }
 }
 
-const COLUMNS: [&str; 30] = [
+const COLUMNS: [&str; 31] = [
     "adapter",
     "scene",
     "triangles",
@@ -94,6 +97,7 @@ const COLUMNS: [&str; 30] = [
     "memory_bytes",
     "saved_bytes",
     "unavailable",
+    "cached_gpu_ms",
 ];
 
 #[cfg(test)]

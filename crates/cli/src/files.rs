@@ -1,7 +1,44 @@
 //! Files that are there whole or not at all.
 
 use crate::error::CliError;
-use std::{io::Write, path::Path};
+use std::{
+    io::Write,
+    path::{Component, Path, PathBuf},
+};
+
+/// Refuses files that would overwrite each other or have no folder, before anything runs for them. Each comes with what
+/// writes it, as the command line says it.
+///
+/// # Errors
+/// Names both writers, or the folder.
+pub fn check_writable(files: &[(String, &Path)]) -> Result<(), CliError> {
+    let place = |file: &Path| -> PathBuf {
+        let parts = file.components();
+        parts.filter(|part| *part != Component::CurDir).collect()
+    };
+    for (index, (writer, file)) in files.iter().enumerate() {
+        let earlier = files[..index]
+            .iter()
+            .find(|(_, other)| place(other) == place(file));
+        if let Some((other, _)) = earlier {
+            return Err(CliError::Usage(format!(
+                "{other} and {writer} both write {}; give each a file of its own",
+                file.display()
+            )));
+        }
+        if let Some(folder) = file.parent()
+            && folder != Path::new("")
+            && !folder.is_dir()
+        {
+            return Err(CliError::Input(format!(
+                "{writer}: cannot write {}: there is no folder {}",
+                file.display(),
+                folder.display()
+            )));
+        }
+    }
+    Ok(())
+}
 
 /// Writes a file whole or not at all: beside it first, then renamed over it, so that an interrupt keeps the old one.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
@@ -25,6 +62,26 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn files_that_clash_or_have_no_folder_are_refused_beforehand() {
+        let check = |files: &[&'static str]| {
+            let files: Vec<_> = files
+                .iter()
+                .map(|file| (format!("--{file}"), Path::new(*file)))
+                .collect();
+            check_writable(&files)
+        };
+        check(&["a", "b", "./c"]).unwrap();
+        let clash = check(&["a", "./a"]).unwrap_err();
+        assert_eq!(clash.exit_code(), 2);
+        assert!(clash.to_string().starts_with("--a and --./a both write"));
+        let nowhere = check(&["nowhere/at/all.json"]).unwrap_err().to_string();
+        assert!(
+            nowhere.ends_with("there is no folder nowhere/at"),
+            "{nowhere}"
+        );
+    }
 
     #[test]
     fn a_file_is_replaced_whole_and_a_bad_path_is_named() {

@@ -4,16 +4,20 @@
 //! host program can do as well.
 
 mod args;
+mod check_json;
 mod commands;
 mod contract;
 mod csv_table;
+mod date;
 mod error;
 mod files;
 mod interrupt;
+mod items;
 mod measure;
 mod parse;
 mod picture;
 mod preset;
+mod profile;
 mod progress;
 mod reference;
 mod render;
@@ -31,6 +35,7 @@ fn main() -> ExitCode {
     let outcome = match &cli.command {
         Command::Compare(args) => commands::compare::compare(args, adapter),
         Command::Run(args) => commands::run::run(args, adapter),
+        Command::Profile(args) => commands::profile::profile(args, adapter),
         Command::Check(args) => commands::check::check(args),
         Command::Presets => commands::presets::presets(),
         Command::Scenes => commands::scenes::scenes(),

@@ -7,7 +7,7 @@ use crate::{
     preset::{self, Preset},
     progress::Step,
     render::{self, Times},
-    results::{Images, Measured, Run},
+    results::{Cached, Images, Measured, Run},
 };
 use skiagraph_graph::{
     Diagnostic, Diagnostics, ExecuteError, Executor, Param, ParamValue, Plan, PlanRequest,
@@ -66,7 +66,7 @@ impl<'a> Method<'a> {
     }
 
     /// All params with the values that it runs with.
-    fn all_params(&self) -> BTreeMap<String, serde_json::Value> {
+    pub fn all_params(&self) -> BTreeMap<String, serde_json::Value> {
         let params = self.preset.graph.params().iter();
         let value = |param: &Param| {
             json(
@@ -179,10 +179,12 @@ impl Setting<'_> {
             |frames| step.reach(frames),
         )?;
         let Some(times) = times else { return Ok(None) };
+        let cached = render::cached(self.gpu, &mut executor, self.frames)?;
         // Only now: a readback would be timed, too.
         let contents = render::read(self.gpu, &mut executor, &Outputs::names(method.preset))?;
         Ok(Some(Executed {
             times,
+            cached,
             outputs: Outputs::decode(&contents),
             memory,
         }))
@@ -191,6 +193,7 @@ impl Setting<'_> {
     fn judge(&self, method: &Method, executed: Executed) -> Result<Measured, CliError> {
         let Executed {
             mut times,
+            mut cached,
             outputs,
             memory: (memory_bytes, saved_bytes),
         } = executed;
@@ -207,6 +210,9 @@ impl Setting<'_> {
             .map_err(|error| broken(error.to_string()))?;
         if !self.timestamps {
             times.frame.gpu_ms = None;
+            cached
+                .iter_mut()
+                .for_each(|cached| cached.frame.gpu_ms = None);
             times.passes.iter_mut().for_each(|pass| pass.gpu_ms = None);
         }
         Ok(Measured {
@@ -217,7 +223,7 @@ impl Setting<'_> {
             facing_mismatch: counts.facing_mismatch,
             passes: times.passes,
             frame: times.frame,
-            cached: None,
+            cached,
             memory_bytes,
             saved_bytes,
             images: self.pictures(method, &visibility, &status)?,
@@ -314,6 +320,7 @@ fn reasons(diagnostics: &Diagnostics) -> String {
 
 struct Executed {
     times: Times,
+    cached: Option<Cached>,
     outputs: Result<Outputs, String>,
     memory: (u64, u64),
 }

@@ -111,9 +111,11 @@ pub enum Encoding {
     Png,
     /// The texels or items as they are in memory, rows tightly packed.
     Raw,
+    /// A line per item of a buffer.
+    Csv,
 }
 
-/// `--save MATERIAL[@PASS]=FILE.png|.bin`.
+/// `--save MATERIAL[@PASS]=FILE.png|.bin|.csv`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Save {
     /// An output or a material of the graph.
@@ -149,9 +151,10 @@ impl FromStr for Save {
         {
             Some("png") => Encoding::Png,
             Some("bin") => Encoding::Raw,
+            Some("csv") => Encoding::Csv,
             _ => {
                 return Err(format!(
-                    "`{}` must end in .png (a picture) or .bin (raw bytes)",
+                    "`{}` must end in .png (a picture), .bin (raw bytes) or .csv (the items of a buffer)",
                     file.display()
                 ));
             }

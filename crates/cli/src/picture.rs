@@ -1,22 +1,13 @@
 //! Pictures: PNG encoding, and what any material of a graph looks like.
 
+mod shades;
+
 use crate::{error::CliError, files::write_whole};
 use image::{ImageEncoder, codecs::png::PngEncoder};
+use shades::{depths, floats, fractions, integers};
 use skiagraph_graph::Content;
-use skiagraph_reference::{BACKGROUND, Image};
+use skiagraph_reference::Image;
 use std::path::Path;
-
-/// Colours of the `status` values 0 to 4: background, facing away, certain light, certain shadow, uncertain.
-const STATUS: [[u8; 3]; 5] = [
-    [96, 112, 128],
-    [0, 128, 0],
-    [255, 255, 255],
-    [0, 0, 0],
-    [160, 32, 240],
-];
-const NO_PRIMITIVE: [u8; 3] = STATUS[0];
-/// NaN, and integers that have no business being there.
-const WRONG: [u8; 3] = [255, 0, 255];
 
 /// A material as a picture.
 pub struct Picture {
@@ -26,43 +17,62 @@ pub struct Picture {
     pub legend: String,
 }
 
+/// Near and far plane of the perspective camera whose depths a texture holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Planes {
+    /// Distance of the near plane, depth 0.
+    pub near: f64,
+    /// Distance of the far plane, depth 1.
+    pub far: f64,
+}
+
+impl Planes {
+    /// The distance along the viewing direction that a depth stands for.
+    fn distance(self, depth: f32) -> f32 {
+        let Self { near, far } = self;
+        (near * far / (far - f64::from(depth) * (far - near))) as f32
+    }
+}
+
 impl Picture {
-    /// Shows what was read of the material `name`; the name tells `status` from other integers.
+    /// Shows what was read of the material `name`; the name tells `status` from other integers, `planes` a camera's depths
+    /// from others.
     ///
     /// # Errors
     /// Why it has no picture.
-    pub fn of(name: &str, content: &Content) -> Result<Self, String> {
-        let Content::Texture {
-            format,
-            size,
-            bytes,
-        } = content
-        else {
-            return Err("is a buffer and has no picture; save it as .bin".into());
+    pub fn of(name: &str, content: &Content, planes: Option<Planes>) -> Result<Self, String> {
+        let Content::Texture { format, size, .. } = content else {
+            return Err("is a buffer and has no picture; save it as .csv or .bin".into());
         };
         let texels = size[0] as usize * size[1] as usize;
-        let (rgb, legend) = if let Some(values) = content.as_u32() {
-            integers(name, &values)
-        } else if let Some(values) = content
-            .as_f32()
-            .filter(|values| texels > 0 && values.len() % texels == 0)
-        {
-            floats(&values, values.len() / texels)
-        } else if let Some(rgb) = bytes_rgb(*format, bytes) {
-            (rgb, "as it is".into())
-        } else {
-            return Err(format!(
-                "has the format {format:?}, of which no picture can be made; save it as .bin"
-            ));
+        let (channels, aspects) = (
+            usize::from(format.components()),
+            format.is_depth_stencil_format(),
+        );
+        let is_whole = |length: usize| length == texels * channels;
+        let (rgb, legend) = match (content.as_u32(), content.as_i32(), content.as_f32()) {
+            (Some(values), ..) if channels == 1 && is_whole(values.len()) => {
+                integers(name, &values)
+            }
+            (Some(values), ..) if is_whole(values.len()) => floats(
+                &values.iter().map(|&value| value as f32).collect::<Vec<_>>(),
+                channels,
+            ),
+            (_, Some(values), _) if is_whole(values.len()) => floats(
+                &values.iter().map(|&value| value as f32).collect::<Vec<_>>(),
+                channels,
+            ),
+            (.., Some(values)) if aspects && is_whole(values.len()) => depths(&values, planes),
+            (.., Some(values)) if is_whole(values.len()) => match is_unorm(*format) {
+                true => fractions(&values, channels),
+                false => floats(&values, channels),
+            },
+            _ => {
+                return Err(format!(
+                    "has the format {format:?}, of which no picture can be made; save it as .bin"
+                ));
+            }
         };
-        if rgb.len() != texels * 3 {
-            return Err(format!(
-                "holds {} bytes, which are not {}x{} texels",
-                bytes.len(),
-                size[0],
-                size[1]
-            ));
-        }
         Ok(Self {
             image: Image { size: *size, rgb },
             legend,
@@ -70,104 +80,18 @@ impl Picture {
     }
 }
 
-fn integers(name: &str, values: &[u32]) -> (Vec<u8>, String) {
-    if name == "status" {
-        let colour = |&value: &u32| STATUS.get(value as usize).copied().unwrap_or(WRONG);
-        let legend = "grey background, green facing away, white certain light, black certain shadow, purple uncertain";
-        (values.iter().flat_map(colour).collect(), legend.into())
-    } else if values.iter().all(|&value| value <= 1) {
-        (
-            values
-                .iter()
-                .flat_map(|&value| [value as u8 * 255; 3])
-                .collect(),
-            "black 0, white 1".into(),
-        )
-    } else {
-        (
-            values.iter().flat_map(|&value| id_colour(value)).collect(),
-            "a colour per number, grey 0xffffffff".into(),
-        )
-    }
-}
-
-/// Neighbouring ids must look different: a multiplicative hash (Knuth's 2³²/φ), its high bits as a bright colour.
-fn id_colour(id: u32) -> [u8; 3] {
-    if id == BACKGROUND {
-        return NO_PRIMITIVE;
-    }
-    let hash = (id.wrapping_add(1))
-        .wrapping_mul(0x9e37_79b9)
-        .rotate_left(15)
-        .wrapping_mul(0x85eb_ca6b);
-    [hash >> 24, hash >> 16 & 0xff, hash >> 8 & 0xff]
-        .map(|channel| 48 + (channel * 207 / 255) as u8)
-}
-
-/// Each channel between its own least and greatest finite value; one channel is grey, two leave blue black, a fourth is not shown.
-fn floats(values: &[f32], channels: usize) -> (Vec<u8>, String) {
-    let shown = channels.min(3);
-    let ranges: Vec<(f32, f32)> = (0..shown)
-        .map(|channel| {
-            let finite = values
-                .iter()
-                .skip(channel)
-                .step_by(channels)
-                .filter(|value| value.is_finite());
-            finite.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), &value| {
-                (low.min(value), high.max(value))
-            })
-        })
-        .collect();
-    let level = |value: f32, (low, high): (f32, f32)| {
-        // In f64, where the difference of two f32 cannot overflow. ±∞ land on black and white.
-        let share = (f64::from(value) - f64::from(low))
-            / (f64::from(high) - f64::from(low)).max(f64::MIN_POSITIVE);
-        (share.clamp(0.0, 1.0) * 255.0).round() as u8
-    };
-    let mut rgb = Vec::with_capacity(values.len() / channels * 3);
-    for texel in values.chunks_exact(channels) {
-        if texel[..shown].iter().any(|value| value.is_nan()) {
-            rgb.extend(WRONG);
-            continue;
-        }
-        let mut colour = [0; 3];
-        for (channel, &range) in ranges.iter().enumerate() {
-            colour[channel] = level(texel[channel], range);
-        }
-        rgb.extend(if shown == 1 { [colour[0]; 3] } else { colour });
-    }
-    let names = if shown == 1 {
-        [""; 3]
-    } else {
-        ["red ", "green ", "blue "]
-    };
-    let spans = names
-        .iter()
-        .zip(&ranges)
-        .map(|(name, (low, high))| match low <= high {
-            true => format!("{name}{low} … {high}"),
-            false => format!("{name}without a finite value"),
-        });
-    let mut legend = spans.collect::<Vec<_>>().join(", ");
-    if values.iter().any(|value| value.is_nan()) {
-        legend.push_str(", magenta NaN");
-    }
-    (rgb, legend)
-}
-
-fn bytes_rgb(format: wgpu::TextureFormat, bytes: &[u8]) -> Option<Vec<u8>> {
+/// Whether the channels reach from 0 to 1 whatever they hold.
+fn is_unorm(format: wgpu::TextureFormat) -> bool {
     use wgpu::TextureFormat as F;
-    let order = match format {
-        F::Rgba8Unorm | F::Rgba8UnormSrgb | F::Rgba8Uint => [0, 1, 2],
-        F::Bgra8Unorm | F::Bgra8UnormSrgb => [2, 1, 0],
-        _ => return None,
-    };
-    Some(
-        bytes
-            .chunks_exact(4)
-            .flat_map(|texel| order.map(|channel| texel[channel]))
-            .collect(),
+    matches!(
+        format.remove_srgb_suffix(),
+        F::R8Unorm
+            | F::Rg8Unorm
+            | F::Rgba8Unorm
+            | F::Bgra8Unorm
+            | F::R16Unorm
+            | F::Rg16Unorm
+            | F::Rgba16Unorm
     )
 }
 
@@ -190,7 +114,8 @@ pub fn save(path: &Path, image: &Image) -> Result<(), CliError> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{shades::*, *};
+    use skiagraph_reference::BACKGROUND;
     use wgpu::TextureFormat as F;
 
     fn texture(format: F, size: [u32; 2], bytes: Vec<u8>) -> Content {
@@ -213,15 +138,24 @@ mod tests {
         let picture = Picture::of(
             "status",
             &texture(F::R8Uint, [3, 2], vec![0, 1, 2, 3, 4, 9]),
+            None,
         )
         .unwrap();
-        assert_eq!(picture.image.rgb, [STATUS.as_flattened(), &WRONG].concat());
+        let colours = STATUS.map(|(colour, _)| colour);
+        assert_eq!(picture.image.rgb, [colours.as_flattened(), &WRONG].concat());
+        assert!(
+            picture
+                .legend
+                .ends_with("purple uncertain (1), magenta no status (1)")
+        );
     }
 
     #[test]
     fn visibility_is_black_and_white() {
-        let picture = Picture::of("visibility", &texture(F::R8Uint, [2, 1], vec![0, 1])).unwrap();
+        let picture =
+            Picture::of("visibility", &texture(F::R8Uint, [2, 1], vec![0, 1]), None).unwrap();
         assert_eq!(picture.image.rgb, [0, 0, 0, 255, 255, 255]);
+        assert_eq!(picture.legend, "black 0 (1), white 1 (1)");
     }
 
     #[test]
@@ -237,43 +171,125 @@ mod tests {
     }
 
     #[test]
-    fn depths_fill_their_range_and_odd_values_show() {
+    fn values_fill_their_range_and_odd_ones_are_marked_and_counted() {
         let values = [0.5, 0.75, 1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
-        let picture = Picture::of(
-            "depth",
-            &texture(F::Depth32Float, [6, 1], float_bytes(&values)),
-        )
-        .unwrap();
+        let bytes = float_bytes(&values);
+        let picture = Picture::of("height", &texture(F::R32Float, [6, 1], bytes), None).unwrap();
         let texels: Vec<_> = picture.image.rgb.chunks(3).collect();
         assert_eq!(
             texels,
-            [[0; 3], [128; 3], [255; 3], WRONG, [255; 3], [0; 3]]
+            [
+                [0; 3],
+                [128; 3],
+                [255; 3],
+                WRONG,
+                POSITIVE_INFINITY,
+                NEGATIVE_INFINITY
+            ]
         );
-        assert_eq!(picture.legend, "0.5 … 1, magenta NaN");
+        assert_eq!(
+            picture.legend,
+            "0.5 … 1, magenta NaN (1), orange +∞ (1), light blue -∞ (1)"
+        );
+    }
+
+    #[test]
+    fn a_cameras_depths_are_shown_as_distances_and_what_is_cleared_as_nothing() {
+        let planes = Planes {
+            near: 1.0,
+            far: 11.0,
+        };
+        // Depth of a distance z: far (z - near) / (z (far - near)).
+        let depth = |z: f32| 11.0 * (z - 1.0) / (z * 10.0);
+        let bytes = float_bytes(&[depth(2.0), depth(3.0), depth(7.0), 1.0]);
+        let content = texture(F::Depth32Float, [4, 1], bytes);
+        let grey = |planes| {
+            let Picture { image, legend } = Picture::of("depth", &content, planes).unwrap();
+            assert_eq!(image.rgb[9..], NOTHING);
+            ([image.rgb[0], image.rgb[3], image.rgb[6]], legend)
+        };
+        let (linear, legend) = grey(Some(planes));
+        assert_eq!(
+            linear,
+            [0, 51, 255],
+            "3 lies at a fifth of the way from 2 to 7"
+        );
+        assert!(
+            legend.starts_with("distance along the view, black to white 2"),
+            "{legend}"
+        );
+        assert!(legend.ends_with("grey 1, nothing there (1)"), "{legend}");
+        let (stored, legend) = grey(None);
+        assert_eq!(
+            stored,
+            [0, 119, 255],
+            "and nearly half way between their depths"
+        );
+        assert!(
+            legend.starts_with("stored depth, black to white 0.55 …"),
+            "{legend}"
+        );
+    }
+
+    #[test]
+    fn every_kind_of_channel_has_a_picture() {
+        for (format, bytes, rgb) in [
+            (F::R8Unorm, vec![51, 102], [51, 51, 51, 102, 102, 102]),
+            (F::Rg8Unorm, vec![0, 255, 255, 0], [0, 255, 0, 255, 0, 0]),
+            (
+                F::Bgra8Unorm,
+                vec![1, 2, 3, 4, 5, 6, 7, 8],
+                [3, 2, 1, 7, 6, 5],
+            ),
+            (F::R8Sint, vec![0xff, 1], [0, 0, 0, 255, 255, 255]),
+            (F::Rg8Uint, vec![4, 9, 6, 9], [0, 0, 0, 255, 0, 0]),
+            (
+                F::R16Float,
+                vec![0, 0x3c, 0, 0x40],
+                [0, 0, 0, 255, 255, 255],
+            ),
+        ] {
+            let picture = Picture::of("x", &texture(format, [2, 1], bytes), None).unwrap();
+            assert_eq!(picture.image.rgb, rgb, "{format:?}: {}", picture.legend);
+        }
     }
 
     #[test]
     fn constant_and_huge_ranges_do_not_overflow() {
         for values in [[3.0, 3.0], [f32::MIN, f32::MAX], [f32::NAN, f32::NAN]] {
-            Picture::of("x", &texture(F::R32Float, [2, 1], float_bytes(&values))).unwrap();
+            Picture::of(
+                "x",
+                &texture(F::R32Float, [2, 1], float_bytes(&values)),
+                None,
+            )
+            .unwrap();
         }
     }
 
     #[test]
     fn positions_become_colours() {
         let bytes = float_bytes(&[0.0, 10.0, -1.0, 1.0, 4.0, 20.0, 1.0, 1.0]);
-        let picture = Picture::of("position", &texture(F::Rgba32Float, [2, 1], bytes)).unwrap();
+        let picture =
+            Picture::of("position", &texture(F::Rgba32Float, [2, 1], bytes), None).unwrap();
         assert_eq!(picture.image.rgb, [0, 0, 0, 255, 255, 255]);
-        assert_eq!(picture.legend, "red 0 … 4, green 10 … 20, blue -1 … 1");
+        assert_eq!(
+            picture.legend,
+            "red 0 … 4, green 10 … 20, blue -1 … 1, alpha (not shown) 1 … 1"
+        );
     }
 
     #[test]
     fn buffers_and_odd_formats_say_what_to_do() {
         for content in [
             Content::Buffer(vec![0; 4]),
-            texture(F::Rg8Snorm, [1, 1], vec![0, 0]),
+            texture(F::Rgb10a2Unorm, [1, 1], vec![0; 4]),
         ] {
-            assert!(Picture::of("x", &content).err().unwrap().contains(".bin"));
+            assert!(
+                Picture::of("x", &content, None)
+                    .err()
+                    .unwrap()
+                    .contains(".bin")
+            );
         }
     }
 }

@@ -1,6 +1,7 @@
 //! From the arguments `nsm` or `my/method.ron` to loaded graphs.
 
 use crate::{
+    args::GraphArgs,
     commands::check::all_at_once,
     error::{CliError, colour, count_errors, note},
     parse::Assignment,
@@ -11,6 +12,7 @@ use skiagraph_graph::{
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
+    slice,
 };
 
 /// Where graphs and shaders are read from: the working directory, then what is built in.
@@ -68,6 +70,23 @@ pub fn load_all(arguments: &[String], sources: &dyn Sources) -> Result<Vec<Prese
         }
     }
     faults.none_or_error().map(|()| presets)
+}
+
+/// Loads the one graph that the arguments name, with the params that they set.
+///
+/// # Errors
+/// Its faults, a param that it does not have, a value that a param cannot take.
+pub fn load_one(
+    args: &GraphArgs,
+    sources: &dyn Sources,
+) -> Result<(Preset, BTreeMap<String, ParamValue>), CliError> {
+    let mut presets = load_all(slice::from_ref(&args.preset), sources)?;
+    check_names(&presets, &args.params)?;
+    let preset = presets
+        .pop()
+        .ok_or_else(|| CliError::Input("no graph".into()))?;
+    let params = params(&preset, &args.params, args.map_size)?;
+    Ok((preset, params))
 }
 
 /// The path of the graph that an argument names.

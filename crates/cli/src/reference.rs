@@ -5,8 +5,8 @@ use skiagraph_graph::{Content, Executor, Graph, Plan, PlanRequest, Provider, Sou
 use skiagraph_reference::{Error, Oracle, OracleMode, Progress, Reference};
 use skiagraph_scene::{Camera, DirectionalLight};
 
-/// The graph that every comparison draws first: which primitive does each pixel show?
-const PRIMITIVE: &str = "pipelines/shared/primitive.ron";
+/// The graph that every comparison draws first, as far as its output `primitive` needs: which one does each pixel show?
+const GBUFFER: &str = "pipelines/shared/gbuffer.ron";
 
 /// Renders primitive ids as every method's G-buffer does, so that all are judged on the surface that they saw.
 pub struct Primary(Graph);
@@ -17,9 +17,9 @@ impl Primary {
     /// # Errors
     /// It is faulty: it may be one on disk.
     pub fn load(sources: &dyn Sources) -> Result<Self, CliError> {
-        Graph::load(PRIMITIVE, &skiagraph_passes::registry(), sources)
+        Graph::load(GBUFFER, &skiagraph_passes::registry(), sources)
             .map(Self)
-            .map_err(|diagnostics| Faults::of(PRIMITIVE, &diagnostics))
+            .map_err(|diagnostics| Faults::of(GBUFFER, &diagnostics))
     }
 
     /// The plan on a viewport.
@@ -35,9 +35,10 @@ impl Primary {
         let mut request = PlanRequest::new(viewport, provider);
         request.limits = gpu.device.limits();
         request.features = gpu.device.features();
+        request.outputs = Some(vec!["primitive".to_owned()]);
         self.0
             .plan(&request)
-            .map_err(|diagnostics| Faults::of(PRIMITIVE, &diagnostics))
+            .map_err(|diagnostics| Faults::of(GBUFFER, &diagnostics))
     }
 
     /// The primitive that each pixel shows.
@@ -56,14 +57,14 @@ impl Primary {
             render::read(gpu, &mut executor, &["primitive"])
         };
         let contents = read().map_err(|error| CliError::Gpu {
-            graph: PRIMITIVE.into(),
+            graph: GBUFFER.into(),
             source: Box::new(error),
         })?;
         contents
             .get("primitive")
             .and_then(Content::as_u32)
             .ok_or_else(|| {
-                CliError::Input(format!("{PRIMITIVE} has no output `primitive` of integers"))
+                CliError::Input(format!("{GBUFFER} has no output `primitive` of integers"))
             })
     }
 }

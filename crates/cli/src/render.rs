@@ -3,10 +3,10 @@
 use crate::{
     error::CliError,
     interrupt,
-    results::{Adapter, FrameTimes, Pass, Spread},
+    results::{Adapter, Cached, FrameTimes, Pass, Spread},
 };
 use skiagraph_graph::{
-    Content, ExecuteError, Executor, Frame, FrameReport,
+    Content, ExecuteError, Executor, Frame, FrameReport, FrameTiming,
     gpu::{self, Gpu, GpuError},
     timing::{self, Trust},
 };
@@ -91,6 +91,76 @@ pub fn frame(
     Ok((report, began.elapsed()))
 }
 
+/// A frame that was timed.
+pub struct TimedFrame {
+    /// When its encoding began, from that of the first timed frame on.
+    pub began: Duration,
+    /// Times of its passes.
+    pub timing: FrameTiming,
+    /// From the start of encoding until the GPU was done.
+    pub wall: Duration,
+    /// The passes that did not run.
+    pub skipped: Vec<String>,
+}
+
+/// What frames are timed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Work {
+    /// Every pass runs in every frame.
+    All,
+    /// The camera moves before every frame, and passes run by their conditions.
+    CameraMoves,
+}
+
+/// Runs `warmup` frames, then `frames` timed ones. `done` hears how many frames are over. Ctrl-C
+/// ends it early; what was timed until then is returned.
+///
+/// # Errors
+/// Those of the executor.
+pub fn sample(
+    gpu: &Gpu,
+    executor: &mut Executor,
+    work: Work,
+    warmup: u32,
+    frames: u32,
+    done: impl Fn(u64),
+) -> Result<Vec<TimedFrame>, ExecuteError> {
+    let mut timed = Vec::new();
+    let mut first = Instant::now();
+    for index in 0..u64::from(warmup) + u64::from(frames) {
+        if interrupt::raised() {
+            break;
+        }
+        if index == u64::from(warmup) {
+            first = Instant::now();
+        }
+        let began = first.elapsed();
+        // Warm-up frames are timed too: they then do the same work, only nobody looks at the figures.
+        if work == Work::CameraMoves && executor.plan().provided().contains(&"camera") {
+            executor.touch("camera")?;
+        }
+        let request = Frame {
+            timing: true,
+            all: work == Work::All,
+            ..Frame::default()
+        };
+        let (report, wall) = frame(gpu, executor, &request)?;
+        if index >= u64::from(warmup) {
+            let timing = report.timing.ok_or(ExecuteError::Internal(
+                "a timed frame came back without times",
+            ))?;
+            timed.push(TimedFrame {
+                began,
+                timing,
+                wall,
+                skipped: report.skipped,
+            });
+        }
+        done(index + 1);
+    }
+    Ok(timed)
+}
+
 /// Times of some frames, per pass and whole.
 pub struct Times {
     /// Per pass.
@@ -99,8 +169,7 @@ pub struct Times {
     pub frame: FrameTimes,
 }
 
-/// Runs `warmup` frames, then `frames` timed ones, every pass in every frame. `done` hears how many frames are over.
-/// `None` if Ctrl-C came first.
+/// [`sample`] in short; `None` if Ctrl-C came first.
 ///
 /// # Panics
 /// If `frames` is 0, which the arguments forbid.
@@ -114,76 +183,94 @@ pub fn time(
     frames: u32,
     done: impl Fn(u64),
 ) -> Result<Option<Times>, ExecuteError> {
-    let mut samples = Samples::default();
-    for index in 0..u64::from(warmup) + u64::from(frames) {
-        if interrupt::raised() {
-            return Ok(None);
-        }
-        // Warm-up frames are timed too: they then do the same work, only nobody looks at the figures.
-        let (report, wall) = frame(
-            gpu,
-            executor,
-            &Frame {
-                timing: true,
-                all: true,
-                ..Frame::default()
-            },
-        )?;
-        if index >= u64::from(warmup) {
-            samples.add(report, wall);
-        }
-        done(index + 1);
-    }
-    Ok(Some(samples.times()))
+    let timed = sample(gpu, executor, Work::All, warmup, frames, done)?;
+    Ok((timed.len() == frames as usize).then(|| Samples::of(&timed).times()))
 }
 
+/// The times of frames in which only the camera moves; `None` if every pass runs then too, or Ctrl-C came first.
+///
+/// # Errors
+/// Those of the executor.
+pub fn cached(
+    gpu: &Gpu,
+    executor: &mut Executor,
+    frames: u32,
+) -> Result<Option<Cached>, ExecuteError> {
+    let first = sample(gpu, executor, Work::CameraMoves, 0, 1, |_| {})?;
+    let Some(TimedFrame { skipped, .. }) =
+        first.into_iter().find(|frame| !frame.skipped.is_empty())
+    else {
+        return Ok(None);
+    };
+    let timed = sample(gpu, executor, Work::CameraMoves, 0, frames, |_| {})?;
+    Ok((timed.len() == frames as usize).then(|| Cached {
+        frame: Samples::of(&timed).times().frame,
+        skipped,
+    }))
+}
+
+/// The times of several frames, sorted by what they are times of.
 #[derive(Default)]
-struct Samples {
-    names: Vec<String>,
-    gpu: Vec<Vec<Option<Duration>>>,
-    cpu: Vec<Vec<Duration>>,
-    frame_gpu: Vec<Option<Duration>>,
-    frame_wall: Vec<Duration>,
+pub struct Samples {
+    /// Each pass, in the order in which they ran.
+    pub passes: Vec<PassSamples>,
+    /// From the first begin to the last end on the GPU.
+    pub gpu: Vec<Option<Duration>>,
+    /// Encoding of all passes.
+    pub cpu: Vec<Duration>,
+    /// From the start of encoding until the GPU was done.
+    pub wall: Vec<Duration>,
+}
+
+/// The times of one pass in several frames.
+pub struct PassSamples {
+    /// Its name.
+    pub name: String,
+    /// Between its timestamps.
+    pub gpu: Vec<Option<Duration>>,
+    /// Encoding.
+    pub cpu: Vec<Duration>,
 }
 
 impl Samples {
-    fn add(&mut self, report: FrameReport, wall: Duration) {
-        self.frame_wall.push(wall);
-        let Some(timing) = report.timing else {
-            self.frame_gpu.push(None);
-            return;
-        };
-        self.frame_gpu.push(timing.gpu());
-        for pass in timing.passes {
-            let index = self
-                .names
-                .iter()
-                .position(|name| *name == pass.name)
-                .unwrap_or_else(|| {
-                    self.names.push(pass.name.clone());
-                    self.gpu.push(Vec::new());
-                    self.cpu.push(Vec::new());
-                    self.names.len() - 1
+    /// Of some frames.
+    pub fn of(frames: &[TimedFrame]) -> Self {
+        let mut samples = Self::default();
+        for TimedFrame { timing, wall, .. } in frames {
+            samples.wall.push(*wall);
+            samples.gpu.push(timing.gpu());
+            samples.cpu.push(timing.cpu());
+            for pass in &timing.passes {
+                let known = |samples: &PassSamples| samples.name == pass.name;
+                let index = samples.passes.iter().position(known).unwrap_or_else(|| {
+                    samples.passes.push(PassSamples {
+                        name: pass.name.clone(),
+                        gpu: Vec::new(),
+                        cpu: Vec::new(),
+                    });
+                    samples.passes.len() - 1
                 });
-            self.gpu[index].push(pass.gpu);
-            self.cpu[index].push(pass.cpu);
+                samples.passes[index].gpu.push(pass.gpu);
+                samples.passes[index].cpu.push(pass.cpu);
+            }
         }
+        samples
     }
 
     fn times(self) -> Times {
-        let passes = self.names.into_iter().zip(self.gpu).zip(self.cpu);
-        let passes = passes
-            .map(|((name, gpu), cpu)| Pass {
-                name,
-                gpu_ms: Spread::of_all(&gpu),
-                cpu_ms: Spread::of(&cpu).expect("a pass is named by its first sample"),
-            })
-            .collect();
-        let frame = FrameTimes {
-            gpu_ms: Spread::of_all(&self.frame_gpu),
-            wall_ms: Spread::of(&self.frame_wall).expect("at least one frame is timed"),
+        let pass = |PassSamples { name, gpu, cpu }| Pass {
+            name,
+            gpu_ms: Spread::of_all(&gpu),
+            cpu_ms: Spread::of(&cpu).expect("a pass is named by its first sample"),
         };
-        Times { passes, frame }
+        let frame = FrameTimes {
+            gpu_ms: Spread::of_all(&self.gpu),
+            wall_ms: Spread::of(&self.wall).expect("at least one frame is timed"),
+        };
+        Times {
+            passes: self.passes.into_iter().map(pass).collect(),
+            frame,
+        }
     }
 }
 

@@ -1,9 +1,9 @@
 //! The schema of `results.json` and `results.csv`, version 1. Scripts rely on it: extend it, rename nothing.
 
-use crate::{error::CliError, files::write_whole};
+use crate::{error::CliError, files::write_whole, table::thousands};
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{CertainCounts, PixelCounts, WrongCounts};
-use std::{collections::BTreeMap, path::Path, time::Duration};
+use std::{collections::BTreeMap, fmt, path::Path, time::Duration};
 
 /// Everything that one `compare` measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -51,6 +51,22 @@ pub struct Scene {
     pub triangles: u64,
 }
 
+impl fmt::Display for Adapter {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{} · {} · {}", self.name, self.backend, self.driver)
+    }
+}
+
+impl fmt::Display for Scene {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let noun = match self.triangles {
+            1 => "triangle",
+            _ => "triangles",
+        };
+        write!(f, "{}, {} {noun}", self.name, thousands(self.triangles))
+    }
+}
+
 /// One preset on one view, viewport and map size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
@@ -93,7 +109,7 @@ pub struct Measured {
     pub passes: Vec<Pass>,
     /// Times of whole frames.
     pub frame: FrameTimes,
-    /// Times of a frame in which unchanged passes were skipped; null where nothing was.
+    /// Times of frames in which only the camera moved and unchanged passes were skipped; null where nothing was.
     pub cached: Option<Cached>,
     /// Bytes of the graph's own materials.
     pub memory_bytes: u64,
@@ -157,10 +173,12 @@ pub struct Spread {
 impl Spread {
     /// Of some samples; `None` if there are none.
     pub fn of(samples: &[Duration]) -> Option<Self> {
-        let mut ms: Vec<f64> = samples
-            .iter()
-            .map(|sample| sample.as_secs_f64() * 1e3)
-            .collect();
+        Self::of_ms(samples.iter().map(|sample| sample.as_secs_f64() * 1e3))
+    }
+
+    /// Of some samples in milliseconds; `None` if there are none.
+    pub fn of_ms(samples: impl Iterator<Item = f64>) -> Option<Self> {
+        let mut ms: Vec<f64> = samples.collect();
         ms.sort_by(f64::total_cmp);
         let last = ms.len().checked_sub(1)?;
         let rank = (ms.len() as f64 * 0.95).ceil() as usize;
@@ -254,7 +272,13 @@ pub(crate) mod tests {
                 gpu_ms: gpu.then(|| spread(1.0)),
                 wall_ms: spread(2.0),
             },
-            cached: None,
+            cached: gpu.then(|| Cached {
+                frame: FrameTimes {
+                    gpu_ms: Some(spread(0.5)),
+                    wall_ms: spread(1.0),
+                },
+                skipped: vec!["create_shadow_map".into()],
+            }),
             memory_bytes: 12_582_912,
             saved_bytes: 1_048_576,
             images: Images {

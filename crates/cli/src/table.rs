@@ -54,22 +54,9 @@ fn heading(results: &Results, run: &Run, look: Look) -> String {
         band,
         ..
     } = run;
-    let title = format!(
-        "{}, {} {} · view {view} · {width}x{height}",
-        results.scene.name,
-        thousands(results.scene.triangles),
-        if results.scene.triangles == 1 {
-            "triangle"
-        } else {
-            "triangles"
-        }
-    );
-    let adapter = &results.adapter;
+    let title = format!("{} · view {view} · {width}x{height}", results.scene);
     let mut lines = vec![
-        format!(
-            "{} · {} · {}",
-            adapter.name, adapter.backend, adapter.driver
-        ),
+        results.adapter.to_string(),
         format!(
             "medians of {} after {} to warm up · oracle {}",
             frames(results.frames),
@@ -174,11 +161,13 @@ fn passes(runs: &[Run], look: Look) -> String {
         };
         let method_name = method(run);
         let whole = ("whole frame", measured.frame.gpu_ms, None);
+        let cached = measured.cached.as_ref();
+        let cached = cached.map(|cached| ("cached frame", cached.frame.gpu_ms, None));
         let rows = measured
             .passes
             .iter()
             .map(|pass| (pass.name.as_str(), pass.gpu_ms, Some(pass.cpu_ms)));
-        for (index, (name, gpu, cpu)) in rows.chain([whole]).enumerate() {
+        for (index, (name, gpu, cpu)) in rows.chain([whole]).chain(cached).enumerate() {
             let gpu = |pick: fn(Spread) -> f64| gpu.map_or("–".into(), |spread| ms(pick(spread)));
             let row = vec![
                 // On a terminal the eye finds groups by their first line; a Markdown row may be quoted alone.
@@ -208,6 +197,14 @@ fn footnotes(results: &Results, runs: &[Run]) -> Vec<String> {
         notes.extend(runs.iter().filter_map(times_missing));
     }
     notes.extend(runs.iter().filter_map(|run| {
+        let cached = run.measured.as_ref()?.cached.as_ref()?;
+        Some(format!(
+            "cached frame of {}: only the camera moved; it skips {}",
+            method(run),
+            cached.skipped.join(", ")
+        ))
+    }));
+    notes.extend(runs.iter().filter_map(|run| {
         Some(format!(
             "{} is unavailable: {}",
             run.preset,
@@ -226,24 +223,28 @@ fn method(run: &Run) -> String {
 /// Which GPU times a run lacks on an adapter whose timestamps are true.
 fn times_missing(run: &Run) -> Option<String> {
     let measured = run.measured.as_ref()?;
-    let untimed: Vec<&str> = measured
-        .passes
-        .iter()
-        .filter(|pass| pass.gpu_ms.is_none())
-        .map(|pass| pass.name.as_str())
+    let passes = measured.passes.iter();
+    let passes = passes.map(|pass| (pass.name.as_str(), pass.gpu_ms.is_some()));
+    let why = untimed(passes, measured.frame.gpu_ms.is_some())?;
+    Some(format!("{}: {why}", method(run)))
+}
+
+/// Which GPU times are missing: of passes, each with whether it has one, and of the frame.
+pub fn untimed<'a>(passes: impl Iterator<Item = (&'a str, bool)>, frame: bool) -> Option<String> {
+    let untimed: Vec<&str> = passes
+        .filter_map(|(name, is_timed)| (!is_timed).then_some(name))
         .collect();
     let untimed = untimed.join(", ");
-    let why = match (measured.frame.gpu_ms, untimed.as_str()) {
-        (Some(_), "") => return None,
-        (Some(_), _) => {
+    Some(match (frame, untimed.as_str()) {
+        (true, "") => return None,
+        (true, _) => {
             format!(
                 "the whole frame is timed over its other passes, there are no GPU times of {untimed}"
             )
         }
-        (None, "") => "no GPU time of the whole frame: some frames had none".into(),
-        (None, _) => format!("no GPU time of the whole frame: there are none of {untimed}"),
-    };
-    Some(format!("{}: {why}", method(run)))
+        (false, "") => "no GPU time of the whole frame: some frames had none".into(),
+        (false, _) => format!("no GPU time of the whole frame: there are none of {untimed}"),
+    })
 }
 
 /// An empty table whose first `left` columns hold words.
@@ -279,7 +280,8 @@ fn cell(text: &str, column: usize, left: usize) -> Cell {
     })
 }
 
-fn frames(count: u32) -> String {
+/// So many frames, in words.
+pub fn frames(count: u32) -> String {
     if count == 1 {
         "1 frame".into()
     } else {

@@ -99,11 +99,53 @@ fn check_needs_no_gpu_and_shows_the_faults_of_all_files() {
 }
 
 #[test]
+fn check_tells_programs_what_it_tells_people() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("good.ron"), CLEARED).unwrap();
+    let misspelt = CLEARED.replace("target: \"status\"", "target: \"satus\"");
+    fs::write(folder.path().join("bad.ron"), &misspelt).unwrap();
+    let check = |arguments: &[&str], code| {
+        let output = skiagraph(folder.path(), arguments);
+        assert_exit(&output, code);
+        let report: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+        assert_eq!(report["schema"], 1);
+        report["files"].clone()
+    };
+    let fine = check(&["check", "--format", "json", "good.ron"], 0);
+    let expected = serde_json::json!([{ "file": "good.ron", "passes": 2, "diagnostics": [] }]);
+    assert_eq!(fine, expected);
+
+    let files = check(
+        &["check", "bad.ron", "good.ron", "nms", "--format", "json"],
+        1,
+    );
+    let names: Vec<_> = (0..3).map(|index| &files[index]["file"]).collect();
+    assert_eq!(names, ["bad.ron", "good.ron", "nms"]);
+    let bad = &files[0]["diagnostics"][0];
+    assert_eq!(
+        (&bad["code"], &bad["severity"], &files[0]["passes"]),
+        (&"unknown-resource".into(), &"error".into(), &().into())
+    );
+    let label = &bad["labels"][0];
+    let (line, text) = misspelt
+        .lines()
+        .enumerate()
+        .find(|(_, text)| text.contains("satus"))
+        .unwrap();
+    assert_eq!(label["file"], "bad.ron");
+    assert_eq!(label["line"], line + 1);
+    let columns = [&label["column"], &label["end_column"]].map(|c| c.as_u64().unwrap() as usize);
+    let word = &text[columns[0] - 1..columns[1] - 1];
+    assert_eq!(word.trim_matches('"'), "satus");
+    assert_eq!(files[2]["diagnostics"][0]["code"], "missing-file");
+}
+
+#[test]
 fn check_takes_presets_and_all_of_ours_are_fine() {
     let folder = tempfile::tempdir().unwrap();
     let output = skiagraph(
         folder.path(),
-        &["check", "rt", "nsm", "pipelines/shared/primitive.ron"],
+        &["check", "rt", "nsm", "pipelines/shared/gbuffer.ron"],
     );
     assert_exit(&output, 0);
     assert_eq!(stdout(&output).lines().count(), 3);

@@ -304,7 +304,7 @@ fn a_buffer_has_no_picture_but_bytes() {
     };
     let picture = save("count.png");
     assert_eq!(picture.status.code(), Some(1));
-    assert!(String::from_utf8_lossy(&picture.stderr).contains("save it as .bin"));
+    assert!(String::from_utf8_lossy(&picture.stderr).contains("save it as .csv or .bin"));
     assert_eq!(save("count.bin").status.code(), Some(0));
     let count = fs::read(folder.path().join("count.bin")).unwrap();
     let count = u32::from_le_bytes(count.try_into().unwrap());

@@ -35,6 +35,8 @@ macro_rules! codes {
 codes! {
     /// A document, shader or imported file is missing or unreadable.
     MissingFile = "missing-file",
+    /// Documents that include each other.
+    IncludeCycle = "include-cycle",
     /// The RON text is not well-formed, or a value has the wrong type.
     Syntax = "syntax",
     /// A field that the document format does not know.
@@ -77,8 +79,10 @@ codes! {
     RunCondition = "run-condition",
     /// What the host imports does not serve what passes do with it.
     Import = "import",
-    /// A limit of the adapter, or a feature that it lacks.
+    /// A limit of the adapter.
     Limit = "limit",
+    /// A feature that the document requires and the device does not have, or that wgpu does not know.
+    Feature = "feature",
     /// A material that no pass uses.
     Unused = "unused",
     /// A document without outputs, or an output asked for that is not declared.

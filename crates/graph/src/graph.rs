@@ -4,17 +4,22 @@ use crate::{
     Plan, PlanRequest,
     diagnostics::{Code, Diagnostic, Diagnostics, Severity, suggestion},
     document::{
-        self, Document, Run,
+        self, Document,
         located::Located,
-        materials::{BufferEntry, Count, Material, Size, TextureEntry},
+        materials::{Material, Size},
         params::{Param, ParamValue},
     },
-    registry::{Lowering, Params, Registry},
+    include::{self, Includes},
+    instantiate::{Instance, LoweredPass, Purpose, instantiate, split_layer},
+    registry::Registry,
     source::{SourceFile, Sources, Span},
-    step::{Program, Step},
+    step::Step,
     wgsl::{Shader, ShaderFiles},
 };
-use std::{collections::BTreeMap, collections::HashMap, collections::HashSet, sync::Arc};
+use std::{
+    collections::{HashMap, HashSet},
+    sync::Arc,
+};
 
 /// A document that was read, with all shaders that its passes name. No GPU has been touched.
 ///
@@ -22,10 +27,15 @@ use std::{collections::BTreeMap, collections::HashMap, collections::HashSet, syn
 #[derive(Clone, Debug)]
 pub struct Graph {
     pub(crate) document: Arc<Document>,
-    /// `None` for those with a mistake that was reported.
-    pub(crate) shaders: HashMap<String, Option<Arc<Shader>>>,
+    pub(crate) shaders: Shaders,
+    /// Every include, the nested ones too, with the path of what it includes.
+    includes: Vec<(String, Span)>,
+    features: wgpu::Features,
     warnings: Vec<Diagnostic>,
 }
+
+/// Shaders by the folder of the document that names them, and their name; `None` for those with a mistake that was reported.
+pub(crate) type Shaders = HashMap<(Arc<str>, String), Option<Arc<Shader>>>;
 
 /// Why a param cannot be set.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -53,16 +63,6 @@ pub enum ParamError {
     },
 }
 
-/// A pass with its body lowered to steps.
-pub(crate) struct LoweredPass {
-    pub name: Located<String>,
-    pub kind: &'static str,
-    pub steps: Vec<Step>,
-    pub scratch: Vec<(String, u64)>,
-    pub run: Run,
-    pub overwrites: Vec<Located<String>>,
-}
-
 impl Graph {
     /// Reads the document at `path` and every shader it names, from `sources`. Parses and validates all WGSL.
     ///
@@ -77,7 +77,7 @@ impl Graph {
         if errors.is_empty() {
             Ok(graph)
         } else {
-            Err(Diagnostics::new(errors))
+            Err(graph.diagnostics(errors))
         }
     }
 
@@ -102,8 +102,14 @@ impl Graph {
         match plan {
             Some(plan) if errors.is_empty() => Ok((graph, plan)),
             // What nobody uses may be what a misspelt name was meant to be: warnings wait until the errors are gone.
-            _ => Err(Diagnostics::new(errors)),
+            _ => Err(graph.diagnostics(errors)),
         }
+    }
+
+    /// What is wrong with the graph; in included documents with the place of the include.
+    pub(crate) fn diagnostics(&self, mut list: Vec<Diagnostic>) -> Diagnostics {
+        include::label(&mut list, self.path(), &self.includes);
+        Diagnostics::new(list)
     }
 
     /// What could be read of a document, and what is wrong with it.
@@ -140,7 +146,7 @@ impl Graph {
             }
         };
         let mut diagnostics = Vec::new();
-        let Some(document) =
+        let Some(mut document) =
             document::parse(SourceFile::new(path, text), registry, &mut diagnostics)
         else {
             return Err(Diagnostics::new(diagnostics));
@@ -156,14 +162,22 @@ impl Graph {
                 .help("add `outputs: [(name: \"…\")]`"),
             );
         }
+        let mut includes = Includes::new(path, registry, sources);
+        document.include_depth = includes.attach(&mut document.entries, &mut diagnostics);
         let mut graph = Self {
+            features: includes.features() | document.features(),
             document: Arc::new(document),
             shaders: HashMap::new(),
+            includes: includes.places,
             warnings: Vec::new(),
         };
-        let passes = graph.lower(&BTreeMap::new(), &mut diagnostics);
-        graph.load_shaders(&passes, sources, &mut diagnostics);
-        graph.unused(&passes, &mut diagnostics);
+        let mut found = Vec::new();
+        let instance = instantiate(&graph.document, Purpose::Load, &mut found);
+        // What is not known of a param may be in the one that could not be read.
+        found.retain(|found| !graph.document.broken.params || found.code != Code::UnknownParam);
+        diagnostics.append(&mut found);
+        graph.load_shaders(&instance.passes, sources, &mut diagnostics);
+        graph.unused(&instance, &mut diagnostics);
         let (errors, warnings): (Vec<_>, Vec<_>) = diagnostics
             .into_iter()
             .partition(|diagnostic| diagnostic.severity == Severity::Error);
@@ -193,6 +207,12 @@ impl Graph {
             .iter()
             .map(|output| output.name.as_str())
             .collect()
+    }
+
+    /// The features that the document and those that it includes require or have a fallback for. A device that has those of
+    /// them that its adapter offers runs the graph as well as it can be run there.
+    pub fn features(&self) -> wgpu::Features {
+        self.features
     }
 
     /// What is suspicious in the document.
@@ -228,132 +248,90 @@ impl Graph {
             })
     }
 
-    /// Lowers every pass with these values of params.
-    pub(crate) fn lower(
-        &self,
-        values: &BTreeMap<String, ParamValue>,
-        diagnostics: &mut Vec<Diagnostic>,
-    ) -> Vec<LoweredPass> {
-        let params = Params {
-            declared: &self.document.params,
-            values,
-        };
-        let lower = |pass: &document::PassEntry| {
-            let mut lowering = Lowering {
-                name: &pass.name,
-                shader: pass.shader.as_ref(),
-                bind: &pass.bind,
-                params: &params,
-                steps: Vec::new(),
-                scratch: Vec::new(),
-                diagnostics: Vec::new(),
-            };
-            pass.body.lower(&mut lowering);
-            diagnostics.append(&mut lowering.diagnostics);
-            LoweredPass {
-                name: pass.name.clone(),
-                kind: pass.kind,
-                steps: lowering.steps,
-                scratch: lowering.scratch,
-                run: pass.run.clone(),
-                overwrites: pass.overwrites.clone(),
-            }
-        };
-        self.document.passes.iter().map(lower).collect()
-    }
-
     fn load_shaders(
         &mut self,
         passes: &[LoweredPass],
         sources: &dyn Sources,
         diagnostics: &mut Vec<Diagnostic>,
     ) {
-        let path = self.document.file.name.to_string();
-        let mut files = ShaderFiles::new(sources, &path);
-        for name in passes
-            .iter()
-            .flat_map(|pass| &pass.steps)
-            .filter_map(program)
-            .filter_map(|program| program.shader.as_ref())
-        {
-            if self.shaders.contains_key(&name.value) {
-                continue;
-            }
-            match files.expand(name, &name.span).and_then(Shader::new) {
-                Ok(shader) => {
-                    self.shaders
-                        .insert(name.value.clone(), Some(Arc::new(shader)));
+        let mut files = ShaderFiles::new(sources);
+        for pass in passes {
+            let programs = pass.steps.iter().filter_map(Step::program);
+            for name in programs.filter_map(|program| program.shader.as_ref()) {
+                let key = (Arc::clone(&pass.scope.folder), name.value.clone());
+                if self.shaders.contains_key(&key) {
+                    continue;
                 }
-                Err(error) => {
-                    self.shaders.insert(name.value.clone(), None);
-                    diagnostics.push(error);
-                }
+                let expanded = files.expand(&key.0, name, &name.span);
+                let shader = match expanded.and_then(Shader::new) {
+                    Ok(shader) => Some(Arc::new(shader)),
+                    Err(error) => {
+                        diagnostics.push(error);
+                        None
+                    }
+                };
+                self.shaders.insert(key, shader);
             }
         }
     }
 
-    /// Warns of materials that nothing names.
-    fn unused(&self, passes: &[LoweredPass], diagnostics: &mut Vec<Diagnostic>) {
+    /// Warns of materials of the document that nothing names; those of included documents need not all be of use.
+    fn unused(&self, instance: &Instance, diagnostics: &mut Vec<Diagnostic>) {
         // With a shader missing nobody can say what it would have used.
         if !diagnostics.is_empty() {
             return;
         }
         let mut used: HashSet<String> = HashSet::new();
-        for step in passes.iter().flat_map(|pass| &pass.steps) {
-            names_of(step, &mut |name| {
-                used.insert(name.to_owned());
-            });
-            if let Some(shader) = program(step)
-                .and_then(|program| self.shaders.get(&program.shader.as_ref()?.value)?.as_ref())
-            {
-                used.extend(
-                    shader
-                        .module
-                        .global_variables
-                        .iter()
-                        .filter_map(|(_, global)| global.name.clone()),
-                );
+        let mut see = |name: &str| {
+            used.insert(name.to_owned());
+            // A layer is a part of its texture.
+            used.extend(split_layer(name).map(|(whole, _)| whole.to_owned()));
+        };
+        for pass in &instance.passes {
+            for step in &pass.steps {
+                step.clone().names(&mut |name| see(name));
+                let shader = step.program().and_then(|program| {
+                    let name = program.shader.as_ref()?.value.clone();
+                    let key = (Arc::clone(&pass.scope.folder), name);
+                    self.shaders.get(&key)?.as_ref()
+                });
+                for (_, global) in shader
+                    .iter()
+                    .flat_map(|shader| shader.module.global_variables.iter())
+                {
+                    see(pass
+                        .scope
+                        .global(global.name.as_deref().unwrap_or_default()));
+                }
             }
         }
-        for material in &self.document.materials {
-            let mut size = |name: &str| {
-                used.insert(name.to_owned());
-            };
+        for material in &instance.materials {
             match material {
-                Material::Texture(TextureEntry {
-                    size:
-                        Located {
-                            value: Size::Like(other),
-                            ..
-                        },
-                    ..
-                }) => size(other),
-                Material::Buffer(BufferEntry {
-                    count: Some(count), ..
-                }) => names_in(count, &mut size),
-                _ => {}
+                Material::Texture(texture) => {
+                    if let Size::Like(other) = &texture.size.value {
+                        see(other);
+                    }
+                }
+                Material::Buffer(buffer) => {
+                    if let Some(count) = &buffer.count {
+                        count.value.clone().names(&mut |name| see(name));
+                    }
+                }
+                Material::Sampler(_) => {}
             }
         }
         for output in &self.document.outputs {
-            used.insert(
-                output
-                    .material
-                    .as_ref()
-                    .unwrap_or(&output.name)
-                    .value
-                    .clone(),
-            );
+            see(output.material.as_ref().unwrap_or(&output.name));
         }
-        for material in &self.document.materials {
-            let mut names: Vec<&Located<String>> = vec![material.name()];
+        for material in &instance.materials {
+            let name = material.name();
+            let mut names: Vec<&Located<String>> = vec![name];
             if let Material::Texture(texture) = material {
                 names.extend(texture.views.iter().map(|view| &view.name));
             }
-            let is_used = |name: &&Located<String>| {
-                used.contains(name.as_str()) || used.contains(&name.replace('.', "_"))
-            };
-            if !names.iter().any(is_used) {
-                let name = material.name();
+            if name.span.file == self.document.file
+                && !names.iter().any(|name| used.contains(name.as_str()))
+            {
                 diagnostics.push(
                     Diagnostic::warning(
                         Code::Unused,
@@ -369,58 +347,5 @@ impl Graph {
     /// The place of the document itself, for mistakes of a request.
     pub(crate) fn place(&self) -> Span {
         self.document.file.span(0..0)
-    }
-}
-
-fn program(step: &Step) -> Option<&Program> {
-    match step {
-        Step::Draw(draw) => Some(&draw.program),
-        Step::Dispatch(dispatch) => Some(&dispatch.program),
-        _ => None,
-    }
-}
-
-/// Calls `each` with every resource that a count is derived from.
-fn names_in(count: &Count, each: &mut dyn FnMut(&str)) {
-    match count {
-        Count::PixelsOf(name) | Count::CountOf(name) => each(name),
-        Count::Times(a, b) => {
-            names_in(a, each);
-            names_in(b, each);
-        }
-        Count::Number(_) | Count::Pixels => {}
-    }
-}
-
-/// Calls `each` with every resource name that a step holds.
-fn names_of(step: &Step, each: &mut dyn FnMut(&str)) {
-    use crate::step::{DrawCall, Groups};
-    match step {
-        Step::Draw(draw) => {
-            draw.colors.iter().for_each(|color| each(&color.target));
-            draw.depth.iter().for_each(|depth| each(&depth.target));
-            match &draw.call {
-                DrawCall::Direct {
-                    count: vertices,
-                    instances,
-                } => {
-                    names_in(vertices, each);
-                    names_in(instances, each);
-                }
-                DrawCall::Indirect(name) => each(name),
-            }
-        }
-        Step::Dispatch(dispatch) => match &dispatch.groups {
-            Groups::Over(name) | Groups::Indirect(name) => each(name),
-            Groups::Fixed(_) => {}
-        },
-        Step::Copy { from, to } => {
-            each(from);
-            each(to);
-        }
-        Step::Clear { target, .. } => each(target),
-    }
-    if let Some(program) = program(step) {
-        program.bind.iter().for_each(|(_, name)| each(name));
     }
 }

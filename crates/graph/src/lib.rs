@@ -2,7 +2,7 @@
 //!
 //! A document names *materials* (textures, buffers, samplers) and *passes*; bindings and access come from the shaders by
 //! reflection, order from what passes read and write. The phases are one file each, in this order:
-//! [`document`], `resolve`, `wgsl` (reflection), `link`, `order`, `cull`, `schedule`, `lifetime`,
+//! [`document`] (with `include`), `instantiate`, `resolve`, `wgsl` (reflection), `link`, `order`, `cull`, `schedule`, `lifetime`,
 //! `conditions`, `pool`, `allocate`, `execute`.
 //! All before `allocate` are pure functions on plain data and need no GPU.
 //!
@@ -16,6 +16,8 @@ pub mod document;
 mod execute;
 pub mod gpu;
 mod graph;
+mod include;
+mod instantiate;
 mod lifetime;
 mod link;
 mod memory;
@@ -42,7 +44,11 @@ pub use document::{
 };
 pub use execute::{ExecuteError, Executor, Frame, FrameReport, Renewed};
 pub use graph::{Graph, ParamError};
-pub use plan::{Capture, CulledPass, OutputSummary, PassSummary, Plan, PlanRequest};
+pub use instantiate::Fallback;
+pub use plan::{
+    Capture, CulledPass, Field, Item, MemoryEntry, OutputSummary, PassSummary, Plan, PlanRequest,
+    Scalar,
+};
 pub use provider::{Import, NoProvider, Provided, Provider, ProviderError};
 pub use readback::{Content, Readback};
 pub use registry::{Lowering, PassKind, Registry};

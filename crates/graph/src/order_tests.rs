@@ -52,11 +52,7 @@ fn edges(order: &Order) -> BTreeSet<(usize, usize, Hazard)> {
 
 /// Calls `use_them` with some buffers.
 fn with_resources<T>(use_them: impl FnOnce(&Resources<'_>) -> T) -> T {
-    let values = BTreeMap::new();
-    let params = Params {
-        declared: &[],
-        values: &values,
-    };
+    let params = Params::default();
     let environment = Environment {
         viewport: [8, 8],
         limits: &wgpu::Limits::default(),

@@ -1,7 +1,12 @@
 //! [`Plan`]: a graph on a viewport with values for its params, checked against an adapter's limits. Pure data.
 
+mod imports;
+mod memory;
+mod origin;
 mod request;
 
+pub use memory::MemoryEntry;
+pub use origin::{Field, Item, Scalar};
 use request::Request;
 pub use request::{Capture, CulledPass, OutputSummary, PassSummary, PlanRequest};
 
@@ -9,14 +14,14 @@ use crate::{
     conditions::{Conditions, conditions},
     cull,
     diagnostics::{Code, Diagnostic, Diagnostics, Severity},
-    document::{Run, located::Located, params::ParamValue, value::Value},
+    document::{located::Located, params::ParamValue},
     graph::Graph,
+    instantiate::{Fallback, LoweredPass, Purpose, instantiate},
     lifetime::{Lifetime, lifetimes},
-    link::{Access, LinkedPass, Linker, Usage},
+    link::{Access, BindTarget, LinkedPass, LinkedStep, Linker},
     order::{Order, order, order_of_live},
-    pool::{Slot, Slots, bytes, slots},
-    provider::Import,
-    registry::Params,
+    pool::{Slots, slots},
+    provider::Provided,
     resolve::{
         Buffer, Environment, Origin, Part, Resource, ResourceId, ResourceKind, Resources, Target,
         resolve,
@@ -39,9 +44,12 @@ pub struct Plan {
     pub(crate) readable: Vec<(String, Target)>,
     pub(crate) conditions: Conditions,
     pub(crate) slots: Slots,
+    /// The resources that are also read as they were in the frame before.
+    pub(crate) histories: BTreeSet<ResourceId>,
     pub(crate) graph: Graph,
     pub(crate) request: Request,
     culled: Vec<CulledPass>,
+    fallbacks: Vec<Fallback>,
     warnings: Vec<Diagnostic>,
 }
 
@@ -52,7 +60,7 @@ impl Graph {
     /// Everything that is wrong, with its place.
     pub fn plan(&self, request: &PlanRequest<'_>) -> Result<Plan, Diagnostics> {
         let (plan, errors) = self.plan_all(request);
-        plan.ok_or_else(|| Diagnostics::new(errors))
+        plan.ok_or_else(|| self.diagnostics(errors))
     }
 
     /// The plan, or everything that is wrong, even if some of the document could not be read.
@@ -67,24 +75,34 @@ impl Graph {
         if !diagnostics.is_empty() {
             return (None, diagnostics);
         }
-        let params = Params {
-            declared: &self.document.params,
+        let outside = request.imports.keys().cloned();
+        let purpose = Purpose::Plan {
             values: &request.params,
+            features: request.features,
+            outside: outside.chain(request.provider.names()).collect(),
         };
+        let instance = instantiate(&self.document, purpose, &mut diagnostics);
+        let lacks = |diagnostic: &Diagnostic| diagnostic.code == Code::Feature;
+        if diagnostics.iter().any(lacks) {
+            // On a device that cannot run the graph nothing else is worth knowing.
+            diagnostics.retain(lacks);
+            return (None, diagnostics);
+        }
         let environment = Environment {
             viewport: request.viewport,
             limits: &request.limits,
             provider: request.provider,
             imports: &request.imports,
         };
-        let lowered = self.lower(&request.params, &mut diagnostics);
+        let lowered = &instance.passes;
         let mut resources = resolve(
-            &self.document.materials,
-            &self.document.broken.materials,
-            &params,
+            &instance.materials,
+            &instance.unread,
+            &instance.params,
             &environment,
             &mut diagnostics,
         );
+        resources.hide(&instance.hidden);
         for (name, bytes) in lowered.iter().flat_map(|pass| &pass.scratch) {
             let kind = ResourceKind::Buffer(Buffer {
                 count: Some(bytes / 4),
@@ -95,7 +113,7 @@ impl Graph {
         let mut linker = Linker::new(
             &mut resources,
             &self.shaders,
-            &params,
+            &instance.params,
             (&request.limits, request.features),
             &mut diagnostics,
         );
@@ -103,12 +121,13 @@ impl Graph {
         // How many passes stand above the first one with a mistake: what that one writes is not known.
         let mut sound: Option<usize> = None;
         for (index, pass) in lowered.iter().enumerate() {
-            if self.document.broken.first_pass == Some(index) {
+            if instance.first_broken == Some(index) {
                 sound.get_or_insert(passes.len());
             }
+            linker.enter(&pass.scope);
             match linker.pass(&pass.name, pass.kind, &pass.steps) {
                 Some(mut linked) => {
-                    linked.enabled = linker.enabled(&pass.run);
+                    linked.enabled = pass.enabled;
                     linked.run = pass.run.clone();
                     linker.overwrites(&mut linked, &pass.overwrites);
                     passes.push(linked);
@@ -120,13 +139,14 @@ impl Graph {
             let after = |capture: &&Capture| capture.after.as_deref() == Some(pass.name.as_str());
             let captures: BTreeSet<&Capture> = request.captures.iter().filter(after).collect();
             for capture in captures {
-                passes.extend(linker.capture(capture, &pass.run, self));
+                passes.extend(linker.capture(capture, pass, self));
             }
         }
+        linker.resources.nearby.clear();
         let layouts = std::mem::take(&mut linker.layouts);
         layouts.settle(&mut resources, &request.limits, &mut diagnostics);
-        self.check_captures(request, &mut diagnostics);
-        let complete = sound.is_none() && self.document.broken.first_pass.is_none();
+        check_captures(request, lowered, &mut diagnostics);
+        let complete = sound.is_none() && instance.first_broken.is_none();
         let judged = sound.unwrap_or(passes.len());
         let order = order(&passes, judged, &resources, &mut diagnostics);
         if complete {
@@ -199,7 +219,7 @@ impl Graph {
             of_base.textures |= textures;
             of_base.buffers |= buffers;
         }
-        check_imports(
+        imports::check(
             &passes,
             &schedule,
             &resources.list,
@@ -234,9 +254,11 @@ impl Graph {
             readable,
             conditions,
             slots,
+            histories: previous.iter().map(|(_, base)| *base).collect(),
             graph: self.clone(),
             request: Request::of(request),
             culled,
+            fallbacks: instance.fallbacks,
             warnings: diagnostics,
         };
         (Some(plan), Vec::new())
@@ -256,30 +278,6 @@ impl Graph {
                 Err(error) => Some(Diagnostic::error(Code::UnknownParam, error.to_string())),
             };
             diagnostics.extend(problem);
-        }
-    }
-
-    fn check_captures(&self, request: &PlanRequest<'_>, diagnostics: &mut Vec<Diagnostic>) {
-        let passes: Vec<&str> = self
-            .document
-            .passes
-            .iter()
-            .map(|pass| pass.name.as_str())
-            .collect();
-        for pass in request
-            .captures
-            .iter()
-            .filter_map(|capture| capture.after.as_deref())
-        {
-            if !passes.contains(&pass) {
-                diagnostics.push(
-                    Diagnostic::error(
-                        Code::Output,
-                        format!("there is no pass `{pass}` to read a material after"),
-                    )
-                    .suggest(pass, passes.iter().copied()),
-                );
-            }
         }
     }
 
@@ -343,6 +341,13 @@ impl Graph {
             // Those after a pass were entered as resources of their own; an output of that name is there already.
             let found = resources.find(&name);
             match found {
+                Some(target)
+                    if matches!(resources.get(target.id).kind, ResourceKind::Provided(_)) =>
+                {
+                    let help = format!("name a pass that binds it: `{name}@PASS`");
+                    let message = format!("`{name}` is provided, not written by a pass");
+                    diagnostics.push(Diagnostic::error(Code::Output, message).help(help));
+                }
                 Some(target) if !written(&target) => diagnostics.push(Diagnostic::error(
                     Code::Output,
                     format!("`{name}` cannot be read back: no pass writes it"),
@@ -372,6 +377,29 @@ impl Graph {
             }
         }
         readable
+    }
+}
+
+fn check_captures(
+    request: &PlanRequest<'_>,
+    lowered: &[LoweredPass],
+    diagnostics: &mut Vec<Diagnostic>,
+) {
+    let passes: Vec<&str> = lowered.iter().map(|pass| pass.name.as_str()).collect();
+    for pass in request
+        .captures
+        .iter()
+        .filter_map(|capture| capture.after.as_deref())
+    {
+        if !passes.contains(&pass) {
+            diagnostics.push(
+                Diagnostic::error(
+                    Code::Output,
+                    format!("there is no pass `{pass}` to read a material after"),
+                )
+                .suggest(pass, passes.iter().copied()),
+            );
+        }
     }
 }
 
@@ -439,50 +467,6 @@ fn never_written(
     }
 }
 
-/// What the host imports must have been made for what passes do with it.
-fn check_imports(
-    passes: &[LinkedPass],
-    schedule: &[usize],
-    resources: &[Resource],
-    request: &PlanRequest<'_>,
-    diagnostics: &mut Vec<Diagnostic>,
-) {
-    fn names<T>(of: &str, flags: impl Iterator<Item = (&'static str, T)>) -> String {
-        let names: Vec<String> = flags.map(|(name, _)| format!("{of}::{name}")).collect();
-        names.join(" | ")
-    }
-    for pass in schedule.iter().map(|&pass| &passes[pass]) {
-        for access in &pass.accesses {
-            let name = &resources[access.resource.0].name;
-            let lacking = match (request.imports.get(name).copied(), access.usage) {
-                (Some(Import::Texture { usage, .. }), Usage::Texture(needed))
-                    if !usage.contains(needed) =>
-                {
-                    names("TextureUsages", needed.difference(usage).iter_names())
-                }
-                (Some(Import::Buffer { usage, .. }), Usage::Buffer(needed))
-                    if !usage.contains(needed) =>
-                {
-                    names("BufferUsages", needed.difference(usage).iter_names())
-                }
-                _ => continue,
-            };
-            diagnostics.push(
-                Diagnostic::error(
-                    Code::Import,
-                    format!(
-                        "the import `{name}` was not made for what pass `{}` does",
-                        *pass.name
-                    ),
-                )
-                .at(access.span.clone(), "used here")
-                .at(pass.name.span.clone(), "by this pass")
-                .help(format!("the host must make it with {lacking} besides")),
-            );
-        }
-    }
-}
-
 /// Adds the usages by which memory is filled with a pattern: depths are cleared, all else is copied to.
 fn poisonable(kind: &ResourceKind, lifetime: &mut Lifetime) {
     match kind {
@@ -510,7 +494,12 @@ fn unreadable(resources: &Resources<'_>, target: &Target) -> Option<String> {
 
 impl Linker<'_, '_> {
     /// A copy of a material as it stands after the pass that was linked last.
-    fn capture(&mut self, capture: &Capture, run: &Run, graph: &Graph) -> Option<LinkedPass> {
+    fn capture(
+        &mut self,
+        capture: &Capture,
+        after: &LoweredPass,
+        graph: &Graph,
+    ) -> Option<LinkedPass> {
         let name = Located::new(capture.name(), graph.place());
         let from = Located::new(capture.material.clone(), graph.place());
         let Some(target) = self.resources.find(&from) else {
@@ -537,6 +526,13 @@ impl Linker<'_, '_> {
                 ResourceKind::Texture(copy)
             }
             ResourceKind::Buffer(buffer) => ResourceKind::Buffer(buffer.clone()),
+            ResourceKind::Provided(Provided { items: None, .. }) => {
+                let message = format!("`{}` cannot be read back", from.value);
+                let help =
+                    "its size is known only once it is built, and the copy is planned before";
+                self.report(Diagnostic::error(Code::Output, message).help(help));
+                return None;
+            }
             ResourceKind::Provided(_) => ResourceKind::Buffer(Buffer::default()),
             ResourceKind::Sampler(_) => {
                 self.diagnostics.push(Diagnostic::error(
@@ -552,20 +548,9 @@ impl Linker<'_, '_> {
             to: name.clone(),
         }];
         let mut pass = self.pass(&name, CAPTURE, &steps)?;
-        pass.enabled = self.enabled(run);
-        pass.run = run.clone();
+        pass.enabled = after.enabled;
+        pass.run = after.run.clone();
         Some(pass)
-    }
-
-    /// The value of the param that a pass is run by.
-    fn enabled(&mut self, run: &Run) -> bool {
-        match run {
-            Run::When(param) => {
-                let param = Value::Param(param.clone());
-                self.params.value(&param, self.diagnostics).unwrap_or(true)
-            }
-            _ => true,
-        }
     }
 
     /// Takes the author's word that a pass writes all of some resources.
@@ -626,6 +611,11 @@ impl Plan {
         &self.culled
     }
 
+    /// The params that got another value because the device lacks a feature.
+    pub fn fallbacks(&self) -> &[Fallback] {
+        &self.fallbacks
+    }
+
     /// The provided resources that live passes bind; only these are built.
     pub fn provided(&self) -> Vec<&str> {
         self.lifetimes
@@ -658,35 +648,6 @@ impl Plan {
             }
         };
         self.readable.iter().map(summary).collect()
-    }
-
-    /// Bytes of the graph's own textures and buffers. One that is also read as it was in the frame before takes its size twice.
-    pub fn memory_bytes(&self) -> u64 {
-        let slots = self.slots.list.iter().map(|slot| self.slot_bytes(slot));
-        slots.fold(0, u64::saturating_add)
-    }
-
-    /// Bytes that would be needed besides if no two resources shared memory.
-    pub fn saved_bytes(&self) -> u64 {
-        let of_slot =
-            |slot: &Slot| (slot.tenants.len() as u64 - 1).saturating_mul(self.slot_bytes(slot));
-        self.slots
-            .list
-            .iter()
-            .map(of_slot)
-            .fold(0, u64::saturating_add)
-    }
-
-    fn slot_bytes(&self, slot: &Slot) -> u64 {
-        let tenant = slot.tenants[0];
-        bytes(&self.resources[tenant.0]).saturating_mul(self.versions(tenant) as u64)
-    }
-
-    /// How many allocations a resource has: two if it is also read as it was in the frame before.
-    pub(crate) fn versions(&self, id: ResourceId) -> usize {
-        let is_previous =
-            |other: &ResourceId| self.resources[other.0].origin == Origin::Previous(id);
-        1 + usize::from(self.lifetimes.keys().any(is_previous))
     }
 
     /// The position of a pass in the schedule.

@@ -44,56 +44,54 @@ impl Content {
         }
     }
 
-    /// Texels of an R8Uint, R16Uint or R32Uint texture, or the words of a buffer.
+    /// Channels of the texels of a `Uint` texture, one texel after the other, or the words of a buffer.
     pub fn as_u32(&self) -> Option<Vec<u32>> {
-        let words = |bytes: &[u8]| {
-            bytes
-                .chunks_exact(4)
-                .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-                .collect()
-        };
         match self {
-            Self::Buffer(bytes) => Some(words(bytes)),
-            Self::Texture { format, bytes, .. } => match format {
-                wgpu::TextureFormat::R8Uint => Some(bytes.iter().map(|&b| u32::from(b)).collect()),
-                wgpu::TextureFormat::R16Uint => Some(
-                    bytes
-                        .chunks_exact(2)
-                        .map(|b| u32::from(u16::from_le_bytes([b[0], b[1]])))
-                        .collect(),
-                ),
-                wgpu::TextureFormat::R32Uint => Some(words(bytes)),
-                _ => None,
-            },
+            Self::Buffer(bytes) => Some(bytes.chunks_exact(4).map(unsigned).collect()),
+            Self::Texture { .. } => self.channels(Kind::Uint, unsigned),
         }
     }
 
-    /// Channels of a texture of 32-bit floats or depths, of R8Unorm or R16Float, one after the other.
+    /// Channels of the texels of a `Sint` texture, one texel after the other.
+    pub fn as_i32(&self) -> Option<Vec<i32>> {
+        self.channels(Kind::Sint, signed)
+    }
+
+    /// Channels of the texels of a texture of floats, depths or normalised integers, one texel after the other, in the order
+    /// red, green, blue, alpha. Those of an sRGB texture come as they are stored.
     pub fn as_f32(&self) -> Option<Vec<f32>> {
+        let float = |bytes: &[u8]| match *bytes {
+            [a, b] => half::f16::from_le_bytes([a, b]).to_f32(),
+            _ => f32::from_bits(unsigned(bytes)),
+        };
+        let greatest =
+            |bytes: &[u8], sign: u32| ((1u64 << (8 * bytes.len() as u32 - sign)) - 1) as f32;
+        let unorm = |bytes: &[u8]| unsigned(bytes) as f32 / greatest(bytes, 0);
+        // The least integer is the same as the one above it: -1.
+        let snorm = |bytes: &[u8]| (signed(bytes) as f32 / greatest(bytes, 1)).max(-1.0);
+        let mut values = self
+            .channels(Kind::Float, float)
+            .or_else(|| self.channels(Kind::Unorm, unorm))
+            .or_else(|| self.channels(Kind::Snorm, snorm))?;
+        if let Self::Texture {
+            format: wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Bgra8UnormSrgb,
+            ..
+        } = self
+        {
+            values
+                .chunks_exact_mut(4)
+                .for_each(|texel| texel.swap(0, 2));
+        }
+        Some(values)
+    }
+
+    /// The channels of a texture whose format is of this kind.
+    fn channels<T>(&self, kind: Kind, decode: impl Fn(&[u8]) -> T) -> Option<Vec<T>> {
         let Self::Texture { format, bytes, .. } = self else {
             return None;
         };
-        match format {
-            wgpu::TextureFormat::R32Float
-            | wgpu::TextureFormat::Rg32Float
-            | wgpu::TextureFormat::Rgba32Float
-            | wgpu::TextureFormat::Depth32Float => Some(
-                bytes
-                    .chunks_exact(4)
-                    .map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-                    .collect(),
-            ),
-            wgpu::TextureFormat::R8Unorm => {
-                Some(bytes.iter().map(|&b| f32::from(b) / 255.0).collect())
-            }
-            wgpu::TextureFormat::R16Float => Some(
-                bytes
-                    .chunks_exact(2)
-                    .map(|b| half::f16::from_le_bytes([b[0], b[1]]).to_f32())
-                    .collect(),
-            ),
-            _ => None,
-        }
+        let (of, width) = layout(*format)?;
+        (of == kind).then(|| bytes.chunks_exact(width).map(decode).collect())
     }
 }
 
@@ -111,6 +109,51 @@ enum Source {
         row: u32,
     },
     Buffer(wgpu::Buffer),
+}
+
+/// What the channels of a format are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Uint,
+    Sint,
+    Unorm,
+    Snorm,
+    Float,
+}
+
+/// Kind and bytes of each channel; `None` for packed and compressed formats.
+fn layout(format: wgpu::TextureFormat) -> Option<(Kind, usize)> {
+    use wgpu::TextureFormat as F;
+    Some(match format {
+        F::R8Uint | F::Rg8Uint | F::Rgba8Uint => (Kind::Uint, 1),
+        F::R16Uint | F::Rg16Uint | F::Rgba16Uint => (Kind::Uint, 2),
+        F::R32Uint | F::Rg32Uint | F::Rgba32Uint => (Kind::Uint, 4),
+        F::R8Sint | F::Rg8Sint | F::Rgba8Sint => (Kind::Sint, 1),
+        F::R16Sint | F::Rg16Sint | F::Rgba16Sint => (Kind::Sint, 2),
+        F::R32Sint | F::Rg32Sint | F::Rgba32Sint => (Kind::Sint, 4),
+        F::R8Unorm | F::Rg8Unorm | F::Rgba8Unorm | F::Rgba8UnormSrgb => (Kind::Unorm, 1),
+        F::Bgra8Unorm | F::Bgra8UnormSrgb => (Kind::Unorm, 1),
+        F::R16Unorm | F::Rg16Unorm | F::Rgba16Unorm | F::Depth16Unorm => (Kind::Unorm, 2),
+        F::R8Snorm | F::Rg8Snorm | F::Rgba8Snorm => (Kind::Snorm, 1),
+        F::R16Snorm | F::Rg16Snorm | F::Rgba16Snorm => (Kind::Snorm, 2),
+        F::R16Float | F::Rg16Float | F::Rgba16Float => (Kind::Float, 2),
+        F::R32Float | F::Rg32Float | F::Rgba32Float | F::Depth32Float => (Kind::Float, 4),
+        _ => return None,
+    })
+}
+
+/// A little-endian integer of one, two or four bytes.
+fn unsigned(bytes: &[u8]) -> u32 {
+    bytes
+        .iter()
+        .rev()
+        .fold(0, |value, byte| value << 8 | u32::from(*byte))
+}
+
+/// The same in two's complement.
+fn signed(bytes: &[u8]) -> i32 {
+    let unused = 32 - 8 * bytes.len() as u32;
+    (unsigned(bytes) << unused).cast_signed() >> unused
 }
 
 /// A readback under way.
@@ -275,5 +318,48 @@ impl Pending {
             name: self.name,
             content,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wgpu::TextureFormat as F;
+
+    fn texels(format: F, bytes: &[u8]) -> Content {
+        Content::Texture {
+            format,
+            size: [1, 1],
+            bytes: bytes.to_vec(),
+        }
+    }
+
+    #[test]
+    fn integers_of_every_width_keep_their_sign() {
+        assert_eq!(texels(F::Rg8Uint, &[1, 255]).as_u32().unwrap(), [1, 255]);
+        assert_eq!(texels(F::R16Uint, &[1, 2]).as_u32().unwrap(), [0x0201]);
+        assert_eq!(texels(F::R8Sint, &[0x80]).as_i32().unwrap(), [-128]);
+        assert_eq!(texels(F::R16Sint, &[0xff, 0xff]).as_i32().unwrap(), [-1]);
+        let least = texels(F::R32Sint, &[0, 0, 0, 0x80]);
+        assert_eq!(least.as_i32().unwrap(), [i32::MIN]);
+        assert_eq!((least.as_u32(), least.as_f32()), (None, None));
+    }
+
+    #[test]
+    fn normalised_integers_reach_both_ends() {
+        let ends = texels(F::Rg8Snorm, &[0x80, 0x7f]).as_f32().unwrap();
+        assert_eq!(ends, [-1.0, 1.0]);
+        assert_eq!(
+            texels(F::Depth16Unorm, &[255, 255]).as_f32().unwrap(),
+            [1.0]
+        );
+        let blue_first = texels(F::Bgra8Unorm, &[255, 0, 0, 255]).as_f32().unwrap();
+        assert_eq!(blue_first, [0.0, 0.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn half_floats_are_read() {
+        let halves = texels(F::Rg16Float, &[0x00, 0x3c, 0x00, 0xc0]);
+        assert_eq!(halves.as_f32().unwrap(), [1.0, -2.0]);
     }
 }

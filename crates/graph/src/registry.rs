@@ -12,9 +12,10 @@ use crate::{
     step::{Program, Step},
 };
 use serde::de::DeserializeOwned;
-use std::{collections::BTreeMap, fmt, sync::Arc};
+use std::{fmt, sync::Arc};
 
-/// The body of a pass of some kind. Its fields are what the RON entry holds beside `name`, `shader` and `bind`.
+/// The body of a pass of some kind. Its fields are what the RON entry holds beside `name`, `shader`, `bind`,
+/// `run`, `overwrites` and `repeat`.
 pub trait PassKind: fmt::Debug + Send + Sync {
     /// Says which GPU work the pass is, in order. Called without a GPU, more than once; it must depend on nothing but the
     /// body and the params, and the shaders it names must not depend on params.
@@ -27,7 +28,7 @@ pub struct Lowering<'a> {
     pub(crate) name: &'a Located<String>,
     pub(crate) shader: Option<&'a Located<String>>,
     pub(crate) bind: &'a [(Located<String>, Located<String>)],
-    pub(crate) params: &'a Params<'a>,
+    pub(crate) params: &'a Params,
     pub(crate) steps: Vec<Step>,
     pub(crate) scratch: Vec<(String, u64)>,
     pub(crate) diagnostics: Vec<Diagnostic>,
@@ -89,20 +90,46 @@ impl Lowering<'_> {
 }
 
 /// The params of a document with the values of one plan.
-#[derive(Debug)]
-pub struct Params<'a> {
-    pub(crate) declared: &'a [Param],
-    pub(crate) values: &'a BTreeMap<String, ParamValue>,
+#[derive(Clone, Debug, Default)]
+pub struct Params {
+    pub(crate) list: Vec<BoundParam>,
 }
 
-impl Params<'_> {
+/// A param with its value.
+#[derive(Clone, Debug)]
+pub(crate) struct BoundParam {
+    pub param: Param,
+    pub value: ParamValue,
+    /// The param of the root document whose value this is; an included document may have been given a value of its own.
+    pub root: Option<String>,
+    /// Where the value was asked for: it is not the default, nor that of a fallback.
+    pub asked: Option<Asked>,
+}
+
+/// Who asked for a param's value.
+#[derive(Clone, Debug)]
+pub(crate) enum Asked {
+    /// The host, or the user on the command line.
+    Request,
+    /// An including document, at this place.
+    Include(Span),
+}
+
+impl Params {
     /// The declaration and the value of a param.
     pub fn get(&self, name: &str) -> Option<(&Param, &ParamValue)> {
-        let param = self
-            .declared
+        let bound = self.bound(name)?;
+        Some((&bound.param, &bound.value))
+    }
+
+    pub(crate) fn bound(&self, name: &str) -> Option<&BoundParam> {
+        self.list
             .iter()
-            .find(|param| param.name.value == name)?;
-        Some((param, self.values.get(name).unwrap_or(&param.default)))
+            .find(|bound| bound.param.name.value == name)
+    }
+
+    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
+        self.list.iter().map(|bound| bound.param.name.as_str())
     }
 
     pub(crate) fn value<T: FromParam>(
@@ -115,14 +142,13 @@ impl Params<'_> {
             Value::Param(name) => name,
         };
         let Some((param, value)) = self.get(name) else {
-            let known = self.declared.iter().map(|param| param.name.as_str());
             diagnostics.push(
                 Diagnostic::error(
                     Code::UnknownParam,
                     format!("no param is called `{}`", name.value),
                 )
                 .at(name.span.clone(), "")
-                .suggest(name, known),
+                .suggest(name, self.names()),
             );
             return None;
         };
@@ -205,7 +231,8 @@ impl Registry {
         registry
     }
 
-    /// Adds a kind under the tag that documents write; a kind of that tag that is already there is replaced.
+    /// Adds a kind under the tag that documents write; a kind of that tag that is already there is replaced. `Include` and
+    /// `Group` are no kinds and stay what they are.
     pub fn register<K: PassKind + DeserializeOwned + 'static>(&mut self, tag: &'static str) {
         self.kinds.retain(|kind| kind.name != tag);
         let parse: Parse = |fields, whole| Ok(Arc::new(from_fields::<K>(fields, whole)?));

@@ -8,6 +8,7 @@ use crate::{
         located::Located,
         materials::{BufferEntry, Count, Material, SamplerEntry, TextureEntry},
     },
+    instantiate::split_layer,
     provider::{Import, Provided, Provider},
     registry::Params,
     source::Span,
@@ -135,6 +136,10 @@ pub(crate) struct Resources<'a> {
     spelt: HashMap<String, String>,
     /// Declared, but with a mistake that was reported; nothing more is said about them.
     broken: HashSet<String>,
+    /// What unknown names begin with that are no mistake, because an include that would have brought them has one.
+    hidden: Vec<String>,
+    /// What the document that is looked at calls some of them.
+    pub nearby: Vec<String>,
     /// Last frame's versions, by the resource that they are versions of.
     previous: HashMap<ResourceId, ResourceId>,
     provider: &'a dyn Provider,
@@ -152,7 +157,7 @@ pub(crate) struct Environment<'a> {
 pub(crate) fn resolve<'a>(
     materials: &[Material],
     unread: &[String],
-    params: &Params<'_>,
+    params: &Params,
     environment: &Environment<'a>,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Resources<'a> {
@@ -161,6 +166,8 @@ pub(crate) fn resolve<'a>(
         names: HashMap::new(),
         spelt: HashMap::new(),
         broken: HashSet::new(),
+        hidden: Vec::new(),
+        nearby: Vec::new(),
         previous: HashMap::new(),
         provider: environment.provider,
         viewport: environment.viewport,
@@ -224,8 +231,9 @@ pub(crate) fn previous_of(name: &str) -> Option<&str> {
 }
 
 /// A name as a WGSL identifier.
-fn spelling(name: &str) -> String {
-    name.replace(['.', '@', ' '], "_")
+pub(crate) fn spelling(name: &str) -> String {
+    // `cascade[0].depth` is `cascade_0_depth`.
+    name.replace(['.', '@', ' ', '['], "_").replace(']', "")
 }
 
 fn size_error(name: &Located<String>, span: &Span, what: &str, help: &str) -> Diagnostic {
@@ -355,14 +363,21 @@ impl Resources<'_> {
 
     /// Whether a name, or a shader's spelling of one, is that of a material with a mistake that was reported.
     pub fn is_broken(&self, name: &str) -> bool {
-        self.broken.contains(name)
+        let mut hidden = self.hidden.iter();
+        self.broken.contains(name) || hidden.any(|prefix| name.starts_with(prefix))
+    }
+
+    /// From here on, unknown names that begin with one of these are not reported.
+    pub fn hide(&mut self, prefixes: &[String]) {
+        let spelt = prefixes.iter().map(|prefix| spelling(prefix));
+        self.hidden.extend(prefixes.iter().cloned().chain(spelt));
     }
 
     /// Adds the buffers, each after those that its count refers to.
     fn add_buffers(
         &mut self,
         materials: &[Material],
-        params: &Params<'_>,
+        params: &Params,
         diagnostics: &mut Vec<Diagnostic>,
     ) {
         let mut waiting: Vec<&BufferEntry> = materials
@@ -407,7 +422,7 @@ impl Resources<'_> {
     fn add_buffer(
         &mut self,
         entry: &BufferEntry,
-        params: &Params<'_>,
+        params: &Params,
         diagnostics: &mut Vec<Diagnostic>,
     ) {
         let count = match &entry.count {
@@ -498,6 +513,9 @@ impl Resources<'_> {
         if let Some(of) = previous_of(name) {
             return self.find_previous(name, &of.to_owned());
         }
+        if let Some(layer) = self.layer(name) {
+            return layer;
+        }
         let provided = self.provider.describe(name)?;
         let id = self.add(name.to_owned(), None, ResourceKind::Provided(provided));
         Some(Target {
@@ -507,6 +525,24 @@ impl Resources<'_> {
                 layers: 0..1,
             },
         })
+    }
+
+    /// What `name[N]` stands for: layer N of a texture or view. `Some(None)` if there is such a texture without that layer.
+    fn layer(&mut self, name: &str) -> Option<Option<Target>> {
+        let (whole, layer) = split_layer(name)?;
+        let Target { id, part } = self.find(whole)?;
+        if !matches!(self.get(id).kind, ResourceKind::Texture(_)) {
+            return None;
+        }
+        let first = part.layers.start.checked_add(layer);
+        let first = first.filter(|first| *first < part.layers.end);
+        Some(first.map(|first| Target {
+            id,
+            part: Part {
+                mips: part.mips,
+                layers: first..first + 1,
+            },
+        }))
     }
 
     /// What a shader global of that name stands for.
@@ -525,24 +561,48 @@ impl Resources<'_> {
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Option<Target> {
         let found = self.find(name);
-        if let (None, Some(of)) = (&found, previous_of(name)) {
+        if found.is_some() || self.is_broken(name) {
+            return found;
+        }
+        if let Some(of) = previous_of(name) {
             return self.explain_previous(name, of, diagnostics);
         }
-        if found.is_none() && !self.is_broken(name) {
-            let known = self.known();
-            diagnostics.push(
-                Diagnostic::error(
-                    Code::UnknownResource,
-                    format!("nothing is called `{}`", name.value),
-                )
-                .at(
-                    name.span.clone(),
-                    "no material or provided resource has this name",
-                )
-                .suggest(name, known.iter().map(String::as_str)),
-            );
+        let whole = split_layer(name).map(|(whole, _)| whole.to_owned());
+        if whole.as_ref().is_some_and(|whole| self.is_broken(whole)) {
+            return None;
         }
-        found
+        if let Some(Target { id, part }) = whole.as_ref().and_then(|whole| self.find(whole)) {
+            let resource = self.get(id);
+            let what = match &resource.kind {
+                ResourceKind::Texture(_) => match part.layers.len() {
+                    1 => "it has one layer, [0]".to_owned(),
+                    count => format!("its layers are [0] to [{}]", count - 1),
+                },
+                other => format!("it is {}, only textures have layers", other.describe()),
+            };
+            let mut error = Diagnostic::error(Code::Size, format!("there is no `{}`", name.value))
+                .at(name.span.clone(), what);
+            if let Some(declared) = &resource.declared {
+                error = error.at(declared.clone(), "declared here");
+            }
+            diagnostics.push(error);
+        } else {
+            let known = self.known();
+            let error = Diagnostic::error(
+                Code::UnknownResource,
+                format!("nothing is called `{}`", name.value),
+            )
+            .at(
+                name.span.clone(),
+                "no material or provided resource has this name",
+            );
+            diagnostics.push(if name.contains("[index]") {
+                error.help("`index` is that of a repeat, and there is none around this: write a number, or `repeat: …`")
+            } else {
+                error.suggest(name, known.iter().map(String::as_str))
+            });
+        }
+        None
     }
 
     /// Says why there is no last frame's version of `of`.
@@ -573,6 +633,7 @@ impl Resources<'_> {
     pub fn known(&self) -> Vec<String> {
         let mut names: Vec<String> = self.names.keys().cloned().collect();
         names.sort();
+        names.splice(0..0, self.nearby.iter().cloned());
         let provided: Vec<String> = self
             .provider
             .names()
@@ -587,7 +648,7 @@ impl Resources<'_> {
     pub fn count(
         &mut self,
         count: &Count,
-        params: &Params<'_>,
+        params: &Params,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Option<u64> {
         match count {

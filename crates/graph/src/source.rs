@@ -144,10 +144,10 @@ impl fmt::Debug for Span {
     }
 }
 
-/// Where the shader called `name` may stand for a document at `document`, in the order in which it is looked for: beside
+/// Where the shader called `name` may stand for a document in `folder`, in the order in which it is looked for: beside
 /// the document, in the `shaders` folder beside the document's folder, in the store's `shaders` folder.
-pub(crate) fn shader_candidates(document: &str, name: &str) -> Vec<String> {
-    let folder = Path::new(document).parent().unwrap_or(Path::new(""));
+pub(crate) fn shader_candidates(folder: &str, name: &str) -> Vec<String> {
+    let folder = Path::new(folder);
     let file = format!("{name}.wgsl");
     let mut candidates = vec![join(folder, &file)];
     if let Some(parent) = folder.parent() {
@@ -172,6 +172,33 @@ pub(crate) fn import_candidates(importer: &str, path: &str) -> Vec<String> {
     candidates.push(format!("shaders/{path}"));
     candidates.dedup();
     candidates
+}
+
+/// Where `Include(graph: "path")` of the document `includer` may stand: beside it, and in the store's `pipelines`.
+pub(crate) fn include_candidates(includer: &str, path: &str) -> Vec<String> {
+    // One file under one name, or a cycle would not be seen as one.
+    let parts: Vec<&str> = path
+        .split('/')
+        .filter(|part| !matches!(*part, "" | "."))
+        .collect();
+    let path = parts.join("/");
+    let mut candidates = vec![
+        join(Path::new(folder_of(includer)), &path),
+        format!("pipelines/{path}"),
+    ];
+    candidates.dedup();
+    candidates
+}
+
+/// The folder of a path, empty for a bare name.
+pub(crate) fn folder_of(path: &str) -> &str {
+    let folder = Path::new(path).parent();
+    folder.and_then(Path::to_str).unwrap_or("")
+}
+
+/// Whether a path leads out of the folder it is looked for in (backslashes and drives: on Windows).
+pub(crate) fn escapes(path: &str) -> bool {
+    path.split('/').any(|part| part == "..") || path.starts_with('/') || path.contains(['\\', ':'])
 }
 
 fn join(folder: &Path, file: &str) -> String {

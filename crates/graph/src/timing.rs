@@ -17,7 +17,6 @@ use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
 pub struct FrameTiming {
     /// Times of the passes, in the order in which they ran.
     pub passes: Vec<PassTiming>,
-    gpu: Option<Duration>,
 }
 
 /// Times of one pass.
@@ -25,6 +24,8 @@ pub struct FrameTiming {
 pub struct PassTiming {
     /// The pass.
     pub name: String,
+    /// When its first step began on the GPU, from the frame's first begin on; `None` where `gpu` is.
+    pub begin: Option<Duration>,
     /// From the begin of its first step to the end of its last on the GPU; `None` where the adapter has no timestamps.
     pub gpu: Option<Duration>,
     /// Time that encoding it took on the CPU.
@@ -34,7 +35,13 @@ pub struct PassTiming {
 impl FrameTiming {
     /// From the first begin to the last end on the GPU. Not the sum of the passes: they may overlap, and there are gaps.
     pub fn gpu(&self) -> Option<Duration> {
-        self.gpu
+        let timed = || {
+            let passes = self.passes.iter();
+            passes.filter_map(|pass| Some((pass.begin?, pass.gpu?)))
+        };
+        let begin = timed().map(|(begin, _)| begin).min()?;
+        let end = timed().map(|(begin, length)| begin + length).max()?;
+        Some(end - begin)
     }
 
     /// Time that encoding all passes took on the CPU.
@@ -104,43 +111,55 @@ impl Timer {
         let results = std::iter::from_fn(|| self.profiler.process_finished_frame(self.period))
             .last()
             .unwrap_or_default();
-        let span = |queries: &[&GpuTimerQueryResult]| {
-            // Without timestamps between passes, copies and clears have none; their time falls between their neighbours'.
-            let times: Vec<_> = queries
-                .iter()
-                .filter_map(|query| query.time.clone())
-                .collect();
-            if times.is_empty() {
-                return None;
+        let first = Stretch::over(results.iter());
+        let of_pass = |(name, cpu): &(String, Duration)| {
+            let stretch = Stretch::over(results.iter().filter(|query| query.label == *name));
+            let length = stretch.and_then(Stretch::length);
+            PassTiming {
+                name: name.clone(),
+                begin: length.and(stretch).zip(first).and_then(|(pass, first)| {
+                    let offset = Stretch {
+                        begin: first.begin,
+                        end: pass.begin,
+                    };
+                    offset.length()
+                }),
+                gpu: length,
+                cpu: *cpu,
             }
-            let begin = times
-                .iter()
-                .map(|time| time.start)
-                .fold(f64::INFINITY, f64::min);
-            let end = times
-                .iter()
-                .map(|time| time.end)
-                .fold(f64::NEG_INFINITY, f64::max);
-            // Timestamps that run backwards are no measurement.
-            Duration::try_from_secs_f64(end - begin).ok()
-        };
-        let of_pass = |name: &str| {
-            results
-                .iter()
-                .filter(|query| query.label == name)
-                .collect::<Vec<_>>()
         };
         FrameTiming {
-            passes: passes
-                .iter()
-                .map(|(name, cpu)| PassTiming {
-                    name: name.clone(),
-                    gpu: span(&of_pass(name)),
-                    cpu: *cpu,
-                })
-                .collect(),
-            gpu: span(&results.iter().collect::<Vec<_>>()),
+            passes: passes.iter().map(of_pass).collect(),
         }
+    }
+}
+
+/// From the first begin to the last end of some queries, seconds of the GPU's clock.
+#[derive(Clone, Copy)]
+struct Stretch {
+    begin: f64,
+    end: f64,
+}
+
+impl Stretch {
+    /// `None` if no query has times: without timestamps between passes, copies and clears have none; their time falls between
+    /// their neighbours'.
+    fn over<'a>(queries: impl Iterator<Item = &'a GpuTimerQueryResult>) -> Option<Self> {
+        queries
+            .filter_map(|query| query.time.as_ref())
+            .map(|time| Self {
+                begin: time.start,
+                end: time.end,
+            })
+            .reduce(|all, one| Self {
+                begin: all.begin.min(one.begin),
+                end: all.end.max(one.end),
+            })
+    }
+
+    /// Timestamps that run backwards are no measurement.
+    fn length(self) -> Option<Duration> {
+        Duration::try_from_secs_f64(self.end - self.begin).ok()
     }
 }
 
@@ -270,6 +289,25 @@ impl Sources for CheckSources {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_frame_is_no_sum_of_its_passes() {
+        let ms = |ms| Some(Duration::from_millis(ms));
+        let pass = |begin, gpu| PassTiming {
+            name: String::new(),
+            begin,
+            gpu,
+            cpu: Duration::ZERO,
+        };
+        let of = |passes: &[_]| FrameTiming {
+            passes: passes.to_vec(),
+        };
+        let overlapping = of(&[pass(ms(0), ms(9)), pass(ms(4), ms(3)), pass(None, None)]);
+        assert_eq!(overlapping.gpu(), ms(9));
+        let apart = of(&[pass(ms(0), ms(2)), pass(ms(6), ms(2))]);
+        assert_eq!(apart.gpu(), ms(8));
+        assert_eq!(of(&[pass(None, None)]).gpu(), None);
+    }
 
     fn frames(frames: &[(u64, Option<u64>)]) -> Vec<(Duration, Option<Duration>)> {
         frames

@@ -6,7 +6,7 @@ use skiagraph_graph::{
     Capture, Content, ExecuteError, Executor, Frame, FrameReport, PlanRequest, Provider, gpu,
     timing::{Trust, check},
 };
-use std::sync::LazyLock;
+use std::{sync::LazyLock, time::Duration};
 use support::{Files, Triangle, load};
 
 static GPU: LazyLock<gpu::Gpu> =
@@ -563,6 +563,17 @@ fn every_pass_is_timed_or_the_reason_is_known() {
             assert!(
                 times.gpu() >= longest,
                 "the frame is as long as its longest pass"
+            );
+            let begins: Vec<_> = times.passes.iter().map(|pass| pass.begin).collect();
+            assert_eq!(begins.iter().min(), Some(&Some(Duration::ZERO)));
+            let ends = times
+                .passes
+                .iter()
+                .map(|pass| Some(pass.begin? + pass.gpu?));
+            assert_eq!(
+                ends.max(),
+                Some(times.gpu()),
+                "the frame ends with its last pass"
             );
         }
     }

@@ -15,8 +15,10 @@ const NORMALS: &str = "scene.normals";
 const NORMAL_INDICES: &str = "scene.normal_indices";
 const BVH_NODES: &str = "scene.bvh_nodes";
 const BVH_PRIMITIVES: &str = "scene.bvh_primitives";
-const CAMERA: &str = "camera";
-const LIGHT: &str = "light";
+/// The uniform of `shared/camera.wgsl`.
+pub const CAMERA: &str = "camera";
+/// The uniform of `shared/light.wgsl`.
+pub const LIGHT: &str = "light";
 
 const NAMES: [&str; 8] = [
     POSITIONS,

@@ -1,7 +1,8 @@
 //! `skiagraph check`: every diagnostic of some graphs, without a GPU.
 
 use crate::{
-    args::CheckArgs,
+    args::{CheckArgs, CheckFormat},
+    check_json::{CheckReport, FileReport},
     error::{CliError, note, print},
     preset::{self, Faults},
 };
@@ -18,30 +19,48 @@ use std::sync::Arc;
 pub fn check(args: &CheckArgs) -> Result<(), CliError> {
     let sources = preset::sources();
     let registry = skiagraph_passes::registry();
-    let mut faults = Faults::default();
-    let mut fine = Vec::new();
-    let mut missing = Vec::new();
+    let mut found = Vec::new();
     for argument in &args.graphs {
-        let path = match preset::locate(argument, &sources) {
-            Ok(path) => path,
-            Err(error) => {
-                missing.push(error.to_string());
-                continue;
-            }
+        let checked = match preset::locate(argument, &sources) {
+            Ok(path) => all_at_once(&path, &registry, &sources).map_err(Fault::Graph),
+            Err(error) => Err(Fault::Missing(error.to_string())),
         };
-        match all_at_once(&path, &registry, &sources) {
+        found.push((argument.as_str(), checked));
+    }
+    match args.format {
+        CheckFormat::Text => text(&found),
+        CheckFormat::Json => json(&found),
+    }
+}
+
+/// Why an argument cannot be used.
+enum Fault {
+    /// It names no graph.
+    Missing(String),
+    /// What is wrong with the graph.
+    Graph(Diagnostics),
+}
+
+/// The arguments in their order, and what came of them.
+type Found<'a> = (&'a str, Result<(Graph, Plan), Fault>);
+
+fn text(found: &[Found]) -> Result<(), CliError> {
+    let mut faults = Faults::default();
+    let mut fine = String::new();
+    let mut missing = Vec::new();
+    for (argument, checked) in found {
+        match checked {
             Ok((graph, plan)) => {
-                preset::warn(&graph, plan.warnings());
+                preset::warn(graph, plan.warnings());
                 let passes = plan.passes().len();
-                fine.push(format!(
-                    "{argument}: fine, {passes} {}\n",
-                    if passes == 1 { "pass" } else { "passes" }
-                ));
+                let noun = if passes == 1 { "pass" } else { "passes" };
+                fine.push_str(&format!("{argument}: fine, {passes} {noun}\n"));
             }
-            Err(diagnostics) => faults.add(argument, &diagnostics),
+            Err(Fault::Graph(diagnostics)) => faults.add(argument, diagnostics),
+            Err(Fault::Missing(message)) => missing.push(message.as_str()),
         }
     }
-    print(&fine.concat())?;
+    print(&fine)?;
     let faulty = faults.none_or_error();
     if missing.is_empty() {
         return faulty;
@@ -50,6 +69,26 @@ pub fn check(args: &CheckArgs) -> Result<(), CliError> {
         note(&error.to_string());
     }
     Err(CliError::Input(missing.join("\nerror: ")))
+}
+
+fn json(found: &[Found]) -> Result<(), CliError> {
+    let report = |(argument, checked): &Found| match checked {
+        Ok((graph, plan)) => {
+            let warnings = graph.warnings().iter().chain(plan.warnings());
+            FileReport::fine(argument, plan.passes().len(), warnings)
+        }
+        Err(Fault::Graph(diagnostics)) => FileReport::faulty(argument, diagnostics.iter()),
+        Err(Fault::Missing(message)) => FileReport::missing(argument, message.clone()),
+    };
+    print(&CheckReport::new(found.iter().map(report).collect()).to_json())?;
+    let faulty = found.iter().filter(|(_, checked)| checked.is_err()).count();
+    match faulty {
+        0 => Ok(()),
+        _ => Err(CliError::Input(format!(
+            "{faulty} of {} cannot be used; the diagnostics are on standard output",
+            found.len()
+        ))),
+    }
 }
 
 const VIEWPORT: [u32; 2] = [64, 64];

@@ -4,5 +4,6 @@ pub mod check;
 pub mod compare;
 pub mod doctor;
 pub mod presets;
+pub mod profile;
 pub mod run;
 pub mod scenes;

@@ -3,20 +3,23 @@
 use crate::{
     args::RunArgs,
     error::{CliError, print},
-    files::write_whole,
+    files::{check_writable, write_whole},
+    items,
     parse::{Encoding, Save},
-    picture::{self, Picture},
+    picture::{self, Picture, Planes},
     preset::{self, Faults, Preset},
     render,
     stage::Stage,
-    table::bytes,
+    table::{bytes, thousands},
 };
-use skiagraph_graph::{Capture, Content, Executor, Plan, PlanRequest, gpu::Gpu};
-use skiagraph_passes::SceneProvider;
+use skiagraph_graph::{Capture, Content, Executor, Item, Plan, PlanRequest, gpu::Gpu};
+use skiagraph_passes::{
+    SceneProvider,
+    provider::{CAMERA, LIGHT},
+};
+use skiagraph_scene::View;
 use std::{
     collections::{BTreeMap, BTreeSet},
-    path::{Component, PathBuf},
-    slice,
     sync::Arc,
 };
 
@@ -25,18 +28,19 @@ use std::{
 /// # Errors
 /// A faulty graph, a scene that cannot be loaded, no GPU, a file that cannot be written.
 pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
-    let sources = preset::sources();
-    let [preset] = &preset::load_all(slice::from_ref(&args.preset), &sources)?[..] else {
-        return Err(CliError::Input("no graph".into()));
-    };
-    preset::check_names(slice::from_ref(preset), &args.params)?;
-    let params = preset::params(preset, &args.params, args.map_size)?;
-    if args.scene.view.as_deref() == Some("all") && !args.save.is_empty() {
+    let RunArgs { graph: args, save } = args;
+    let (preset, params) = &preset::load_one(args, &preset::sources())?;
+    if args.scene.view.as_deref() == Some("all") && !save.is_empty() {
         return Err(CliError::Usage(
             "--save takes the picture of one view; give its name instead of `all`".into(),
         ));
     }
-    check_files(&args.save)?;
+    let writer = |save: &Save| format!("--save {}", capture(save).name());
+    let files: Vec<_> = save
+        .iter()
+        .map(|save| (writer(save), save.file.as_path()))
+        .collect();
+    check_writable(&files)?;
     let gpu = render::open(adapter)?;
     let stage = Stage::load(&args.scene)?;
     let scene = Arc::new(stage.scene);
@@ -45,7 +49,7 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
         provider.set_view(view, args.size.0);
         let mut request = PlanRequest::new(args.size.0, &provider);
         request.params = params.clone();
-        request.captures = captures(preset, &args.save);
+        request.captures = captures(preset, save);
         request.limits = gpu.device.limits();
         request.features = gpu.device.features();
         let plan = preset
@@ -53,7 +57,11 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
             .plan(&request)
             .map_err(|diagnostics| Faults::of(&preset.name, &diagnostics))?;
         preset::warn(&preset.graph, plan.warnings());
-        check_pictures(&plan, &args.save)?;
+        check_encodings(&plan, save)?;
+        let readings: Vec<Reading> = save
+            .iter()
+            .map(|save| Reading::of(&plan, save, view))
+            .collect();
         print(&format!(
             "{} on {}, view {}, {}\n{}",
             preset.name,
@@ -62,8 +70,8 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
             args.size,
             story(&plan)
         ))?;
-        let contents = render(&gpu, plan, &mut provider, &args.save, preset)?;
-        for save in &args.save {
+        let contents = render(&gpu, plan, &mut provider, save, preset)?;
+        for (save, reading) in save.iter().zip(readings) {
             let name = capture(save).name();
             let Some(content) = contents.get(&name) else {
                 return Err(CliError::Input(format!(
@@ -71,7 +79,7 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
                     preset.name
                 )));
             };
-            print(&write(save, content)?)?;
+            print(&write(save, content, &reading)?)?;
         }
     }
     Ok(())
@@ -84,43 +92,47 @@ fn capture(save: &Save) -> Capture {
     }
 }
 
-/// Refuses two saves into one file.
-fn check_files(saves: &[Save]) -> Result<(), CliError> {
-    let place = |save: &Save| -> PathBuf {
-        let parts = save.file.components();
-        parts.filter(|part| *part != Component::CurDir).collect()
-    };
-    for (index, save) in saves.iter().enumerate() {
-        if let Some(earlier) = saves[..index]
-            .iter()
-            .find(|other| place(other) == place(save))
-        {
-            return Err(CliError::Usage(format!(
-                "--save {} and --save {} both write {}; give each a file of its own",
-                capture(earlier).name(),
-                capture(save).name(),
-                save.file.display()
-            )));
-        }
+/// Refuses the picture of a buffer and the items of a texture before anything is rendered.
+fn check_encodings(plan: &Plan, saves: &[Save]) -> Result<(), CliError> {
+    let outputs = plan.outputs();
+    for save in saves {
+        let name = capture(save).name();
+        let Some(output) = outputs.iter().find(|output| output.name == name) else {
+            continue;
+        };
+        let refused = match (save.encoding, output.format) {
+            (Encoding::Png, None) => "is a buffer and has no picture; save it as .csv or .bin",
+            (Encoding::Csv, Some(_)) => "is a texture and has no items; save it as .png or .bin",
+            _ => continue,
+        };
+        return Err(CliError::Input(format!("`{name}` {refused}")));
     }
     Ok(())
 }
 
-/// Refuses the picture of a buffer before anything is rendered.
-fn check_pictures(plan: &Plan, saves: &[Save]) -> Result<(), CliError> {
-    let outputs = plan.outputs();
-    for save in saves.iter().filter(|save| save.encoding == Encoding::Png) {
+/// How the contents of one save are to be read.
+struct Reading {
+    /// The camera whose depths they are, if they are depths.
+    planes: Option<Planes>,
+    /// The items of a buffer.
+    item: Option<Item>,
+}
+
+impl Reading {
+    fn of(plan: &Plan, save: &Save, view: &View) -> Self {
         let name = capture(save).name();
-        if outputs
-            .iter()
-            .any(|output| output.name == name && output.format.is_none())
-        {
-            return Err(CliError::Input(format!(
-                "`{name}` is a buffer and has no picture; save it as .bin"
-            )));
+        let behind = plan.provided_behind(&name);
+        // A pass that also knows the light may well draw from there.
+        let is_camera = behind.contains(CAMERA) && !behind.contains(LIGHT);
+        let planes = || Planes {
+            near: view.near,
+            far: view.far,
+        };
+        Self {
+            planes: is_camera.then(planes),
+            item: plan.item(&name),
         }
     }
-    Ok(())
 }
 
 /// What of the saves the graph does not hand out anyway.
@@ -179,22 +191,35 @@ fn story(plan: &Plan) -> String {
     text
 }
 
-fn write(save: &Save, content: &Content) -> Result<String, CliError> {
+fn write(save: &Save, content: &Content, reading: &Reading) -> Result<String, CliError> {
     let file = save.file.display();
     match save.encoding {
         Encoding::Png => {
-            let picture = Picture::of(&save.material, content).map_err(|reason| {
-                CliError::Input(format!(
-                    "--save {}: `{}` {reason}",
-                    save.material, save.material
-                ))
-            })?;
+            let picture =
+                Picture::of(&save.material, content, reading.planes).map_err(|reason| {
+                    CliError::Input(format!(
+                        "--save {}: `{}` {reason}",
+                        save.material, save.material
+                    ))
+                })?;
             picture::save(&save.file, &picture.image)?;
             let [width, height] = picture.image.size;
             Ok(format!(
                 "  saved {file}: {width}x{height}, {}\n",
                 picture.legend
             ))
+        }
+        Encoding::Csv => {
+            let raw = content.bytes();
+            let table = items::to_csv(raw, reading.item.as_ref())
+                .map_err(|error| CliError::write(&save.file, error))?;
+            write_whole(&save.file, &table)?;
+            let (stride, what) = match &reading.item {
+                Some(item) => (item.stride, "items as the shader declares them"),
+                None => (4, "words, each read as u32, i32 and f32"),
+            };
+            let lines = thousands((raw.len() / stride.max(1)) as u64);
+            Ok(format!("  saved {file}: {lines} {what}\n"))
         }
         Encoding::Raw => {
             let (raw, what) = match content {

@@ -1,24 +1,25 @@
 //! Phase 1: the RON text becomes a document; nothing is looked up yet but pass kinds.
 
+mod entries;
 pub mod located;
 pub mod materials;
 pub mod params;
+mod requires;
 pub mod value;
 
 use crate::{
     diagnostics::{Code, Diagnostic},
-    registry::{PassKind, Registry},
+    registry::Registry,
     source::{SourceFile, Span},
 };
+pub(crate) use entries::{Entry, GroupEntry, IncludeEntry, PassEntry, Run};
 use located::{Field, Located, Node, from_fields};
 use materials::Material;
 use params::{Param, ParamEntry};
+use requires::RequireEntry;
+pub(crate) use requires::Requirement;
 use serde::Deserialize;
-use std::{
-    collections::{HashMap, HashSet},
-    sync::Arc,
-};
-use value::Pairs;
+use std::collections::HashMap;
 
 /// The only document format there is.
 const FORMAT: u32 = 1;
@@ -30,9 +31,23 @@ pub(crate) struct Document {
     pub description: String,
     pub params: Vec<Param>,
     pub materials: Vec<Material>,
-    pub passes: Vec<PassEntry>,
+    pub requires: Vec<Requirement>,
+    pub entries: Vec<Entry>,
     pub outputs: Vec<OutputEntry>,
+    /// How many includes there are one within the other below this document.
+    pub include_depth: usize,
     pub broken: Broken,
+}
+
+impl Document {
+    /// The features that the document itself requires or has a fallback for.
+    pub fn features(&self) -> wgpu::Features {
+        self.requires
+            .iter()
+            .fold(wgpu::Features::empty(), |all, requirement| {
+                all | requirement.flag
+            })
+    }
 }
 
 /// What could not be read, so that later phases do not take it for missing.
@@ -40,50 +55,6 @@ pub(crate) struct Document {
 pub(crate) struct Broken {
     pub params: bool,
     pub materials: Vec<String>,
-    /// How many passes stand above the first one that could not be read.
-    pub first_pass: Option<usize>,
-}
-
-/// In which frames a pass runs.
-#[derive(Clone, Debug, Default, Deserialize)]
-pub(crate) enum Run {
-    /// In every one.
-    #[default]
-    Always,
-    /// In the first one.
-    Once,
-    /// In those before which something changed that it reads.
-    OnChange,
-    /// In those in which a param is true.
-    When(Located<String>),
-}
-
-impl PartialEq for Run {
-    fn eq(&self, other: &Self) -> bool {
-        self.to_string() == other.to_string()
-    }
-}
-
-impl std::fmt::Display for Run {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::When(param) => write!(f, "When({:?})", param.value),
-            other => write!(f, "{other:?}"),
-        }
-    }
-}
-
-/// A pass: what every kind has, and the kind's own body.
-#[derive(Clone, Debug)]
-pub(crate) struct PassEntry {
-    pub name: Located<String>,
-    pub shader: Option<Located<String>>,
-    pub bind: Vec<(Located<String>, Located<String>)>,
-    pub run: Run,
-    /// What the author promises that the pass writes all of.
-    pub overwrites: Vec<Located<String>>,
-    pub kind: &'static str,
-    pub body: Arc<dyn PassKind>,
 }
 
 /// A result of the graph.
@@ -95,9 +66,10 @@ pub(crate) struct OutputEntry {
     pub material: Option<Located<String>>,
 }
 
-const SECTIONS: [&str; 6] = [
+const SECTIONS: [&str; 7] = [
     "format",
     "description",
+    "requires",
     "params",
     "materials",
     "passes",
@@ -138,8 +110,10 @@ pub(crate) fn parse(
         description: String::new(),
         params: Vec::new(),
         materials: Vec::new(),
-        passes: Vec::new(),
+        requires: Vec::new(),
+        entries: Vec::new(),
         outputs: Vec::new(),
+        include_depth: 0,
         broken: Broken::default(),
     };
     match sections
@@ -169,7 +143,7 @@ pub(crate) fn parse(
             document.description = text
         });
     }
-    for node in entries(sections.get("params"), diagnostics) {
+    for node in list(sections.get("params"), diagnostics) {
         let entry = node.parse::<ParamEntry>().and_then(|entry| {
             Param::from_entry(entry).map_err(|(name, why)| {
                 Diagnostic::error(
@@ -184,22 +158,22 @@ pub(crate) fn parse(
             None => document.broken.params = true,
         }
     }
-    for node in entries(sections.get("materials"), diagnostics) {
+    for node in list(sections.get("requires"), diagnostics) {
+        let entry = node.parse::<RequireEntry>();
+        let requirement =
+            entry.and_then(|entry| entry.resolve(&document.params, document.broken.params));
+        keep(requirement, diagnostics, |requirement| {
+            document.requires.push(requirement)
+        });
+    }
+    for node in list(sections.get("materials"), diagnostics) {
         match ok(material(&node), diagnostics) {
             Some(material) => document.materials.push(material),
             None => document.broken.materials.extend(name_of(&node)),
         }
     }
-    for node in entries(sections.get("passes"), diagnostics) {
-        match ok(pass(&node, registry), diagnostics) {
-            Some(pass) => document.passes.push(pass),
-            None => {
-                let index = document.passes.len();
-                document.broken.first_pass.get_or_insert(index);
-            }
-        }
-    }
-    for node in entries(sections.get("outputs"), diagnostics) {
+    document.entries = entries::read(sections.get("passes"), registry, diagnostics);
+    for node in list(sections.get("outputs"), diagnostics) {
         keep(node.parse(), diagnostics, |output| {
             document.outputs.push(output)
         });
@@ -207,11 +181,6 @@ pub(crate) fn parse(
     unique(
         "param",
         document.params.iter().map(|param| &param.name),
-        diagnostics,
-    );
-    unique(
-        "pass",
-        document.passes.iter().map(|pass| &pass.name),
         diagnostics,
     );
     unique(
@@ -285,7 +254,7 @@ fn sections(fields: Vec<Field>, diagnostics: &mut Vec<Diagnostic>) -> HashMap<St
     sections
 }
 
-fn entries(section: Option<&Node>, diagnostics: &mut Vec<Diagnostic>) -> Vec<Node> {
+fn list(section: Option<&Node>, diagnostics: &mut Vec<Diagnostic>) -> Vec<Node> {
     section
         .and_then(|node| ok(node.list(), diagnostics))
         .unwrap_or_default()
@@ -310,60 +279,6 @@ fn material(node: &Node) -> Result<Material, Diagnostic> {
         .at(tag.span.clone(), "")
         .suggest(&tag, KINDS)),
     }
-}
-
-fn pass(node: &Node, registry: &Registry) -> Result<PassEntry, Diagnostic> {
-    #[derive(Deserialize)]
-    struct Header {
-        name: Located<String>,
-        #[serde(default)]
-        shader: Option<Located<String>>,
-        #[serde(default)]
-        bind: Pairs,
-        #[serde(default)]
-        run: Run,
-        #[serde(default)]
-        overwrites: Vec<Located<String>>,
-    }
-    let Some((tag, body)) = node.variant() else {
-        return Err(
-            Diagnostic::error(Code::Syntax, "a pass begins with its kind")
-                .at(node.span.clone(), "for example `Compute(name: \"…\", …)`")
-                .suggest("", registry.kinds()),
-        );
-    };
-    let Some(kind) = registry.get(&tag) else {
-        return Err(Diagnostic::error(
-            Code::UnknownVariant,
-            format!("unknown pass kind `{}`", *tag),
-        )
-        .at(tag.span.clone(), "no pass kind of this name is registered")
-        .suggest(&tag, registry.kinds()));
-    };
-    let (header, own): (Vec<Field>, Vec<Field>) = body.fields()?.into_iter().partition(|field| {
-        ["name", "shader", "bind", "run", "overwrites"].contains(&field.name.as_str())
-    });
-    let header: Header = from_fields(&header, &tag.span)?;
-    let mut bound = HashSet::new();
-    for (global, _) in &header.bind.0 {
-        if !bound.insert(global.as_str()) {
-            return Err(Diagnostic::error(
-                Code::DuplicateName,
-                format!("`{}` is bound twice", **global),
-            )
-            .at(global.span.clone(), "the second one"));
-        }
-    }
-    let body = (kind.parse)(&own, &tag.span)?;
-    Ok(PassEntry {
-        name: header.name,
-        shader: header.shader,
-        bind: header.bind.0,
-        run: header.run,
-        overwrites: header.overwrites,
-        kind: kind.name,
-        body,
-    })
 }
 
 fn unique<'a>(

@@ -178,16 +178,19 @@ impl Param {
         {
             return Err((place, format!("no value can lie in {min}..{max}")));
         }
-        match param
-            .value_of(&entry.default.value)
-            .and_then(|value| param.check(&value).map(|()| value))
-        {
+        match param.read(&entry.default.value) {
             Ok(value) => {
                 param.default = value;
                 Ok(param)
             }
             Err(why) => Err((place, why)),
         }
+    }
+
+    /// The value that a document writes, if it fits.
+    pub(crate) fn read(&self, written: &Written) -> Result<ParamValue, String> {
+        let value = self.value_of(written)?;
+        self.check(&value).map(|()| value)
     }
 
     fn value_of(&self, written: &Written) -> Result<ParamValue, String> {
@@ -246,9 +249,7 @@ impl Param {
             }
             _ => Written::Number(number(text)?),
         };
-        let value = self.value_of(&written)?;
-        self.check(&value)?;
-        Ok(value)
+        self.read(&written)
     }
 
     /// Whether a value has the param's type and lies in its range.

@@ -1,12 +1,15 @@
 //! Values that several entries share: a literal or a param, comparison functions, named pairs.
 
 use super::located::{self, Located};
-use crate::resolve::previous;
+use crate::{
+    diagnostics::{Code, Diagnostic},
+    resolve::previous,
+};
 use serde::{
     Deserialize, Deserializer,
     de::{DeserializeOwned, MapAccess, Visitor},
 };
-use std::fmt;
+use std::{collections::HashSet, fmt, marker::PhantomData};
 
 /// A literal, or `Param("name")`.
 #[derive(Clone, Debug)]
@@ -92,26 +95,47 @@ impl<'de> Deserialize<'de> for Reference {
     }
 }
 
-/// A RON map of names to names in file order, duplicates kept (ron itself drops them without a word).
-#[derive(Clone, Debug, Default)]
-pub struct Pairs(pub Vec<(Located<String>, Located<String>)>);
+/// A RON map of names to values in file order, duplicates kept (ron itself drops them without a word).
+#[derive(Clone, Debug)]
+pub struct Map<V>(pub Vec<(Located<String>, V)>);
 
-impl<'de> Deserialize<'de> for Pairs {
+impl<V> Default for Map<V> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<V> Map<V> {
+    /// The entries, or the first key that is there twice.
+    pub(crate) fn unique(self, what: &str) -> Result<Vec<(Located<String>, V)>, Diagnostic> {
+        let mut seen = HashSet::new();
+        match self.0.iter().find(|(key, _)| !seen.insert(key.as_str())) {
+            Some((key, _)) => Err(Diagnostic::error(
+                Code::DuplicateName,
+                format!("`{}` is {what} twice", **key),
+            )
+            .at(key.span.clone(), "the second one")),
+            None => Ok(self.0),
+        }
+    }
+}
+
+impl<'de, V: DeserializeOwned> Deserialize<'de> for Map<V> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Map;
-        impl<'de> Visitor<'de> for Map {
-            type Value = Pairs;
+        struct Entries<V>(PhantomData<V>);
+        impl<'de, V: DeserializeOwned> Visitor<'de> for Entries<V> {
+            type Value = Map<V>;
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a map of names, {\"a\": \"b\", \"c\": Previous(\"d\"), …}")
+                f.write_str("a map of names, {\"a\": …}")
             }
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Pairs, A::Error> {
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Map<V>, A::Error> {
                 let mut pairs = Vec::new();
-                while let Some((global, Reference(name))) = map.next_entry()? {
-                    pairs.push((global, name));
+                while let Some(pair) = map.next_entry()? {
+                    pairs.push(pair);
                 }
-                Ok(Pairs(pairs))
+                Ok(Map(pairs))
             }
         }
-        deserializer.deserialize_map(Map)
+        deserializer.deserialize_map(Entries(PhantomData))
     }
 }

@@ -91,7 +91,8 @@ impl Linker<'_, '_> {
                 .any(|(_, global)| global.name.as_deref() == Some(bound.as_str()));
             if !exists
                 && program.shader.as_ref().is_some_and(|name| {
-                    name.span != pass.name.span || name.value == pass.name.value
+                    let own = self.scope.map_or(&pass.name.value, |scope| &scope.own_name);
+                    name.span != pass.name.span || name.value == *own
                 })
             {
                 let names: Vec<&str> = globals.iter().map(|global| global.name.as_str()).collect();
@@ -216,8 +217,8 @@ impl Linker<'_, '_> {
         }
         let target = match &bound {
             Some(name) => self.expect(name)?,
-            None if self.resources.is_broken(&global.name) => return None,
-            None => match self.resources.find_spelt(&global.name) {
+            None if self.resources.is_broken(self.global(&global.name)) => return None,
+            None => match self.resources.find_spelt(self.global(&global.name)) {
                 Some(target) => target,
                 None => {
                     self.unknown(global, pass);

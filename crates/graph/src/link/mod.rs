@@ -12,6 +12,8 @@ mod transfers;
 use crate::{
     diagnostics::{Code, Diagnostic, Severity},
     document::{Run, located::Located},
+    graph::Shaders,
+    instantiate::PassScope,
     registry::Params,
     resolve::{Origin, Part, Resource, ResourceId, Resources, Target},
     source::Span,
@@ -21,7 +23,7 @@ use crate::{
 pub(crate) use bindings::{BindTarget, LinkedProgram};
 use layouts::Layouts;
 use naga::ShaderStage;
-use std::{collections::HashMap, sync::Arc};
+use std::sync::Arc;
 
 /// A pass with its steps resolved.
 #[derive(Clone, Debug)]
@@ -141,8 +143,11 @@ pub(crate) enum LinkedGroups {
 /// What passes are linked against.
 pub(crate) struct Linker<'a, 'p> {
     pub resources: &'a mut Resources<'p>,
-    pub shaders: &'a HashMap<String, Option<Arc<Shader>>>,
-    pub params: &'a Params<'a>,
+    pub shaders: &'a Shaders,
+    /// The params of the document that the pass stands in.
+    pub params: &'a Params,
+    /// What the names of the pass's document mean; `None` for passes that no document holds.
+    pub scope: Option<&'a PassScope>,
     pub limits: &'a wgpu::Limits,
     pub features: wgpu::Features,
     pub diagnostics: &'a mut Vec<Diagnostic>,
@@ -152,8 +157,8 @@ pub(crate) struct Linker<'a, 'p> {
 impl<'a, 'p> Linker<'a, 'p> {
     pub fn new(
         resources: &'a mut Resources<'p>,
-        shaders: &'a HashMap<String, Option<Arc<Shader>>>,
-        params: &'a Params<'a>,
+        shaders: &'a Shaders,
+        params: &'a Params,
         (limits, features): (&'a wgpu::Limits, wgpu::Features),
         diagnostics: &'a mut Vec<Diagnostic>,
     ) -> Self {
@@ -161,6 +166,7 @@ impl<'a, 'p> Linker<'a, 'p> {
             resources,
             shaders,
             params,
+            scope: None,
             limits,
             features,
             diagnostics,
@@ -196,6 +202,13 @@ impl<'a, 'p> Linker<'a, 'p> {
         (self.errors() == before).then_some(pass)
     }
 
+    /// From here on, passes of this scope are linked.
+    pub fn enter(&mut self, scope: &'a PassScope) {
+        self.resources.nearby = scope.names();
+        self.scope = Some(scope);
+        self.params = &scope.params;
+    }
+
     fn errors(&self) -> usize {
         self.diagnostics
             .iter()
@@ -223,6 +236,14 @@ impl<'a, 'p> Linker<'a, 'p> {
 
     pub(crate) fn expect(&mut self, name: &Located<String>) -> Option<Target> {
         self.resources.expect(name, self.diagnostics)
+    }
+
+    /// The name in the whole graph of what a shader's global means in the pass.
+    pub(super) fn global<'n>(&self, name: &'n str) -> &'n str
+    where
+        'a: 'n,
+    {
+        self.scope.map_or(name, |scope| scope.global(name))
     }
 
     /// Last frame's version of a resource is there to be read.
@@ -334,7 +355,9 @@ impl<'a, 'p> Linker<'a, 'p> {
 
     pub(super) fn shader(&mut self, program: &Program) -> Option<Arc<Shader>> {
         let name = program.shader.as_ref()?;
-        let loaded = self.shaders.get(&name.value);
+        let folder = self.scope.map(|scope| Arc::clone(&scope.folder));
+        let key = (folder.unwrap_or_default(), name.value.clone());
+        let loaded = self.shaders.get(&key);
         if loaded.is_none() {
             // Those that the document names were loaded with it; this is a kind that names another one for other params.
             self.report(

@@ -9,7 +9,7 @@ use crate::{
 };
 
 impl Linker<'_, '_> {
-    /// Values of overridable constants: what the pass kind sets, else the param of that name.
+    /// Values of overridable constants: what the pass kind sets, else `index` of a repeat, else the param of that name.
     pub(super) fn constants(&mut self, program: &Program, shader: &Shader) -> Vec<(String, f64)> {
         let mut constants = Vec::new();
         for (name, key, has_default, span) in shader.overrides() {
@@ -18,7 +18,9 @@ impl Linker<'_, '_> {
                 .iter()
                 .find(|(constant, _)| constant == name)
                 .map(|(_, value)| *value);
-            let value = set.or_else(|| {
+            let index = self.scope.and_then(|scope| scope.index);
+            let index = index.filter(|_| name == "index").map(f64::from);
+            let value = set.or(index).or_else(|| {
                 let (param, value) = self.params.get(name)?;
                 match value {
                     ParamValue::F32(value) => Some(f64::from(*value)),
@@ -50,12 +52,6 @@ impl Linker<'_, '_> {
         let mut complete = true;
         for member in members {
             let Some((param, value)) = self.params.get(&member.name) else {
-                let known: Vec<&str> = self
-                    .params
-                    .declared
-                    .iter()
-                    .map(|param| param.name.as_str())
-                    .collect();
                 self.report(
                     Diagnostic::error(
                         Code::UnknownParam,
@@ -65,13 +61,15 @@ impl Linker<'_, '_> {
                         ),
                     )
                     .at(global.span.clone(), "")
-                    .help(match suggestion(&member.name, known) {
-                        Some(hint) => hint,
-                        None => format!(
-                            "declare it: `params: [(name: \"{}\", type: …, default: …)]`",
-                            member.name
-                        ),
-                    }),
+                    .help(
+                        match suggestion(&member.name, self.params.names()) {
+                            Some(hint) => hint,
+                            None => format!(
+                                "declare it: `params: [(name: \"{}\", type: …, default: …)]`",
+                                member.name
+                            ),
+                        },
+                    ),
                 );
                 complete = false;
                 continue;

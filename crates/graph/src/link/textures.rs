@@ -92,9 +92,11 @@ impl Linker<'_, '_> {
                             .bind
                             .iter()
                             .find(|(global, _)| global.value == sampler);
-                        let target = self
-                            .resources
-                            .find_spelt(bound.map_or(&sampler, |(_, name)| &name.value));
+                        let name = match bound {
+                            Some((_, name)) => &name.value,
+                            None => self.global(&sampler),
+                        };
+                        let target = self.resources.find_spelt(name);
                         let linear = target.is_some_and(|target| {
                             matches!(&self.resources.get(target.id).kind, ResourceKind::Sampler(entry)
                                 if entry.filter == Filter::Linear && entry.compare.is_none())

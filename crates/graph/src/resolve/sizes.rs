@@ -11,7 +11,7 @@ use std::collections::{HashMap, HashSet};
 /// Resolves sizes that may refer to each other.
 pub(super) struct Sizes<'a> {
     pub textures: HashMap<&'a str, &'a TextureEntry>,
-    pub params: &'a Params<'a>,
+    pub params: &'a Params,
     pub environment: &'a Environment<'a>,
     pub done: HashMap<&'a str, Option<[u32; 2]>>,
 }

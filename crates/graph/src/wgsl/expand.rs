@@ -4,7 +4,7 @@
 
 use crate::{
     diagnostics::{Code, Diagnostic, suggestion},
-    source::{SourceFile, Sources, Span, import_candidates, shader_candidates},
+    source::{SourceFile, Sources, Span, escapes, import_candidates, shader_candidates},
 };
 use std::{collections::HashMap, fmt::Write as _, ops::Range, sync::Arc};
 
@@ -43,23 +43,16 @@ impl Expanded {
     }
 }
 
-/// Whether a path leads out of the folder it is looked for in (backslashes and drives: on Windows).
-fn escapes(path: &str) -> bool {
-    path.split('/').any(|part| part == "..") || path.starts_with('/') || path.contains(['\\', ':'])
-}
-
-/// Reads shaders for one document, each file once.
+/// Reads shaders for a document and those that it includes, each file once.
 pub(crate) struct ShaderFiles<'a> {
     sources: &'a dyn Sources,
-    document: &'a str,
     read: HashMap<String, Option<SourceFile>>,
 }
 
 impl<'a> ShaderFiles<'a> {
-    pub fn new(sources: &'a dyn Sources, document: &'a str) -> Self {
+    pub fn new(sources: &'a dyn Sources) -> Self {
         Self {
             sources,
-            document,
             read: HashMap::new(),
         }
     }
@@ -83,9 +76,14 @@ impl<'a> ShaderFiles<'a> {
         Ok(None)
     }
 
-    /// The shader `name` with its imports in place; `wanted` is where the document asks for it.
-    pub fn expand(&mut self, name: &str, wanted: &Span) -> Result<Expanded, Diagnostic> {
-        let candidates = shader_candidates(self.document, name);
+    /// The shader `name` of a document in `folder` with its imports in place; `wanted` is where the document asks for it.
+    pub fn expand(
+        &mut self,
+        folder: &str,
+        name: &str,
+        wanted: &Span,
+    ) -> Result<Expanded, Diagnostic> {
+        let candidates = shader_candidates(folder, name);
         let missing = |message: String| {
             Diagnostic::error(Code::MissingFile, message).at(wanted.clone(), "asked for here")
         };

@@ -1,0 +1,286 @@
+//! A profile as text: conditions, passes, memory, and how it stands to an older one.
+
+use crate::{
+    profile::{
+        baseline::{Comparison, Difference, FEWEST, Ratio, Verdict},
+        record::{Conditions, Material, PassProfile, Profile, Series},
+    },
+    table::{Look, add_row, bytes, frames, ms, new_table, untimed},
+};
+
+impl Profile {
+    /// What is printed on standard output.
+    pub fn report(&self) -> String {
+        let mut text = conditions(self);
+        text.push_str(&format!("\nTimes, ms\n{}\n", self.times()));
+        let wall = &self.frame.wall_ms;
+        text.push_str(&format!(
+            "Wall time from the start of encoding until the GPU was done: least {}, median {}, p95 {}, greatest {}\n",
+            ms(wall.min),
+            ms(wall.median),
+            ms(wall.p95),
+            ms(wall.max)
+        ));
+        text.extend(self.notes().map(|note| format!("{note}\n")));
+        text.push_str(&format!("\nMemory\n{}\n", memory(&self.memory.materials)));
+        text.push_str(&format!(
+            "Materials take {}; sharing saves {}\n",
+            bytes(self.memory.bytes),
+            bytes(self.memory.saved_bytes)
+        ));
+        if let Some(baseline) = &self.baseline {
+            text.push_str(&comparison(baseline, self));
+        }
+        text
+    }
+
+    fn times(&self) -> String {
+        let header = [
+            "pass",
+            "kind",
+            "GPU min",
+            "median",
+            "p95",
+            "max",
+            "of frame",
+            "CPU median",
+        ];
+        let mut table = new_table(Look::Terminal, &header, 2);
+        for PassProfile {
+            name,
+            kind,
+            gpu_ms,
+            share,
+            cpu_ms,
+        } in &self.passes
+        {
+            let share = share.map_or("–".into(), |share| format!("{:.1} %", share * 100.0));
+            add_row(
+                &mut table,
+                row(name, kind, gpu_ms.as_ref(), share, cpu_ms),
+                2,
+            );
+        }
+        let frame = &self.frame;
+        let whole = row(
+            "whole frame",
+            "",
+            frame.gpu_ms.as_ref(),
+            String::new(),
+            &frame.cpu_ms,
+        );
+        add_row(&mut table, whole, 2);
+        table.to_string()
+    }
+
+    fn notes(&self) -> impl Iterator<Item = String> {
+        let passes = self.passes.iter();
+        let passes = passes.map(|pass| (pass.name.as_str(), pass.gpu_ms.is_some()));
+        let missing = match &self.conditions.adapter.gpu_unavailable {
+            Some(_) => None,
+            None => untimed(passes, self.frame.gpu_ms.is_some()).map(|why| format!("note: {why}")),
+        };
+        let slow = (self.conditions.build == "debug").then(|| {
+            "note: a debug build of the program, so CPU times are those of unoptimised code"
+                .to_owned()
+        });
+        missing.into_iter().chain(slow)
+    }
+}
+
+fn conditions(profile: &Profile) -> String {
+    let Conditions {
+        program,
+        build,
+        date,
+        adapter,
+        scene,
+        preset,
+        view,
+        viewport: [width, height],
+        frames: asked,
+        warmup,
+        ..
+    } = &profile.conditions;
+    let params = profile.conditions.params();
+    let params: Vec<String> = params
+        .map(|(name, value)| format!("{name} = {value}"))
+        .collect();
+    let params = match params.is_empty() {
+        true => "none".to_owned(),
+        false => params.join(", "),
+    };
+    let timed = profile.timed() as u32;
+    let stopped = match timed < *asked {
+        true => format!(", stopped before the {asked} asked for"),
+        false => String::new(),
+    };
+    let trust = match &adapter.gpu_unavailable {
+        None => "trusted: they agree with wall time".to_owned(),
+        Some(reason) => format!("not used: {reason}"),
+    };
+    format!(
+        "{preset} on {scene} · view {view} · {width}x{height}\n\
+         params: {params}\n\
+         {adapter}\n\
+         GPU timestamps {trust}\n\
+         {} after {warmup} to warm up{stopped} · {date} · {program}, {build} build\n",
+        frames(timed)
+    )
+}
+
+fn row(name: &str, kind: &str, gpu: Option<&Series>, share: String, cpu: &Series) -> Vec<String> {
+    let gpu = |pick: fn(&Series) -> f64| gpu.map_or("–".into(), |series| ms(pick(series)));
+    vec![
+        name.into(),
+        kind.into(),
+        gpu(|series| series.min),
+        gpu(|series| series.median),
+        gpu(|series| series.p95),
+        gpu(|series| series.max),
+        share,
+        ms(cpu.median),
+    ]
+}
+
+fn memory(materials: &[Material]) -> String {
+    let header = ["material", "format", "shares memory with", "size", "memory"];
+    let mut table = new_table(Look::Terminal, &header, 3);
+    for material in materials {
+        let [width, height] = material.size;
+        let mut size = match material.format {
+            Some(_) => format!("{width}x{height}"),
+            None => format!("{width} bytes"),
+        };
+        for (count, noun) in [(material.layers, "layers"), (material.mips, "mips")] {
+            if count > 1 {
+                size.push_str(&format!(", {count} {noun}"));
+            }
+        }
+        let row = vec![
+            material.name.clone(),
+            material.format.clone().unwrap_or("buffer".into()),
+            material.shared_with.join(", "),
+            size,
+            bytes(material.bytes),
+        ];
+        add_row(&mut table, row, 3);
+    }
+    table.to_string()
+}
+
+fn comparison(baseline: &Comparison, new: &Profile) -> String {
+    let mut text = format!("\nAgainst {}, {}\n", baseline.file, baseline.date);
+    if !baseline.differences.is_empty() {
+        text.push_str("WARNING: measured under other conditions, so the ratios do not compare like with like\n");
+        for Difference { what, old, new } in &baseline.differences {
+            text.push_str(&format!("  {what}: then {old}, now {new}\n"));
+        }
+    }
+    let header = [
+        "pass",
+        "clock",
+        "then",
+        "now",
+        "now / then",
+        "its spread",
+        "",
+    ];
+    let mut table = new_table(Look::Terminal, &header, 2);
+    let mut rows = |clock: &str, name: &str, ratio: Option<&Ratio>| {
+        add_row(&mut table, ratio_row(clock, name, ratio), 2);
+    };
+    for pass in &baseline.passes {
+        rows("GPU", &pass.name, pass.gpu.as_ref());
+    }
+    rows("GPU", "whole frame", baseline.frame.gpu.as_ref());
+    for pass in &baseline.passes {
+        rows("CPU", &pass.name, Some(&pass.cpu));
+    }
+    rows("CPU", "whole frame", Some(&baseline.frame.cpu));
+    rows("wall", "whole frame", Some(&baseline.frame.wall));
+    text.push_str(&format!("{table}\n"));
+    if baseline.frame.gpu.is_none() {
+        let side = match new.frame.gpu_ms {
+            Some(_) => "the older profile has none",
+            None => "the new profile has none",
+        };
+        text.push_str(&format!("No ratio of GPU times of whole frames: {side}\n"));
+    }
+    for (side, names) in [("then", &baseline.only_old), ("now", &baseline.only_new)] {
+        if !names.is_empty() {
+            text.push_str(&format!("Only {side}: {}\n", names.join(", ")));
+        }
+    }
+    text.push_str(&format!(
+        "Medians, ms; the spread goes from Q1(now) / Q3(then) to Q3(now) / Q1(then). Faster or slower: the middle halves of both\n\
+         samples do not overlap; with fewer than {FEWEST} frames nobody can say.\n",
+    ));
+    text
+}
+
+fn ratio_row(clock: &str, name: &str, ratio: Option<&Ratio>) -> Vec<String> {
+    let mut row = vec![name.to_owned(), clock.to_owned()];
+    match ratio {
+        Some(ratio) => row.extend([
+            ms(ratio.old_ms),
+            ms(ratio.new_ms),
+            format!("{:.3}", ratio.ratio),
+            format!("{:.3} … {:.3}", ratio.low, ratio.high),
+            match ratio.verdict {
+                Verdict::Faster => "faster",
+                Verdict::Slower => "slower",
+                Verdict::Same => "same",
+                Verdict::TooFewFrames => "too few frames",
+            }
+            .to_owned(),
+        ]),
+        None => row.extend(["–", "–", "–", "–", ""].map(str::to_owned)),
+    }
+    row
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile::record::tests::{sample, series};
+    use std::path::Path;
+
+    #[test]
+    fn the_report_shows_conditions_times_and_memory() {
+        insta::assert_snapshot!(sample().report());
+    }
+
+    #[test]
+    fn a_baseline_under_other_conditions_is_shown_and_warned_of() {
+        let (mut old, mut new) = (sample(), sample());
+        for (profile, ms) in [(&mut old, 1.0), (&mut new, 3.0)] {
+            profile.passes[0].gpu_ms =
+                Some(series(&[ms, ms + 0.25, ms + 0.5, ms + 0.75, ms + 1.0]));
+        }
+        old.conditions.params.insert("map_size".into(), 512.into());
+        old.conditions.adapter.name = "Another GPU".into();
+        old.passes[1].name = "fill".into();
+        new.baseline = Some(Comparison::of(Path::new("old.json"), &old, &new));
+        let report = new.report();
+        let (_, text) = report.split_once("\nAgainst").unwrap();
+        insta::assert_snapshot!(text);
+    }
+
+    #[test]
+    fn untrusted_timestamps_and_an_early_stop_are_said() {
+        let mut profile = sample();
+        profile.conditions.adapter.gpu_unavailable =
+            Some("the adapter has no timestamp queries".into());
+        profile.conditions.frames = 30;
+        profile.conditions.build = "debug".into();
+        let report = profile.report();
+        for part in [
+            "GPU timestamps not used: the adapter has no timestamp queries\n",
+            "3 frames after 1 to warm up, stopped before the 30 asked for",
+            "note: a debug build",
+        ] {
+            assert!(report.contains(part), "{report}");
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! `run --save` for what lies between a graph's begin and its outputs. Needs an adapter.
+
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+/// Two mips of two layers, each of another grey; odd values; a buffer of items.
+const GRAPH: &str = r#"(
+    format: 1,
+    materials: [
+        Texture(name: "stack", format: R32Float, size: Square(8), mips: 2, layers: 2, views: [
+            (name: "stack.first", mip: 0, mips: 1, layer: 0, layers: 1),
+            (name: "stack.small", mip: 1, mips: 1, layer: 1, layers: 1),
+        ]),
+        Texture(name: "odd", format: Rg32Float, size: Viewport),
+        Buffer(name: "pairs", count: 3),
+    ],
+    passes: [
+        Clear(name: "first", target: "stack.first", value: (1.5, 0, 0, 0)),
+        Clear(name: "small", target: "stack.small", value: (2.5, 0, 0, 0)),
+        Clear(name: "again", target: "stack.first", value: (3.5, 0, 0, 0)),
+        Fullscreen(name: "odd", color: [(target: "odd")]),
+        Compute(name: "pairs", dispatch: Groups(1, 1, 1)),
+    ],
+    outputs: [(name: "stack.first"), (name: "small", material: "stack.small"), (name: "odd"), (name: "pairs")],
+)"#;
+
+const ODD: &str = "
+    @fragment fn fragment(@builtin(position) place: vec4<f32>) -> @location(0) vec2<f32> {
+        let zero = u32(place.x) / 1000u; // not known to the compiler, which may refuse constants that are no numbers
+        if place.x < 1.0 { return vec2(0.0, bitcast<f32>(0x7fc00000u + zero)); }
+        if place.x < 2.0 { return vec2(bitcast<f32>(0x7f800000u + zero), 1.0); }
+        return vec2(place.x, 2.0);
+    }";
+
+const PAIRS: &str = "
+    struct Pair { id: u32, height: f32 }
+    var<storage, read_write> pairs: array<Pair>;
+    @compute @workgroup_size(1) fn main() {
+        for (var i = 0u; i < 3u; i++) { pairs[i] = Pair(7u * i, f32(i) * 0.5); }
+    }";
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    for (name, text) in [
+        ("graph.ron", GRAPH),
+        ("odd.wgsl", ODD),
+        ("pairs.wgsl", PAIRS),
+    ] {
+        fs::write(folder.join(name), text).unwrap();
+    }
+    Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+        .args(["run"])
+        .args(arguments)
+        .current_dir(folder)
+        .env("NO_COLOR", "1")
+        .output()
+        .expect("the program was built for this test")
+}
+
+#[track_caller]
+fn saved(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{errors}");
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+#[track_caller]
+fn refused(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    assert_eq!(output.status.code(), Some(1));
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[test]
+fn layers_and_mips_are_saved_by_their_views_at_any_pass() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "graph.ron --size 4x2 --save stack.first@first=before.bin --save stack.first=after.bin --save stack.small=small.png";
+    let text = saved(folder.path(), &line.split(' ').collect::<Vec<_>>());
+    let floats = |name: &str| -> Vec<f32> {
+        let bytes = fs::read(folder.path().join(name)).unwrap();
+        bytes
+            .chunks_exact(4)
+            .map(|b| f32::from_le_bytes(b.try_into().unwrap()))
+            .collect()
+    };
+    assert_eq!(floats("before.bin"), [1.5; 64]);
+    assert_eq!(floats("after.bin"), [3.5; 64]);
+    assert!(text.contains("small.png: 4x4, 2.5 … 2.5"), "{text}");
+}
+
+#[test]
+fn odd_values_are_marked_and_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = saved(
+        folder.path(),
+        &["graph.ron", "--size", "4x2", "--save", "odd=odd.png"],
+    );
+    let legend = "red 0 … 3.5, green 1 … 2, magenta NaN (2), orange +∞ (2)";
+    assert!(text.contains(legend), "{text}");
+    let picture = image::open(folder.path().join("odd.png"))
+        .unwrap()
+        .to_rgb8();
+    assert_eq!(picture.get_pixel(0, 1).0, [255, 0, 255]);
+    assert_eq!(picture.get_pixel(1, 0).0, [255, 128, 0]);
+    assert_eq!(picture.get_pixel(3, 0).0, [255, 255, 0]);
+}
+
+#[test]
+fn buffers_become_tables_of_their_items() {
+    let folder = tempfile::tempdir().unwrap();
+    saved(
+        folder.path(),
+        &["graph.ron", "--size", "4x2", "--save", "pairs=pairs.csv"],
+    );
+    let table = fs::read_to_string(folder.path().join("pairs.csv")).unwrap();
+    assert_eq!(table, "item,id,height\n0,0,0\n1,7,0.5\n2,14,1\n");
+    let text = refused(folder.path(), &["graph.ron", "--save", "odd=odd.csv"]);
+    assert!(text.contains("is a texture and has no items"), "{text}");
+}
+
+#[test]
+fn a_cameras_depths_are_distances_and_a_lights_are_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "nsm --size 32x32 --map-size 32 --save depth=d.png --save shadow_map@create_shadow_map=m.png";
+    let text = saved(folder.path(), &line.split(' ').collect::<Vec<_>>());
+    assert!(
+        text.contains("d.png: 32x32, distance along the view, black to white "),
+        "{text}"
+    );
+    assert!(
+        text.contains("m.png: 32x32, stored depth, black to white 0."),
+        "{text}"
+    );
+    assert!(text.contains("grey 1, nothing there ("), "{text}");
+}
+
+#[test]
+fn what_cannot_be_saved_says_why_and_what_else_there_is() {
+    let folder = tempfile::tempdir().unwrap();
+    for (save, part) in [
+        ("stack.frist=x.png", "did you mean `stack.first`?"),
+        ("odd@od=x.png", "did you mean `odd`?"),
+        ("od@odd=x.png", "did you mean `odd`?"),
+        ("odd@first=x.png", "first written by `odd`"),
+        ("camera=x.bin", "`camera@PASS`"),
+    ] {
+        let text = refused(
+            folder.path(),
+            &["graph.ron", "--size", "4x2", "--save", save],
+        );
+        assert!(text.contains(part), "{save}: {text}");
+    }
+}

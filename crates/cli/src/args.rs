@@ -40,7 +40,8 @@ pub enum Command {
     #[command(
         after_help = "Examples:\n  skiagraph run nsm --save visibility=shadow.png\n  \
         skiagraph run nsm --save shadow_map@create_shadow_map=map.png --set map_size=512\n  \
-        skiagraph run my_method.ron --scene sponza --save status=status.bin"
+        skiagraph run my_method.ron --scene sponza --save status=status.bin\n  \
+        skiagraph run my_method.ron --poison"
     )]
     Run(RunArgs),
     /// Time every pass of one graph over many frames, and list what its materials take.
@@ -193,6 +194,10 @@ pub struct RunArgs {
     /// a buffer. May be repeated.
     #[arg(long, value_name = "MATERIAL[@PASS]=FILE")]
     pub save: Vec<Save>,
+    /// Fill all memory that a frame has not written with two patterns, one after the other, and fail if an output differs: the graph
+    /// then reads what no pass has written.
+    #[arg(long)]
+    pub poison: bool,
 }
 
 /// `skiagraph profile`.

@@ -62,6 +62,12 @@ pub enum Command {
         place. Exit codes are those of --format text."
     )]
     Check(CheckArgs),
+    /// Draw a graph: passes in order, materials and their lifetimes, what depends on what, what is culled and why. Needs no GPU.
+    #[command(after_help = "Examples:\n  skiagraph graph nsm --out nsm.svg\n  \
+        skiagraph graph my_method.ron --outputs visibility --size 1920x1080 --out my_method.svg\n  \
+        skiagraph graph rt --format dot | dot -Tpng -o rt.png\n  \
+        skiagraph graph rt --format json")]
+    Graph(GraphArgs),
     /// List the built-in shadow methods and their params.
     #[command(after_help = "Example:\n  skiagraph presets")]
     Presets,
@@ -157,15 +163,12 @@ pub enum Format {
     Json,
 }
 
-/// One graph, what it draws, and with which params.
+/// One graph, its viewport and its params.
 #[derive(Args, Debug)]
-pub struct GraphArgs {
+pub struct MethodArgs {
     /// Preset by name, or a graph (.ron).
     #[arg(value_name = "PRESET|FILE.ron")]
     pub preset: String,
-    /// What is drawn.
-    #[command(flatten)]
-    pub scene: SceneArgs,
     /// Viewport size in pixels.
     #[arg(long, value_name = "WxH", default_value = "1024x1024")]
     pub size: Size,
@@ -182,7 +185,10 @@ pub struct GraphArgs {
 pub struct RunArgs {
     /// What is run.
     #[command(flatten)]
-    pub graph: GraphArgs,
+    pub method: MethodArgs,
+    /// What it is run on.
+    #[command(flatten)]
+    pub scene: SceneArgs,
     /// Save an output, a material or a view of one, after a pass or at the end: .png a picture, .bin raw bytes, .csv the words of
     /// a buffer. May be repeated.
     #[arg(long, value_name = "MATERIAL[@PASS]=FILE")]
@@ -194,7 +200,10 @@ pub struct RunArgs {
 pub struct ProfileArgs {
     /// What is timed.
     #[command(flatten)]
-    pub graph: GraphArgs,
+    pub method: MethodArgs,
+    /// What it is run on.
+    #[command(flatten)]
+    pub scene: SceneArgs,
     /// Timed frames.
     #[arg(long, default_value_t = 30, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_FRAMES), allow_negative_numbers = true)]
     pub frames: u32,
@@ -232,6 +241,34 @@ pub enum CheckFormat {
     /// For people: source lines with the mistakes underlined, on standard error.
     Text,
     /// For programs: one JSON object on standard output.
+    Json,
+}
+
+/// `skiagraph graph`.
+#[derive(Args, Debug)]
+pub struct GraphArgs {
+    /// What is planned.
+    #[command(flatten)]
+    pub method: MethodArgs,
+    /// What is drawn. Without it: what the ending of --out names, else svg.
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub format: Option<Drawn>,
+    /// File to write. Without it: standard output.
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Outputs that are wanted, separated by commas; what only others need is culled. Without it: all.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub outputs: Vec<String>,
+}
+
+/// How a graph is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Drawn {
+    /// A chart of lifetimes, for a browser.
+    Svg,
+    /// Nodes and links, for Graphviz.
+    Dot,
+    /// The plan as data, for scripts.
     Json,
 }
 

@@ -37,6 +37,7 @@ fn main() -> ExitCode {
         Command::Run(args) => commands::run::run(args, adapter),
         Command::Profile(args) => commands::profile::profile(args, adapter),
         Command::Check(args) => commands::check::check(args),
+        Command::Graph(args) => commands::graph::graph(args),
         Command::Presets => commands::presets::presets(),
         Command::Scenes => commands::scenes::scenes(),
         Command::Doctor => commands::doctor::doctor(adapter),

@@ -1,7 +1,7 @@
 //! From the arguments `nsm` or `my/method.ron` to loaded graphs.
 
 use crate::{
-    args::GraphArgs,
+    args::MethodArgs,
     commands::check::all_at_once,
     error::{CliError, colour, count_errors, note},
     parse::Assignment,
@@ -77,7 +77,7 @@ pub fn load_all(arguments: &[String], sources: &dyn Sources) -> Result<Vec<Prese
 /// # Errors
 /// Its faults, a param that it does not have, a value that a param cannot take.
 pub fn load_one(
-    args: &GraphArgs,
+    args: &MethodArgs,
     sources: &dyn Sources,
 ) -> Result<(Preset, BTreeMap<String, ParamValue>), CliError> {
     let mut presets = load_all(slice::from_ref(&args.preset), sources)?;

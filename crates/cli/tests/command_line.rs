@@ -141,6 +141,67 @@ fn check_tells_programs_what_it_tells_people() {
 }
 
 #[test]
+fn graph_draws_without_a_gpu_and_writes_whole_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let draw = |arguments: &[&str]| {
+        program(folder.path(), arguments)
+            .env("VK_ICD_FILENAMES", "/nonexistent")
+            .env("VK_DRIVER_FILES", "/nonexistent")
+            .output()
+            .unwrap()
+    };
+    let svg = draw(&["graph", "nsm", "--map-size", "4096", "--size", "640x480"]);
+    assert_exit(&svg, 0);
+    let text = stdout(&svg);
+    assert!(text.starts_with("<svg ") && text.trim_end().ends_with("</svg>"));
+    for part in ["nsm, viewport 640x480", "Depth32Float 4096×4096, 64.0 MiB"] {
+        assert!(text.contains(part), "no {part:?} in\n{text}");
+    }
+
+    let dot = draw(&["graph", "rt", "--format", "dot"]);
+    assert_exit(&dot, 0);
+    assert!(stdout(&dot).starts_with("digraph "), "{}", stdout(&dot));
+
+    // The ending of the file says what is wanted.
+    let json = draw(&["graph", "rt", "--outputs", "ray_count", "--out", "rt.json"]);
+    assert_exit(&json, 0);
+    assert_eq!(stdout(&json), "");
+    let text = fs::read_to_string(folder.path().join("rt.json")).unwrap();
+    let drawing: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let culled: Vec<&str> = drawing["passes"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|pass| !pass["culled"].is_null())
+        .filter_map(|pass| pass["name"].as_str())
+        .collect();
+    assert_eq!(culled, ["trace_rays", "fix_pixels"]);
+}
+
+#[test]
+fn graph_names_what_is_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("target.ron"),
+        CLEARED.replace("target: \"status\"", "target: \"satus\""),
+    )
+    .unwrap();
+    for (arguments, part) in [
+        (&["graph", "target.ron"][..], "`satus`"),
+        (&["graph", "rt", "--outputs", "visibilty"], "`visibility`"),
+        (&["graph", "rt", "--set", "bias=1"], "no such param"),
+        (&["graph", "rt", "--out", "missing/rt.svg"], "rt.svg"),
+        (&["graph", "rtt"], "no preset `rtt`"),
+    ] {
+        let output = skiagraph(folder.path(), arguments);
+        assert_exit(&output, 1);
+        assert_eq!(stdout(&output), "");
+        let faults = stderr(&output);
+        assert!(faults.contains(part), "no {part:?} in\n{faults}");
+    }
+}
+
+#[test]
 fn check_takes_presets_and_all_of_ours_are_fine() {
     let folder = tempfile::tempdir().unwrap();
     let output = skiagraph(

@@ -13,6 +13,7 @@ mod conditions;
 mod cull;
 pub mod diagnostics;
 pub mod document;
+pub mod draw;
 mod execute;
 pub mod gpu;
 mod graph;
@@ -42,6 +43,7 @@ pub use document::{
     located::Located,
     params::{Param, ParamType, ParamValue},
 };
+pub use draw::Drawing;
 pub use execute::{ExecuteError, Executor, Frame, FrameReport, Renewed};
 pub use graph::{Graph, ParamError};
 pub use instantiate::Fallback;

@@ -4,7 +4,7 @@ use crate::{
     diagnostics::{Code, Diagnostic},
     link::{Access, LinkedPass},
     plan::CAPTURE,
-    resolve::{Origin, Part, ResourceId, ResourceKind, Resources, Target},
+    resolve::{Origin, Part, Resource, ResourceId, ResourceKind, Resources, Target},
 };
 use petgraph::{
     graph::{DiGraph, NodeIndex},
@@ -26,10 +26,15 @@ pub(crate) enum Hazard {
 /// One mip of one layer of a texture, or a buffer: what has versions.
 type Cell = (ResourceId, u32, u32);
 
+/// Earlier pass, later pass and why, with the resources that it comes through.
+pub(crate) type Dependences = BTreeMap<(usize, usize, Hazard), BTreeSet<ResourceId>>;
+
 /// The dependency graph: node i is pass i of the file, an edge runs from the earlier to the later pass.
 #[derive(Debug)]
 pub(crate) struct Order {
     pub edges: DiGraph<(), Hazard>,
+    /// The same edges, with the resources behind them; drawings show both.
+    pub dependences: Dependences,
     /// The pass that writes each cell last.
     last: BTreeMap<Cell, usize>,
 }
@@ -64,7 +69,7 @@ pub(crate) fn order(
     resources: &Resources<'_>,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Order {
-    let (order, early) = walk(passes, resources, |_| true);
+    let (order, early) = walk(passes, &resources.list, |_| true);
     for (index, access) in early.into_iter().filter(|(index, _)| *index < judged) {
         diagnostics.push(explain(index, access, passes, resources, &order));
     }
@@ -78,28 +83,40 @@ pub(crate) fn order_of_live(
     resources: &Resources<'_>,
     live: &[bool],
 ) -> Order {
-    walk(passes, resources, |pass| live[pass]).0
+    walk(passes, &resources.list, |pass| live[pass]).0
+}
+
+/// What the passes that run depend on, and through which resources.
+pub(crate) fn dependences(
+    passes: &[LinkedPass],
+    resources: &[Resource],
+    runs: impl Fn(usize) -> bool,
+) -> Dependences {
+    walk(passes, resources, runs).0.dependences
 }
 
 /// Runs through the file as a sequential program and notes what depends on what, and the reads of what nobody wrote.
 fn walk<'p>(
     passes: &'p [LinkedPass],
-    resources: &Resources<'_>,
+    resources: &[Resource],
     runs: impl Fn(usize) -> bool,
 ) -> (Order, Vec<(usize, &'p Access)>) {
-    let mut edges: BTreeSet<(usize, usize, Hazard)> = BTreeSet::new();
+    let mut dependences = Dependences::new();
     let mut states: BTreeMap<Cell, State> = BTreeMap::new();
     let mut early: Vec<(usize, &Access)> = Vec::new();
     for (index, pass) in passes.iter().enumerate().filter(|(index, _)| runs(*index)) {
         for access in &pass.accesses {
-            let resource = resources.get(access.resource);
+            let resource = &resources[access.resource.0];
             let has_content =
                 resource.origin != Origin::Own || matches!(resource.kind, ResourceKind::Sampler(_));
             for cell in cells(access.resource, &access.part) {
                 let state = states.entry(cell).or_default();
                 let mut edge = |from: usize, hazard| {
                     if from != index {
-                        edges.insert((from, index, hazard));
+                        dependences
+                            .entry((from, index, hazard))
+                            .or_default()
+                            .insert(access.resource);
                     }
                 };
                 match state.writer {
@@ -134,16 +151,21 @@ fn walk<'p>(
             }
         }
     }
-    let mut graph = DiGraph::with_capacity(passes.len(), edges.len());
+    let mut graph = DiGraph::with_capacity(passes.len(), dependences.len());
     let nodes: Vec<NodeIndex> = passes.iter().map(|_| graph.add_node(())).collect();
-    for (from, to, hazard) in edges {
+    for &(from, to, hazard) in dependences.keys() {
         graph.add_edge(nodes[from], nodes[to], hazard);
     }
     let last = states
         .into_iter()
         .filter_map(|(cell, state)| Some((cell, state.writer?)))
         .collect();
-    (Order { edges: graph, last }, early)
+    let order = Order {
+        edges: graph,
+        dependences,
+        last,
+    };
+    (order, early)
 }
 
 /// A read with nothing written above it: written never, written below, or written below by a pass that needs the reader.

@@ -82,7 +82,9 @@ impl Graph {
             outside: outside.chain(request.provider.names()).collect(),
         };
         let instance = instantiate(&self.document, purpose, &mut diagnostics);
-        let lacks = |diagnostic: &Diagnostic| diagnostic.code == Code::Feature;
+        let lacks = |diagnostic: &Diagnostic| {
+            diagnostic.code == Code::Feature && diagnostic.severity == Severity::Error
+        };
         if diagnostics.iter().any(lacks) {
             // On a device that cannot run the graph nothing else is worth knowing.
             diagnostics.retain(lacks);

@@ -99,15 +99,20 @@ pub fn all_at_once(
     registry: &Registry,
     sources: &dyn Sources,
 ) -> Result<(Graph, Plan), Diagnostics> {
+    let provider = provider(VIEWPORT);
+    let mut request = PlanRequest::new(VIEWPORT, &provider);
+    // Without an adapter, those that the graph requires are taken to be there; all of them if it does not even say which.
+    request.features = Graph::load(path, registry, sources)
+        .map_or(wgpu::Features::all(), |graph| graph.features());
+    Graph::check(path, registry, sources, &request)
+}
+
+/// Describes all that a scene can give, without a scene.
+pub fn provider(viewport: [u32; 2]) -> SceneProvider {
     let (scene, view) = one_triangle();
     let mut provider = SceneProvider::new(Arc::new(scene));
-    provider.set_view(&view, VIEWPORT);
-    Graph::check(
-        path,
-        registry,
-        sources,
-        &PlanRequest::new(VIEWPORT, &provider),
-    )
+    provider.set_view(&view, viewport);
+    provider
 }
 
 /// The least scene that has all that a provider may be asked for.

@@ -3,6 +3,7 @@
 pub mod check;
 pub mod compare;
 pub mod doctor;
+pub mod graph;
 pub mod presets;
 pub mod profile;
 pub mod run;

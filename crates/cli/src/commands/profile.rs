@@ -28,8 +28,7 @@ use std::{path::Path, sync::Arc, time::SystemTime};
 /// # Errors
 /// A faulty graph or baseline, a scene that cannot be loaded, no GPU, Ctrl-C, a file that cannot be written.
 pub fn profile(args: &ProfileArgs, adapter: Option<&str>) -> Result<(), CliError> {
-    let graph = &args.graph;
-    if graph.scene.view.as_deref() == Some("all") {
+    if args.scene.view.as_deref() == Some("all") {
         return Err(CliError::Usage(
             "a profile is one of one view; give its name instead of `all`".into(),
         ));
@@ -39,10 +38,10 @@ pub fn profile(args: &ProfileArgs, adapter: Option<&str>) -> Result<(), CliError
         Some(path) => Some((path.as_path(), read(path)?)),
         None => None,
     };
-    let (preset, params) = preset::load_one(graph, &preset::sources())?;
+    let (preset, params) = preset::load_one(&args.method, &preset::sources())?;
     let method = Method::new(&preset, params);
-    let gpu = render::open(adapter)?;
-    let Stage { scene, views } = Stage::load(&graph.scene)?;
+    let gpu = render::open(adapter, preset.graph.features())?;
+    let Stage { scene, views } = Stage::load(&args.scene)?;
     let scene = Arc::new(scene);
     let Some(view) = views.first() else {
         return Err(CliError::Input(format!(
@@ -51,9 +50,9 @@ pub fn profile(args: &ProfileArgs, adapter: Option<&str>) -> Result<(), CliError
         )));
     };
     let mut provider = SceneProvider::new(scene.clone());
-    provider.set_view(view, graph.size.0);
+    provider.set_view(view, args.method.size.0);
     let plan = method
-        .plan(graph.size.0, render::abilities(&gpu), &provider)
+        .plan(args.method.size.0, render::abilities(&gpu), &provider)
         .map_err(|diagnostics| Faults::of(&preset.name, &diagnostics))?;
     preset::warn(&preset.graph, plan.warnings());
     interrupt::install()?;
@@ -75,7 +74,7 @@ pub fn profile(args: &ProfileArgs, adapter: Option<&str>) -> Result<(), CliError
         },
         preset: preset.name.clone(),
         view: view.name.clone(),
-        viewport: graph.size.0,
+        viewport: args.method.size.0,
         params: method.all_params(),
         frames: args.frames,
         warmup: args.warmup,
@@ -88,7 +87,7 @@ pub fn profile(args: &ProfileArgs, adapter: Option<&str>) -> Result<(), CliError
     let mut executor =
         Executor::new(&gpu.device, &gpu.queue, plan, &mut provider).map_err(refused)?;
     let step = Step::begin(
-        format!("{}, {} {}", preset.name, view.name, graph.size),
+        format!("{}, {} {}", preset.name, view.name, args.method.size),
         u64::from(args.warmup) + u64::from(args.frames),
         "frames",
     );

@@ -28,9 +28,13 @@ use std::{
 /// # Errors
 /// A faulty graph, a scene that cannot be loaded, no GPU, a file that cannot be written.
 pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
-    let RunArgs { graph: args, save } = args;
-    let (preset, params) = &preset::load_one(args, &preset::sources())?;
-    if args.scene.view.as_deref() == Some("all") && !save.is_empty() {
+    let RunArgs {
+        method,
+        scene,
+        save,
+    } = args;
+    let (preset, params) = &preset::load_one(method, &preset::sources())?;
+    if scene.view.as_deref() == Some("all") && !save.is_empty() {
         return Err(CliError::Usage(
             "--save takes the picture of one view; give its name instead of `all`".into(),
         ));
@@ -41,13 +45,13 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
         .map(|save| (writer(save), save.file.as_path()))
         .collect();
     check_writable(&files)?;
-    let gpu = render::open(adapter)?;
-    let stage = Stage::load(&args.scene)?;
+    let gpu = render::open(adapter, preset.graph.features())?;
+    let stage = Stage::load(scene)?;
     let scene = Arc::new(stage.scene);
     let mut provider = SceneProvider::new(scene.clone());
     for view in &stage.views {
-        provider.set_view(view, args.size.0);
-        let mut request = PlanRequest::new(args.size.0, &provider);
+        provider.set_view(view, method.size.0);
+        let mut request = PlanRequest::new(method.size.0, &provider);
         request.params = params.clone();
         request.captures = captures(preset, save);
         request.limits = gpu.device.limits();
@@ -67,7 +71,7 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
             preset.name,
             scene.name,
             view.name,
-            args.size,
+            method.size,
             story(&plan)
         ))?;
         let contents = render(&gpu, plan, &mut provider, save, preset)?;

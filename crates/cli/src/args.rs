@@ -70,8 +70,11 @@ pub enum Command {
         skiagraph graph rt --format json")]
     Graph(GraphArgs),
     /// List the built-in shadow methods and their params.
-    #[command(after_help = "Example:\n  skiagraph presets")]
-    Presets,
+    #[command(
+        after_help = "Examples:\n  skiagraph presets\n  skiagraph presets --show nsm\n  \
+        skiagraph presets --show shared/light.wgsl"
+    )]
+    Presets(PresetsArgs),
     /// List the scenes and their views.
     #[command(after_help = "Example:\n  skiagraph scenes")]
     Scenes,
@@ -179,6 +182,14 @@ pub struct MethodArgs {
     /// A param of the graph. May be repeated.
     #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub params: Vec<Assignment>,
+}
+
+/// `skiagraph presets`.
+#[derive(Args, Debug)]
+pub struct PresetsArgs {
+    /// Print a built-in file instead: a preset, or a document or shader by its path below pipelines/ or shaders/.
+    #[arg(long, value_name = "NAME|PATH")]
+    pub show: Option<String>,
 }
 
 /// `skiagraph run`.

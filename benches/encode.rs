@@ -1,0 +1,161 @@
+//! What the executor costs over the same frame written by hand in plain wgpu, and what making and changing one costs.
+//! Encoding and finishing the encoder is measured, submission is not: nothing is submitted.
+
+use criterion::{BenchmarkId, Criterion};
+use skiagraph_benches::{
+    Shaders, VIEWPORT,
+    chain::{ByHand, Kind, executor},
+    graph,
+};
+use skiagraph_graph::{
+    Executor, Frame, Graph, NoProvider, ParamValue, Plan, PlanRequest, Registry, gpu,
+};
+use std::time::{Duration, Instant};
+
+const SIZES: [usize; 3] = [10, 100, 1000];
+
+fn main() {
+    let gpu = match gpu::open(None) {
+        Ok(gpu) => gpu,
+        Err(error) => {
+            println!("NOTHING WAS MEASURED: {error}");
+            return;
+        }
+    };
+    let info = gpu.adapter.get_info();
+    println!(
+        "adapter: {} ({:?}, {} {})",
+        info.name, info.backend, info.driver, info.driver_info
+    );
+    let mut criterion = Criterion::default()
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(500))
+        .measurement_time(Duration::from_secs(2))
+        .configure_from_args();
+    changes(&mut criterion, &gpu);
+    criterion.final_summary();
+    // `cargo bench` says `--bench`; without it the benchmarks are only tried.
+    if std::env::args().any(|argument| argument == "--bench") {
+        compare(&gpu);
+    }
+}
+
+/// Encodes and finishes one frame; how long that took.
+fn frame(gpu: &gpu::Gpu, encode: impl FnOnce(&mut wgpu::CommandEncoder)) -> Duration {
+    let mut encoder = gpu
+        .device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let start = Instant::now();
+    encode(&mut encoder);
+    let commands = encoder.finish();
+    let time = start.elapsed();
+    drop(commands);
+    time
+}
+
+/// Prints the times of chains by hand and through the executor. The ways take turns frame by frame, so that what else
+/// the machine does meets all of them.
+fn compare(gpu: &gpu::Gpu) {
+    println!("\nencode and finish, µs per pass: medians over frames that take turns");
+    println!("kind     | passes | frames | by hand | with groups | executor | over hand | ratio | over groups | ratio");
+    for kind in Kind::ALL {
+        for passes in SIZES {
+            let by_hand = ByHand::new(gpu, kind, passes);
+            let mut executor = executor(gpu, kind, passes).expect("the chain suits every device");
+            let frames = 20_000 / passes.max(20);
+            let mut times: [Vec<f64>; 3] = Default::default();
+            for round in 0..frames + frames / 10 {
+                let mut measured = [0.0; 3];
+                // Whoever comes first finds other caches.
+                for way in (0..3).map(|way| (way + round) % 3) {
+                    let time = frame(gpu, |encoder| match way {
+                        0 => by_hand.encode(encoder, false),
+                        1 => by_hand.encode(encoder, true),
+                        _ => executor
+                            .encode(encoder, &Frame::default())
+                            .expect("the chain was encoded before"),
+                    });
+                    measured[way] = time.as_secs_f64() * 1e6 / passes as f64;
+                }
+                // The first tenth warms up.
+                if round >= frames / 10 {
+                    times.iter_mut().zip(measured).for_each(|(times, time)| times.push(time));
+                }
+            }
+            let [hand, grouped, executor] = times.map(median);
+            println!(
+                "{:8} | {passes:6} | {frames:6} | {hand:7.3} | {grouped:11.3} | {executor:8.3} | {:+9.3} | {:5.3} | {:+11.3} | {:5.3}",
+                kind.name(),
+                executor - hand,
+                executor / hand,
+                executor - grouped,
+                executor / grouped,
+            );
+        }
+    }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+fn planned(passes: usize) -> Plan {
+    let generated = graph(passes, Shaders::Few, 1);
+    Graph::load("graph.ron", &Registry::standard(), &generated)
+        .and_then(|graph| graph.plan(&PlanRequest::new(VIEWPORT, &NoProvider)))
+        .unwrap_or_else(|faults| panic!("{}", faults.render(false)))
+}
+
+/// Frames of generated graphs, and what an executor's making, another size and another value of a param cost.
+fn changes(criterion: &mut Criterion, gpu: &gpu::Gpu) {
+    let make = |plan| {
+        Executor::new(&gpu.device, &gpu.queue, plan, &mut NoProvider)
+            .expect("the generated graphs suit every device")
+    };
+    for passes in [10, 100] {
+        let mut group = criterion.benchmark_group(format!("executor, {passes} passes"));
+        group.bench_function(BenchmarkId::from_parameter("new"), |bencher| {
+            bencher.iter_batched(
+                || planned(passes),
+                make,
+                criterion::BatchSize::PerIteration,
+            );
+        });
+        let mut executor = make(planned(passes));
+        group.bench_function(BenchmarkId::from_parameter("encode"), |bencher| {
+            bencher.iter_custom(|frames| {
+                let once = |_| {
+                    frame(gpu, |encoder| {
+                        executor
+                            .encode(encoder, &Frame::default())
+                            .expect("the graph was encoded before");
+                    })
+                };
+                (0..frames).map(once).sum()
+            });
+        });
+        let mut wide = false;
+        group.bench_function(BenchmarkId::from_parameter("resize"), |bencher| {
+            bencher.iter(|| {
+                wide = !wide;
+                let viewport = [VIEWPORT[0] * if wide { 2 } else { 1 }, VIEWPORT[1]];
+                executor
+                    .resize(viewport, &mut NoProvider)
+                    .expect("both sizes suit every device")
+            });
+        });
+        let mut strength = 0.0;
+        group.bench_function(BenchmarkId::from_parameter("set_param, upload"), |bencher| {
+            bencher.iter(|| {
+                strength += 1.0;
+                let renewed = executor
+                    .set_param("strength", ParamValue::F32(strength), &mut NoProvider)
+                    .expect("every value suits");
+                assert!(renewed.pipelines.is_empty() && renewed.resources.is_empty());
+                renewed
+            });
+        });
+        group.finish();
+    }
+}

@@ -3,11 +3,16 @@
 mod support;
 
 use glam::DVec3;
-use skiagraph_graph::{Provider, gpu::Gpu};
-use skiagraph_passes::SceneProvider;
-use skiagraph_scene::{DirectionalLight, Mesh, Scene};
+use skiagraph_graph::{
+    Executor, Graph, LayeredSources, ParamValue, PlanRequest, Provider, Sources, gpu::Gpu,
+};
+use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
+use skiagraph_scene::{DirectionalLight, Mesh, Scene, SceneLibrary, SceneRequest};
 use std::sync::Arc;
-use support::{graphs::open, meshes};
+use support::{
+    graphs::{self, open},
+    meshes,
+};
 
 fn provider(mesh: Mesh) -> SceneProvider {
     let light = DirectionalLight {
@@ -68,4 +73,97 @@ fn an_unknown_resource_is_named_with_those_that_there_are() {
         "{error}"
     );
     assert!(provider.built().is_empty());
+}
+
+/// `nsm` as it is, and with every pass run `OnChange`.
+struct Cached;
+
+impl Sources for Cached {
+    fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
+        let text = EmbeddedSources.read(path)?;
+        Ok(text.filter(|_| path.ends_with(".ron")).map(|text| {
+            ["primitive", "surface", "shadow_lookup"]
+                .iter()
+                .fold(text.to_string(), |text, name| {
+                    // Materials have no run condition: only a pass is named before anything but a format.
+                    let named = format!("name: \"{name}\",");
+                    let material = format!("{named} format");
+                    text.replace(&material, "MATERIAL")
+                        .replace(&named, &format!("{named} run: OnChange,"))
+                        .replace("MATERIAL", &material)
+                })
+                .into()
+        }))
+    }
+
+    fn list(&self, folder: &str) -> Vec<String> {
+        EmbeddedSources.list(folder)
+    }
+}
+
+/// A pass runs again if what it depends on has changed, and no other pass does.
+#[test]
+fn a_new_camera_renews_what_depends_on_the_camera() {
+    let gpu = open();
+    let (scene, _) = SceneLibrary::default()
+        .load(&SceneRequest {
+            argument: "park".to_owned(),
+            obj: None,
+        })
+        .unwrap();
+    let scene = Arc::new(scene);
+    let viewport = [48, 32];
+    let sources = LayeredSources(vec![Box::new(Cached), Box::new(EmbeddedSources)]);
+    let graph = Graph::load("pipelines/nsm.ron", &registry(), &sources)
+        .unwrap_or_else(|errors| panic!("{errors}"));
+    let start = |provider: &mut SceneProvider| {
+        let plan = graph
+            .plan(&PlanRequest::new(viewport, provider))
+            .unwrap_or_else(|errors| panic!("{errors}"));
+        Executor::new(&gpu.device, &gpu.queue, plan, provider).unwrap()
+    };
+    let mut provider = graphs::provider(&scene, &scene.views[0], viewport);
+    let mut executor = start(&mut provider);
+    let outputs = ["visibility", "status"];
+    let next = |executor: &mut Executor| graphs::frame(&gpu, executor, &outputs);
+
+    let first = next(&mut executor);
+    assert_eq!(first.skipped, [""; 0]);
+    let everything = ["create_shadow_map", "primitive", "surface", "shadow_lookup"];
+    let second = next(&mut executor);
+    assert_eq!(second.skipped, everything);
+    assert_eq!(second.readbacks, first.readbacks);
+
+    provider.set_view(&scene.views[3], viewport);
+    executor.refresh(&mut provider).unwrap();
+    let moved = next(&mut executor);
+    assert_eq!(moved.skipped, ["create_shadow_map"]);
+    let anew = next(&mut start(&mut graphs::provider(
+        &scene,
+        &scene.views[3],
+        viewport,
+    )));
+    assert_eq!(moved.readbacks, anew.readbacks);
+    assert_ne!(moved.readbacks, first.readbacks);
+
+    // The map and what looks it up depend on these; what the camera sees does not.
+    for (param, value, skipped) in [
+        (
+            "cull",
+            ParamValue::Choice("none".into()),
+            &["primitive", "surface"][..],
+        ),
+        (
+            "slope_bias",
+            ParamValue::F32(2.0),
+            &["create_shadow_map", "primitive", "surface"],
+        ),
+        ("map_size", ParamValue::U32(64), &["primitive", "surface"]),
+    ] {
+        executor.set_param(param, value, &mut provider).unwrap();
+        assert_eq!(next(&mut executor).skipped, skipped, "{param}");
+        assert_eq!(next(&mut executor).skipped, everything, "{param}");
+    }
+    executor.touch("light").unwrap();
+    assert_eq!(next(&mut executor).skipped, [""; 0]);
 }

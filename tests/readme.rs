@@ -93,3 +93,58 @@ fn the_embedding_of_the_readme_is_that_of_the_example() {
         assert!(lines.contains(&line), "not in the example: {line}");
     }
 }
+
+/// Every document of the authoring guide, as a file beside the shaders that it speaks of.
+#[test]
+fn the_documents_of_the_authoring_guide_are_right() {
+    const LEVEL: &str = "struct Params { value: f32 } var<uniform> params: Params;
+        @fragment fn fragment() -> @location(0) f32 { return params.value; }";
+    const FACING: &str = "var position: texture_2d<f32>;
+        var visibility: texture_storage_2d<r32uint, write>;
+        var status: texture_storage_2d<r32uint, write>;
+        @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+            let lit = u32(textureLoad(position, id.xy, 0).w > 0.0);
+            textureStore(visibility, id.xy, vec4(lit));
+            textureStore(status, id.xy, vec4(1u + lit));
+        }";
+    let guide = fs::read_to_string(root().join("docs/authoring.md")).unwrap();
+    let blocks: Vec<&str> = guide
+        .split("```ron\n")
+        .skip(1)
+        .filter_map(|rest| rest.split("```").next())
+        // Others are parts of documents.
+        .filter(|block| block.starts_with("(\n    format: 1,"))
+        .collect();
+    let level = blocks
+        .iter()
+        .find(|block| block.contains("name: \"image\")],\n)") && !block.contains("requires"))
+        .expect("the guide shows level.ron");
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("level.ron"), level).unwrap();
+    fs::write(folder.path().join("level.wgsl"), LEVEL).unwrap();
+    fs::write(folder.path().join("facing.wgsl"), FACING).unwrap();
+    let own = FolderSources {
+        root: folder.path().to_owned(),
+    };
+    let sources = LayeredSources(vec![Box::new(own), Box::new(EmbeddedSources)]);
+    let request = SceneRequest {
+        argument: "park".to_owned(),
+        obj: None,
+    };
+    let (scene, _) = SceneLibrary::default().load(&request).unwrap();
+    let provider = SceneProvider::new(Arc::new(scene));
+    let mut passes = Vec::new();
+    for (number, block) in blocks.iter().enumerate() {
+        let path = format!("block{number}.ron");
+        fs::write(folder.path().join(&path), block).unwrap();
+        let request = PlanRequest::new([64, 64], &provider);
+        let (graph, plan) = Graph::check(&path, &registry(), &sources, &request)
+            .unwrap_or_else(|errors| panic!("{errors}"));
+        assert!(graph.warnings().is_empty(), "{:?}", graph.warnings());
+        let lacking = usize::from(!graph.features().is_empty());
+        assert_eq!(plan.fallbacks().len(), lacking);
+        assert_eq!(plan.warnings().len(), lacking, "{:?}", plan.warnings());
+        passes.push(plan.passes().len() + plan.culled().len());
+    }
+    assert_eq!(passes, [3, 3, 1, 8, 1]);
+}

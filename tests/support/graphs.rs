@@ -141,18 +141,19 @@ pub fn run_on(
 ) -> FrameReport {
     let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, provider)
         .unwrap_or_else(|error| panic!("{error}"));
+    frame(gpu, &mut executor, read)
+}
+
+/// Runs one frame, passes by their run conditions.
+pub fn frame(gpu: &gpu::Gpu, executor: &mut Executor, read: &[&str]) -> FrameReport {
     let mut encoder = gpu
         .device
         .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    executor
-        .encode(
-            &mut encoder,
-            &Frame {
-                read,
-                ..Frame::default()
-            },
-        )
-        .unwrap();
+    let frame = Frame {
+        read,
+        ..Frame::default()
+    };
+    executor.encode(&mut encoder, &frame).unwrap();
     gpu.queue.submit([encoder.finish()]);
     executor.submitted(&gpu.queue).unwrap();
     executor.finish().unwrap()

@@ -16,12 +16,12 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Opens the adapter asked for, or the best one.
+/// Opens the adapter asked for, or the best one, with those of the features that it offers.
 ///
 /// # Errors
 /// [`CliError::NoGpu`] with the way out.
-pub fn open(name: Option<&str>) -> Result<Gpu, CliError> {
-    gpu::open(name).map_err(|error: GpuError| CliError::NoGpu(error.to_string()))
+pub fn open(name: Option<&str>, features: wgpu::Features) -> Result<Gpu, CliError> {
+    gpu::open_with(name, features).map_err(|error: GpuError| CliError::NoGpu(error.to_string()))
 }
 
 /// What the opened device can do.

@@ -1,60 +1,167 @@
-//! A host program with its own device runs a graph inside its own encoder: `cargo run -p skiagraph-graph --example embed`.
+//! A host program with its own device, G-buffer and shading has its shadows from a graph, in one encoder with all the rest:
+//! `cargo run -p skiagraph-graph --example embed`.
+//!
+//! The scene is a box on a ground, seen from straight above, so that the area of the shadow is known: a box of edge w and height h
+//! under a light that travels along (x, -1, z) shades w·h·(|x| + |z|) of the ground around it.
 
 use skiagraph_graph::{
-    Executor, FolderSources, Frame, Graph, NoProvider, ParamValue, PlanRequest, Registry, gpu,
+    ExecuteError, Executor, FolderSources, Frame, FrameReport, Graph, Import, ParamValue,
+    PlanRequest, Provided, Provider, ProviderError, Registry,
 };
 use std::error::Error;
 
+#[path = "embed/host.rs"]
+mod host;
+use host::{BOX, GBuffer, GROUND, Host, Scene};
+
 fn main() -> Result<(), Box<dyn Error>> {
-    // Any device will do; this one is opened as Skiagraph's own program does it.
-    let gpu::Gpu { device, queue, .. } = gpu::open(None)?;
+    let mut host = Host::new([1.0, 0.5])?;
+    let gbuffer = host.gbuffer([64, 32]);
 
-    // No GPU needed: read the document and its shaders, then plan for a viewport, params and the device's limits.
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");
+    // No GPU needed: read the document and its shaders, then plan for a viewport, the device's limits and what the host imports.
     let sources = FolderSources {
-        root: folder.into(),
+        root: concat!(env!("CARGO_MANIFEST_DIR"), "/examples/embed").into(),
     };
-    let graph = Graph::load("rings.ron", &Registry::standard(), &sources)?;
-    let mut request = PlanRequest::new([64, 24], &NoProvider);
-    request.limits = device.limits();
-    request.features = device.features();
-    request
-        .params
-        .insert("width".to_owned(), ParamValue::F32(3.0));
+    let graph = Graph::load("shadow.ron", &Registry::standard(), &sources)?;
+    let mut request = PlanRequest::new([64, 32], &host.scene);
+    request.limits = host.device.limits();
+    request.features = host.device.features();
+    request.imports.extend(gbuffer.describe());
     let plan = graph.plan(&request)?;
+    let mut executor = Executor::new(&host.device, &host.queue, plan, &mut host.scene)?;
 
-    let mut executor = Executor::new(&device, &queue, plan, &mut NoProvider)?;
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    executor.encode(
-        &mut encoder,
-        &Frame {
-            timing: true,
-            read: &["rings"],
-            ..Frame::default()
-        },
-    )?;
-    queue.submit([encoder.finish()]); // the host's frame, with whatever else is in it
-    executor.submitted(&queue)?;
-    let report = executor.finish()?;
+    // What is wrong comes back before the encoder is touched, so the host can go on with it.
+    let mut encoder = host.device.create_command_encoder(&Default::default());
+    let Err(error) = executor.encode(&mut encoder, &Frame::default()) else {
+        return Err("a missing import went unnoticed".into());
+    };
+    println!("without the G-buffer: {error}\n");
+    gbuffer.hand_over(&mut executor)?;
+    let report = frame(&host, encoder, &gbuffer, &mut executor)?;
+    expect("the first frame runs everything", &report, &[])?;
 
-    for readback in report.readbacks {
-        let texels = readback
-            .content
-            .as_f32()
-            .ok_or("rings is a texture of floats")?;
-        for row in texels.chunks(64) {
-            let line: String = row
-                .iter()
-                .map(|&value| if value > 0.5 { '#' } else { '.' })
-                .collect();
-            println!("{line}");
+    let encoder = host.device.create_command_encoder(&Default::default());
+    let report = frame(&host, encoder, &gbuffer, &mut executor)?;
+    expect("nothing moved", &report, &["create_map"])?;
+
+    // The light's buffer is the host's: it writes it and says so.
+    host.set_light([-0.6, -1.2]);
+    executor.touch("light")?;
+    let encoder = host.device.create_command_encoder(&Default::default());
+    let report = frame(&host, encoder, &gbuffer, &mut executor)?;
+    expect("the light moved", &report, &[])?;
+
+    let renewed = executor.set_param("map_size", ParamValue::U32(1024), &mut host.scene)?;
+    println!("a larger map: {renewed:?}\n");
+    assert_eq!(renewed.resources, ["shadow_map"]);
+
+    // Another size: the imports follow it, so both change at once.
+    let gbuffer = host.gbuffer([96, 48]);
+    let plan = executor.plan().with(|request| {
+        request.viewport = [96, 48];
+        request.imports.extend(gbuffer.describe());
+    })?;
+    executor.replace_graph(plan, &mut host.scene)?;
+    gbuffer.hand_over(&mut executor)?;
+    let encoder = host.device.create_command_encoder(&Default::default());
+    let report = frame(&host, encoder, &gbuffer, &mut executor)?;
+    expect("another map and another size", &report, &[])
+}
+
+/// The host's frame: G-buffer, the graph's passes, shading; all in one encoder and one submission.
+fn frame(
+    host: &Host,
+    mut encoder: wgpu::CommandEncoder,
+    gbuffer: &GBuffer,
+    executor: &mut Executor,
+) -> Result<FrameReport, Box<dyn Error>> {
+    host.draw(&mut encoder, gbuffer);
+    executor.encode(&mut encoder, &Frame::default())?;
+    let visibility = executor
+        .output_view("visibility")
+        .ok_or("the graph has no visibility")?;
+    let letters = host.shade(&mut encoder, gbuffer, &visibility);
+    host.queue.submit([encoder.finish()]);
+    executor.submitted(&host.queue)?;
+    let report = executor.finish()?; // waits; a host that wants neither times nor readbacks need not call it
+    judge(host, &letters, gbuffer.position.width())?;
+    Ok(report)
+}
+
+/// Prints the picture, and compares the area of the shadow with what it must be.
+fn judge(host: &Host, letters: &wgpu::Buffer, width: u32) -> Result<(), Box<dyn Error>> {
+    letters.map_async(wgpu::MapMode::Read, .., |_| {});
+    host.device.poll(wgpu::PollType::wait_indefinitely())?;
+    let bytes = letters.get_mapped_range(..)?.to_vec();
+    let letters: Vec<u8> = bytes.chunks_exact(4).map(|letter| letter[0]).collect();
+    for row in letters.chunks(width as usize) {
+        println!("{}", String::from_utf8_lossy(row));
+    }
+    let pixel = (2.0 * GROUND).powi(2) / letters.len() as f32;
+    let shaded = letters.iter().filter(|letter| **letter == b'#').count() as f32 * pixel;
+    let exact = BOX[0] * BOX[1] * (host.light[0].abs() + host.light[1].abs());
+    println!("area in shadow: {shaded:.3}, exact: {exact:.3}");
+    match (shaded - exact).abs() < 0.05 * exact {
+        true => Ok(()),
+        false => Err("the shadow has the wrong size".into()),
+    }
+}
+
+fn expect(what: &str, report: &FrameReport, skipped: &[&str]) -> Result<(), Box<dyn Error>> {
+    println!("{what}; skipped: {:?}\n", report.skipped);
+    match report.skipped == skipped {
+        true => Ok(()),
+        false => Err(format!("{skipped:?} should have been skipped").into()),
+    }
+}
+
+/// What the graph is given by name, instead of importing it: described for planning, handed out when a live pass binds it.
+impl Provider for Scene {
+    fn names(&self) -> Vec<String> {
+        vec!["scene.vertices".to_owned(), "light".to_owned()]
+    }
+
+    fn describe(&self, name: &str) -> Option<Provided> {
+        let (stride, uniform) = match name {
+            "scene.vertices" => (16, false),
+            "light" => (64, true),
+            _ => return None,
+        };
+        let items = (!uniform).then(|| self.vertices.size() / stride);
+        Some(Provided {
+            items,
+            stride,
+            uniform,
+        })
+    }
+
+    fn build(
+        &mut self,
+        name: &str,
+        _: &wgpu::Device,
+        _: &wgpu::Queue,
+    ) -> Result<wgpu::Buffer, ProviderError> {
+        match name {
+            "scene.vertices" => Ok(self.vertices.clone()),
+            "light" => Ok(self.light.clone()),
+            _ => Err(format!("the scene has no `{name}`").into()),
         }
     }
-    for pass in report.timing.iter().flat_map(|timing| &timing.passes) {
-        println!(
-            "{}: {:?} on the GPU, {:?} to encode",
-            pass.name, pass.gpu, pass.cpu
-        );
+}
+
+impl GBuffer {
+    fn describe(&self) -> [(String, Import); 2] {
+        [
+            ("gbuffer.depth".to_owned(), Import::texture(&self.depth)),
+            (
+                "gbuffer.position".to_owned(),
+                Import::texture(&self.position),
+            ),
+        ]
     }
-    Ok(())
+
+    fn hand_over(&self, executor: &mut Executor) -> Result<(), ExecuteError> {
+        executor.import_texture("gbuffer.depth", &self.depth)?;
+        executor.import_texture("gbuffer.position", &self.position)
+    }
 }

@@ -9,7 +9,7 @@ pub struct Gpu {
     pub instance: wgpu::Instance,
     /// The adapter.
     pub adapter: wgpu::Adapter,
-    /// The device, with the adapter's own limits and those of [`useful_features`] that it has.
+    /// The device, with the adapter's own limits and those of [`useful_features`] (and of what was wanted) that it has.
     pub device: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
@@ -91,6 +91,16 @@ pub fn adapters() -> Vec<wgpu::AdapterInfo> {
 /// # Errors
 /// See [`GpuError`].
 pub fn open(name: Option<&str>) -> Result<Gpu, GpuError> {
+    open_with(name, wgpu::Features::empty())
+}
+
+/// [`open`], and the device has those of `wanted` besides that its adapter offers: those of `Graph::features`. Experimental
+/// features stay off, for wgpu holds that they may misbehave.
+///
+/// # Errors
+/// See [`GpuError`].
+pub fn open_with(name: Option<&str>, wanted: wgpu::Features) -> Result<Gpu, GpuError> {
+    let wanted = wanted - wgpu::Features::all_experimental_mask();
     let instance = instance();
     let adapters = enumerate(&instance);
     if adapters.is_empty() {
@@ -121,7 +131,7 @@ pub fn open(name: Option<&str>) -> Result<Gpu, GpuError> {
     };
     let request = adapter.request_device(&wgpu::DeviceDescriptor {
         label: Some("skiagraph"),
-        required_features: adapter.features() & useful_features(),
+        required_features: adapter.features() & (useful_features() | wanted),
         required_limits: adapter.limits(),
         ..wgpu::DeviceDescriptor::default()
     });

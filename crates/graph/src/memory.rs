@@ -247,7 +247,6 @@ impl Memory {
         provider: &mut dyn Provider,
     ) -> Result<(), ExecuteError> {
         let version = provider.version(&resource.name);
-        self.provided.insert(id, version);
         if let Some((plan, memory)) = old {
             let known = memory
                 .host
@@ -257,6 +256,7 @@ impl Memory {
                 && memory.provided.get(known) == Some(&version)
             {
                 self.host.insert(id, physical.clone());
+                self.provided.insert(id, version);
                 return Ok(());
             }
         }
@@ -267,7 +267,9 @@ impl Memory {
             name: resource.name.clone(),
             why: why.0,
         })?;
+        // Only now: what could not be built is asked for again.
         self.host.insert(id, Physical::Buffer(buffer));
+        self.provided.insert(id, version);
         Ok(())
     }
 
@@ -327,15 +329,42 @@ fn kept_import(plan: &Plan, name: &str, (of, memory): (&Plan, &Memory)) -> Optio
     Some(physical.clone())
 }
 
-/// Why a texture or buffer is not what the host said that it would import.
+/// Why a texture or buffer is not what the host said that it would import; it may have been made for more besides.
 pub(crate) fn differs(physical: &Physical, described: &Import) -> Option<String> {
-    let given = match (physical, described) {
-        (Physical::Texture(texture), Import::Texture { .. }) => Import::texture(texture),
-        (Physical::Buffer(buffer), Import::Buffer { items, .. }) => Import::buffer(buffer, *items),
-        (Physical::Texture(_), _) => return Some("it was planned as a buffer".to_owned()),
-        (Physical::Buffer(_), _) => return Some("it was planned as a texture".to_owned()),
+    fn unless<T: PartialEq + std::fmt::Debug>(what: &str, planned: T, given: T) -> Option<String> {
+        (planned != given).then(|| format!("{what} is {given:?}, not {planned:?}"))
+    }
+    let differences = match (physical, *described) {
+        (
+            Physical::Texture(texture),
+            Import::Texture {
+                format,
+                size,
+                mips,
+                layers,
+                usage,
+            },
+        ) => [
+            unless("its format", format, texture.format()),
+            unless("its size", size, [texture.width(), texture.height()]),
+            unless("its number of mips", mips, texture.mip_level_count()),
+            unless(
+                "its number of layers",
+                layers,
+                texture.depth_or_array_layers(),
+            ),
+            unless("its usage", usage, texture.usage() & usage),
+        ]
+        .to_vec(),
+        (Physical::Buffer(buffer), Import::Buffer { bytes, usage, .. }) => vec![
+            unless("its size in bytes", bytes, buffer.size()),
+            unless("its usage", usage, buffer.usage() & usage),
+        ],
+        (Physical::Texture(_), _) => vec![Some("it is a texture, not a buffer".to_owned())],
+        (Physical::Buffer(_), _) => vec![Some("it is a buffer, not a texture".to_owned())],
     };
-    (given != *described).then(|| format!("it was planned as {described:?}, and is {given:?}"))
+    let differences: Vec<String> = differences.into_iter().flatten().collect();
+    (!differences.is_empty()).then(|| differences.join("; "))
 }
 
 fn sampler(device: &wgpu::Device, name: &str, entry: &SamplerEntry) -> wgpu::Sampler {

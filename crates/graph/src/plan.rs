@@ -82,7 +82,9 @@ impl Graph {
             outside: outside.chain(request.provider.names()).collect(),
         };
         let instance = instantiate(&self.document, purpose, &mut diagnostics);
-        let lacks = |diagnostic: &Diagnostic| diagnostic.code == Code::Feature;
+        let lacks = |diagnostic: &Diagnostic| {
+            diagnostic.code == Code::Feature && diagnostic.severity == Severity::Error
+        };
         if diagnostics.iter().any(lacks) {
             // On a device that cannot run the graph nothing else is worth knowing.
             diagnostics.retain(lacks);
@@ -684,9 +686,7 @@ impl Plan {
     /// # Errors
     /// Everything that is wrong then.
     pub fn with_viewport(&self, viewport: [u32; 2]) -> Result<Self, Diagnostics> {
-        let mut request = self.request.again();
-        request.viewport = viewport;
-        self.graph.plan(&request)
+        self.with(|request| request.viewport = viewport)
     }
 
     /// This plan with another value of a param.
@@ -694,8 +694,22 @@ impl Plan {
     /// # Errors
     /// Everything that is wrong then.
     pub fn with_param(&self, name: &str, value: ParamValue) -> Result<Self, Diagnostics> {
+        self.with(|request| {
+            request.params.insert(name.to_owned(), value);
+        })
+    }
+
+    /// This plan with several things of its request changed at once, such as the viewport and the imports that follow it. What the
+    /// provider described is as it was, unless another provider is put in.
+    ///
+    /// # Errors
+    /// Everything that is wrong then.
+    pub fn with<'a>(
+        &'a self,
+        change: impl FnOnce(&mut PlanRequest<'a>),
+    ) -> Result<Self, Diagnostics> {
         let mut request = self.request.again();
-        request.params.insert(name.to_owned(), value);
+        change(&mut request);
         self.graph.plan(&request)
     }
 

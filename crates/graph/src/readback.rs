@@ -185,13 +185,22 @@ impl Pending {
             });
         };
         let Target { id, part } = target;
+        // What the graph made can be copied from; what the host made may not.
+        let refuse = |usage: &'static str| ExecuteError::NotReadable {
+            name: name.to_owned(),
+            usage,
+        };
         let (source, size) = match &plan.resources[id.0].kind {
             ResourceKind::Texture(texture) => {
                 let size = texture.size.map(|edge| (edge >> part.mips.start).max(1));
                 let texel = texture.format.block_copy_size(None).unwrap_or(4);
                 let row = (size[0] * texel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+                let made = memory.texture(*id, histories)?.clone();
+                if !made.usage().contains(wgpu::TextureUsages::COPY_SRC) {
+                    return Err(refuse("TextureUsages::COPY_SRC"));
+                }
                 let source = Source::Texture {
-                    texture: memory.texture(*id, histories)?.clone(),
+                    texture: made,
                     part: part.clone(),
                     size,
                     row,
@@ -200,6 +209,9 @@ impl Pending {
             }
             _ => {
                 let buffer = memory.buffer(*id, histories)?.clone();
+                if !buffer.usage().contains(wgpu::BufferUsages::COPY_SRC) {
+                    return Err(refuse("BufferUsages::COPY_SRC"));
+                }
                 let size = buffer.size();
                 (Source::Buffer(buffer), size)
             }

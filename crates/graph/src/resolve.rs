@@ -511,7 +511,7 @@ impl Resources<'_> {
             return Some(target.clone());
         }
         if let Some(of) = previous_of(name) {
-            return self.find_previous(name, &of.to_owned());
+            return self.find_previous(name, of);
         }
         if let Some(layer) = self.layer(name) {
             return layer;

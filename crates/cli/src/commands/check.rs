@@ -100,12 +100,11 @@ pub fn all_at_once(
     sources: &dyn Sources,
 ) -> Result<(Graph, Plan), Diagnostics> {
     let provider = provider(VIEWPORT);
-    Graph::check(
-        path,
-        registry,
-        sources,
-        &PlanRequest::new(VIEWPORT, &provider),
-    )
+    let mut request = PlanRequest::new(VIEWPORT, &provider);
+    // Without an adapter, those that the graph requires are taken to be there; all of them if it does not even say which.
+    request.features = Graph::load(path, registry, sources)
+        .map_or(wgpu::Features::all(), |graph| graph.features());
+    Graph::check(path, registry, sources, &request)
 }
 
 /// Describes all that a scene can give, without a scene.

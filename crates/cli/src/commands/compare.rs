@@ -43,7 +43,11 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
     let presets = load(&names, &sources)?;
     let methods = methods(&presets, args)?;
     let primary = Primary::load(&sources)?;
-    let gpu = render::open(adapter)?;
+    let wanted = presets.iter().map(|preset| preset.graph.features());
+    let gpu = render::open(
+        adapter,
+        wanted.fold(wgpu::Features::empty(), |all, own| all | own),
+    )?;
     let Stage { scene, views } = Stage::load(&args.scene)?;
     check_pictures(&methods, &views, args)?;
     let scene = Arc::new(scene);

@@ -29,7 +29,7 @@ pub fn doctor(adapter: Option<&str>) -> Result<(), CliError> {
     }
     print(&text)?;
     print(&meshes())?;
-    let gpu = render::open(adapter)?;
+    let gpu = render::open(adapter, wgpu::Features::empty())?;
     print(&chosen(&gpu))?;
     let verdict = match render::trust(&gpu) {
         Trust::Trusted => "  GPU times: true (a long dispatch after a raster pass takes as long as the clock says)".into(),

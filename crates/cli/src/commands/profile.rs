@@ -40,7 +40,7 @@ pub fn profile(args: &ProfileArgs, adapter: Option<&str>) -> Result<(), CliError
     };
     let (preset, params) = preset::load_one(&args.method, &preset::sources())?;
     let method = Method::new(&preset, params);
-    let gpu = render::open(adapter)?;
+    let gpu = render::open(adapter, preset.graph.features())?;
     let Stage { scene, views } = Stage::load(&args.scene)?;
     let scene = Arc::new(scene);
     let Some(view) = views.first() else {

@@ -45,7 +45,7 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
         .map(|save| (writer(save), save.file.as_path()))
         .collect();
     check_writable(&files)?;
-    let gpu = render::open(adapter)?;
+    let gpu = render::open(adapter, preset.graph.features())?;
     let stage = Stage::load(scene)?;
     let scene = Arc::new(stage.scene);
     let mut provider = SceneProvider::new(scene.clone());

@@ -40,15 +40,27 @@ pub enum ExecuteError {
         why: String,
     },
     /// An import that the plan does not know.
-    #[error("the plan has no import `{name}` that a live pass uses; it has {known}")]
+    #[error("the plan has no import `{name}`; it has {known}")]
     NoSuchImport {
         /// The name.
         name: String,
         /// What there is.
         known: String,
     },
+    /// What changed is neither an import nor a provided resource.
+    #[error(
+        "neither an import nor a provided resource is called `{name}`; live passes use {known}"
+    )]
+    NotOfHost {
+        /// The name.
+        name: String,
+        /// What there is.
+        known: String,
+    },
     /// An import is not what the plan was made for.
-    #[error("`{name}` cannot be imported: {why}; plan again with what it is")]
+    #[error(
+        "`{name}` cannot be imported where another was planned for: {why}; plan again with what it is"
+    )]
     Import {
         /// The name.
         name: String,
@@ -77,6 +89,14 @@ pub enum ExecuteError {
         name: String,
         /// What there is.
         known: String,
+    },
+    /// A readback of something that the host made for other purposes.
+    #[error("`{name}` cannot be read back: the host must make it with {usage}")]
+    NotReadable {
+        /// The output.
+        name: String,
+        /// What it lacks.
+        usage: &'static str,
     },
     /// A readback did not arrive.
     #[error("the content of `{name}` could not be read back")]

@@ -17,7 +17,7 @@ use crate::{
     plan::Plan,
     provider::Provider,
     readback::{Pending, Readback},
-    resolve::{Origin, ResourceId},
+    resolve::{Origin, Resource, ResourceId},
     timing::{FrameTiming, Timer},
 };
 use encode::encode;
@@ -68,8 +68,9 @@ pub struct Executor {
     poison: Option<Poison>,
     timer: Timer,
     timed: bool,
-    /// The passes that ran last, by position, with the time that encoding them took.
-    cpu: Vec<(usize, Duration)>,
+    /// The passes that ran last, with the time that encoding them took. Names, because the next plan may have other passes.
+    cpu: Vec<(String, Duration)>,
+    skipped: Vec<String>,
     pending: Vec<Pending>,
 }
 
@@ -106,6 +107,7 @@ impl Executor {
             contents,
             timed: false,
             cpu: Vec::new(),
+            skipped: Vec::new(),
             pending: Vec::new(),
         };
         executor.bind_what_can_be()?;
@@ -121,7 +123,7 @@ impl Executor {
     /// as changed.
     ///
     /// # Errors
-    /// If the plan has no such import, or the texture is not as described.
+    /// If the plan has no such import, the texture is not as described, or it is another one and the device is lost.
     pub fn import_texture(
         &mut self,
         name: &str,
@@ -149,10 +151,7 @@ impl Executor {
                 .collect();
             return Err(ExecuteError::NoSuchImport {
                 name: name.to_owned(),
-                known: match known.is_empty() {
-                    true => "none".to_owned(),
-                    false => known.join(", "),
-                },
+                known: list(&known),
             });
         };
         if let Some(why) = differs(&physical, described) {
@@ -163,6 +162,10 @@ impl Executor {
         }
         // An import that no live pass uses needs no place.
         if let Some(id) = self.live(name) {
+            // Most hosts hand over the same texture in every frame.
+            if self.memory.host(id) != Some(&physical) {
+                alive(&self.device)?;
+            }
             self.contents.touch(id);
             if self.memory.import(id, physical) {
                 self.unbind(id);
@@ -175,21 +178,27 @@ impl Executor {
     /// in the next frame. (A provider that counts [`versions`](Provider::version) needs [`refresh`](Self::refresh) instead.)
     ///
     /// # Errors
-    /// If no live pass uses anything of the host's under this name.
+    /// If the plan has nothing of the host's under this name. (One that no live pass uses is fine.)
     pub fn touch(&mut self, name: &str) -> Result<(), ExecuteError> {
-        let is_host = |id: &ResourceId| self.plan.resources[id.0].origin == Origin::Host;
-        match self.live(name).filter(is_host) {
-            Some(id) => self.contents.touch(id),
-            None => {
-                let resources = self.plan.lifetimes.keys().filter(|id| is_host(id));
-                let known: Vec<&str> = resources
-                    .map(|id| self.plan.resources[id.0].name.as_str())
-                    .collect();
-                return Err(ExecuteError::NoSuchImport {
-                    name: name.to_owned(),
-                    known: known.join(", "),
-                });
-            }
+        let of_host = |resource: &&Resource| resource.origin == Origin::Host;
+        if let Some(id) = self.live(name)
+            && self.plan.resources[id.0].origin == Origin::Host
+        {
+            self.contents.touch(id);
+        } else if !self.plan.request.offers(name) {
+            let used = self
+                .plan
+                .lifetimes
+                .keys()
+                .map(|id| &self.plan.resources[id.0]);
+            let used: Vec<&str> = used
+                .filter(of_host)
+                .map(|resource| resource.name.as_str())
+                .collect();
+            return Err(ExecuteError::NotOfHost {
+                name: name.to_owned(),
+                known: list(&used),
+            });
         }
         Ok(())
     }
@@ -197,7 +206,7 @@ impl Executor {
     /// Asks the provider for every resource of another [version](Provider::version) than before.
     ///
     /// # Errors
-    /// If one cannot be built.
+    /// If one cannot be built, or the device is lost. The rest stays as it was and is asked for again the next time.
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
         let known: Vec<(ResourceId, u64)> = self.memory.provided().collect();
         for (id, version) in known {
@@ -205,6 +214,7 @@ impl Executor {
             if provider.version(&resource.name) == version {
                 continue;
             }
+            alive(&self.device)?;
             let before = self.memory.host(id).cloned();
             self.memory
                 .refresh(id, resource, None, &self.device, &self.queue, provider)?;
@@ -257,7 +267,12 @@ impl Executor {
         }
         self.timed = frame.timing;
         self.cpu.clear();
-        for (at, pass) in self.passes.iter().enumerate().filter(|(at, _)| runs[*at]) {
+        self.skipped.clear();
+        for (at, pass) in self.passes.iter().enumerate() {
+            if !runs[at] {
+                self.skipped.push(pass.name.to_string());
+                continue;
+            }
             let start = Instant::now();
             if let Some(poison) = &self.poison {
                 poison.fill(at, encoder);
@@ -272,7 +287,7 @@ impl Executor {
                 );
             }
             encoder.pop_debug_group();
-            self.cpu.push((at, start.elapsed()));
+            self.cpu.push((pass.name.to_string(), start.elapsed()));
         }
         if frame.timing {
             self.timer.resolve(encoder);
@@ -303,27 +318,16 @@ impl Executor {
     /// If the device was lost.
     pub fn finish(&mut self) -> Result<FrameReport, ExecuteError> {
         wait(&self.device)?;
-        let name = |at: usize| self.passes[at].name.to_string();
-        let timing = self.timed.then(|| {
-            let cpu: Vec<(String, Duration)> = self
-                .cpu
-                .iter()
-                .map(|(at, time)| (name(*at), *time))
-                .collect();
-            self.timer.take(&cpu)
-        });
-        let ran = |at: &usize| self.cpu.iter().any(|(ran, _)| ran == at);
-        let skipped = (0..self.passes.len())
-            .filter(|at| !ran(at))
-            .map(name)
-            .collect();
+        // A device that was destroyed is waited for without complaint, but has no query buffers to take times from.
+        alive(&self.device)?;
+        let timing = self.timed.then(|| self.timer.take(&self.cpu));
         let readbacks = std::mem::take(&mut self.pending)
             .into_iter()
             .map(Pending::take)
             .collect::<Result<_, _>>()?;
         Ok(FrameReport {
             timing,
-            skipped,
+            skipped: self.skipped.clone(),
             readbacks,
         })
     }
@@ -373,6 +377,14 @@ impl Executor {
             .contents
             .histories(&self.plan, &vec![true; ready.len()]);
         self.bind(&ready, &histories)
+    }
+}
+
+/// Names for a message.
+fn list(names: &[&str]) -> String {
+    match names.is_empty() {
+        true => "none".to_owned(),
+        false => names.join(", "),
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::{Builder, Fallback, ScopeId};
 use crate::{
-    diagnostics::{Code, Diagnostic},
+    diagnostics::{Code, Diagnostic, Severity},
     document::{
         Document, IncludeEntry,
         located::Located,
@@ -135,12 +135,21 @@ impl Builder<'_, '_> {
                         .push(error.help(format!("without it, the value must be {value}")));
                     continue;
                 }
-                self.fallbacks.push(Fallback {
+                let fallback = Fallback {
                     feature: feature.clone(),
                     param: format!("{prefix}{}", **name),
                     instead_of: std::mem::replace(&mut bound.value, value.clone()),
                     value: value.clone(),
+                };
+                let message = format!(
+                    "param `{}` is {value} instead of {}",
+                    fallback.param, fallback.instead_of
+                );
+                self.diagnostics.push(Diagnostic {
+                    severity: Severity::Warning,
+                    ..lacking(message)
                 });
+                self.fallbacks.push(fallback);
             }
         }
     }

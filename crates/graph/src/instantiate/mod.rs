@@ -6,6 +6,8 @@
 mod bind;
 mod materials;
 mod scope;
+#[cfg(test)]
+mod tests;
 
 use crate::{
     diagnostics::{Code, Diagnostic},

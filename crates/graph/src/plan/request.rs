@@ -75,6 +75,11 @@ impl Request {
         }
     }
 
+    /// Whether the host imports or provides something under this name.
+    pub fn offers(&self, name: &str) -> bool {
+        self.imports.contains_key(name) || self.provider.0.contains_key(name)
+    }
+
     /// The request to plan with; provided resources are as they were described.
     pub fn again(&self) -> PlanRequest<'_> {
         PlanRequest {

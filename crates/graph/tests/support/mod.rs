@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
+pub mod host;
+
 use skiagraph_graph::{
     Diagnostics, Graph, NoProvider, Plan, PlanRequest, Provided, Provider, ProviderError, Registry,
     Sources,

@@ -1,0 +1,132 @@
+//! A pass kind of a host's own crate, used from RON: `cargo run -p skiagraph-graph --example custom_pass`.
+//!
+//! `Equalize` spreads the brightness of a picture over the whole range. It becomes three steps: clear a histogram, which is a
+//! buffer of the pass alone, count into it, and map every texel through it. Its shader comes with the kind.
+
+use serde::Deserialize;
+use skiagraph_graph::{
+    Code, Diagnostic, Dispatch, Executor, FolderSources, Frame, Graph, Groups, LayeredSources,
+    Located, Lowering, NoProvider, ParamValue, PassKind, PlanRequest, Program, Registry, Sources,
+    Step, document::value::Value, gpu,
+};
+use std::{error::Error, sync::Arc};
+
+/// The body of an `Equalize` pass: what its RON entry holds beside `name`, `shader`, `bind` and `run`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Equalize {
+    from: Located<String>,
+    to: Located<String>,
+    bins: Located<Value<u32>>,
+}
+
+impl PassKind for Equalize {
+    fn lower(&self, pass: &mut Lowering<'_>) {
+        const MOST: u32 = 4096;
+        let mut bins = pass.value(&self.bins.value, 1);
+        if bins == 0 || bins > MOST {
+            pass.report(
+                Diagnostic::error(Code::Size, format!("a histogram of {bins} bins"))
+                    .at(self.bins.span.clone(), "this many")
+                    .help(format!("give it 1 to {MOST}")),
+            );
+            bins = 1; // so that what else is wrong with the pass is found too
+        }
+        let histogram = pass.scratch("histogram", u64::from(bins) * 4);
+        pass.step(Step::Clear {
+            target: histogram.clone(),
+            value: [0.0; 4],
+        });
+        for entry in ["count", "spread"] {
+            let mut program = Program {
+                compute: Some(pass.named(entry)),
+                constants: vec![("BINS".to_owned(), f64::from(bins))],
+                ..pass.program_of("equalize")
+            };
+            for (global, resource) in [
+                ("source", &self.from),
+                ("result", &self.to),
+                ("histogram", &histogram),
+            ] {
+                program.bind.push((pass.named(global), resource.clone()));
+            }
+            let groups = Groups::Over(self.from.clone());
+            pass.step(Step::Dispatch(Dispatch { program, groups }));
+        }
+    }
+}
+
+/// The shaders that come with the host's pass kinds.
+struct Embedded;
+
+impl Sources for Embedded {
+    fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
+        let found = path == "shaders/equalize.wgsl";
+        Ok(found.then(|| include_str!("custom_pass/equalize.wgsl").into()))
+    }
+
+    fn list(&self, folder: &str) -> Vec<String> {
+        match folder {
+            "shaders" => vec!["equalize.wgsl".to_owned()],
+            _ => Vec::new(),
+        }
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut registry = Registry::standard();
+    registry.register::<Equalize>("Equalize");
+    let folder = FolderSources {
+        root: concat!(env!("CARGO_MANIFEST_DIR"), "/examples/custom_pass").into(),
+    };
+    let sources = LayeredSources(vec![Box::new(folder), Box::new(Embedded)]);
+    let graph = Graph::load("dim.ron", &registry, &sources)?;
+
+    // The kind's own mistakes look like all others.
+    let mut request = PlanRequest::new([64, 24], &NoProvider);
+    request.params.insert("bins".to_owned(), ParamValue::U32(0));
+    let Err(wrong) = graph.plan(&request) else {
+        return Err("a histogram of no bins went unnoticed".into());
+    };
+    println!("{wrong}");
+
+    let gpu::Gpu { device, queue, .. } = gpu::open(None)?;
+    request.params.clear();
+    request.limits = device.limits();
+    let mut executor = Executor::new(&device, &queue, graph.plan(&request)?, &mut NoProvider)?;
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let frame = Frame {
+        read: &["dim", "clear"],
+        ..Frame::default()
+    };
+    executor.encode(&mut encoder, &frame)?;
+    queue.submit([encoder.finish()]);
+    executor.submitted(&queue)?;
+
+    let mut ranges = Vec::new();
+    for readback in executor.finish()?.readbacks {
+        let texels = readback
+            .content
+            .as_f32()
+            .ok_or("it is no texture of floats")?;
+        println!("{}:", readback.name);
+        for row in texels.chunks(64) {
+            let shade = |texel: &f32| char::from(b" .:-=+*#%@"[(texel * 9.99) as usize]);
+            println!("{}", row.iter().map(shade).collect::<String>());
+        }
+        let (darkest, brightest) = texels
+            .iter()
+            .fold((1.0_f32, 0.0_f32), |(low, high), texel| {
+                (low.min(*texel), high.max(*texel))
+            });
+        ranges.push(brightest - darkest);
+    }
+    println!(
+        "range of brightness: {:.2} before, {:.2} after",
+        ranges[0], ranges[1]
+    );
+    match ranges[0] < 0.2 && ranges[1] > 0.9 {
+        true => Ok(()),
+        false => Err("the picture was not equalised".into()),
+    }
+}

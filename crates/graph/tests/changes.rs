@@ -1,0 +1,284 @@
+//! What another param, another size, another graph come to; and that what fails changes nothing.
+
+mod support;
+
+use skiagraph_graph::{
+    ExecuteError, Executor, Frame, NoProvider, ParamValue, PlanRequest, Renewed,
+};
+use support::{
+    Files,
+    host::{GPU, encoder, executor, frame, numbers, planned, request},
+};
+
+/// Every kind of place that a param can stand in, each with its own.
+fn params() -> Files {
+    Files::new([
+        (
+            "graph.ron",
+            "(
+                format: 1,
+                params: [
+                    (name: \"gain\", type: U32, default: 1, max: 100),
+                    (name: \"offset\", type: U32, default: 0),
+                    (name: \"both\", type: U32, default: 0),
+                    (name: \"face\", type: Choice([\"none\", \"front\", \"back\"]), default: \"none\"),
+                    (name: \"slope\", type: F32, default: 0),
+                    (name: \"far\", type: F32, default: 1, min: 0, max: 1),
+                    (name: \"edge\", type: U32, default: 8),
+                    (name: \"layers\", type: U32, default: 2, min: 2),
+                    (name: \"items\", type: U32, default: 64, min: 1),
+                    (name: \"corners\", type: U32, default: 3),
+                    (name: \"enabled\", type: Bool, default: true),
+                ],
+                materials: [
+                    Texture(name: \"depth\", format: Depth32Float, size: Square(Param(\"edge\"))),
+                    Texture(name: \"stack\", format: R32Uint, size: Texels(4, 4), layers: Param(\"layers\")),
+                    Buffer(name: \"list\", count: Param(\"items\")),
+                    Buffer(name: \"sometimes\", count: 1),
+                    Texture(name: \"image\", format: R32Uint, size: Viewport),
+                ],
+                passes: [
+                    Raster(name: \"draw\", draw: Vertices(Param(\"corners\")), cull: Param(\"face\"),
+                        depth: (target: \"depth\", load: Clear(Param(\"far\")), bias: (slope_scale: Param(\"slope\")))),
+                    Compute(name: \"pile\", dispatch: Over(\"stack\")),
+                    Compute(name: \"fill\", dispatch: Over(\"list\")),
+                    Compute(name: \"switch\", run: When(\"enabled\"), dispatch: Groups(1, 1, 1), bind: {\"old\": Previous(\"sometimes\")}),
+                    Fullscreen(name: \"shade\", color: [(target: \"image\")]),
+                ],
+                outputs: [(name: \"image\"), (name: \"depth\"), (name: \"stack\"), (name: \"list\"), (name: \"sometimes\")],
+            )",
+        ),
+        (
+            "draw.wgsl",
+            "@vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+                 return vec4<f32>(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.5, 1.0);
+             }",
+        ),
+        (
+            "pile.wgsl",
+            "var stack: texture_storage_2d_array<r32uint, write>;
+             @compute @workgroup_size(4, 4) fn main(@builtin(global_invocation_id) at: vec3<u32>) {
+                 for (var layer = 0u; layer < textureNumLayers(stack); layer++) { textureStore(stack, at.xy, layer, vec4(layer)); }
+             }",
+        ),
+        (
+            "fill.wgsl",
+            "var<storage, read_write> list: array<u32>;
+             @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+                 if id.x < arrayLength(&list) { list[id.x] = id.x; }
+             }",
+        ),
+        (
+            "switch.wgsl",
+            "var<storage, read> old: array<u32>;
+             var<storage, read_write> sometimes: array<u32>;
+             @compute @workgroup_size(1) fn main() { sometimes[0] = old[0] + 1u; }",
+        ),
+        (
+            "shade.wgsl",
+            "struct Params { gain: u32, both: u32 }
+             var<uniform> params: Params;
+             override offset: u32;
+             override both: u32;
+             @fragment fn fragment() -> @location(0) u32 { return 7u * params.gain + offset + params.both + both; }",
+        ),
+    ])
+}
+
+/// The table of docs/embedding.md, row by row: what a change of a param comes to, and the image after it.
+#[test]
+fn a_param_costs_what_follows_from_it() {
+    let mut executor = executor(&params(), &request(&NoProvider));
+    assert_eq!(numbers(&mut executor, "image"), [7; 64]);
+    let number = ParamValue::U32;
+    let nothing: &[&str] = &[];
+    let rows = [
+        // param, value, uploads, pipelines, resources, image
+        ("gain", number(2), &["shade"][..], nothing, nothing, 14),
+        ("gain", number(2), nothing, nothing, nothing, 14),
+        ("offset", number(3), nothing, &["shade"], nothing, 17),
+        ("both", number(1), &["shade"], &["shade"], nothing, 19),
+        (
+            "face",
+            ParamValue::Choice("back".to_owned()),
+            nothing,
+            &["draw"],
+            nothing,
+            19,
+        ),
+        (
+            "slope",
+            ParamValue::F32(1.5),
+            nothing,
+            &["draw"],
+            nothing,
+            19,
+        ),
+        ("far", ParamValue::F32(0.75), nothing, nothing, nothing, 19),
+        ("corners", number(6), nothing, nothing, nothing, 19),
+        ("edge", number(32), nothing, nothing, &["depth"], 19),
+        ("layers", number(4), nothing, nothing, &["stack"], 19),
+        ("items", number(100), nothing, nothing, &["list"], 19),
+        (
+            "enabled",
+            ParamValue::Bool(false),
+            nothing,
+            nothing,
+            nothing,
+            19,
+        ),
+    ];
+    for (name, value, uploads, pipelines, resources, image) in rows {
+        let renewed = executor
+            .set_param(name, value.clone(), &mut NoProvider)
+            .unwrap_or_else(|error| panic!("{error}"));
+        let expected = Renewed {
+            uploads: uploads.iter().map(|name| (*name).to_owned()).collect(),
+            pipelines: pipelines.iter().map(|name| (*name).to_owned()).collect(),
+            resources: resources.iter().map(|name| (*name).to_owned()).collect(),
+        };
+        assert_eq!(renewed, expected, "{name} = {value}");
+        assert_eq!(executor.plan().param(name), Some(&value));
+        assert_eq!(
+            numbers(&mut executor, "image"),
+            [image; 64],
+            "{name} = {value}"
+        );
+    }
+    // What these changes were for has happened.
+    let report = frame(&mut executor, &["depth", "list", "sometimes"]);
+    assert_eq!(report.skipped, ["switch"]);
+    let depth = report.readbacks[0].content.as_f32().unwrap();
+    assert_eq!(depth.len(), 32 * 32);
+    assert_eq!(report.readbacks[1].content.as_u32().unwrap().len(), 100);
+    assert_eq!(
+        report.readbacks[2].content.as_u32().unwrap(),
+        [12],
+        "it ran in each frame until it was switched off"
+    );
+}
+
+/// ```text
+/// Previous(total) ─▶ count ─▶ total ; Viewport ─▶ image
+/// ```
+fn counter(step: &str) -> Files {
+    Files::new([
+        (
+            "graph.ron",
+            "(format: 1, params: [(name: \"most\", type: U32, default: 5, max: 9), (name: \"items\", type: U32, default: 1)],
+              materials: [Buffer(name: \"total\", count: Param(\"items\")), Texture(name: \"image\", format: R32Uint, size: Viewport)],
+              passes: [Compute(name: \"count\", dispatch: Groups(1, 1, 1), bind: {\"old\": Previous(\"total\")}), Fullscreen(name: \"draw\", color: [(target: \"image\")])],
+              outputs: [(name: \"total\"), (name: \"image\")])",
+        ),
+        ("draw.wgsl", "@fragment fn fragment() -> @location(0) u32 { return 1u; }"),
+    ])
+    .with(
+        "count.wgsl",
+        format!(
+            "struct Params {{ most: u32 }} var<uniform> params: Params;
+             var<storage, read> old: array<u32>; var<storage, read_write> total: array<u32>;
+             @compute @workgroup_size(1) fn main() {{ total[0] = old[0] + {step}; }}"
+        ),
+    )
+}
+
+/// The device refuses what the plan's limits allowed.
+fn boundless() -> PlanRequest<'static> {
+    let mut request = request(&NoProvider);
+    request.limits.max_texture_dimension_2d = 1 << 20;
+    request.limits.max_compute_workgroup_size_x = 1 << 12;
+    request.limits.max_compute_invocations_per_workgroup = 1 << 12;
+    request.limits.max_storage_buffer_binding_size = 1 << 30;
+    request
+}
+
+#[test]
+fn what_fails_changes_nothing() {
+    let mut executor = executor(&counter("1u"), &boundless());
+    let mut expected = 1;
+    assert_eq!(numbers(&mut executor, "total"), [expected]);
+    type Change = fn(&mut Executor) -> Result<Renewed, ExecuteError>;
+    let changes: [(&str, Change); 8] = [
+        ("the viewport has no pixels", |executor| {
+            executor.resize([0, 8], &mut NoProvider)
+        }),
+        ("`image` could not be made", |executor| {
+            executor.resize([1 << 19, 8], &mut NoProvider)
+        }),
+        ("did you mean `most`", |executor| {
+            executor.set_param("mast", ParamValue::U32(1), &mut NoProvider)
+        }),
+        ("must be at most 9", |executor| {
+            executor.set_param("most", ParamValue::U32(10), &mut NoProvider)
+        }),
+        ("must be of type u32", |executor| {
+            executor.set_param("most", ParamValue::F32(1.0), &mut NoProvider)
+        }),
+        ("`image` could not be made", |executor| {
+            let mut request = boundless();
+            request.viewport = [1 << 19, 8];
+            executor.replace_graph(planned(&counter("100u"), &request), &mut NoProvider)
+        }),
+        // Refused at the pipeline, when all memory is there …
+        ("pass `count` was refused by the device", |executor| {
+            let mut files = counter("100u");
+            let shader = files.0.get_mut("count.wgsl").expect("it is there");
+            *shader = shader.replace("workgroup_size(1)", "workgroup_size(2048)");
+            executor.replace_graph(planned(&files, &boundless()), &mut NoProvider)
+        }),
+        // … and at the bind group, when the new plan has taken the place of the old one.
+        ("pass `count` was refused by the device", |executor| {
+            executor.set_param("items", ParamValue::U32(40_000_000), &mut NoProvider)
+        }),
+    ];
+    for (why, change) in changes {
+        let message = change(&mut executor).expect_err(why).to_string();
+        assert!(message.contains(why), "{message}\nshould say: {why}");
+        expected += 1;
+        assert_eq!(numbers(&mut executor, "total"), [expected], "after {why}");
+        assert_eq!(numbers(&mut executor, "image"), [1; 64], "after {why}");
+        expected += 1;
+        assert_eq!(executor.plan().viewport(), [8, 8]);
+    }
+}
+
+#[test]
+fn an_edited_shader_keeps_what_was_there() {
+    let mut executor = executor(&counter("1u"), &request(&NoProvider));
+    assert_eq!(numbers(&mut executor, "total"), [1]);
+    assert_eq!(numbers(&mut executor, "total"), [2]);
+    let plan = planned(&counter("10u"), &request(&NoProvider));
+    let renewed = executor.replace_graph(plan, &mut NoProvider).unwrap();
+    let only = Renewed {
+        pipelines: vec!["count".to_owned()],
+        ..Renewed::default()
+    };
+    assert_eq!(renewed, only);
+    assert_eq!(numbers(&mut executor, "total"), [12]);
+}
+
+/// The report is that of the frame, whatever the executor's plan is by then.
+#[test]
+fn a_frame_that_was_encoded_before_a_change_is_reported_after_it() {
+    let mut executor = executor(&params(), &request(&NoProvider));
+    let mut encoder = encoder();
+    let timed = Frame {
+        timing: true,
+        read: &["image"],
+        ..Frame::default()
+    };
+    executor.encode(&mut encoder, &timed).unwrap();
+    GPU.queue.submit([encoder.finish()]);
+    executor.submitted(&GPU.queue).unwrap();
+    let plan = planned(&counter("1u"), &request(&NoProvider));
+    executor.replace_graph(plan, &mut NoProvider).unwrap();
+    let report = executor.finish().unwrap();
+    let timing = report.timing.expect("times were asked for");
+    let names: Vec<&str> = timing
+        .passes
+        .iter()
+        .map(|pass| pass.name.as_str())
+        .collect();
+    assert_eq!(names, ["draw", "pile", "fill", "switch", "shade"]);
+    assert_eq!(report.readbacks[0].content.as_u32().unwrap(), [7; 64]);
+}

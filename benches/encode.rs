@@ -8,7 +8,8 @@ use skiagraph_benches::{
     graph,
 };
 use skiagraph_graph::{
-    Executor, Frame, Graph, NoProvider, ParamValue, Plan, PlanRequest, Registry, gpu,
+    Executor, Frame, Graph, NoProvider, ParamValue, Plan, PlanRequest, Registry,
+    gpu::{self, Gpu},
 };
 use std::time::{Duration, Instant};
 
@@ -27,6 +28,11 @@ fn main() {
         "adapter: {} ({:?}, {} {})",
         info.name, info.backend, info.driver, info.driver_info
     );
+    // `cargo bench` says `--bench`; without it the benchmarks are only tried. First, because wgpu is slower on a device that has
+    // seen many resources.
+    if std::env::args().any(|argument| argument == "--bench") {
+        compare(&gpu);
+    }
     let mut criterion = Criterion::default()
         .sample_size(20)
         .warm_up_time(Duration::from_millis(500))
@@ -34,14 +40,10 @@ fn main() {
         .configure_from_args();
     changes(&mut criterion, &gpu);
     criterion.final_summary();
-    // `cargo bench` says `--bench`; without it the benchmarks are only tried.
-    if std::env::args().any(|argument| argument == "--bench") {
-        compare(&gpu);
-    }
 }
 
 /// Encodes and finishes one frame; how long that took.
-fn frame(gpu: &gpu::Gpu, encode: impl FnOnce(&mut wgpu::CommandEncoder)) -> Duration {
+fn frame(gpu: &Gpu, encode: impl FnOnce(&mut wgpu::CommandEncoder)) -> Duration {
     let mut encoder = gpu
         .device
         .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -49,53 +51,61 @@ fn frame(gpu: &gpu::Gpu, encode: impl FnOnce(&mut wgpu::CommandEncoder)) -> Dura
     encode(&mut encoder);
     let commands = encoder.finish();
     let time = start.elapsed();
+    // Nothing is submitted, and without this wgpu keeps what is dropped.
     drop(commands);
+    let _ = gpu.device.poll(wgpu::PollType::Poll);
     time
 }
 
-/// Prints the times of chains by hand and through the executor. The ways take turns frame by frame, so that what else
-/// the machine does meets all of them.
-fn compare(gpu: &gpu::Gpu) {
-    println!("\nencode and finish, µs per pass: medians over frames that take turns");
-    println!("kind     | passes | frames | by hand | with groups | executor | over hand | ratio | over groups | ratio");
+/// Prints the times of chains by hand and through the executor. The ways take turns frame by frame, so that what else the
+/// machine does meets all of them; differences and ratios are those within one turn.
+fn compare(gpu: &Gpu) {
+    println!("\nencode and finish, µs per pass: medians over turns (a frame of each)");
+    println!(
+        "kind     | passes | turns | by hand | executor | over by hand | ratio | over by hand with debug groups | ratio"
+    );
     for kind in Kind::ALL {
         for passes in SIZES {
             let by_hand = ByHand::new(gpu, kind, passes);
             let mut executor = executor(gpu, kind, passes).expect("the chain suits every device");
-            let frames = 20_000 / passes.max(20);
-            let mut times: [Vec<f64>; 3] = Default::default();
-            for round in 0..frames + frames / 10 {
-                let mut measured = [0.0; 3];
+            let mut turn = |first: usize| {
+                let mut times = [0.0; 3];
                 // Whoever comes first finds other caches.
-                for way in (0..3).map(|way| (way + round) % 3) {
+                for way in (0..3).map(|way| (first + way) % 3) {
                     let time = frame(gpu, |encoder| match way {
-                        0 => by_hand.encode(encoder, false),
-                        1 => by_hand.encode(encoder, true),
-                        _ => executor
+                        0 => executor
                             .encode(encoder, &Frame::default())
                             .expect("the chain was encoded before"),
+                        1 => by_hand.encode(encoder, false),
+                        _ => by_hand.encode(encoder, true),
                     });
-                    measured[way] = time.as_secs_f64() * 1e6 / passes as f64;
+                    times[way] = time.as_secs_f64() * 1e6 / passes as f64;
                 }
-                // The first tenth warms up.
-                if round >= frames / 10 {
-                    times.iter_mut().zip(measured).for_each(|(times, time)| times.push(time));
-                }
-            }
-            let [hand, grouped, executor] = times.map(median);
+                times
+            };
+            let turns = 40_000 / (passes + 30);
+            let warm_up = turns / 10;
+            let times: Vec<[f64; 3]> = (0..turns + warm_up).map(&mut turn).skip(warm_up).collect();
+            let over = |by_hand: usize| {
+                let pairs = || times.iter().map(|times| (times[0], times[by_hand]));
+                [
+                    median(pairs().map(|(executor, by_hand)| executor - by_hand)),
+                    median(pairs().map(|(executor, by_hand)| executor / by_hand)),
+                ]
+            };
+            let [executor, by_hand] =
+                [0, 1].map(|way| median(times.iter().map(|times| times[way])));
+            let [[over, ratio], [over_grouped, ratio_grouped]] = [over(1), over(2)];
             println!(
-                "{:8} | {passes:6} | {frames:6} | {hand:7.3} | {grouped:11.3} | {executor:8.3} | {:+9.3} | {:5.3} | {:+11.3} | {:5.3}",
+                "{:8} | {passes:6} | {turns:5} | {by_hand:7.3} | {executor:8.3} | {over:+12.3} | {ratio:5.3} | {over_grouped:+30.3} | {ratio_grouped:5.3}",
                 kind.name(),
-                executor - hand,
-                executor / hand,
-                executor - grouped,
-                executor / grouped,
             );
         }
     }
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
 }
@@ -108,7 +118,7 @@ fn planned(passes: usize) -> Plan {
 }
 
 /// Frames of generated graphs, and what an executor's making, another size and another value of a param cost.
-fn changes(criterion: &mut Criterion, gpu: &gpu::Gpu) {
+fn changes(criterion: &mut Criterion, gpu: &Gpu) {
     let make = |plan| {
         Executor::new(&gpu.device, &gpu.queue, plan, &mut NoProvider)
             .expect("the generated graphs suit every device")
@@ -116,11 +126,7 @@ fn changes(criterion: &mut Criterion, gpu: &gpu::Gpu) {
     for passes in [10, 100] {
         let mut group = criterion.benchmark_group(format!("executor, {passes} passes"));
         group.bench_function(BenchmarkId::from_parameter("new"), |bencher| {
-            bencher.iter_batched(
-                || planned(passes),
-                make,
-                criterion::BatchSize::PerIteration,
-            );
+            bencher.iter_batched(|| planned(passes), make, criterion::BatchSize::PerIteration);
         });
         let mut executor = make(planned(passes));
         group.bench_function(BenchmarkId::from_parameter("encode"), |bencher| {
@@ -146,16 +152,19 @@ fn changes(criterion: &mut Criterion, gpu: &gpu::Gpu) {
             });
         });
         let mut strength = 0.0;
-        group.bench_function(BenchmarkId::from_parameter("set_param, upload"), |bencher| {
-            bencher.iter(|| {
-                strength += 1.0;
-                let renewed = executor
-                    .set_param("strength", ParamValue::F32(strength), &mut NoProvider)
-                    .expect("every value suits");
-                assert!(renewed.pipelines.is_empty() && renewed.resources.is_empty());
-                renewed
-            });
-        });
+        group.bench_function(
+            BenchmarkId::from_parameter("set_param, upload"),
+            |bencher| {
+                bencher.iter(|| {
+                    strength += 1.0;
+                    let renewed = executor
+                        .set_param("strength", ParamValue::F32(strength), &mut NoProvider)
+                        .expect("every value suits");
+                    assert!(renewed.pipelines.is_empty() && renewed.resources.is_empty());
+                    renewed
+                });
+            },
+        );
         group.finish();
     }
 }

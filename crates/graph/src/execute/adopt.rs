@@ -130,9 +130,7 @@ impl Executor {
             (self.contents, self.poison) = (old_contents, old_poison);
             return Err(error);
         }
-        self.histories = self
-            .contents
-            .histories(&self.plan, &vec![false; self.passes.len()]);
+        self.histories = self.contents.histories(&vec![false; self.passes.len()]);
         renewed.uploads = self.upload(&before);
         Ok(renewed)
     }

@@ -1,6 +1,6 @@
 //! Which passes run in a frame, by what changed since they ran last.
 
-use super::pass::MadePass;
+use super::pass::{MadePass, Seen};
 use crate::{
     document::Run,
     memory::{Histories, Versions},
@@ -12,8 +12,11 @@ use std::collections::BTreeMap;
 /// What the resources of a plan hold, as far as it can be told without looking: every change of content is a new number.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contents {
-    versions: BTreeMap<ResourceId, u64>,
+    /// Of every resource of the plan, by id.
+    versions: Vec<u64>,
     clock: u64,
+    /// Of every resource: the group of the passes that write it. They run or are skipped together.
+    writers: Vec<Option<usize>>,
     /// Which of its two allocations holds a resource with a history.
     latest: BTreeMap<ResourceId, usize>,
 }
@@ -22,9 +25,20 @@ impl Contents {
     /// Contents of a plan of which nothing is known.
     pub fn of(plan: &Plan, clock: u64) -> Self {
         let mut contents = Self {
+            versions: vec![0; plan.resources.len()],
             clock,
-            ..Self::default()
+            writers: vec![None; plan.resources.len()],
+            latest: BTreeMap::new(),
         };
+        for (&pass, &group) in plan.schedule.iter().zip(&plan.conditions.group) {
+            for access in plan.passes[pass]
+                .accesses
+                .iter()
+                .filter(|access| access.writes)
+            {
+                contents.writers[access.resource.0] = Some(group);
+            }
+        }
         for &id in plan.lifetimes.keys() {
             contents.touch(id);
             if plan.versions(id) > 1 {
@@ -42,14 +56,12 @@ impl Contents {
     /// Another content.
     pub fn touch(&mut self, id: ResourceId) {
         self.clock += 1;
-        self.versions.insert(id, self.clock);
+        self.versions[id.0] = self.clock;
     }
 
     /// The content is that which another resource had.
     pub fn take_over(&mut self, id: ResourceId, other: &Self, of: ResourceId) {
-        if let Some(version) = other.versions.get(&of) {
-            self.versions.insert(id, *version);
-        }
+        self.versions[id.0] = other.versions[of.0];
         if let Some(latest) = other.latest.get(&of) {
             self.latest.insert(id, *latest);
         }
@@ -57,11 +69,10 @@ impl Contents {
 
     /// The version that a pass sees of an input: of what it was in the frame before if it reads that.
     fn seen(&self, plan: &Plan, id: ResourceId) -> u64 {
-        let id = match plan.resources[id.0].origin {
-            Origin::Previous(base) => base,
-            _ => id,
-        };
-        self.versions.get(&id).copied().unwrap_or(0)
+        match plan.resources[id.0].origin {
+            Origin::Previous(base) => self.versions[base.0],
+            _ => self.versions[id.0],
+        }
     }
 
     /// Whether each pass of the schedule runs. A group runs if one of its passes has a reason to.
@@ -73,19 +84,12 @@ impl Contents {
             all && (pass.enabled || !matches!(pass.run, Run::When(_)))
         };
         let mut runs: Vec<bool> = plan.schedule.iter().map(allowed).collect();
-        let mut writers: BTreeMap<ResourceId, usize> = BTreeMap::new();
-        for (at, &pass) in plan.schedule.iter().enumerate() {
-            let accesses = &plan.passes[pass].accesses;
-            for access in accesses.iter().filter(|access| access.writes) {
-                writers.insert(access.resource, groups[at]);
-            }
-        }
         // A pass that runs can be the reason for one before it in its group, so this is repeated until nothing is added.
         let mut added = !all;
         while added {
             added = false;
             for at in 0..passes.len() {
-                if !runs[groups[at]] && self.has_reason(plan, &passes[at], at, &runs, &writers) {
+                if !runs[groups[at]] && self.has_reason(plan, &passes[at], at, &runs) {
                     runs[groups[at]] = true;
                     added = true;
                 }
@@ -94,14 +98,7 @@ impl Contents {
         (0..passes.len()).map(|at| runs[groups[at]]).collect()
     }
 
-    fn has_reason(
-        &self,
-        plan: &Plan,
-        made: &MadePass,
-        at: usize,
-        runs: &[bool],
-        writers: &BTreeMap<ResourceId, usize>,
-    ) -> bool {
+    fn has_reason(&self, plan: &Plan, made: &MadePass, at: usize, runs: &[bool]) -> bool {
         let pass = &plan.passes[plan.schedule[at]];
         match (&pass.run, &made.memory.versions) {
             (Run::Always, _) => true,
@@ -112,7 +109,7 @@ impl Contents {
                 let inputs = made.memory.inputs.iter().zip(seen);
                 let mut changed = inputs.map(|(id, seen)| {
                     self.seen(plan, *id) != *seen
-                        || writers.get(id).is_some_and(|&writer| runs[writer])
+                        || self.writers[id.0].is_some_and(|group| runs[group])
                 });
                 made.memory.stale || changed.any(|changed| changed)
             }
@@ -120,15 +117,9 @@ impl Contents {
     }
 
     /// The state of the histories in a frame in which these passes run.
-    pub fn histories(&self, plan: &Plan, runs: &[bool]) -> Histories {
+    pub fn histories(&self, runs: &[bool]) -> Histories {
         let versions = |(&id, &latest): (&ResourceId, &usize)| {
-            let is_written = plan.schedule.iter().zip(runs).any(|(&pass, runs)| {
-                let accesses = &plan.passes[pass].accesses;
-                *runs
-                    && accesses
-                        .iter()
-                        .any(|access| access.writes && access.resource == id)
-            });
+            let is_written = self.writers[id.0].is_some_and(|group| runs[group]);
             let current = if is_written { 1 - latest } else { latest };
             (
                 id,
@@ -149,20 +140,22 @@ impl Contents {
         runs: &[bool],
         histories: &Histories,
     ) {
-        let before = self.clone();
+        let before = self.versions.clone();
         for (at, &pass) in plan.schedule.iter().enumerate().filter(|(at, _)| runs[*at]) {
-            let version = |id: &ResourceId| match plan.resources[id.0].origin {
-                Origin::Previous(_) => before.seen(plan, *id),
-                _ => self.seen(plan, *id),
-            };
-            passes[at].memory.stale = false;
-            passes[at].memory.versions =
-                Some(passes[at].memory.inputs.iter().map(version).collect());
-            for access in plan.passes[pass]
-                .accesses
-                .iter()
-                .filter(|access| access.writes)
-            {
+            let Seen {
+                inputs,
+                versions,
+                stale,
+            } = &mut passes[at].memory;
+            let seen = versions.get_or_insert_default();
+            seen.clear();
+            seen.extend(inputs.iter().map(|id| match plan.resources[id.0].origin {
+                Origin::Previous(base) => before[base.0],
+                _ => self.versions[id.0],
+            }));
+            *stale = false;
+            let accesses = plan.passes[pass].accesses.iter();
+            for access in accesses.filter(|access| access.writes) {
                 self.touch(access.resource);
             }
         }

@@ -1,7 +1,7 @@
 //! One pass on the device: pipelines, params, and what is bound in each state of the histories that it touches.
 
 use super::{
-    encode::encode,
+    encode::encode_all,
     error::{ExecuteError, named, scoped},
 };
 use crate::{
@@ -138,9 +138,7 @@ impl MadePass {
         scoped(device, &pass.name, || {
             let mut encoder =
                 device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            steps
-                .iter()
-                .for_each(|step| encode(step, &pass.name, &mut encoder, None));
+            encode_all(&steps, &pass.name, &mut encoder, None);
             encoder.finish()
         })
         .map_err(refused)?;

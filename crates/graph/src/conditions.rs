@@ -14,6 +14,8 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(crate) struct Conditions {
     /// For every position in the schedule, the first position of its group. A group runs or is skipped as a whole.
     pub group: Vec<usize>,
+    /// For every resource, by id, the group of the passes that write it.
+    pub writers: Vec<Option<usize>>,
     /// The resources that must outlive the frame because a pass that writes them may be skipped.
     pub kept: BTreeSet<ResourceId>,
 }
@@ -58,6 +60,11 @@ pub(crate) fn conditions(
         }
     }
     let group: Vec<usize> = (0..group.len()).map(|at| root(&group, at)).collect();
+    let mut writers = vec![None; resources.len()];
+    for (id, uses) in &uses {
+        let writer = uses.iter().find(|(_, access)| access.writes);
+        writers[id.0] = writer.map(|(at, _)| group[*at]);
+    }
     let kept = uses
         .iter()
         .filter(|(_, uses)| {
@@ -66,7 +73,11 @@ pub(crate) fn conditions(
         })
         .map(|(id, _)| *id)
         .collect();
-    Conditions { group, kept }
+    Conditions {
+        group,
+        writers,
+        kept,
+    }
 }
 
 /// The first position of a group.

@@ -15,8 +15,6 @@ pub(super) struct Contents {
     /// Of every resource of the plan, by id.
     versions: Vec<u64>,
     clock: u64,
-    /// Of every resource: the group of the passes that write it. They run or are skipped together.
-    writers: Vec<Option<usize>>,
     /// Which of its two allocations holds a resource with a history.
     latest: BTreeMap<ResourceId, usize>,
 }
@@ -27,18 +25,8 @@ impl Contents {
         let mut contents = Self {
             versions: vec![0; plan.resources.len()],
             clock,
-            writers: vec![None; plan.resources.len()],
             latest: BTreeMap::new(),
         };
-        for (&pass, &group) in plan.schedule.iter().zip(&plan.conditions.group) {
-            for access in plan.passes[pass]
-                .accesses
-                .iter()
-                .filter(|access| access.writes)
-            {
-                contents.writers[access.resource.0] = Some(group);
-            }
-        }
         for &id in plan.lifetimes.keys() {
             contents.touch(id);
             if plan.versions(id) > 1 {
@@ -109,7 +97,7 @@ impl Contents {
                 let inputs = made.memory.inputs.iter().zip(seen);
                 let mut changed = inputs.map(|(id, seen)| {
                     self.seen(plan, *id) != *seen
-                        || self.writers[id.0].is_some_and(|group| runs[group])
+                        || plan.conditions.writers[id.0].is_some_and(|group| runs[group])
                 });
                 made.memory.stale || changed.any(|changed| changed)
             }
@@ -117,9 +105,9 @@ impl Contents {
     }
 
     /// The state of the histories in a frame in which these passes run.
-    pub fn histories(&self, runs: &[bool]) -> Histories {
+    pub fn histories(&self, plan: &Plan, runs: &[bool]) -> Histories {
         let versions = |(&id, &latest): (&ResourceId, &usize)| {
-            let is_written = self.writers[id.0].is_some_and(|group| runs[group]);
+            let is_written = plan.conditions.writers[id.0].is_some_and(|group| runs[group]);
             let current = if is_written { 1 - latest } else { latest };
             (
                 id,

@@ -103,7 +103,7 @@ impl Executor {
             timer: Timer::new(device, queue)?,
             device: device.clone(),
             queue: queue.clone(),
-            histories: contents.histories(&vec![true; passes.len()]),
+            histories: contents.histories(&plan, &vec![true; passes.len()]),
             plan,
             memory,
             pipelines,
@@ -259,7 +259,7 @@ impl Executor {
     ) -> Result<(), ExecuteError> {
         alive(&self.device)?;
         let runs = self.contents.running(&self.plan, &self.passes, frame.all);
-        let histories = self.contents.histories(&runs);
+        let histories = self.contents.histories(&self.plan, &runs);
         self.bind(&runs, &histories)?;
         let mut pending = Vec::new();
         for name in frame.read {
@@ -372,7 +372,9 @@ impl Executor {
         let ready: Vec<bool> = (0..self.passes.len())
             .map(|at| missing_import(&self.plan, &self.memory, at).is_none())
             .collect();
-        let histories = self.contents.histories(&vec![true; ready.len()]);
+        let histories = self
+            .contents
+            .histories(&self.plan, &vec![true; ready.len()]);
         self.bind(&ready, &histories)
     }
 }

@@ -4,13 +4,17 @@
 
 use crate::Generated;
 use skiagraph_graph::{
-    ExecuteError, Executor, Graph, Import, NoProvider, PlanRequest, Registry, gpu::Gpu,
+    ExecuteError, Executor, Graph, Import, NoProvider, Plan, PlanRequest, Registry, gpu::Gpu,
 };
-use std::collections::BTreeMap;
 
 /// Width and height of the textures: encoding does not depend on it.
 const EDGE: u32 = 16;
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+const USAGE: wgpu::TextureUsages = wgpu::TextureUsages::COPY_SRC
+    .union(wgpu::TextureUsages::COPY_DST)
+    .union(wgpu::TextureUsages::TEXTURE_BINDING)
+    .union(wgpu::TextureUsages::STORAGE_BINDING)
+    .union(wgpu::TextureUsages::RENDER_ATTACHMENT);
 /// Invocations per side of a workgroup.
 const GROUP: u32 = 8;
 
@@ -47,6 +51,15 @@ pub enum Kind {
 impl Kind {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Dispatch, Self::Draw, Self::Copy];
+
+    /// The kind of its passes in a document.
+    fn tag(self) -> &'static str {
+        match self {
+            Self::Dispatch => "Compute",
+            Self::Draw => "Fullscreen",
+            Self::Copy => "Copy",
+        }
+    }
 
     /// What tables call it.
     pub fn name(self) -> &'static str {
@@ -110,7 +123,7 @@ fn document(kind: Kind, passes: usize) -> Generated {
         files: files
             .map(|(path, text)| (path.to_owned(), text.to_owned()))
             .into(),
-        kinds: BTreeMap::new(),
+        kinds: [(kind.tag(), passes)].into(),
     }
 }
 
@@ -127,33 +140,38 @@ fn texture(gpu: &Gpu, label: &str) -> wgpu::Texture {
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format: FORMAT,
-        usage: wgpu::TextureUsages::COPY_SRC
-            | wgpu::TextureUsages::COPY_DST
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::STORAGE_BINDING
-            | wgpu::TextureUsages::RENDER_ATTACHMENT,
+        usage: USAGE,
         view_formats: &[],
     })
+}
+
+/// The chain as a plan, with the import `source`.
+///
+/// # Panics
+/// If the graph has a mistake, which would be this crate's.
+pub fn plan(kind: Kind, passes: usize) -> Plan {
+    let mut request = PlanRequest::new([EDGE, EDGE], &NoProvider);
+    let source = Import::Texture {
+        format: FORMAT,
+        size: [EDGE, EDGE],
+        mips: 1,
+        layers: 1,
+        usage: USAGE,
+    };
+    request.imports.insert("source".to_owned(), source);
+    Graph::load("graph.ron", &Registry::standard(), &document(kind, passes))
+        .and_then(|graph| graph.plan(&request))
+        .unwrap_or_else(|faults| panic!("{}", faults.render(false)))
 }
 
 /// The chain as an executor.
 ///
 /// # Errors
 /// If the device refuses something of it.
-///
-/// # Panics
-/// If the graph has a mistake, which would be this crate's.
 pub fn executor(gpu: &Gpu, kind: Kind, passes: usize) -> Result<Executor, ExecuteError> {
-    let generated = document(kind, passes);
-    let source = texture(gpu, "source");
-    let mut request = PlanRequest::new([EDGE, EDGE], &NoProvider);
-    let import = Import::texture(&source);
-    request.imports.insert("source".to_owned(), import);
-    let plan = Graph::load("graph.ron", &Registry::standard(), &generated)
-        .and_then(|graph| graph.plan(&request))
-        .unwrap_or_else(|faults| panic!("{}", faults.render(false)));
+    let plan = plan(kind, passes);
     let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut NoProvider)?;
-    executor.import_texture("source", &source)?;
+    executor.import_texture("source", &texture(gpu, "source"))?;
     Ok(executor)
 }
 

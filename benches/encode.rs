@@ -34,7 +34,7 @@ fn main() {
         compare(&gpu);
     }
     let mut criterion = Criterion::default()
-        .sample_size(20)
+        .sample_size(10)
         .warm_up_time(Duration::from_millis(500))
         .measurement_time(Duration::from_secs(2))
         .configure_from_args();
@@ -123,7 +123,7 @@ fn changes(criterion: &mut Criterion, gpu: &Gpu) {
         Executor::new(&gpu.device, &gpu.queue, plan, &mut NoProvider)
             .expect("the generated graphs suit every device")
     };
-    for passes in [10, 100] {
+    for passes in SIZES {
         let mut group = criterion.benchmark_group(format!("executor, {passes} passes"));
         group.bench_function(BenchmarkId::from_parameter("new"), |bencher| {
             bencher.iter_batched(|| planned(passes), make, criterion::BatchSize::PerIteration);

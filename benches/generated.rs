@@ -1,6 +1,10 @@
 //! The generated graphs are what the benchmarks say that they are.
 
-use skiagraph_benches::{Generated, Shaders, VIEWPORT, graph};
+use skiagraph_benches::{
+    Generated, Shaders, VIEWPORT,
+    chain::{self, Kind},
+    graph,
+};
 use skiagraph_graph::{Graph, NoProvider, Plan, PlanRequest, Registry};
 use std::collections::BTreeMap;
 
@@ -58,4 +62,17 @@ fn a_seed_gives_one_graph() {
     let made = |seed| graph(100, Shaders::Few, seed);
     assert_eq!(made(1), made(1));
     assert_ne!(made(1), made(2));
+}
+
+#[test]
+fn a_chain_runs_all_its_passes_in_order() {
+    for kind in Kind::ALL {
+        for passes in [1, 2, 3, 100] {
+            let plan = chain::plan(kind, passes);
+            assert!(plan.culled().is_empty() && plan.warnings().is_empty());
+            let names: Vec<String> = plan.passes().into_iter().map(|pass| pass.name).collect();
+            let expected = (0..passes).map(|at| format!("{}_{at}", kind.name()));
+            assert!(expected.eq(names), "{kind:?} {passes}");
+        }
+    }
 }

@@ -5,7 +5,7 @@ use skiagraph_benches::{Generated, Shaders, VIEWPORT, graph};
 use skiagraph_graph::{Graph, NoProvider, PlanRequest, Provider, Registry, Sources};
 use skiagraph_passes::{EmbeddedSources, SceneProvider, presets, registry};
 use skiagraph_scene::{SceneLibrary, SceneRequest};
-use std::{hint::black_box, sync::Arc};
+use std::{hint::black_box, sync::Arc, time::Duration};
 
 /// Measures `Graph::load` (all WGSL included), `Graph::plan` and both of one document.
 fn measure(
@@ -67,7 +67,10 @@ fn of_generated(criterion: &mut Criterion) {
 
 criterion_group! {
     name = benches;
-    config = Criterion::default().sample_size(20);
+    config = Criterion::default()
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(500))
+        .measurement_time(Duration::from_secs(2));
     targets = of_presets, of_generated
 }
 criterion_main!(benches);

@@ -123,10 +123,26 @@ fn changes(criterion: &mut Criterion, gpu: &Gpu) {
         Executor::new(&gpu.device, &gpu.queue, plan, &mut NoProvider)
             .expect("the generated graphs suit every device")
     };
+    // wgpu frees what was dropped when it next submits; a program does that in every frame.
+    let settle = || {
+        gpu.queue.submit([]);
+        let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+    };
     for passes in SIZES {
         let mut group = criterion.benchmark_group(format!("executor, {passes} passes"));
         group.bench_function(BenchmarkId::from_parameter("new"), |bencher| {
-            bencher.iter_batched(|| planned(passes), make, criterion::BatchSize::PerIteration);
+            bencher.iter_custom(|times| {
+                let once = |_| {
+                    let plan = planned(passes);
+                    let start = Instant::now();
+                    let executor = make(plan);
+                    let time = start.elapsed();
+                    drop(executor);
+                    settle();
+                    time
+                };
+                (0..times).map(once).sum()
+            });
         });
         let mut executor = make(planned(passes));
         group.bench_function(BenchmarkId::from_parameter("encode"), |bencher| {
@@ -143,25 +159,39 @@ fn changes(criterion: &mut Criterion, gpu: &Gpu) {
         });
         let mut wide = false;
         group.bench_function(BenchmarkId::from_parameter("resize"), |bencher| {
-            bencher.iter(|| {
-                wide = !wide;
-                let viewport = [VIEWPORT[0] * if wide { 2 } else { 1 }, VIEWPORT[1]];
-                executor
-                    .resize(viewport, &mut NoProvider)
-                    .expect("both sizes suit every device")
+            bencher.iter_custom(|times| {
+                let once = |_| {
+                    wide = !wide;
+                    let viewport = [VIEWPORT[0] * if wide { 2 } else { 1 }, VIEWPORT[1]];
+                    let start = Instant::now();
+                    executor
+                        .resize(viewport, &mut NoProvider)
+                        .expect("both sizes suit every device");
+                    let time = start.elapsed();
+                    settle();
+                    time
+                };
+                (0..times).map(once).sum()
             });
         });
         let mut strength = 0.0;
         group.bench_function(
             BenchmarkId::from_parameter("set_param, upload"),
             |bencher| {
-                bencher.iter(|| {
-                    strength += 1.0;
-                    let renewed = executor
-                        .set_param("strength", ParamValue::F32(strength), &mut NoProvider)
-                        .expect("every value suits");
-                    assert!(renewed.pipelines.is_empty() && renewed.resources.is_empty());
-                    renewed
+                bencher.iter_custom(|times| {
+                    let once = |_| {
+                        strength += 1.0;
+                        let start = Instant::now();
+                        let renewed = executor
+                            .set_param("strength", ParamValue::F32(strength), &mut NoProvider)
+                            .expect("every value suits");
+                        let time = start.elapsed();
+                        assert!(renewed.pipelines.is_empty() && renewed.resources.is_empty());
+                        assert!(!renewed.uploads.is_empty());
+                        settle();
+                        time
+                    };
+                    (0..times).map(once).sum()
                 });
             },
         );

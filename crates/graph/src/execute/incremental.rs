@@ -2,7 +2,7 @@
 
 use super::pass::{MadePass, Seen};
 use crate::{
-    document::Run,
+    conditions::When,
     memory::{Histories, Versions},
     plan::Plan,
     resolve::{Origin, ResourceId},
@@ -67,11 +67,8 @@ impl Contents {
     pub fn running(&self, plan: &Plan, passes: &[MadePass], all: bool) -> Vec<bool> {
         let groups = &plan.conditions.group;
         // All is what could run, not what a param forbids.
-        let allowed = |&pass: &usize| {
-            let pass = &plan.passes[pass];
-            all && (pass.enabled || !matches!(pass.run, Run::When(_)))
-        };
-        let mut runs: Vec<bool> = plan.schedule.iter().map(allowed).collect();
+        let allowed = |when: &When| all && *when != When::Never;
+        let mut runs: Vec<bool> = plan.conditions.when.iter().map(allowed).collect();
         // A pass that runs can be the reason for one before it in its group, so this is repeated until nothing is added.
         let mut added = !all;
         while added {
@@ -87,13 +84,12 @@ impl Contents {
     }
 
     fn has_reason(&self, plan: &Plan, made: &MadePass, at: usize, runs: &[bool]) -> bool {
-        let pass = &plan.passes[plan.schedule[at]];
-        match (&pass.run, &made.memory.versions) {
-            (Run::Always, _) => true,
-            (Run::When(_), _) => pass.enabled,
+        match (plan.conditions.when[at], &made.memory.versions) {
+            (When::Always, _) => true,
+            (When::Never, _) => false,
             (_, None) => true,
-            (Run::Once, Some(_)) => false,
-            (Run::OnChange, Some(seen)) => {
+            (When::Once, Some(_)) => false,
+            (When::OnChange, Some(seen)) => {
                 let inputs = made.memory.inputs.iter().zip(seen);
                 let mut changed = inputs.map(|(id, seen)| {
                     self.seen(plan, *id) != *seen
@@ -129,22 +125,27 @@ impl Contents {
         histories: &Histories,
     ) {
         let before = self.versions.clone();
-        for (at, &pass) in plan.schedule.iter().enumerate().filter(|(at, _)| runs[*at]) {
-            let Seen {
-                inputs,
-                versions,
-                stale,
-            } = &mut passes[at].memory;
-            let seen = versions.get_or_insert_default();
-            seen.clear();
-            seen.extend(inputs.iter().map(|id| match plan.resources[id.0].origin {
-                Origin::Previous(base) => before[base.0],
-                _ => self.versions[id.0],
-            }));
-            *stale = false;
-            let accesses = plan.passes[pass].accesses.iter();
-            for access in accesses.filter(|access| access.writes) {
-                self.touch(access.resource);
+        let mut written = plan.conditions.written.iter().peekable();
+        for (at, pass) in passes.iter_mut().enumerate() {
+            let remembers = matches!(plan.conditions.when[at], When::Once | When::OnChange);
+            if runs[at] && remembers {
+                let Seen {
+                    inputs,
+                    versions,
+                    stale,
+                } = &mut pass.memory;
+                let seen = versions.get_or_insert_default();
+                seen.clear();
+                seen.extend(inputs.iter().map(|id| match plan.resources[id.0].origin {
+                    Origin::Previous(base) => before[base.0],
+                    _ => self.versions[id.0],
+                }));
+                *stale = false;
+            }
+            while let Some((_, id)) = written.next_if(|(position, _)| *position == at) {
+                if runs[at] {
+                    self.touch(*id);
+                }
             }
         }
         for (id, versions) in histories {

@@ -9,11 +9,26 @@ use crate::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What the run conditions of a schedule come to.
+/// When a pass runs in this plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum When {
+    Always,
+    Never,
+    Once,
+    OnChange,
+}
+
+/// What the run conditions of a schedule come to. Every frame reads it, hence it is flat.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Conditions {
     /// For every position in the schedule, the first position of its group. A group runs or is skipped as a whole.
     pub group: Vec<usize>,
+    /// For every position in the schedule.
+    pub when: Vec<When>,
+    /// Every position in the schedule with every resource that is written there.
+    pub written: Vec<(usize, ResourceId)>,
+    /// For every resource, by id, the group of the passes that write it.
+    pub writers: Vec<Option<usize>>,
     /// The resources that must outlive the frame because a pass that writes them may be skipped.
     pub kept: BTreeSet<ResourceId>,
 }
@@ -58,6 +73,11 @@ pub(crate) fn conditions(
         }
     }
     let group: Vec<usize> = (0..group.len()).map(|at| root(&group, at)).collect();
+    let mut writers = vec![None; resources.len()];
+    for (id, uses) in &uses {
+        let writer = uses.iter().find(|(_, access)| access.writes);
+        writers[id.0] = writer.map(|(at, _)| group[*at]);
+    }
     let kept = uses
         .iter()
         .filter(|(_, uses)| {
@@ -66,7 +86,26 @@ pub(crate) fn conditions(
         })
         .map(|(id, _)| *id)
         .collect();
-    Conditions { group, kept }
+    let when = |&pass: &usize| match &passes[pass].run {
+        Run::Always => When::Always,
+        Run::When(_) if passes[pass].enabled => When::Always,
+        Run::When(_) => When::Never,
+        Run::Once => When::Once,
+        Run::OnChange => When::OnChange,
+    };
+    let mut written: Vec<(usize, ResourceId)> = uses
+        .iter()
+        .flat_map(|(id, uses)| uses.iter().map(|(at, access)| (*at, *id, access.writes)))
+        .filter_map(|(at, id, writes)| writes.then_some((at, id)))
+        .collect();
+    written.sort();
+    Conditions {
+        group,
+        when: schedule.iter().map(when).collect(),
+        written,
+        writers,
+        kept,
+    }
 }
 
 /// The first position of a group.

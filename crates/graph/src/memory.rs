@@ -7,7 +7,7 @@ use crate::{
     provider::{Import, Provider},
     resolve::{Origin, Part, Resource, ResourceId, ResourceKind, Target},
 };
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, HashMap};
 
 /// A texture or buffer on the device.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +32,77 @@ struct Made {
     label: String,
     usage: (wgpu::TextureUsages, wgpu::BufferUsages),
     versions: Vec<Physical>,
+}
+
+impl Made {
+    /// Makes what resources take turns in, or takes it from what is known by label.
+    fn new(
+        plan: &Plan,
+        tenants: &[ResourceId],
+        known: &mut HashMap<&str, &Made>,
+        device: &wgpu::Device,
+    ) -> Result<Self, ExecuteError> {
+        let id = tenants[0];
+        let resource = &plan.resources[id.0];
+        let lifetime = &plan.lifetimes[&id];
+        let names: Vec<&str> = tenants
+            .iter()
+            .map(|tenant| plan.resources[tenant.0].name.as_str())
+            .collect();
+        let label = names.join(" / ");
+        let usage = (lifetime.textures, lifetime.buffers);
+        let count = plan.versions(id);
+        let kept = known.remove(label.as_str()).filter(|made| {
+            made.usage == usage
+                && made.versions.len() == count
+                && made
+                    .versions
+                    .iter()
+                    .all(|version| is_made(version, resource))
+        });
+        if let Some(made) = kept {
+            return Ok(Self {
+                label,
+                usage,
+                versions: made.versions.clone(),
+            });
+        }
+        let make = || match &resource.kind {
+            ResourceKind::Texture(texture) => {
+                Physical::Texture(device.create_texture(&wgpu::TextureDescriptor {
+                    label: Some(&label),
+                    size: wgpu::Extent3d {
+                        width: texture.size[0],
+                        height: texture.size[1],
+                        depth_or_array_layers: texture.layers,
+                    },
+                    mip_level_count: texture.mips,
+                    sample_count: 1,
+                    dimension: wgpu::TextureDimension::D2,
+                    format: texture.format,
+                    usage: usage.0,
+                    view_formats: &[],
+                }))
+            }
+            ResourceKind::Buffer(buffer) => {
+                Physical::Buffer(device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some(&label),
+                    size: buffer.bytes,
+                    usage: usage.1,
+                    mapped_at_creation: false,
+                }))
+            }
+            _ => unreachable!("only textures and buffers have slots"),
+        };
+        let versions = (0..count)
+            .map(|_| scoped(device, &label, make))
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            label,
+            usage,
+            versions,
+        })
+    }
 }
 
 /// Textures, buffers and samplers of a plan.
@@ -126,15 +197,11 @@ impl Memory {
             of: plan.slots.of.clone(),
             ..Self::default()
         };
-        let mut taken = BTreeSet::new();
+        let known = old.iter().flat_map(|(_, old)| &old.slots);
+        let mut known: HashMap<&str, &Made> =
+            known.map(|made| (made.label.as_str(), made)).collect();
         for slot in &plan.slots.list {
-            let made = memory.slot(
-                plan,
-                &slot.tenants,
-                old.map(|(_, memory)| memory),
-                &mut taken,
-                device,
-            )?;
+            let made = Made::new(plan, &slot.tenants, &mut known, device)?;
             memory.slots.push(made);
         }
         for &id in plan.lifetimes.keys() {
@@ -160,80 +227,6 @@ impl Memory {
             }
         }
         Ok(memory)
-    }
-
-    fn slot(
-        &self,
-        plan: &Plan,
-        tenants: &[ResourceId],
-        old: Option<&Memory>,
-        taken: &mut BTreeSet<usize>,
-        device: &wgpu::Device,
-    ) -> Result<Made, ExecuteError> {
-        let id = tenants[0];
-        let resource = &plan.resources[id.0];
-        let lifetime = &plan.lifetimes[&id];
-        let names: Vec<&str> = tenants
-            .iter()
-            .map(|tenant| plan.resources[tenant.0].name.as_str())
-            .collect();
-        let label = names.join(" / ");
-        let usage = (lifetime.textures, lifetime.buffers);
-        let count = plan.versions(id);
-        let slots = old.map_or(&[][..], |old| &old.slots);
-        let kept = slots.iter().enumerate().find(|(index, made)| {
-            made.label == label
-                && made.usage == usage
-                && made.versions.len() == count
-                && made
-                    .versions
-                    .iter()
-                    .all(|version| is_made(version, resource))
-                && !taken.contains(index)
-        });
-        if let Some((index, made)) = kept {
-            taken.insert(index);
-            return Ok(Made {
-                label,
-                usage,
-                versions: made.versions.clone(),
-            });
-        }
-        let make = || match &resource.kind {
-            ResourceKind::Texture(texture) => {
-                Physical::Texture(device.create_texture(&wgpu::TextureDescriptor {
-                    label: Some(&label),
-                    size: wgpu::Extent3d {
-                        width: texture.size[0],
-                        height: texture.size[1],
-                        depth_or_array_layers: texture.layers,
-                    },
-                    mip_level_count: texture.mips,
-                    sample_count: 1,
-                    dimension: wgpu::TextureDimension::D2,
-                    format: texture.format,
-                    usage: usage.0,
-                    view_formats: &[],
-                }))
-            }
-            ResourceKind::Buffer(buffer) => {
-                Physical::Buffer(device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some(&label),
-                    size: buffer.bytes,
-                    usage: usage.1,
-                    mapped_at_creation: false,
-                }))
-            }
-            _ => unreachable!("only textures and buffers have slots"),
-        };
-        let versions = (0..count)
-            .map(|_| scoped(device, &label, make))
-            .collect::<Result<_, _>>()?;
-        Ok(Made {
-            label,
-            usage,
-            versions,
-        })
     }
 
     /// Asks the provider for a resource if it has another version than the one that is there.

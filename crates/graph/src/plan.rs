@@ -652,13 +652,6 @@ impl Plan {
         self.readable.iter().map(summary).collect()
     }
 
-    /// The position of a pass in the schedule.
-    pub(crate) fn position(&self, name: &str) -> Option<usize> {
-        self.schedule
-            .iter()
-            .position(|&pass| self.passes[pass].name.value == name)
-    }
-
     /// The graph that was planned.
     pub fn graph(&self) -> &Graph {
         &self.graph

@@ -106,17 +106,17 @@ impl Timer {
     }
 
     /// The frame's times, after the device was polled; `passes` are names and CPU times in order.
-    pub fn take(&mut self, passes: &[(String, Duration)]) -> FrameTiming {
+    pub fn take(&mut self, passes: &[(Arc<str>, Duration)]) -> FrameTiming {
         // A host that submitted several frames before it asks wants the last one.
         let results = std::iter::from_fn(|| self.profiler.process_finished_frame(self.period))
             .last()
             .unwrap_or_default();
         let first = Stretch::over(results.iter());
-        let of_pass = |(name, cpu): &(String, Duration)| {
-            let stretch = Stretch::over(results.iter().filter(|query| query.label == *name));
+        let of_pass = |(name, cpu): &(Arc<str>, Duration)| {
+            let stretch = Stretch::over(results.iter().filter(|query| query.label == **name));
             let length = stretch.and_then(Stretch::length);
             PassTiming {
-                name: name.clone(),
+                name: name.to_string(),
                 begin: length.and(stretch).zip(first).and_then(|(pass, first)| {
                     let offset = Stretch {
                         begin: first.begin,

@@ -8,12 +8,15 @@ use crate::{
     resolve::{Part, Target},
 };
 
+/// The bind groups of a program with their indices; there may be gaps.
+pub(crate) type BindGroups = Vec<(u32, wgpu::BindGroup)>;
+
 /// A step with everything it needs on the device.
 pub(crate) enum MadeStep {
     Draw(MadeDraw),
     Dispatch {
         pipeline: wgpu::ComputePipeline,
-        groups: Vec<Option<wgpu::BindGroup>>,
+        groups: BindGroups,
         size: MadeGroups,
     },
     CopyTexture {
@@ -36,7 +39,7 @@ pub(crate) enum MadeStep {
 
 pub(crate) struct MadeDraw {
     pub pipeline: wgpu::RenderPipeline,
-    pub groups: Vec<Option<wgpu::BindGroup>>,
+    pub groups: BindGroups,
     pub colors: Vec<(wgpu::TextureView, Option<[f64; 4]>)>,
     /// View, value it is cleared to, whether the draw writes it.
     pub depth: Option<(wgpu::TextureView, Option<f32>, bool)>,
@@ -190,7 +193,7 @@ impl Binder<'_> {
         &self,
         draw: &LinkedDraw,
         pipeline: &wgpu::RenderPipeline,
-        groups: Vec<Option<wgpu::BindGroup>>,
+        groups: BindGroups,
     ) -> Result<MadeDraw, ExecuteError> {
         let flat = wgpu::TextureViewDimension::D2;
         let colors = draw
@@ -232,11 +235,10 @@ impl Binder<'_> {
         program: &LinkedProgram,
         layouts: &[Option<wgpu::BindGroupLayout>],
         params: Option<&wgpu::Buffer>,
-    ) -> Result<Vec<Option<wgpu::BindGroup>>, ExecuteError> {
+    ) -> Result<BindGroups, ExecuteError> {
         let mut groups = Vec::new();
         for (group, layout) in (0u32..).zip(layouts) {
             let Some(layout) = layout else {
-                groups.push(None);
                 continue;
             };
             let bound: Vec<(u32, Bound)> = program
@@ -261,7 +263,7 @@ impl Binder<'_> {
                 layout,
                 entries: &entries,
             });
-            groups.push(Some(made));
+            groups.push((group, made));
         }
         Ok(groups)
     }

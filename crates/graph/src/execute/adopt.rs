@@ -2,13 +2,15 @@
 
 use super::{ExecuteError, Executor, incremental::Contents, pass::MadePass, poison::Poison};
 use crate::{
+    allocate::{Pipelines, same_pipeline},
     document::params::ParamValue,
-    link::LinkedStep,
+    link::{LinkedPass, LinkedStep},
     memory::Memory,
     plan::Plan,
     provider::Provider,
     resolve::{ResourceId, ResourceKind},
 };
+use std::collections::{BTreeMap, HashMap};
 
 /// What a change of an executor's plan came to.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -67,48 +69,18 @@ impl Executor {
         provider: &mut dyn Provider,
     ) -> Result<Renewed, ExecuteError> {
         super::alive(&self.device)?;
-        let old = Some((&self.plan, &self.memory));
-        let memory = Memory::new(&plan, old, &self.device, &self.queue, provider)?;
-        let kept = Kept {
-            old: self,
-            plan: &plan,
-            memory: &memory,
-        };
-        let mut renewed = Renewed {
-            resources: kept.renewed(),
-            ..Renewed::default()
-        };
-        let contents = kept.contents();
         let mut pipelines = std::mem::take(&mut self.pipelines);
-        let made = self.passes_of(&plan, &mut pipelines);
+        let made = self.prepare(&plan, &mut pipelines, provider);
         self.pipelines = pipelines;
-        let mut passes = made?;
-        let poison = Poison::new(&plan, &memory, &self.device)?;
-        let kept = Kept {
-            old: self,
-            plan: &plan,
-            memory: &memory,
-        };
-        let bound: Vec<Option<usize>> = (0..passes.len()).map(|at| kept.bound(at)).collect();
-        for (at, pass) in passes.iter_mut().enumerate() {
-            pass.memory.versions = kept.versions(at);
-            pass.memory.stale = bound[at].is_none_or(|before| self.passes[before].memory.stale);
-            let linked = &plan.passes[plan.schedule[at]];
-            match kept.before(at) {
-                Some(before) => {
-                    let linked_before = &self.plan.passes[self.plan.schedule[before]];
-                    if linked.steps.len() != linked_before.steps.len()
-                        || !linked_before.steps.iter().zip(&linked.steps).all(|(a, b)| {
-                            a.program().is_none() && b.program().is_none()
-                                || crate::allocate::same_pipeline(a, b)
-                        })
-                    {
-                        renewed.pipelines.push(pass.name.to_string());
-                    }
-                }
-                None => renewed.pipelines.push(pass.name.to_string()),
-            }
-        }
+        let Prepared {
+            memory,
+            contents,
+            poison,
+            passes,
+            positions,
+            bound,
+            mut renewed,
+        } = made?;
         // Everything that can fail has been done but binding; a pass whose resources are all the same is bound already.
         let before = std::mem::replace(&mut self.plan, plan);
         let old_memory = std::mem::replace(&mut self.memory, memory);
@@ -133,45 +105,70 @@ impl Executor {
         self.histories = self
             .contents
             .histories(&self.plan, &vec![false; self.passes.len()]);
-        renewed.uploads = self.upload(&before);
+        renewed.uploads = self.upload(&before, &positions);
         Ok(renewed)
     }
 
-    fn passes_of(
+    /// Everything that another plan needs, made without a change to the executor.
+    fn prepare(
         &self,
         plan: &Plan,
-        pipelines: &mut crate::allocate::Pipelines,
-    ) -> Result<Vec<MadePass>, ExecuteError> {
-        let make = |at: usize| {
-            let name = &plan.passes[plan.schedule[at]].name.value;
-            let old = self.plan.position(name);
-            let old = old.map(|old| {
-                (
-                    &self.plan.passes[self.plan.schedule[old]],
-                    &self.passes[old],
-                )
-            });
-            MadePass::new(plan, at, old, pipelines, &self.device)
+        pipelines: &mut Pipelines,
+        provider: &mut dyn Provider,
+    ) -> Result<Prepared, ExecuteError> {
+        let old = Some((&self.plan, &self.memory));
+        let memory = Memory::new(plan, old, &self.device, &self.queue, provider)?;
+        let kept = Kept::new(self, plan, &memory);
+        let mut renewed = Renewed {
+            resources: kept.renewed(),
+            ..Renewed::default()
         };
-        (0..plan.schedule.len()).map(make).collect()
+        let before = |at: usize| {
+            let old = kept.positions[at]?;
+            let linked = &self.plan.passes[self.plan.schedule[old]];
+            Some((linked, &self.passes[old]))
+        };
+        let mut passes = (0..plan.schedule.len())
+            .map(|at| MadePass::new(plan, at, before(at), pipelines, &self.device))
+            .collect::<Result<Vec<_>, _>>()?;
+        let bound: Vec<Option<usize>> = (0..passes.len()).map(|at| kept.bound(at)).collect();
+        let groups = kept.groups();
+        for (at, pass) in passes.iter_mut().enumerate() {
+            let is_kept = groups[plan.conditions.group[at]];
+            if let Some((_, old)) = before(at).filter(|_| is_kept)
+                && old.memory.inputs == pass.memory.inputs
+            {
+                pass.memory.versions.clone_from(&old.memory.versions);
+            }
+            pass.memory.stale = bound[at].is_none_or(|before| self.passes[before].memory.stale);
+            let linked = &plan.passes[plan.schedule[at]];
+            if before(at).is_none_or(|(old, _)| !has_same_pipelines(old, linked)) {
+                renewed.pipelines.push(pass.name.to_string());
+            }
+        }
+        Ok(Prepared {
+            contents: kept.contents(),
+            poison: Poison::new(plan, &memory, &self.device)?,
+            positions: kept.positions,
+            memory,
+            passes,
+            bound,
+            renewed,
+        })
     }
 
     /// Uploads the params of passes whose bytes differ from those before; such a pass counts as changed.
-    fn upload(&mut self, before: &Plan) -> Vec<String> {
+    fn upload(&mut self, before: &Plan, positions: &[Option<usize>]) -> Vec<String> {
         let mut uploads = Vec::new();
-        for (&pass, made) in self.plan.schedule.iter().zip(&mut self.passes) {
+        let schedule = self.plan.schedule.iter().zip(positions);
+        for ((&pass, position), made) in schedule.zip(&mut self.passes) {
             let pass = &self.plan.passes[pass];
-            let Some(old) = before.position(&pass.name) else {
+            let Some(position) = *position else {
                 continue;
             };
-            let old = &before.passes[before.schedule[old]];
-            let bytes = |pass: &crate::link::LinkedPass| -> Vec<Option<Vec<u8>>> {
-                let steps = pass.steps.iter();
-                steps
-                    .map(|step| step.params().map(<[u8]>::to_vec))
-                    .collect()
-            };
-            if bytes(pass) == bytes(old) {
+            let old = &before.passes[before.schedule[position]];
+            let bytes = |step: &LinkedStep| step.params().map(<[u8]>::to_vec);
+            if pass.steps.iter().map(bytes).eq(old.steps.iter().map(bytes)) {
                 continue;
             }
             for (buffer, bytes) in made.uploads(pass) {
@@ -184,47 +181,74 @@ impl Executor {
     }
 }
 
+/// What an executor becomes with another plan.
+struct Prepared {
+    memory: Memory,
+    contents: Contents,
+    poison: Option<Poison>,
+    passes: Vec<MadePass>,
+    /// Of each pass: its position before.
+    positions: Vec<Option<usize>>,
+    /// Of each pass: its position before, if it is bound as it was.
+    bound: Vec<Option<usize>>,
+    renewed: Renewed,
+}
+
+/// Whether all steps of a pass have the pipelines that they had.
+fn has_same_pipelines(old: &LinkedPass, new: &LinkedPass) -> bool {
+    let is_same = |(old, new): (&LinkedStep, &LinkedStep)| {
+        old.program().is_none() && new.program().is_none() || same_pipeline(old, new)
+    };
+    old.steps.len() == new.steps.len() && old.steps.iter().zip(&new.steps).all(is_same)
+}
+
 /// What of an executor a new plan keeps.
 struct Kept<'a> {
     old: &'a Executor,
     plan: &'a Plan,
-    memory: &'a Memory,
+    /// Of each pass of the plan: its position before.
+    positions: Vec<Option<usize>>,
+    /// The resources that are in the memory that they were in before, and what they were then.
+    same: BTreeMap<ResourceId, ResourceId>,
 }
 
-impl Kept<'_> {
-    /// The position that the pass at `at` had before.
-    fn before(&self, at: usize) -> Option<usize> {
-        let name = &self.plan.passes[self.plan.schedule[at]].name.value;
-        self.old.plan.position(name)
-    }
-
-    /// The resource that was called like this one before.
-    fn former(&self, id: ResourceId) -> Option<ResourceId> {
-        let name = &self.plan.resources[id.0].name;
-        let mut known = self.old.plan.lifetimes.keys();
-        known
-            .find(|id| self.old.plan.resources[id.0].name == *name)
-            .copied()
-    }
-
-    /// Whether a resource is in the memory that it was in before.
-    fn is_same(&self, id: ResourceId) -> bool {
-        let Some(former) = self.former(id) else {
-            return false;
-        };
-        match (
-            &self.plan.resources[id.0].kind,
-            &self.old.plan.resources[former.0].kind,
-        ) {
-            (ResourceKind::Sampler(a), ResourceKind::Sampler(b)) => {
-                format!("{a:?}") == format!("{b:?}")
-            }
-            _ => self.memory.same(id, &self.old.memory, former),
+impl<'a> Kept<'a> {
+    fn new(old: &'a Executor, plan: &'a Plan, memory: &Memory) -> Self {
+        let name = |plan: &'a Plan, pass: usize| plan.passes[pass].name.as_str();
+        let schedule = old.plan.schedule.iter().enumerate();
+        let positions: HashMap<&str, usize> = schedule
+            .map(|(at, pass)| (name(&old.plan, *pass), at))
+            .collect();
+        let resource = |plan: &'a Plan, id: ResourceId| &plan.resources[id.0];
+        let formers: HashMap<&str, ResourceId> = old
+            .plan
+            .lifetimes
+            .keys()
+            .map(|id| (resource(&old.plan, *id).name.as_str(), *id))
+            .collect();
+        let same = plan.lifetimes.keys().filter_map(|&id| {
+            let former = *formers.get(resource(plan, id).name.as_str())?;
+            let kinds = [resource(plan, id), resource(&old.plan, former)].map(|it| &it.kind);
+            let is_same = match kinds {
+                [ResourceKind::Sampler(a), ResourceKind::Sampler(b)] => {
+                    format!("{a:?}") == format!("{b:?}")
+                }
+                _ => memory.same(id, &old.memory, former),
+            };
+            is_same.then_some((id, former))
+        });
+        let position = |&pass: &usize| positions.get(name(plan, pass)).copied();
+        Self {
+            old,
+            plan,
+            positions: plan.schedule.iter().map(position).collect(),
+            same: same.collect(),
         }
     }
 
     fn renewed(&self) -> Vec<String> {
-        let own = |id: &&ResourceId| self.plan.slots.of.contains_key(id) && !self.is_same(**id);
+        let own =
+            |id: &&ResourceId| self.plan.slots.of.contains_key(id) && !self.same.contains_key(id);
         let names = self.plan.lifetimes.keys().filter(own);
         names
             .map(|id| self.plan.resources[id.0].name.clone())
@@ -233,67 +257,42 @@ impl Kept<'_> {
 
     fn contents(&self) -> Contents {
         let mut contents = Contents::of(self.plan, self.old.contents.clock());
-        for &id in self.plan.lifetimes.keys() {
-            if let Some(former) = self.former(id).filter(|_| self.is_same(id)) {
-                contents.take_over(id, &self.old.contents, former);
-            }
+        for (&id, &former) in &self.same {
+            contents.take_over(id, &self.old.contents, former);
         }
         contents
     }
 
-    /// Whether a pass is word for word what it was, on the same memory.
-    fn is_unchanged(&self, at: usize, before: usize) -> bool {
+    /// The pass at `at`, and what it was before, if everything that it uses is in the memory that it was in before.
+    fn with_its_memory(&self, at: usize) -> Option<[&LinkedPass; 2]> {
         let pass = &self.plan.passes[self.plan.schedule[at]];
-        let old = &self.old.plan.passes[self.old.plan.schedule[before]];
-        pass.steps == old.steps && self.has_its_memory(at, before)
-    }
-
-    /// Whether everything that a pass uses is in the memory that it was in before.
-    fn has_its_memory(&self, at: usize, before: usize) -> bool {
-        let pass = &self.plan.passes[self.plan.schedule[at]];
-        let old = &self.old.plan.passes[self.old.plan.schedule[before]];
-        pass.accesses.len() == old.accesses.len()
+        let old = &self.old.plan.passes[self.old.plan.schedule[self.positions[at]?]];
+        let is_there = pass.accesses.len() == old.accesses.len()
             && pass.accesses.iter().zip(&old.accesses).all(|(new, old)| {
-                new.resource == old.resource
-                    && self.former(new.resource) == Some(old.resource)
-                    && self.is_same(new.resource)
-            })
+                new.resource == old.resource && self.same.get(&new.resource) == Some(&old.resource)
+            });
+        is_there.then_some([pass, old])
     }
 
-    /// Whether a pass still does what it did, whatever its params: then what it made is still there.
-    fn is_kept(&self, at: usize) -> bool {
-        let Some(before) = self.before(at) else {
-            return false;
-        };
-        let pass = &self.plan.passes[self.plan.schedule[at]];
-        let old = &self.old.plan.passes[self.old.plan.schedule[before]];
+    /// Of each group: whether its passes still do what they did, whatever their params. Then what they made is still there.
+    fn groups(&self) -> Vec<bool> {
         let shader = |step: &LinkedStep| step.program().map(|program| program.shader.clone());
-        pass.steps.len() == old.steps.len()
-            && pass
-                .steps
+        let is_kept = |[pass, old]: [&LinkedPass; 2]| {
+            pass.steps
                 .iter()
-                .zip(&old.steps)
-                .all(|(new, old)| shader(new) == shader(old))
-            && self.has_its_memory(at, before)
+                .map(shader)
+                .eq(old.steps.iter().map(shader))
+        };
+        let mut kept = vec![true; self.plan.schedule.len()];
+        for (at, &group) in self.plan.conditions.group.iter().enumerate() {
+            kept[group] &= self.with_its_memory(at).is_some_and(is_kept);
+        }
+        kept
     }
 
-    /// The position before of a pass that needs no binding.
+    /// The position before of a pass that needs no binding: word for word what it was, on the same memory.
     fn bound(&self, at: usize) -> Option<usize> {
-        self.before(at)
-            .filter(|&before| self.is_unchanged(at, before))
-    }
-
-    /// What a pass saw when it ran last, if what it made then is still there.
-    fn versions(&self, at: usize) -> Option<Vec<u64>> {
-        let memory = &self.old.passes[self.before(at)?].memory;
-        let groups = &self.plan.conditions.group;
-        let same_inputs = super::pass::inputs(self.plan, at) == memory.inputs;
-        let whole_group = (0..groups.len())
-            .filter(|other| groups[*other] == groups[at])
-            .all(|other| self.is_kept(other));
-        memory
-            .versions
-            .clone()
-            .filter(|_| same_inputs && whole_group)
+        let [pass, old] = self.with_its_memory(at)?;
+        self.positions[at].filter(|_| pass.steps == old.steps)
     }
 }

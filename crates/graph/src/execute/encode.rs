@@ -5,13 +5,28 @@ use crate::{
     timing::Timer,
 };
 
-/// Encodes a step; with a timer, under the name of its pass.
-pub(super) fn encode(
-    step: &MadeStep,
+/// Encodes the steps of a pass, under its name in captures. A single draw or dispatch bears it as the label of its render or
+/// compute pass; a debug group around that would say it twice, and costs more than all else that the graph adds.
+pub(super) fn encode_all(
+    steps: &[MadeStep],
     name: &str,
     encoder: &mut wgpu::CommandEncoder,
     timer: Option<&Timer>,
 ) {
+    let labelled = matches!(steps, [MadeStep::Draw(_) | MadeStep::Dispatch { .. }]);
+    if !labelled {
+        encoder.push_debug_group(name);
+    }
+    for step in steps {
+        encode(step, name, encoder, timer);
+    }
+    if !labelled {
+        encoder.pop_debug_group();
+    }
+}
+
+/// Encodes a step; with a timer, under the name of its pass.
+fn encode(step: &MadeStep, name: &str, encoder: &mut wgpu::CommandEncoder, timer: Option<&Timer>) {
     match step {
         MadeStep::Draw(draw) => encode_draw(draw, name, encoder, timer),
         MadeStep::Dispatch {
@@ -31,8 +46,8 @@ pub(super) fn encode(
                     timer.open_compute(&mut pass);
                 }
                 pass.set_pipeline(pipeline);
-                for (index, group) in (0u32..).zip(groups) {
-                    pass.set_bind_group(index, group.as_ref(), &[]);
+                for (index, group) in groups {
+                    pass.set_bind_group(*index, group, &[]);
                 }
                 match size {
                     MadeGroups::Fixed([x, y, z]) => pass.dispatch_workgroups(*x, *y, *z),
@@ -175,8 +190,8 @@ fn encode_draw(
     {
         let mut pass = render_pass(name, encoder, &colors, depth, query.as_ref());
         pass.set_pipeline(&draw.pipeline);
-        for (index, group) in (0u32..).zip(&draw.groups) {
-            pass.set_bind_group(index, group.as_ref(), &[]);
+        for (index, group) in &draw.groups {
+            pass.set_bind_group(*index, group, &[]);
         }
         match &draw.call {
             MadeCall::Direct {

@@ -165,12 +165,12 @@ impl From<Diagnostics> for ExecuteError {
 }
 
 /// An error if the device is lost. wgpu tells that only to the one callback that the host may have set, but a lost device maps
-/// no buffers.
+/// no buffers. `MAP_WRITE` is memory that the host sees anyway; any other usage would cost a second buffer, to be copied from.
 pub(super) fn alive(device: &wgpu::Device) -> Result<(), ExecuteError> {
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("is the device there"),
         size: wgpu::MAP_ALIGNMENT,
-        usage: wgpu::BufferUsages::COPY_SRC,
+        usage: wgpu::BufferUsages::MAP_WRITE,
         mapped_at_creation: true,
     });
     let mapped = buffer.get_mapped_range(..).is_ok();

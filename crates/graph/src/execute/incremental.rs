@@ -1,8 +1,8 @@
 //! Which passes run in a frame, by what changed since they ran last.
 
-use super::pass::MadePass;
+use super::pass::{MadePass, Seen};
 use crate::{
-    document::Run,
+    conditions::When,
     memory::{Histories, Versions},
     plan::Plan,
     resolve::{Origin, ResourceId},
@@ -12,7 +12,8 @@ use std::collections::BTreeMap;
 /// What the resources of a plan hold, as far as it can be told without looking: every change of content is a new number.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contents {
-    versions: BTreeMap<ResourceId, u64>,
+    /// Of every resource of the plan, by id.
+    versions: Vec<u64>,
     clock: u64,
     /// Which of its two allocations holds a resource with a history.
     latest: BTreeMap<ResourceId, usize>,
@@ -22,8 +23,9 @@ impl Contents {
     /// Contents of a plan of which nothing is known.
     pub fn of(plan: &Plan, clock: u64) -> Self {
         let mut contents = Self {
+            versions: vec![0; plan.resources.len()],
             clock,
-            ..Self::default()
+            latest: BTreeMap::new(),
         };
         for &id in plan.lifetimes.keys() {
             contents.touch(id);
@@ -42,14 +44,12 @@ impl Contents {
     /// Another content.
     pub fn touch(&mut self, id: ResourceId) {
         self.clock += 1;
-        self.versions.insert(id, self.clock);
+        self.versions[id.0] = self.clock;
     }
 
     /// The content is that which another resource had.
     pub fn take_over(&mut self, id: ResourceId, other: &Self, of: ResourceId) {
-        if let Some(version) = other.versions.get(&of) {
-            self.versions.insert(id, *version);
-        }
+        self.versions[id.0] = other.versions[of.0];
         if let Some(latest) = other.latest.get(&of) {
             self.latest.insert(id, *latest);
         }
@@ -57,35 +57,24 @@ impl Contents {
 
     /// The version that a pass sees of an input: of what it was in the frame before if it reads that.
     fn seen(&self, plan: &Plan, id: ResourceId) -> u64 {
-        let id = match plan.resources[id.0].origin {
-            Origin::Previous(base) => base,
-            _ => id,
-        };
-        self.versions.get(&id).copied().unwrap_or(0)
+        match plan.resources[id.0].origin {
+            Origin::Previous(base) => self.versions[base.0],
+            _ => self.versions[id.0],
+        }
     }
 
     /// Whether each pass of the schedule runs. A group runs if one of its passes has a reason to.
     pub fn running(&self, plan: &Plan, passes: &[MadePass], all: bool) -> Vec<bool> {
         let groups = &plan.conditions.group;
         // All is what could run, not what a param forbids.
-        let allowed = |&pass: &usize| {
-            let pass = &plan.passes[pass];
-            all && (pass.enabled || !matches!(pass.run, Run::When(_)))
-        };
-        let mut runs: Vec<bool> = plan.schedule.iter().map(allowed).collect();
-        let mut writers: BTreeMap<ResourceId, usize> = BTreeMap::new();
-        for (at, &pass) in plan.schedule.iter().enumerate() {
-            let accesses = &plan.passes[pass].accesses;
-            for access in accesses.iter().filter(|access| access.writes) {
-                writers.insert(access.resource, groups[at]);
-            }
-        }
+        let allowed = |when: &When| all && *when != When::Never;
+        let mut runs: Vec<bool> = plan.conditions.when.iter().map(allowed).collect();
         // A pass that runs can be the reason for one before it in its group, so this is repeated until nothing is added.
         let mut added = !all;
         while added {
             added = false;
             for at in 0..passes.len() {
-                if !runs[groups[at]] && self.has_reason(plan, &passes[at], at, &runs, &writers) {
+                if !runs[groups[at]] && self.has_reason(plan, &passes[at], at, &runs) {
                     runs[groups[at]] = true;
                     added = true;
                 }
@@ -94,25 +83,17 @@ impl Contents {
         (0..passes.len()).map(|at| runs[groups[at]]).collect()
     }
 
-    fn has_reason(
-        &self,
-        plan: &Plan,
-        made: &MadePass,
-        at: usize,
-        runs: &[bool],
-        writers: &BTreeMap<ResourceId, usize>,
-    ) -> bool {
-        let pass = &plan.passes[plan.schedule[at]];
-        match (&pass.run, &made.memory.versions) {
-            (Run::Always, _) => true,
-            (Run::When(_), _) => pass.enabled,
+    fn has_reason(&self, plan: &Plan, made: &MadePass, at: usize, runs: &[bool]) -> bool {
+        match (plan.conditions.when[at], &made.memory.versions) {
+            (When::Always, _) => true,
+            (When::Never, _) => false,
             (_, None) => true,
-            (Run::Once, Some(_)) => false,
-            (Run::OnChange, Some(seen)) => {
+            (When::Once, Some(_)) => false,
+            (When::OnChange, Some(seen)) => {
                 let inputs = made.memory.inputs.iter().zip(seen);
                 let mut changed = inputs.map(|(id, seen)| {
                     self.seen(plan, *id) != *seen
-                        || writers.get(id).is_some_and(|&writer| runs[writer])
+                        || plan.conditions.writers[id.0].is_some_and(|group| runs[group])
                 });
                 made.memory.stale || changed.any(|changed| changed)
             }
@@ -122,13 +103,7 @@ impl Contents {
     /// The state of the histories in a frame in which these passes run.
     pub fn histories(&self, plan: &Plan, runs: &[bool]) -> Histories {
         let versions = |(&id, &latest): (&ResourceId, &usize)| {
-            let is_written = plan.schedule.iter().zip(runs).any(|(&pass, runs)| {
-                let accesses = &plan.passes[pass].accesses;
-                *runs
-                    && accesses
-                        .iter()
-                        .any(|access| access.writes && access.resource == id)
-            });
+            let is_written = plan.conditions.writers[id.0].is_some_and(|group| runs[group]);
             let current = if is_written { 1 - latest } else { latest };
             (
                 id,
@@ -149,21 +124,28 @@ impl Contents {
         runs: &[bool],
         histories: &Histories,
     ) {
-        let before = self.clone();
-        for (at, &pass) in plan.schedule.iter().enumerate().filter(|(at, _)| runs[*at]) {
-            let version = |id: &ResourceId| match plan.resources[id.0].origin {
-                Origin::Previous(_) => before.seen(plan, *id),
-                _ => self.seen(plan, *id),
-            };
-            passes[at].memory.stale = false;
-            passes[at].memory.versions =
-                Some(passes[at].memory.inputs.iter().map(version).collect());
-            for access in plan.passes[pass]
-                .accesses
-                .iter()
-                .filter(|access| access.writes)
-            {
-                self.touch(access.resource);
+        let before = self.versions.clone();
+        let mut written = plan.conditions.written.iter().peekable();
+        for (at, pass) in passes.iter_mut().enumerate() {
+            let remembers = matches!(plan.conditions.when[at], When::Once | When::OnChange);
+            if runs[at] && remembers {
+                let Seen {
+                    inputs,
+                    versions,
+                    stale,
+                } = &mut pass.memory;
+                let seen = versions.get_or_insert_default();
+                seen.clear();
+                seen.extend(inputs.iter().map(|id| match plan.resources[id.0].origin {
+                    Origin::Previous(base) => before[base.0],
+                    _ => self.versions[id.0],
+                }));
+                *stale = false;
+            }
+            while let Some((_, id)) = written.next_if(|(position, _)| *position == at) {
+                if runs[at] {
+                    self.touch(*id);
+                }
             }
         }
         for (id, versions) in histories {

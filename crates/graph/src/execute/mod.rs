@@ -20,12 +20,15 @@ use crate::{
     resolve::{Origin, Resource, ResourceId},
     timing::{FrameTiming, Timer},
 };
-use encode::encode;
+use encode::encode_all;
 use error::{alive, wait};
 use incremental::Contents;
 use pass::MadePass;
 use poison::Poison;
-use std::time::{Duration, Instant};
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
 
 /// What a frame is asked for.
 #[derive(Clone, Copy, Debug, Default)]
@@ -68,9 +71,10 @@ pub struct Executor {
     poison: Option<Poison>,
     timer: Timer,
     timed: bool,
-    /// The passes that ran last, with the time that encoding them took. Names, because the next plan may have other passes.
-    cpu: Vec<(String, Duration)>,
-    skipped: Vec<String>,
+    /// The passes of the last frame, if it was timed, with the time that encoding them took. Names, because the next plan may have
+    /// other passes.
+    cpu: Vec<(Arc<str>, Duration)>,
+    skipped: Vec<Arc<str>>,
     pending: Vec<Pending>,
 }
 
@@ -270,24 +274,19 @@ impl Executor {
         self.skipped.clear();
         for (at, pass) in self.passes.iter().enumerate() {
             if !runs[at] {
-                self.skipped.push(pass.name.to_string());
+                self.skipped.push(pass.name.clone());
                 continue;
             }
-            let start = Instant::now();
+            let start = frame.timing.then(Instant::now);
             if let Some(poison) = &self.poison {
                 poison.fill(at, encoder);
             }
-            encoder.push_debug_group(&pass.name);
-            for step in pass.steps(&histories).unwrap_or_default() {
-                encode(
-                    step,
-                    &pass.name,
-                    encoder,
-                    frame.timing.then_some(&self.timer),
-                );
+            let steps = pass.steps(&histories).unwrap_or_default();
+            let timer = frame.timing.then_some(&self.timer);
+            encode_all(steps, &pass.name, encoder, timer);
+            if let Some(start) = start {
+                self.cpu.push((pass.name.clone(), start.elapsed()));
             }
-            encoder.pop_debug_group();
-            self.cpu.push((pass.name.to_string(), start.elapsed()));
         }
         if frame.timing {
             self.timer.resolve(encoder);
@@ -327,7 +326,7 @@ impl Executor {
             .collect::<Result<_, _>>()?;
         Ok(FrameReport {
             timing,
-            skipped: self.skipped.clone(),
+            skipped: self.skipped.iter().map(|name| name.to_string()).collect(),
             readbacks,
         })
     }

@@ -1,7 +1,7 @@
 //! One pass on the device: pipelines, params, and what is bound in each state of the histories that it touches.
 
 use super::{
-    encode::encode,
+    encode::encode_all,
     error::{ExecuteError, named, scoped},
 };
 use crate::{
@@ -138,9 +138,7 @@ impl MadePass {
         scoped(device, &pass.name, || {
             let mut encoder =
                 device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            steps
-                .iter()
-                .for_each(|step| encode(step, &pass.name, &mut encoder, None));
+            encode_all(&steps, &pass.name, &mut encoder, None);
             encoder.finish()
         })
         .map_err(refused)?;
@@ -175,18 +173,12 @@ impl MadePass {
 
 /// What a pass reads that neither it nor the passes that run together with it write.
 pub(super) fn inputs(plan: &Plan, at: usize) -> Vec<ResourceId> {
-    let group = plan.conditions.group[at];
-    let written: Vec<ResourceId> = (0..plan.schedule.len())
-        .filter(|other| plan.conditions.group[*other] == group)
-        .flat_map(|other| &plan.passes[plan.schedule[other]].accesses)
-        .filter(|access| access.writes)
+    let group = Some(plan.conditions.group[at]);
+    let accesses = plan.passes[plan.schedule[at]].accesses.iter();
+    let mut inputs: Vec<ResourceId> = accesses
+        .filter(|access| access.reads || !access.covers)
         .map(|access| access.resource)
-        .collect();
-    let mut inputs: Vec<ResourceId> = plan.passes[plan.schedule[at]]
-        .accesses
-        .iter()
-        .filter(|access| (access.reads || !access.covers) && !written.contains(&access.resource))
-        .map(|access| access.resource)
+        .filter(|id| plan.conditions.writers[id.0] != group)
         .collect();
     inputs.sort();
     inputs.dedup();

@@ -1,0 +1,200 @@
+//! What the executor costs over the same frame written by hand in plain wgpu, and what making and changing one costs.
+//! Encoding and finishing the encoder is measured, submission is not: nothing is submitted.
+
+use criterion::{BenchmarkId, Criterion};
+use skiagraph_benches::{
+    Shaders, VIEWPORT,
+    chain::{ByHand, Kind, executor},
+    graph,
+};
+use skiagraph_graph::{
+    Executor, Frame, Graph, NoProvider, ParamValue, Plan, PlanRequest, Registry,
+    gpu::{self, Gpu},
+};
+use std::time::{Duration, Instant};
+
+const SIZES: [usize; 3] = [10, 100, 1000];
+
+fn main() {
+    let gpu = match gpu::open(None) {
+        Ok(gpu) => gpu,
+        Err(error) => {
+            println!("NOTHING WAS MEASURED: {error}");
+            return;
+        }
+    };
+    let info = gpu.adapter.get_info();
+    println!(
+        "adapter: {} ({:?}, {} {})",
+        info.name, info.backend, info.driver, info.driver_info
+    );
+    // `cargo bench` says `--bench`; without it the benchmarks are only tried. First, because wgpu is slower on a device that has
+    // seen many resources.
+    if std::env::args().any(|argument| argument == "--bench") {
+        compare(&gpu);
+    }
+    let mut criterion = Criterion::default()
+        .sample_size(10)
+        .warm_up_time(Duration::from_millis(500))
+        .measurement_time(Duration::from_secs(2))
+        .configure_from_args();
+    changes(&mut criterion, &gpu);
+    criterion.final_summary();
+}
+
+/// Encodes and finishes one frame; how long that took.
+fn frame(gpu: &Gpu, encode: impl FnOnce(&mut wgpu::CommandEncoder)) -> Duration {
+    let mut encoder = gpu
+        .device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let start = Instant::now();
+    encode(&mut encoder);
+    let commands = encoder.finish();
+    let time = start.elapsed();
+    // Nothing is submitted, and without this wgpu keeps what is dropped.
+    drop(commands);
+    let _ = gpu.device.poll(wgpu::PollType::Poll);
+    time
+}
+
+/// Prints the times of chains by hand and through the executor. The ways take turns frame by frame, so that what else the
+/// machine does meets all of them; differences and ratios are those within one turn.
+fn compare(gpu: &Gpu) {
+    println!("\nencode and finish, µs per pass: medians over turns (a frame of each)");
+    println!(
+        "kind     | passes | turns | by hand | executor | over by hand | ratio | over by hand with debug groups | ratio"
+    );
+    for kind in Kind::ALL {
+        for passes in SIZES {
+            let by_hand = ByHand::new(gpu, kind, passes);
+            let mut executor = executor(gpu, kind, passes).expect("the chain suits every device");
+            let mut turn = |first: usize| {
+                let mut times = [0.0; 3];
+                // Whoever comes first finds other caches.
+                for way in (0..3).map(|way| (first + way) % 3) {
+                    let time = frame(gpu, |encoder| match way {
+                        0 => executor
+                            .encode(encoder, &Frame::default())
+                            .expect("the chain was encoded before"),
+                        1 => by_hand.encode(encoder, false),
+                        _ => by_hand.encode(encoder, true),
+                    });
+                    times[way] = time.as_secs_f64() * 1e6 / passes as f64;
+                }
+                times
+            };
+            let turns = 40_000 / (passes + 30);
+            let warm_up = turns / 10;
+            let times: Vec<[f64; 3]> = (0..turns + warm_up).map(&mut turn).skip(warm_up).collect();
+            let over = |by_hand: usize| {
+                let pairs = || times.iter().map(|times| (times[0], times[by_hand]));
+                [
+                    median(pairs().map(|(executor, by_hand)| executor - by_hand)),
+                    median(pairs().map(|(executor, by_hand)| executor / by_hand)),
+                ]
+            };
+            let [executor, by_hand] =
+                [0, 1].map(|way| median(times.iter().map(|times| times[way])));
+            let [[over, ratio], [over_grouped, ratio_grouped]] = [over(1), over(2)];
+            println!(
+                "{:8} | {passes:6} | {turns:5} | {by_hand:7.3} | {executor:8.3} | {over:+12.3} | {ratio:5.3} | {over_grouped:+30.3} | {ratio_grouped:5.3}",
+                kind.name(),
+            );
+        }
+    }
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+fn planned(passes: usize) -> Plan {
+    let generated = graph(passes, Shaders::Few, 1);
+    Graph::load("graph.ron", &Registry::standard(), &generated)
+        .and_then(|graph| graph.plan(&PlanRequest::new(VIEWPORT, &NoProvider)))
+        .unwrap_or_else(|faults| panic!("{}", faults.render(false)))
+}
+
+/// Frames of generated graphs, and what an executor's making, another size and another value of a param cost.
+fn changes(criterion: &mut Criterion, gpu: &Gpu) {
+    let make = |plan| {
+        Executor::new(&gpu.device, &gpu.queue, plan, &mut NoProvider)
+            .expect("the generated graphs suit every device")
+    };
+    // wgpu frees what was dropped when it next submits; a program does that in every frame.
+    let settle = || {
+        gpu.queue.submit([]);
+        let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+    };
+    for passes in SIZES {
+        let mut group = criterion.benchmark_group(format!("executor, {passes} passes"));
+        group.bench_function(BenchmarkId::from_parameter("new"), |bencher| {
+            bencher.iter_custom(|times| {
+                let once = |_| {
+                    let plan = planned(passes);
+                    let start = Instant::now();
+                    let executor = make(plan);
+                    let time = start.elapsed();
+                    drop(executor);
+                    settle();
+                    time
+                };
+                (0..times).map(once).sum()
+            });
+        });
+        let mut executor = make(planned(passes));
+        group.bench_function(BenchmarkId::from_parameter("encode"), |bencher| {
+            bencher.iter_custom(|frames| {
+                let once = |_| {
+                    frame(gpu, |encoder| {
+                        executor
+                            .encode(encoder, &Frame::default())
+                            .expect("the graph was encoded before");
+                    })
+                };
+                (0..frames).map(once).sum()
+            });
+        });
+        let mut wide = false;
+        group.bench_function(BenchmarkId::from_parameter("resize"), |bencher| {
+            bencher.iter_custom(|times| {
+                let once = |_| {
+                    wide = !wide;
+                    let viewport = [VIEWPORT[0] * if wide { 2 } else { 1 }, VIEWPORT[1]];
+                    let start = Instant::now();
+                    executor
+                        .resize(viewport, &mut NoProvider)
+                        .expect("both sizes suit every device");
+                    let time = start.elapsed();
+                    settle();
+                    time
+                };
+                (0..times).map(once).sum()
+            });
+        });
+        let mut strength = 0.0;
+        group.bench_function(
+            BenchmarkId::from_parameter("set_param, upload"),
+            |bencher| {
+                bencher.iter_custom(|times| {
+                    let once = |_| {
+                        strength += 1.0;
+                        let start = Instant::now();
+                        let renewed = executor
+                            .set_param("strength", ParamValue::F32(strength), &mut NoProvider)
+                            .expect("every value suits");
+                        let time = start.elapsed();
+                        assert!(renewed.pipelines.is_empty() && renewed.resources.is_empty());
+                        assert!(!renewed.uploads.is_empty());
+                        settle();
+                        time
+                    };
+                    (0..times).map(once).sum()
+                });
+            },
+        );
+        group.finish();
+    }
+}

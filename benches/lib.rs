@@ -1,0 +1,319 @@
+//! Generated graphs of any number of passes, every one of which the output needs: what the benchmarks plan and encode.
+
+pub mod chain;
+
+use skiagraph_graph::Sources;
+use std::{collections::BTreeMap, fmt::Write as _, sync::Arc};
+
+/// Width and height of the generated graphs' textures: planning and encoding do not depend on it.
+pub const VIEWPORT: [u32; 2] = [16, 16];
+
+/// How many shaders a generated graph has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shaders {
+    /// One of each sort, used by all passes of the sort.
+    Few,
+    /// Every pass that has a shader has a file of its own.
+    OnePerPass,
+}
+
+/// A document `graph.ron` with its shaders, in memory.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Generated {
+    files: BTreeMap<String, String>,
+    /// Number of passes by kind.
+    pub kinds: BTreeMap<&'static str, usize>,
+}
+
+impl Sources for Generated {
+    fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
+        Ok(self.files.get(path).map(|text| text.as_str().into()))
+    }
+
+    fn list(&self, _: &str) -> Vec<String> {
+        self.files.keys().cloned().collect()
+    }
+}
+
+const FILL: &str = "@fragment fn fill() -> @location(0) vec4<f32> { return vec4<f32>(1.0); }\n";
+
+const ONE: &str = "var a: texture_2d<f32>;
+struct Params { strength: f32 }
+var<uniform> params: Params;
+@fragment fn one(@builtin(position) centre: vec4<f32>) -> @location(0) vec4<f32> {
+    return textureLoad(a, vec2<u32>(centre.xy), 0) * params.strength;
+}
+";
+
+const TWO: &str = "var a: texture_2d<f32>;
+var b: texture_2d<f32>;
+@fragment fn two(@builtin(position) centre: vec4<f32>) -> @location(0) vec4<f32> {
+    let pixel = vec2<u32>(centre.xy);
+    return textureLoad(a, pixel, 0) + textureLoad(b, pixel, 0);
+}
+";
+
+const DRAW: &str = "var a: texture_2d<f32>;
+@vertex fn corner(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    return vec4<f32>(f32(index & 1u), f32(index >> 1u), 0.5, 1.0);
+}
+@fragment fn colour(@builtin(position) centre: vec4<f32>) -> @location(0) vec4<f32> {
+    return textureLoad(a, vec2<u32>(centre.xy), 0);
+}
+";
+
+const STORE: &str = "var a: texture_2d<f32>;
+var made: texture_storage_2d<rgba16float, write>;
+@compute @workgroup_size(8, 8) fn store(@builtin(global_invocation_id) at: vec3<u32>) {
+    textureStore(made, at.xy, textureLoad(a, at.xy, 0) * 0.5);
+}
+";
+
+/// A graph of exactly `passes` passes (1 at least), the same for the same `seed`.
+///
+/// The passes are chosen at random among
+/// ```text
+/// source   Fullscreen         ─▶ new          fan-out  Fullscreen any ─▶ new
+/// chain    Fullscreen | Compute | Raster with depth | Copy: open ─▶ new
+/// join     Fullscreen open, open ─▶ new
+/// over     Clear new, then Raster open ─▶ new, what was cleared is kept
+/// turns    Fullscreen ping ─▶ pong ─▶ ping …; Copy ─▶ new          (two textures, written again and again)
+/// mips     Fullscreen open ─▶ mip 0 ─▶ mip 1 ─▶ mip 2; Fullscreen all mips ─▶ new
+/// ```
+/// where `open` is a texture that no pass has read yet. The chain's full-screen passes have a param, `strength`. What is left open in the end is joined, so that no pass is culled.
+pub fn graph(passes: usize, shaders: Shaders, seed: u64) -> Generated {
+    let mut writer = Writer::new(shaders);
+    let mut random = Random(seed);
+    let mut open = vec![writer.source()];
+    let mut every = open.clone();
+    while writer.passes < passes {
+        let left = passes - writer.passes;
+        // Each open texture but one takes a join in the end.
+        let joins = open.len() - 1;
+        if left <= joins {
+            let (b, a) = (open.pop(), open.pop());
+            open.extend(a.zip(b).map(|(a, b)| writer.join(&a, &b)));
+            continue;
+        }
+        let spare = left - joins;
+        let taken = |open: &mut Vec<String>, random: &mut Random| {
+            let index = random.below(open.len());
+            open.swap_remove(index)
+        };
+        let made = match random.below(12) {
+            0 if spare >= 2 => writer.source(),
+            1 | 2 if spare >= 2 => writer.fullscreen(&every[random.below(every.len())]),
+            3 if open.len() > 1 => {
+                let a = taken(&mut open, &mut random);
+                let b = taken(&mut open, &mut random);
+                writer.join(&a, &b)
+            }
+            4 if spare >= 2 => writer.over(&taken(&mut open, &mut random)),
+            5 if spare >= 5 => {
+                let turns = 2 + random.below(3);
+                writer.turns(&taken(&mut open, &mut random), turns)
+            }
+            6 if spare >= 4 => writer.mips(&taken(&mut open, &mut random)),
+            7 => writer.raster(&taken(&mut open, &mut random)),
+            8 => writer.copy(&taken(&mut open, &mut random)),
+            9 | 10 => writer.compute(&taken(&mut open, &mut random)),
+            _ => writer.fullscreen(&taken(&mut open, &mut random)),
+        };
+        every.push(made.clone());
+        open.push(made);
+    }
+    writer.document(&open)
+}
+
+/// `splitmix64` (Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014): a sequence that stays the same
+/// whatever happens to libraries.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, end: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut bits = self.0;
+        bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((bits ^ (bits >> 31)) % end as u64) as usize
+    }
+}
+
+/// Writes the document pass by pass. What makes something returns its name.
+struct Writer {
+    shaders: Shaders,
+    files: BTreeMap<String, String>,
+    kinds: BTreeMap<&'static str, usize>,
+    materials: String,
+    body: String,
+    passes: usize,
+    has_turns: bool,
+}
+
+impl Writer {
+    fn new(shaders: Shaders) -> Self {
+        Self {
+            shaders,
+            files: BTreeMap::new(),
+            kinds: BTreeMap::new(),
+            materials: String::new(),
+            body: String::new(),
+            passes: 0,
+            has_turns: false,
+        }
+    }
+
+    fn material(&mut self, name: &str, format: &str) {
+        let line = format!("        Texture(name: \"{name}\", format: {format}, size: Viewport),");
+        self.materials.push_str(&line);
+        self.materials.push('\n');
+    }
+
+    /// The name of a texture that the next pass writes.
+    fn new_texture(&mut self) -> String {
+        let name = format!("texture_{}", self.passes);
+        self.material(&name, "Rgba16Float");
+        name
+    }
+
+    fn pass(&mut self, kind: &'static str, fields: &str) {
+        *self.kinds.entry(kind).or_default() += 1;
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            self.body,
+            "        {kind}(name: \"pass_{}\", {fields}),",
+            self.passes
+        );
+        self.passes += 1;
+    }
+
+    /// The field `shader` of the next pass.
+    fn shader(&mut self, name: &str, text: &str) -> String {
+        let name = match self.shaders {
+            Shaders::Few => name.to_owned(),
+            Shaders::OnePerPass => format!("{name}_{}", self.passes),
+        };
+        self.files.insert(format!("{name}.wgsl"), text.to_owned());
+        format!("shader: \"{name}\"")
+    }
+
+    fn source(&mut self) -> String {
+        let made = self.new_texture();
+        let shader = self.shader("fill", FILL);
+        self.pass("Fullscreen", &format!("{shader}, {}", color(&made)));
+        made
+    }
+
+    fn fullscreen(&mut self, from: &str) -> String {
+        let made = self.new_texture();
+        self.fullscreen_onto(from, &made);
+        made
+    }
+
+    fn fullscreen_onto(&mut self, from: &str, to: &str) {
+        let shader = self.shader("one", ONE);
+        let fields = format!("{shader}, bind: {{\"a\": \"{from}\"}}, {}", color(to));
+        self.pass("Fullscreen", &fields);
+    }
+
+    fn join(&mut self, a: &str, b: &str) -> String {
+        let made = self.new_texture();
+        let shader = self.shader("two", TWO);
+        let bind = format!("bind: {{\"a\": \"{a}\", \"b\": \"{b}\"}}");
+        self.pass("Fullscreen", &format!("{shader}, {bind}, {}", color(&made)));
+        made
+    }
+
+    fn raster(&mut self, from: &str) -> String {
+        let made = self.new_texture();
+        let depth = format!("depth_{}", self.passes);
+        self.material(&depth, "Depth32Float");
+        let shader = self.shader("draw", DRAW);
+        let fields = format!(
+            "{shader}, draw: 3, bind: {{\"a\": \"{from}\"}}, {}, depth: (target: \"{depth}\", load: Clear(1.0), compare: Less)",
+            color(&made)
+        );
+        self.pass("Raster", &fields);
+        made
+    }
+
+    fn compute(&mut self, from: &str) -> String {
+        let made = self.new_texture();
+        let shader = self.shader("store", STORE);
+        let fields = format!(
+            "{shader}, dispatch: Over(\"{made}\"), bind: {{\"a\": \"{from}\", \"made\": \"{made}\"}}, overwrites: [\"{made}\"]"
+        );
+        self.pass("Compute", &fields);
+        made
+    }
+
+    fn copy(&mut self, from: &str) -> String {
+        let made = self.new_texture();
+        self.pass("Copy", &format!("from: \"{from}\", to: \"{made}\""));
+        made
+    }
+
+    fn over(&mut self, from: &str) -> String {
+        let made = self.new_texture();
+        self.pass("Clear", &format!("target: \"{made}\""));
+        let shader = self.shader("draw", DRAW);
+        let fields = format!(
+            "{shader}, draw: 3, bind: {{\"a\": \"{from}\"}}, color: [(target: \"{made}\", load: Load)]"
+        );
+        self.pass("Raster", &fields);
+        made
+    }
+
+    fn turns(&mut self, from: &str, turns: usize) -> String {
+        if !std::mem::replace(&mut self.has_turns, true) {
+            self.material("ping", "Rgba16Float");
+            self.material("pong", "Rgba16Float");
+        }
+        let mut last = from;
+        for turn in 0..turns {
+            let next = ["ping", "pong"][turn % 2];
+            self.fullscreen_onto(last, next);
+            last = next;
+        }
+        self.copy(last)
+    }
+
+    fn mips(&mut self, from: &str) -> String {
+        let chain = format!("chain_{}", self.passes);
+        let level = |mip: usize| format!("{chain}_mip_{mip}");
+        let views: Vec<String> = (0..3)
+            .map(|mip| format!("(name: \"{}\", mip: {mip}, mips: 1)", level(mip)))
+            .collect();
+        let _ = writeln!(
+            self.materials,
+            "        Texture(name: \"{chain}\", format: Rgba16Float, size: Viewport, mips: 3, views: [{}]),",
+            views.join(", ")
+        );
+        self.fullscreen_onto(from, &level(0));
+        self.fullscreen_onto(&level(0), &level(1));
+        self.fullscreen_onto(&level(1), &level(2));
+        self.fullscreen(&chain)
+    }
+
+    fn document(mut self, open: &[String]) -> Generated {
+        let outputs: Vec<String> = (0..)
+            .zip(open)
+            .map(|(index, name)| format!("(name: \"output_{index}\", material: \"{name}\")"))
+            .collect();
+        let text = format!(
+            "(\n    format: 1,\n    params: [(name: \"strength\", type: F32, default: 0.5)],\n    materials: [\n{}    ],\n    passes: [\n{}    ],\n    outputs: [{}],\n)\n",
+            self.materials,
+            self.body,
+            outputs.join(", ")
+        );
+        self.files.insert("graph.ron".to_owned(), text);
+        Generated {
+            files: self.files,
+            kinds: self.kinds,
+        }
+    }
+}
+
+fn color(target: &str) -> String {
+    format!("color: [(target: \"{target}\")]")
+}

@@ -1,12 +1,16 @@
 //! Phase 2: names become resources, sizes become numbers.
 
+mod enter;
+mod previous;
 mod sizes;
+
+pub(crate) use previous::{previous, previous_of};
 
 use crate::{
     diagnostics::{Code, Diagnostic},
     document::{
         located::Located,
-        materials::{BufferEntry, Count, Material, SamplerEntry, TextureEntry},
+        materials::{Count, Material, SamplerEntry},
     },
     instantiate::split_layer,
     provider::{Import, Provided, Provider},
@@ -220,16 +224,6 @@ pub(crate) fn resolve<'a>(
     resources
 }
 
-/// The name under which last frame's version of `name` stands: as the document writes it, without quotes.
-pub(crate) fn previous(name: &str) -> String {
-    format!("Previous({name})")
-}
-
-/// What a name is last frame's version of.
-pub(crate) fn previous_of(name: &str) -> Option<&str> {
-    name.strip_prefix("Previous(")?.strip_suffix(')')
-}
-
 /// A name as a WGSL identifier.
 pub(crate) fn spelling(name: &str) -> String {
     // `cascade[0].depth` is `cascade_0_depth`.
@@ -268,93 +262,6 @@ impl Resources<'_> {
         id
     }
 
-    /// Enters what the host imports. A material of the same name would hide it.
-    fn add_imports(
-        &mut self,
-        materials: &[Material],
-        imports: &BTreeMap<String, Import>,
-        diagnostics: &mut Vec<Diagnostic>,
-    ) {
-        for (name, import) in imports {
-            if let Some(material) = materials.iter().find(|m| m.name().as_str() == name) {
-                diagnostics.push(
-                    Diagnostic::error(
-                        Code::DuplicateName,
-                        format!("the host imports `{name}`, which is a material of the document"),
-                    )
-                    .at(material.name().span.clone(), "declared here")
-                    .help("import it under another name, or remove the material"),
-                );
-                continue;
-            }
-            let kind = match *import {
-                Import::Texture {
-                    format,
-                    size,
-                    mips,
-                    layers,
-                    ..
-                } => ResourceKind::Texture(Texture {
-                    format,
-                    size,
-                    mips,
-                    layers,
-                }),
-                Import::Buffer { bytes, items, .. } => ResourceKind::Buffer(Buffer {
-                    count: items,
-                    bytes,
-                }),
-            };
-            let id = self.add(name.clone(), None, kind);
-            self.list[id.0].origin = Origin::Host;
-        }
-    }
-
-    /// The resource whose layout and size a resource has: itself, or what it is last frame's version of.
-    pub fn base(&self, id: ResourceId) -> ResourceId {
-        match self.list[id.0].origin {
-            Origin::Previous(base) => base,
-            _ => id,
-        }
-    }
-
-    /// Gives last frame's versions the sizes of what they are versions of.
-    pub fn settle_previous(&mut self) {
-        for (base, previous) in &self.previous {
-            self.list[previous.0].kind = self.list[base.0].kind.clone();
-        }
-    }
-
-    /// What `Previous("name")` stands for; `None` if `name` is nothing that has a version of last frame.
-    fn find_previous(&mut self, name: &str, of: &str) -> Option<Target> {
-        let base = self.find(of)?;
-        let kind = match &self.list[base.id.0] {
-            Resource {
-                kind: kind @ (ResourceKind::Texture(_) | ResourceKind::Buffer(_)),
-                origin: Origin::Own,
-                ..
-            } => kind.clone(),
-            _ => return None,
-        };
-        let id = match self.previous.get(&base.id) {
-            Some(id) => *id,
-            None => {
-                let declared = self.list[base.id.0].declared.clone();
-                let whole = previous(&self.list[base.id.0].name);
-                let id = self.add(whole, declared, kind);
-                self.list[id.0].origin = Origin::Previous(base.id);
-                self.previous.insert(base.id, id);
-                id
-            }
-        };
-        let target = Target {
-            id,
-            part: base.part,
-        };
-        self.names.insert(name.to_owned(), target.clone());
-        Some(target)
-    }
-
     /// Marks a name as declared with a mistake.
     fn spoil(&mut self, name: &str) {
         self.broken.insert(name.to_owned());
@@ -371,134 +278,6 @@ impl Resources<'_> {
     pub fn hide(&mut self, prefixes: &[String]) {
         let spelt = prefixes.iter().map(|prefix| spelling(prefix));
         self.hidden.extend(prefixes.iter().cloned().chain(spelt));
-    }
-
-    /// Adds the buffers, each after those that its count refers to.
-    fn add_buffers(
-        &mut self,
-        materials: &[Material],
-        params: &Params,
-        diagnostics: &mut Vec<Diagnostic>,
-    ) {
-        let mut waiting: Vec<&BufferEntry> = materials
-            .iter()
-            .filter_map(|material| match material {
-                Material::Buffer(entry) => Some(entry),
-                _ => None,
-            })
-            .collect();
-        while !waiting.is_empty() {
-            let names: HashSet<&str> = waiting.iter().map(|entry| entry.name.as_str()).collect();
-            let is_ready = |entry: &&BufferEntry| {
-                entry
-                    .count
-                    .as_ref()
-                    .is_none_or(|count| !count.refers_to(&names))
-            };
-            let (ready, others): (Vec<_>, Vec<_>) = waiting.iter().copied().partition(is_ready);
-            if ready.is_empty() {
-                for entry in others {
-                    let place = entry
-                        .count
-                        .as_ref()
-                        .map_or(&entry.name.span, |count| &count.span);
-                    diagnostics.push(size_error(
-                        &entry.name,
-                        place,
-                        "its count is that of itself",
-                        "give one of these buffers a count of its own",
-                    ));
-                    self.spoil(&entry.name);
-                }
-                return;
-            }
-            for entry in ready {
-                self.add_buffer(entry, params, diagnostics);
-            }
-            waiting = others;
-        }
-    }
-
-    fn add_buffer(
-        &mut self,
-        entry: &BufferEntry,
-        params: &Params,
-        diagnostics: &mut Vec<Diagnostic>,
-    ) {
-        let count = match &entry.count {
-            None => None,
-            Some(written) => match self.count(written, params, diagnostics) {
-                Some(0) => {
-                    diagnostics.push(size_error(
-                        &entry.name,
-                        &written.span,
-                        "a buffer of no items",
-                        "give it one at least",
-                    ));
-                    return self.spoil(&entry.name);
-                }
-                Some(count) => Some(count),
-                None => return self.spoil(&entry.name),
-            },
-        };
-        let kind = ResourceKind::Buffer(Buffer { count, bytes: 0 });
-        self.add(
-            entry.name.value.clone(),
-            Some(entry.name.span.clone()),
-            kind,
-        );
-    }
-
-    fn add_views(
-        &mut self,
-        entry: &TextureEntry,
-        id: ResourceId,
-        diagnostics: &mut Vec<Diagnostic>,
-    ) {
-        let ResourceKind::Texture(texture) = &self.list[id.0].kind else {
-            return;
-        };
-        let (mips, layers) = (texture.mips, texture.layers);
-        for view in &entry.views {
-            let end = |first: u32, count: Option<u32>, all: u32| {
-                count.map_or(Some(all), |count| first.checked_add(count))
-            };
-            let range = |first: u32, count: Option<u32>, all: u32| {
-                end(first, count, all)
-                    .filter(|&end| first < end && end <= all)
-                    .map(|end| first..end)
-            };
-            match (
-                range(view.mip, view.mips, mips),
-                range(view.layer, view.layers, layers),
-            ) {
-                (Some(mips), Some(layers)) => {
-                    self.names.insert(
-                        view.name.value.clone(),
-                        Target {
-                            id,
-                            part: Part { mips, layers },
-                        },
-                    );
-                    self.spelt
-                        .insert(spelling(&view.name), view.name.value.clone());
-                }
-                _ => {
-                    self.spoil(&view.name);
-                    diagnostics.push(
-                        Diagnostic::error(
-                            Code::Size,
-                            format!("the view `{}` lies outside its texture", *view.name),
-                        )
-                        .at(view.name.span.clone(), "")
-                        .help(format!(
-                            "`{}` has {mips} mips and {layers} layers, counted from 0",
-                            *entry.name
-                        )),
-                    );
-                }
-            }
-        }
     }
 
     pub fn get(&self, id: ResourceId) -> &Resource {
@@ -602,30 +381,6 @@ impl Resources<'_> {
                 error.suggest(name, known.iter().map(String::as_str))
             });
         }
-        None
-    }
-
-    /// Says why there is no last frame's version of `of`.
-    fn explain_previous(
-        &mut self,
-        name: &Located<String>,
-        of: &str,
-        diagnostics: &mut Vec<Diagnostic>,
-    ) -> Option<Target> {
-        let base = self.expect(&Located::new(of.to_owned(), name.span.clone()), diagnostics)?;
-        let resource = self.get(base.id);
-        let what = match resource.origin {
-            Origin::Host => "the host's",
-            _ => resource.kind.describe(),
-        };
-        diagnostics.push(
-            Diagnostic::error(
-                Code::ResourceKind,
-                format!("`{of}` has no version of the frame before"),
-            )
-            .at(name.span.clone(), format!("it is {what}"))
-            .help("only textures and buffers of the document have one; copy it into one"),
-        );
         None
     }
 

@@ -40,7 +40,8 @@ pub enum Command {
     #[command(
         after_help = "Examples:\n  skiagraph run nsm --save visibility=shadow.png\n  \
         skiagraph run nsm --save shadow_map@create_shadow_map=map.png --set map_size=512\n  \
-        skiagraph run my_method.ron --scene sponza --save status=status.bin"
+        skiagraph run my_method.ron --scene sponza --save status=status.bin\n  \
+        skiagraph run my_method.ron --poison"
     )]
     Run(RunArgs),
     /// Time every pass of one graph over many frames, and list what its materials take.
@@ -69,8 +70,11 @@ pub enum Command {
         skiagraph graph rt --format json")]
     Graph(GraphArgs),
     /// List the built-in shadow methods and their params.
-    #[command(after_help = "Example:\n  skiagraph presets")]
-    Presets,
+    #[command(
+        after_help = "Examples:\n  skiagraph presets\n  skiagraph presets --show nsm\n  \
+        skiagraph presets --show shared/light.wgsl"
+    )]
+    Presets(PresetsArgs),
     /// List the scenes and their views.
     #[command(after_help = "Example:\n  skiagraph scenes")]
     Scenes,
@@ -180,6 +184,14 @@ pub struct MethodArgs {
     pub params: Vec<Assignment>,
 }
 
+/// `skiagraph presets`.
+#[derive(Args, Debug)]
+pub struct PresetsArgs {
+    /// Print a built-in file instead: a preset, or a document or shader by its path below pipelines/ or shaders/.
+    #[arg(long, value_name = "NAME|PATH")]
+    pub show: Option<String>,
+}
+
 /// `skiagraph run`.
 #[derive(Args, Debug)]
 pub struct RunArgs {
@@ -193,6 +205,10 @@ pub struct RunArgs {
     /// a buffer. May be repeated.
     #[arg(long, value_name = "MATERIAL[@PASS]=FILE")]
     pub save: Vec<Save>,
+    /// Fill all memory that a frame has not written with two patterns, one after the other, and fail if an output differs: the graph
+    /// then reads what no pass has written.
+    #[arg(long)]
+    pub poison: bool,
 }
 
 /// `skiagraph profile`.

@@ -38,7 +38,7 @@ fn main() -> ExitCode {
         Command::Profile(args) => commands::profile::profile(args, adapter),
         Command::Check(args) => commands::check::check(args),
         Command::Graph(args) => commands::graph::graph(args),
-        Command::Presets => commands::presets::presets(),
+        Command::Presets(args) => commands::presets::presets(args),
         Command::Scenes => commands::scenes::scenes(),
         Command::Doctor => commands::doctor::doctor(adapter),
     };

@@ -75,7 +75,7 @@ fn frame(
     gbuffer: &GBuffer,
     executor: &mut Executor,
 ) -> Result<FrameReport, Box<dyn Error>> {
-    host.draw(&mut encoder, gbuffer);
+    host.draw(&mut encoder, gbuffer); // the G-buffer
     executor.encode(&mut encoder, &Frame::default())?;
     let visibility = executor
         .output_view("visibility")

@@ -28,12 +28,14 @@ fn params() -> Files {
                     (name: \"layers\", type: U32, default: 2, min: 2),
                     (name: \"items\", type: U32, default: 64, min: 1),
                     (name: \"corners\", type: U32, default: 3),
+                    (name: \"times\", type: U32, default: 2),
                     (name: \"enabled\", type: Bool, default: true),
                 ],
                 materials: [
                     Texture(name: \"depth\", format: Depth32Float, size: Square(Param(\"edge\"))),
                     Texture(name: \"stack\", format: R32Uint, size: Texels(4, 4), layers: Param(\"layers\")),
                     Buffer(name: \"list\", count: Param(\"items\")),
+                    Texture(name: \"sum\", format: R16Float, size: Texels(1, 1)),
                     Buffer(name: \"sometimes\", count: 1),
                     Texture(name: \"image\", format: R32Uint, size: Viewport),
                 ],
@@ -42,10 +44,12 @@ fn params() -> Files {
                         depth: (target: \"depth\", load: Clear(Param(\"far\")), bias: (slope_scale: Param(\"slope\")))),
                     Compute(name: \"pile\", dispatch: Over(\"stack\")),
                     Compute(name: \"fill\", dispatch: Over(\"list\")),
+                    Clear(name: \"zero\", target: \"sum\"),
+                    Fullscreen(name: \"add\", repeat: Param(\"times\"), color: [(target: \"sum\", load: Load, blend: Additive)]),
                     Compute(name: \"switch\", run: When(\"enabled\"), dispatch: Groups(1, 1, 1), bind: {\"old\": Previous(\"sometimes\")}),
                     Fullscreen(name: \"shade\", color: [(target: \"image\")]),
                 ],
-                outputs: [(name: \"image\"), (name: \"depth\"), (name: \"stack\"), (name: \"list\"), (name: \"sometimes\")],
+                outputs: [(name: \"image\"), (name: \"depth\"), (name: \"stack\"), (name: \"list\"), (name: \"sum\"), (name: \"sometimes\")],
             )",
         ),
         (
@@ -67,6 +71,10 @@ fn params() -> Files {
              @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
                  if id.x < arrayLength(&list) { list[id.x] = id.x; }
              }",
+        ),
+        (
+            "add.wgsl",
+            "@fragment fn fragment() -> @location(0) f32 { return 1.0; }",
         ),
         (
             "switch.wgsl",
@@ -120,6 +128,15 @@ fn a_param_costs_what_follows_from_it() {
         ("layers", number(4), nothing, nothing, &["stack"], 19),
         ("items", number(100), nothing, nothing, &["list"], 19),
         (
+            "times",
+            number(4),
+            nothing,
+            &["add[2]", "add[3]"],
+            nothing,
+            19,
+        ),
+        ("times", number(3), nothing, nothing, nothing, 19),
+        (
             "enabled",
             ParamValue::Bool(false),
             nothing,
@@ -146,16 +163,17 @@ fn a_param_costs_what_follows_from_it() {
         );
     }
     // What these changes were for has happened.
-    let report = frame(&mut executor, &["depth", "list", "sometimes"]);
+    let report = frame(&mut executor, &["depth", "list", "sometimes", "sum"]);
     assert_eq!(report.skipped, ["switch"]);
     let depth = report.readbacks[0].content.as_f32().unwrap();
     assert_eq!(depth.len(), 32 * 32);
     assert_eq!(report.readbacks[1].content.as_u32().unwrap().len(), 100);
     assert_eq!(
         report.readbacks[2].content.as_u32().unwrap(),
-        [12],
+        [14],
         "it ran in each frame until it was switched off"
     );
+    assert_eq!(report.readbacks[3].content.as_f32().unwrap(), [3.0]);
 }
 
 /// ```text
@@ -279,6 +297,11 @@ fn a_frame_that_was_encoded_before_a_change_is_reported_after_it() {
         .iter()
         .map(|pass| pass.name.as_str())
         .collect();
-    assert_eq!(names, ["draw", "pile", "fill", "switch", "shade"]);
+    assert_eq!(
+        names,
+        [
+            "draw", "pile", "fill", "zero", "add[0]", "add[1]", "switch", "shade"
+        ]
+    );
     assert_eq!(report.readbacks[0].content.as_u32().unwrap(), [7; 64]);
 }

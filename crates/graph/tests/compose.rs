@@ -82,7 +82,9 @@ const TEXTURE: &str = "format: R32Float, size: Viewport";
 /// What an include makes of names: passes in order, and the edge of the output.
 #[test]
 fn names_and_sizes_of_includes() {
-    let cases: &[(&str, &str, &str, &str, &[&str], u32)] = &[
+    /// What it shows, materials, passes, outputs; then the live passes and the edge of the first output.
+    type Case<'a> = (&'a str, &'a str, &'a str, &'a str, &'a [&'a str], u32);
+    let cases: &[Case<'_>] = &[
         (
             "joined",
             "",
@@ -244,6 +246,66 @@ fn scopes_reach_outwards() {
     );
     let sizes: Vec<u32> = plan.outputs().iter().map(|output| output.size[0]).collect();
     assert_eq!(sizes, [8, 2]);
+}
+
+/// `Previous` and run conditions mean what they mean where they are written.
+#[test]
+fn history_and_conditions_in_an_include() {
+    let inner = r#"(format: 1, params: [(name: "on", type: Bool, default: true)],
+        materials: [Texture(name: "image", format: R32Float, size: Viewport), Texture(name: "result", format: R32Float, size: Viewport)],
+        passes: [
+            Fullscreen(name: "smooth", bind: {"image": Previous("result")}, color: [(target: "image")], run: When("on")),
+            Copy(name: "keep", from: "image", to: "result", run: When("on")),
+        ])"#;
+    let plan = |condition: &str| {
+        let outer = format!(
+            r#"(format: 1, params: [(name: "outer", type: Bool, default: true), (name: "on", type: Bool, default: true)],
+            passes: [Include(graph: "shared/inner.ron", prefix: "it", params: {{"on": Param("outer")}}),
+                Fullscreen(name: "one", color: [(target: "it.image", load: Load)], run: When("{condition}"))],
+            outputs: [(name: "image", material: "it.image")])"#
+        );
+        let files = Files::new(SHADERS)
+            .with("pipelines/graph.ron", outer)
+            .with("pipelines/shared/inner.ron", inner);
+        plan_with(&files, None)
+    };
+    let right = plan("outer").unwrap_or_else(|errors| panic!("{errors}"));
+    assert_eq!(names(&right), ["it.smooth", "it.keep", "one"]);
+    // The inner `on` is not the outer one: two writers of one material would run apart.
+    assert!(codes(plan("on")).contains(&Code::RunCondition));
+}
+
+/// What the host provides can stand for a material of an included document.
+#[test]
+fn a_material_is_connected_with_a_provided_resource() {
+    let inner = r#"(format: 1, materials: [Buffer(name: "indices", count: 3), Buffer(name: "sum", count: 1)],
+        passes: [Clear(name: "reset", target: "indices"), Compute(name: "add", dispatch: Groups(1, 1, 1))])"#;
+    let outer = |materials: &str| {
+        format!(
+            "(format: 1, passes: [Include(graph: \"inner.ron\", prefix: \"it\"{materials})], outputs: [(name: \"sum\", material: \"it.sum\")])"
+        )
+    };
+    let add = "var<storage, read> indices: array<u32>; var<storage, read_write> sum: array<u32>;
+        @compute @workgroup_size(1) fn main() { sum[0] = indices[1]; }";
+    let files = Files::new([("inner.ron", inner), ("add.wgsl", add)]);
+    let provided = |files: Files| {
+        let graph = load(&files)?;
+        let plan = graph.plan(&PlanRequest::new([8, 8], &Triangle))?;
+        Ok::<_, Diagnostics>(plan.provided().join(" "))
+    };
+    let own = provided(files.clone().with("graph.ron", outer("")));
+    assert_eq!(own.unwrap_or_else(|errors| panic!("{errors}")), "");
+    let connect = outer(", materials: {\"indices\": \"scene.indices\"}");
+    // The host's buffer is only there to be read, so the included document must not clear it.
+    let cleared = provided(files.clone().with("graph.ron", connect.clone()));
+    let text = cleared.err().map(|errors| errors.to_string());
+    assert!(text.is_some_and(|text| text.contains("`scene.indices`")));
+    let reader = inner.replace("Clear(name: \"reset\", target: \"indices\"), ", "");
+    let connected = provided(files.with("inner.ron", reader).with("graph.ron", connect));
+    assert_eq!(
+        connected.unwrap_or_else(|errors| panic!("{errors}")),
+        "scene.indices"
+    );
 }
 
 /// Shaders are looked for beside the document that names them.

@@ -6,7 +6,8 @@
 mod support;
 
 use skiagraph_graph::{
-    Code, Diagnostic, Diagnostics, FolderSources, Graph, Import, PlanRequest, Registry, diagnostics,
+    Code, Diagnostic, Diagnostics, FolderSources, Graph, Import, PlanRequest, Registry, Sources,
+    diagnostics,
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -107,6 +108,70 @@ fn every_code_has_a_text() {
     assert!(
         missing.is_empty(),
         "no document in tests/broken shows {missing:?}"
+    );
+}
+
+/// `docs/diagnostics.md` lists every kind of mistake with its shortest example, and every broken document. `INSTA_UPDATE=always`
+/// writes it anew.
+#[test]
+fn the_catalogue_is_current() {
+    let sources = folder();
+    let mut found: BTreeMap<Code, Vec<(String, Vec<Diagnostic>)>> = BTreeMap::new();
+    for name in documents() {
+        let diagnostics = diagnose(&format!("{name}.ron"), &sources);
+        let codes: BTreeSet<Code> = diagnostics.iter().map(|found| found.code).collect();
+        for code in codes {
+            found
+                .entry(code)
+                .or_default()
+                .push((name.clone(), diagnostics.clone()));
+        }
+    }
+    let text = |path: &str| {
+        let text = sources.read(path).expect("it is readable");
+        text.expect("it is there").trim_end().to_owned()
+    };
+    let mut catalogue = "# Diagnostics\n\n\
+        Every kind of mistake that `skiagraph check` finds, with an example, what is printed, and the way out. The examples are documents of \
+        [tests/broken](../crates/graph/tests/broken); this page is written by their test. `check --format json` prints the same with \
+        the codes as they stand here.\n"
+        .to_owned();
+    for &code in Code::ALL {
+        let of_code = &found[&code];
+        // The plainest: one mistake, and little around it.
+        let (example, diagnostics) = of_code
+            .iter()
+            .min_by_key(|(name, all)| (all.len(), text(&format!("{name}.ron")).len()))
+            .expect("another test says that there is one");
+        let document = text(&format!("{example}.ron"));
+        catalogue += &format!(
+            "\n## {}\n\n{} **Way out:** {}\n\n```ron\n{document}\n```\n\n```text\n{}\n```\n\n| document | says |\n|---|---|\n",
+            code.as_str(),
+            code.description(),
+            code.remedy(),
+            diagnostics::render(diagnostics, false).trim_end(),
+        );
+        for (name, all) in of_code {
+            let says: BTreeSet<String> = all
+                .iter()
+                .filter(|found| found.code == code)
+                .map(|found| found.message.replace('|', "\\|").replace('\n', " "))
+                .collect();
+            let says: Vec<String> = says.into_iter().collect();
+            catalogue += &format!(
+                "| [{name}](../crates/graph/tests/broken/{name}.ron) | {} |\n",
+                says.join("; ")
+            );
+        }
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/diagnostics.md");
+    if std::env::var("INSTA_UPDATE").is_ok_and(|mode| mode == "always") {
+        std::fs::write(&path, &catalogue).expect("it can be written");
+    }
+    let written = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(
+        written == catalogue,
+        "docs/diagnostics.md is not what the documents give: run this test with INSTA_UPDATE=always"
     );
 }
 

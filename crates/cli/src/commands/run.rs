@@ -10,9 +10,11 @@ use crate::{
     preset::{self, Faults, Preset},
     render,
     stage::Stage,
-    table::{bytes, thousands},
+    table::{bytes, percent, thousands},
 };
-use skiagraph_graph::{Capture, Content, Executor, Item, Plan, PlanRequest, gpu::Gpu};
+use skiagraph_graph::{
+    Capture, Content, ExecuteError, Executor, Item, Plan, PlanRequest, gpu::Gpu,
+};
 use skiagraph_passes::{
     SceneProvider,
     provider::{CAMERA, LIGHT},
@@ -32,6 +34,7 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
         method,
         scene,
         save,
+        poison,
     } = args;
     let (preset, params) = &preset::load_one(method, &preset::sources())?;
     if scene.view.as_deref() == Some("all") && !save.is_empty() {
@@ -74,6 +77,7 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
             method.size,
             story(&plan)
         ))?;
+        let poisoned = poison.then(|| poisoned(&gpu, &plan, &mut provider, preset));
         let contents = render(&gpu, plan, &mut provider, save, preset)?;
         for (save, reading) in save.iter().zip(readings) {
             let name = capture(save).name();
@@ -85,8 +89,65 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
             };
             print(&write(save, content, &reading)?)?;
         }
+        if let Some(verdict) = poisoned {
+            print(&verdict?)?;
+        }
     }
     Ok(())
+}
+
+/// Renders with two patterns in all memory that a frame has not written yet: outputs that differ depend on what nobody wrote.
+///
+/// # Errors
+/// Names these outputs.
+fn poisoned(
+    gpu: &Gpu,
+    plan: &Plan,
+    provider: &mut SceneProvider,
+    preset: &Preset,
+) -> Result<String, CliError> {
+    let outputs = preset.graph.outputs();
+    let mut render = |pattern: u8| {
+        let plan = plan
+            .with(|request| request.poison = Some(pattern))
+            .map_err(|diagnostics| Faults::of(&preset.name, &diagnostics))?;
+        let read = || {
+            let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, provider)?;
+            render::read(gpu, &mut executor, &outputs)
+        };
+        read().map_err(|error| gpu_error(preset, error))
+    };
+    let (low, high) = (render(0x11)?, render(0xee)?);
+    let mut differing = Vec::new();
+    for (name, content) in &low {
+        let other = high.get(name).map_or(&[][..], Content::bytes);
+        let bytes = content.bytes().iter().zip(other);
+        let count = bytes.filter(|(a, b)| a != b).count();
+        if count > 0 {
+            let all = content.bytes().len() as u64;
+            differing.push(format!(
+                "`{name}` ({} of its bytes)",
+                percent(count as u64, all)
+            ));
+        }
+    }
+    if differing.is_empty() {
+        return Ok(
+            "  poisoned memory: no output depends on what the frame has not written\n".into(),
+        );
+    }
+    Err(CliError::Input(format!(
+        "`{}` reads memory that no pass has written in the frame: with two patterns in it, {} differ\n  clear what is written only in part, and promise by `overwrites` only what holds",
+        preset.name,
+        differing.join(", ")
+    )))
+}
+
+fn gpu_error(preset: &Preset, error: ExecuteError) -> CliError {
+    CliError::Gpu {
+        graph: preset.name.clone(),
+        source: Box::new(error),
+    }
 }
 
 fn capture(save: &Save) -> Capture {
@@ -167,10 +228,7 @@ fn render(
         let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, provider)?;
         render::read(gpu, &mut executor, &names)
     };
-    read().map_err(|error| CliError::Gpu {
-        graph: preset.name.clone(),
-        source: Box::new(error),
-    })
+    read().map_err(|error| gpu_error(preset, error))
 }
 
 /// Which passes ran, which did not and why, and what was built for them.

@@ -32,6 +32,16 @@ impl Files {
     }
 }
 
+impl Files {
+    /// The same files, with something replaced in one.
+    pub fn edited(mut self, path: &str, from: &str, to: &str) -> Self {
+        let text = self.0.get_mut(path).expect("the file is there");
+        assert!(text.contains(from), "{path} has no {from}");
+        *text = text.replace(from, to);
+        self
+    }
+}
+
 impl Sources for Files {
     fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
         Ok(self.0.get(path).map(|text| text.as_str().into()))

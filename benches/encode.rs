@@ -1,5 +1,5 @@
 //! What the executor costs over the same frame written by hand in plain wgpu, and what making and changing one costs.
-//! Encoding and finishing the encoder is measured, submission is not: nothing is submitted.
+//! Encoding and finishing the encoder is measured, submission is not: no frame is submitted.
 
 use criterion::{BenchmarkId, Criterion};
 use skiagraph_benches::{

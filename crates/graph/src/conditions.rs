@@ -16,6 +16,8 @@ pub(crate) enum When {
     Never,
     Once,
     OnChange,
+    /// When its group does: a capture between two writes.
+    Follows,
 }
 
 /// What the run conditions of a schedule come to. Every frame reads it, hence it is flat.
@@ -86,7 +88,12 @@ pub(crate) fn conditions(
         })
         .map(|(id, _)| *id)
         .collect();
-    let when = |&pass: &usize| match &passes[pass].run {
+    let mut leads = vec![false; schedule.len()];
+    for (&group, &pass) in group.iter().zip(schedule) {
+        leads[group] |= passes[pass].kind != CAPTURE;
+    }
+    let when = |(&group, &pass): (&usize, &usize)| match &passes[pass].run {
+        _ if passes[pass].kind == CAPTURE && leads[group] => When::Follows,
         Run::Always => When::Always,
         Run::When(_) if passes[pass].enabled => When::Always,
         Run::When(_) => When::Never,
@@ -99,9 +106,10 @@ pub(crate) fn conditions(
         .filter_map(|(at, id, writes)| writes.then_some((at, id)))
         .collect();
     written.sort();
+    let when = group.iter().zip(schedule).map(when).collect();
     Conditions {
         group,
-        when: schedule.iter().map(when).collect(),
+        when,
         written,
         writers,
         kept,
@@ -122,7 +130,7 @@ fn join(group: &mut [usize], a: usize, b: usize) {
 }
 
 fn check([a, b]: [&LinkedPass; 2], name: &str, diagnostics: &mut Vec<Diagnostic>) {
-    // What is captured follows the pass that it is captured after.
+    // What is captured between two writes runs when these do.
     if a.run == b.run || [a, b].iter().any(|pass| pass.kind == CAPTURE) {
         return;
     }

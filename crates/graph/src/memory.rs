@@ -114,6 +114,8 @@ pub(crate) struct Memory {
     bases: BTreeMap<ResourceId, ResourceId>,
     /// Provided resources and imports; the latter from when the host has handed them over.
     host: BTreeMap<ResourceId, Physical>,
+    /// Imports that no live pass uses, for plans in which one does.
+    spare: BTreeMap<String, Physical>,
     samplers: BTreeMap<ResourceId, wgpu::Sampler>,
     /// Versions of the provided resources.
     provided: BTreeMap<ResourceId, u64>,
@@ -226,6 +228,15 @@ impl Memory {
                 _ => {}
             }
         }
+        let used = |name: &String| {
+            let mut live = plan.lifetimes.keys();
+            live.any(|id| plan.resources[id.0].name == *name)
+        };
+        for name in plan.request.imports.keys().filter(|name| !used(name)) {
+            if let Some(import) = old.and_then(|old| kept_import(plan, name, old)) {
+                memory.spare.insert(name.clone(), import);
+            }
+        }
         Ok(memory)
     }
 
@@ -253,6 +264,18 @@ impl Memory {
                 return Ok(());
             }
         }
+        // The plan has counted items and sized buffers by what was described to it.
+        if let (ResourceKind::Provided(planned), Some(now)) =
+            (&resource.kind, provider.describe(&resource.name))
+            && now != *planned
+        {
+            return Err(ExecuteError::Provider {
+                name: resource.name.clone(),
+                why: format!(
+                    "it is {now:?} now, and was planned as {planned:?}: plan the graph anew"
+                ),
+            });
+        }
         let built = scoped(device, &resource.name, || {
             provider.build(&resource.name, device, queue)
         })?;
@@ -271,6 +294,11 @@ impl Memory {
         self.provided.iter().map(|(id, version)| (*id, *version))
     }
 
+    /// The version that a provided resource was built of.
+    pub fn version(&self, id: ResourceId) -> Option<u64> {
+        self.provided.get(&id).copied()
+    }
+
     /// What the host gave for a provided resource or an import.
     pub fn host(&self, id: ResourceId) -> Option<&Physical> {
         self.host.get(&id)
@@ -279,6 +307,11 @@ impl Memory {
     /// Sets an import; whether it is another one than before.
     pub fn import(&mut self, id: ResourceId, physical: Physical) -> bool {
         self.host.insert(id, physical.clone()) != Some(physical)
+    }
+
+    /// Keeps an import that no live pass uses.
+    pub fn spare(&mut self, name: &str, physical: Physical) {
+        self.spare.insert(name.to_owned(), physical);
     }
 
     /// Whether a resource has the very memory in two states of an executor, and so its content.
@@ -315,11 +348,10 @@ fn kept_import(plan: &Plan, name: &str, (of, memory): (&Plan, &Memory)) -> Optio
     if described(plan) != described(of) {
         return None;
     }
-    let (_, physical) = memory
-        .host
-        .iter()
-        .find(|(id, _)| of.resources[id.0].name == name)?;
-    Some(physical.clone())
+    let mut live = memory.host.iter();
+    let live = live.find(|(id, _)| of.resources[id.0].name == name);
+    let physical = live.map(|(_, physical)| physical);
+    physical.or_else(|| memory.spare.get(name)).cloned()
 }
 
 /// Why a texture or buffer is not what the host said that it would import; it may have been made for more besides.

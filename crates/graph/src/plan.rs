@@ -140,10 +140,10 @@ impl Graph {
             let after = |capture: &&Capture| capture.after.as_deref() == Some(pass.name.as_str());
             let captures: BTreeSet<&Capture> = request.captures.iter().filter(after).collect();
             for capture in captures {
-                passes.extend(linker.capture(capture, pass, self));
+                passes.extend(linker.capture(capture, self));
             }
         }
-        linker.resources.nearby.clear();
+        linker.resources.nearby = None;
         let layouts = std::mem::take(&mut linker.layouts);
         layouts.settle(&mut resources, &request.limits, &mut diagnostics);
         readable::check_captures(request, lowered, &mut diagnostics);

@@ -271,6 +271,10 @@ impl Pending {
 
     /// Starts the mapping; the frame must have been submitted.
     pub fn map(&mut self) {
+        // The host may say twice that it has submitted.
+        if self.mapped.is_some() {
+            return;
+        }
         let (send, receive) = channel();
         self.staging
             .map_async(wgpu::MapMode::Read, .., move |result| {

@@ -12,7 +12,7 @@ use crate::{
         located::Located,
         materials::{Count, Material, SamplerEntry},
     },
-    instantiate::split_layer,
+    instantiate::{PassScope, split_layer},
     provider::{Import, Provided, Provider},
     registry::Params,
     source::Span,
@@ -142,8 +142,8 @@ pub(crate) struct Resources<'a> {
     broken: HashSet<String>,
     /// What unknown names begin with that are no mistake, because an include that would have brought them has one.
     hidden: Vec<String>,
-    /// What the document that is looked at calls some of them.
-    pub nearby: Vec<String>,
+    /// The scope of the pass that is looked at: what its document calls some of them.
+    pub nearby: Option<PassScope>,
     /// Last frame's versions, by the resource that they are versions of.
     previous: HashMap<ResourceId, ResourceId>,
     provider: &'a dyn Provider,
@@ -171,7 +171,7 @@ pub(crate) fn resolve<'a>(
         spelt: HashMap::new(),
         broken: HashSet::new(),
         hidden: Vec::new(),
-        nearby: Vec::new(),
+        nearby: None,
         previous: HashMap::new(),
         provider: environment.provider,
         viewport: environment.viewport,
@@ -388,7 +388,7 @@ impl Resources<'_> {
     pub fn known(&self) -> Vec<String> {
         let mut names: Vec<String> = self.names.keys().cloned().collect();
         names.sort();
-        names.splice(0..0, self.nearby.iter().cloned());
+        names.splice(0..0, self.nearby.iter().flat_map(PassScope::names));
         let provided: Vec<String> = self
             .provider
             .names()

@@ -1,12 +1,17 @@
 //! Another plan on the same device: a new size, another value of a param, another graph. What can be kept is kept.
 
-use super::{ExecuteError, Executor, incremental::Contents, pass::MadePass, poison::Poison};
+use super::{
+    ExecuteError, Executor,
+    incremental::Contents,
+    pass::{MadePass, Seen},
+    poison::Poison,
+};
 use crate::{
     allocate::{Pipelines, same_pipeline},
     document::params::ParamValue,
     link::{LinkedPass, LinkedStep},
     memory::Memory,
-    plan::Plan,
+    plan::{CAPTURE, Plan},
     provider::Provider,
     resolve::{ResourceId, ResourceKind},
 };
@@ -135,10 +140,8 @@ impl Executor {
         let groups = kept.groups();
         for (at, pass) in passes.iter_mut().enumerate() {
             let is_kept = groups[plan.conditions.group[at]];
-            if let Some((_, old)) = before(at).filter(|_| is_kept)
-                && old.memory.inputs == pass.memory.inputs
-            {
-                pass.memory.versions.clone_from(&old.memory.versions);
+            if let Some((_, old)) = before(at).filter(|_| is_kept) {
+                pass.memory.versions = kept.seen(&pass.memory.inputs, &old.memory);
             }
             pass.memory.stale = bound[at].is_none_or(|before| self.passes[before].memory.stale);
             let linked = &plan.passes[plan.schedule[at]];
@@ -206,6 +209,7 @@ fn has_same_pipelines(old: &LinkedPass, new: &LinkedPass) -> bool {
 struct Kept<'a> {
     old: &'a Executor,
     plan: &'a Plan,
+    memory: &'a Memory,
     /// Of each pass of the plan: its position before.
     positions: Vec<Option<usize>>,
     /// The resources that are in the memory that they were in before, and what they were then.
@@ -213,7 +217,7 @@ struct Kept<'a> {
 }
 
 impl<'a> Kept<'a> {
-    fn new(old: &'a Executor, plan: &'a Plan, memory: &Memory) -> Self {
+    fn new(old: &'a Executor, plan: &'a Plan, memory: &'a Memory) -> Self {
         let name = |plan: &'a Plan, pass: usize| plan.passes[pass].name.as_str();
         let schedule = old.plan.schedule.iter().enumerate();
         let positions: HashMap<&str, usize> = schedule
@@ -241,6 +245,7 @@ impl<'a> Kept<'a> {
         Self {
             old,
             plan,
+            memory,
             positions: plan.schedule.iter().map(position).collect(),
             same: same.collect(),
         }
@@ -257,7 +262,14 @@ impl<'a> Kept<'a> {
 
     fn contents(&self) -> Contents {
         let mut contents = Contents::of(self.plan, self.old.contents.clock());
+        let has_changed = |id: ResourceId, former: ResourceId| {
+            self.memory.version(id) != self.old.memory.version(former)
+        };
         for (&id, &former) in &self.same {
+            // A provider may hand out the buffer of before with something else in it.
+            if has_changed(id, former) {
+                continue;
+            }
             contents.take_over(id, &self.old.contents, former);
         }
         contents
@@ -268,9 +280,11 @@ impl<'a> Kept<'a> {
         let pass = &self.plan.passes[self.plan.schedule[at]];
         let old = &self.old.plan.passes[self.old.plan.schedule[self.positions[at]?]];
         let is_there = pass.accesses.len() == old.accesses.len()
-            && pass.accesses.iter().zip(&old.accesses).all(|(new, old)| {
-                new.resource == old.resource && self.same.get(&new.resource) == Some(&old.resource)
-            });
+            && pass
+                .accesses
+                .iter()
+                .zip(&old.accesses)
+                .all(|(new, old)| self.same.get(&new.resource) == Some(&old.resource));
         is_there.then_some([pass, old])
     }
 
@@ -283,9 +297,27 @@ impl<'a> Kept<'a> {
                 .map(shader)
                 .eq(old.steps.iter().map(shader))
         };
-        let mut kept = vec![true; self.plan.schedule.len()];
-        for (at, &group) in self.plan.conditions.group.iter().enumerate() {
+        let (now, before) = (&self.plan.conditions.group, &self.old.plan.conditions.group);
+        let mut kept = vec![true; now.len()];
+        // Of each group: which one it was.
+        let mut former: Vec<Option<usize>> = vec![None; now.len()];
+        let mut is_there = vec![false; before.len()];
+        for (at, &group) in now.iter().enumerate() {
             kept[group] &= self.with_its_memory(at).is_some_and(is_kept);
+            if let Some(position) = self.positions[at] {
+                let was = before[position];
+                kept[group] &= *former[group].get_or_insert(was) == was;
+                is_there[position] = true;
+            }
+        }
+        // What a pass of the group made that is gone would be left in what the others write; a capture leaves nothing.
+        let mut gone = vec![false; before.len()];
+        for (position, &pass) in self.old.plan.schedule.iter().enumerate() {
+            let leaves = self.old.plan.passes[pass].kind != CAPTURE;
+            gone[before[position]] |= !is_there[position] && leaves;
+        }
+        for (kept, former) in kept.iter_mut().zip(former) {
+            *kept &= former.is_none_or(|group| !gone[group]);
         }
         kept
     }
@@ -293,6 +325,17 @@ impl<'a> Kept<'a> {
     /// The position before of a pass that needs no binding: word for word what it was, on the same memory.
     fn bound(&self, at: usize) -> Option<usize> {
         let [pass, old] = self.with_its_memory(at)?;
-        self.positions[at].filter(|_| pass.steps == old.steps)
+        let mut numbers = pass.accesses.iter().zip(&old.accesses);
+        let same_numbers = numbers.all(|(new, old)| new.resource == old.resource);
+        self.positions[at].filter(|_| pass.steps == old.steps && same_numbers)
+    }
+
+    /// What a pass saw of its inputs when it ran last.
+    fn seen(&self, inputs: &[ResourceId], old: &Seen) -> Option<Vec<u64>> {
+        let seen = old.inputs.iter().zip(old.versions.as_ref()?);
+        let seen: BTreeMap<ResourceId, u64> = seen.map(|(id, seen)| (*id, *seen)).collect();
+        let of = |id: &ResourceId| seen.get(self.same.get(id)?).copied();
+        let versions: Vec<u64> = inputs.iter().map(of).collect::<Option<_>>()?;
+        (versions.len() == seen.len()).then_some(versions)
     }
 }

@@ -67,8 +67,10 @@ impl Contents {
     pub fn running(&self, plan: &Plan, passes: &[MadePass], all: bool) -> Vec<bool> {
         let groups = &plan.conditions.group;
         // All is what could run, not what a param forbids.
-        let allowed = |when: &When| all && *when != When::Never;
-        let mut runs: Vec<bool> = plan.conditions.when.iter().map(allowed).collect();
+        let mut runs = vec![false; passes.len()];
+        for (&group, when) in groups.iter().zip(&plan.conditions.when) {
+            runs[group] |= all && !matches!(when, When::Never | When::Follows);
+        }
         // A pass that runs can be the reason for one before it in its group, so this is repeated until nothing is added.
         let mut added = !all;
         while added {
@@ -86,7 +88,7 @@ impl Contents {
     fn has_reason(&self, plan: &Plan, made: &MadePass, at: usize, runs: &[bool]) -> bool {
         match (plan.conditions.when[at], &made.memory.versions) {
             (When::Always, _) => true,
-            (When::Never, _) => false,
+            (When::Never | When::Follows, _) => false,
             (_, None) => true,
             (When::Once, Some(_)) => false,
             (When::OnChange, Some(seen)) => {
@@ -125,28 +127,27 @@ impl Contents {
         histories: &Histories,
     ) {
         let before = self.versions.clone();
-        let mut written = plan.conditions.written.iter().peekable();
+        for (_, id) in plan.conditions.written.iter().filter(|(at, _)| runs[*at]) {
+            self.touch(*id);
+        }
+        // Only now: what a pass has read and another writes below is another part of the same resource, else they were one group.
         for (at, pass) in passes.iter_mut().enumerate() {
             let remembers = matches!(plan.conditions.when[at], When::Once | When::OnChange);
-            if runs[at] && remembers {
-                let Seen {
-                    inputs,
-                    versions,
-                    stale,
-                } = &mut pass.memory;
-                let seen = versions.get_or_insert_default();
-                seen.clear();
-                seen.extend(inputs.iter().map(|id| match plan.resources[id.0].origin {
-                    Origin::Previous(base) => before[base.0],
-                    _ => self.versions[id.0],
-                }));
-                *stale = false;
+            if !(runs[at] && remembers) {
+                continue;
             }
-            while let Some((_, id)) = written.next_if(|(position, _)| *position == at) {
-                if runs[at] {
-                    self.touch(*id);
-                }
-            }
+            let Seen {
+                inputs,
+                versions,
+                stale,
+            } = &mut pass.memory;
+            let seen = versions.get_or_insert_default();
+            seen.clear();
+            seen.extend(inputs.iter().map(|id| match plan.resources[id.0].origin {
+                Origin::Previous(base) => before[base.0],
+                _ => self.versions[id.0],
+            }));
+            *stale = false;
         }
         for (id, versions) in histories {
             self.latest.insert(*id, versions.current);

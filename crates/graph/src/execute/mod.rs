@@ -164,16 +164,18 @@ impl Executor {
                 why,
             });
         }
-        // An import that no live pass uses needs no place.
-        if let Some(id) = self.live(name) {
-            // Most hosts hand over the same texture in every frame.
-            if self.memory.host(id) != Some(&physical) {
-                alive(&self.device)?;
-            }
-            self.contents.touch(id);
-            if self.memory.import(id, physical) {
-                self.unbind(id);
-            }
+        // One that no live pass uses waits for a plan in which one does.
+        let Some(id) = self.live(name) else {
+            self.memory.spare(name, physical);
+            return Ok(());
+        };
+        // Most hosts hand over the same texture in every frame.
+        if self.memory.host(id) != Some(&physical) {
+            alive(&self.device)?;
+        }
+        self.contents.touch(id);
+        if self.memory.import(id, physical) {
+            self.unbind(id);
         }
         Ok(())
     }
@@ -210,7 +212,8 @@ impl Executor {
     /// Asks the provider for every resource of another [version](Provider::version) than before.
     ///
     /// # Errors
-    /// If one cannot be built, or the device is lost. The rest stays as it was and is asked for again the next time.
+    /// If one cannot be built, or is described otherwise than when the graph was planned (more items, say: that needs another
+    /// plan, see [`replace_graph`](Self::replace_graph)), or the device is lost. The rest stays as it was and is asked for again the next time.
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
         let known: Vec<(ResourceId, u64)> = self.memory.provided().collect();
         for (id, version) in known {

@@ -296,6 +296,13 @@ impl<'a> Builder<'a, '_> {
             };
             let mut params = self.bind(include, document, scope);
             self.require(document, &mut params, &prefix);
+            // A param that fell back is not the root's any more.
+            let root = Arc::clone(&self.scopes.get(ScopeId(0)).params);
+            for bound in &mut params.list {
+                let of_root =
+                    |name: &mut String| root.bound(name).map(|of| &of.value) != Some(&bound.value);
+                bound.root.take_if(of_root);
+            }
             let folder = folder_of(&document.file.name).into();
             let mut inner = Scope::new(Some(scope), prefix, Arc::new(params), folder);
             inner.joins = include.prefix.is_none();
@@ -401,7 +408,15 @@ fn lower(
             .params
             .bound(name)
             .and_then(|bound| bound.root.clone());
-        name.value = root.unwrap_or_else(|| format!("{}{}", scope.prefix, name.value));
+        name.value = root.unwrap_or_else(|| {
+            let document = scopes.document(pending.scope);
+            let file = &entry.name.span.file.name;
+            match document.joins {
+                // Its prefix is that of the document around, which may have a param of this name.
+                true => format!("{}{} of {file}", document.prefix, name.value),
+                false => format!("{}{}", document.prefix, name.value),
+            }
+        });
     }
     let (mut steps, mut overwrites) = (lowering.steps, entry.overwrites.clone());
     // A pass's own buffers begin with its name, whatever that is in the whole graph.

@@ -130,6 +130,14 @@ impl Scopes {
         std::iter::successors(Some(self.get(id)), around)
     }
 
+    /// The scope of the document around: groups have that document's params.
+    pub(super) fn document(&self, id: ScopeId) -> &Scope {
+        let scope = self.get(id);
+        let within = |outer: &&Scope| Arc::ptr_eq(&outer.params, &scope.params);
+        let last = self.outwards(id).take_while(within).last();
+        last.unwrap_or(scope)
+    }
+
     /// The index of the innermost repeat.
     pub fn index(&self, id: ScopeId) -> Option<u32> {
         self.outwards(id).find_map(|scope| scope.index)

@@ -204,7 +204,7 @@ impl<'a, 'p> Linker<'a, 'p> {
 
     /// From here on, passes of this scope are linked.
     pub fn enter(&mut self, scope: &'a PassScope) {
-        self.resources.nearby = scope.names();
+        self.resources.nearby = Some(scope.clone());
         self.scope = Some(scope);
         self.params = &scope.params;
     }

@@ -3,7 +3,7 @@
 use super::{CAPTURE, Capture, PlanRequest};
 use crate::{
     diagnostics::{Code, Diagnostic},
-    document::located::Located,
+    document::{Run, located::Located},
     graph::Graph,
     instantiate::LoweredPass,
     link::{LinkedPass, Linker},
@@ -150,12 +150,7 @@ fn unreadable(resources: &Resources<'_>, target: &Target) -> Option<String> {
 
 impl Linker<'_, '_> {
     /// A copy of a material as it stands after the pass that was linked last.
-    pub(super) fn capture(
-        &mut self,
-        capture: &Capture,
-        after: &LoweredPass,
-        graph: &Graph,
-    ) -> Option<LinkedPass> {
+    pub(super) fn capture(&mut self, capture: &Capture, graph: &Graph) -> Option<LinkedPass> {
         let name = Located::new(capture.name(), graph.place());
         let from = Located::new(capture.material.clone(), graph.place());
         let Some(target) = self.resources.find(&from) else {
@@ -204,8 +199,8 @@ impl Linker<'_, '_> {
             to: name.clone(),
         }];
         let mut pass = self.pass(&name, CAPTURE, &steps)?;
-        pass.enabled = after.enabled;
-        pass.run = after.run.clone();
+        // Whether or not the pass that it comes after runs: what has changed may have been written above that one.
+        pass.run = Run::OnChange;
         Some(pass)
     }
 

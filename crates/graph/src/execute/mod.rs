@@ -282,7 +282,7 @@ impl Executor {
             }
             let start = frame.timing.then(Instant::now);
             if let Some(poison) = &self.poison {
-                poison.fill(at, encoder);
+                poison.fill(at, &histories, encoder);
             }
             let steps = pass.steps(&histories).unwrap_or_default();
             let timer = frame.timing.then_some(&self.timer);

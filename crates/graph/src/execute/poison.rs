@@ -8,15 +8,15 @@ use super::{
 };
 use crate::{
     allocate::Binder,
-    memory::{Histories, Memory},
+    memory::{Histories, Memory, Versions},
     plan::Plan,
-    resolve::{Origin, Part, ResourceKind, Target},
+    resolve::{Origin, Part, ResourceId, ResourceKind, Target},
 };
 
-/// Fills by position in the schedule.
+/// Fills by position in the schedule; of a resource with a history one for each of its allocations.
 pub(super) struct Poison {
     pattern: wgpu::Buffer,
-    fills: Vec<(usize, Fill)>,
+    fills: Vec<(usize, ResourceId, Vec<Fill>)>,
 }
 
 enum Fill {
@@ -27,7 +27,8 @@ enum Fill {
 }
 
 impl Poison {
-    /// `None` if the plan asks for none. What outlives the frame is not filled.
+    /// `None` if the plan asks for none. What outlives the frame is not filled; of a resource with a history that is last frame's
+    /// version, while what is written holds what is left of the frame before that one.
     pub fn new(
         plan: &Plan,
         memory: &Memory,
@@ -36,57 +37,68 @@ impl Poison {
         let Some(byte) = plan.request.poison else {
             return Ok(None);
         };
-        let none = Histories::new();
-        let binder = Binder {
-            device,
-            memory,
-            histories: &none,
-        };
         let (mut fills, mut most) = (Vec::new(), 4);
         for (&id, lifetime) in &plan.lifetimes {
             let resource = &plan.resources[id.0];
-            let outlives = plan.conditions.kept.contains(&id) || plan.versions(id) > 1;
+            let outlives = plan.conditions.kept.contains(&id) && plan.versions(id) == 1;
             if resource.origin != Origin::Own || outlives {
                 continue;
             }
-            let fill = match &resource.kind {
-                ResourceKind::Buffer(buffer) => {
-                    most = most.max(buffer.bytes);
-                    Fill::Buffer(memory.buffer(id, &none)?.clone())
-                }
-                ResourceKind::Texture(texture) if texture.format.is_depth_stencil_format() => {
-                    let part = Part {
-                        mips: 0..texture.mips,
-                        layers: 0..texture.layers,
-                    };
-                    Fill::Depth(
-                        binder.single_views(&Target { id, part })?,
-                        f32::from(byte) / 255.0,
-                    )
-                }
-                ResourceKind::Texture(texture) => {
-                    let texel = texture.format.block_copy_size(None).unwrap_or(4);
-                    let mip = |mip: u32| {
-                        let [width, height] = texture.size.map(|edge| (edge >> mip).max(1));
-                        let row =
-                            (width * texel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-                        let extent = wgpu::Extent3d {
-                            width,
-                            height,
-                            depth_or_array_layers: 1,
+            let mut fill = |histories: &Histories| -> Result<Option<Fill>, ExecuteError> {
+                let binder = Binder {
+                    device,
+                    memory,
+                    histories,
+                };
+                Ok(Some(match &resource.kind {
+                    ResourceKind::Buffer(buffer) => {
+                        most = most.max(buffer.bytes);
+                        Fill::Buffer(memory.buffer(id, histories)?.clone())
+                    }
+                    ResourceKind::Texture(texture) if texture.format.is_depth_stencil_format() => {
+                        let part = Part {
+                            mips: 0..texture.mips,
+                            layers: 0..texture.layers,
                         };
-                        (row, extent)
-                    };
-                    let mips: Vec<_> = (0..texture.mips).map(mip).collect();
-                    let bytes = mips
-                        .iter()
-                        .map(|(row, size)| u64::from(*row) * u64::from(size.height));
-                    most = bytes.fold(most, u64::max);
-                    Fill::Texture(memory.texture(id, &none)?.clone(), mips)
-                }
-                _ => continue,
+                        Fill::Depth(
+                            binder.single_views(&Target { id, part })?,
+                            f32::from(byte) / 255.0,
+                        )
+                    }
+                    ResourceKind::Texture(texture) => {
+                        let texel = texture.format.block_copy_size(None).unwrap_or(4);
+                        let mip = |mip: u32| {
+                            let [width, height] = texture.size.map(|edge| (edge >> mip).max(1));
+                            let row = (width * texel)
+                                .next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+                            let extent = wgpu::Extent3d {
+                                width,
+                                height,
+                                depth_or_array_layers: 1,
+                            };
+                            (row, extent)
+                        };
+                        let mips: Vec<_> = (0..texture.mips).map(mip).collect();
+                        let bytes = mips
+                            .iter()
+                            .map(|(row, size)| u64::from(*row) * u64::from(size.height));
+                        most = bytes.fold(most, u64::max);
+                        Fill::Texture(memory.texture(id, histories)?.clone(), mips)
+                    }
+                    _ => return Ok(None),
+                }))
             };
-            fills.push((lifetime.first, fill));
+            let states = (0..plan.versions(id)).map(|current| {
+                let versions = Versions {
+                    current,
+                    previous: current,
+                };
+                Histories::from([(id, versions)])
+            });
+            let made: Vec<Fill> = states
+                .filter_map(|histories| fill(&histories).transpose())
+                .collect::<Result<_, _>>()?;
+            fills.push((lifetime.first, id, made));
         }
         let pattern = scoped(device, "pattern", || {
             device.create_buffer(&wgpu::BufferDescriptor {
@@ -105,8 +117,12 @@ impl Poison {
     }
 
     /// Fills what the pass at `at` is the first to use.
-    pub fn fill(&self, at: usize, encoder: &mut wgpu::CommandEncoder) {
-        for (_, fill) in self.fills.iter().filter(|(first, _)| *first == at) {
+    pub fn fill(&self, at: usize, histories: &Histories, encoder: &mut wgpu::CommandEncoder) {
+        for (_, id, fills) in self.fills.iter().filter(|(first, ..)| *first == at) {
+            let current = histories.get(id).map_or(0, |versions| versions.current);
+            let Some(fill) = fills.get(current) else {
+                continue;
+            };
             match fill {
                 Fill::Buffer(buffer) => {
                     encoder.copy_buffer_to_buffer(&self.pattern, 0, buffer, 0, buffer.size());

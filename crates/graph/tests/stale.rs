@@ -405,3 +405,29 @@ fn calls_out_of_turn_are_no_panics() {
     }
     assert_eq!(numbers(&mut executor, "n"), [5]);
 }
+
+/// What a pass leaves unwritten of a material with a history is not last frame's: the pattern shows it.
+#[test]
+fn poison_shows_what_a_write_leaves_of_a_material_with_a_history() {
+    let files = Files::new([]).with(
+        "graph.ron",
+        "(format: 1, materials: [Buffer(name: \"x\", count: 2), Buffer(name: \"y\", count: 1)],
+          passes: [
+            Compute(name: \"make\", dispatch: Groups(1, 1, 1), bind: {\"out\": \"x\"}),
+            Compute(name: \"take\", dispatch: Groups(1, 1, 1), bind: {\"input\": Previous(\"x\"), \"out\": \"y\"}),
+          ], outputs: [(name: \"x\"), (name: \"y\")])",
+    )
+    .with("make.wgsl", shader(OUT, "out[0] = 5u;"))
+    .with("take.wgsl", shader(&format!("{INPUT}{OUT}"), "out[0] = input[0];"));
+    let mut wanted = request(&NoProvider);
+    wanted.poison = Some(0x11);
+    let mut executor = executor(&files, &wanted);
+    for before in [0, 5, 5] {
+        let report = frame(&mut executor, &["x", "y"]);
+        assert_eq!(
+            report.readbacks[0].content.as_u32(),
+            Some(vec![5, 0x1111_1111])
+        );
+        assert_eq!(first(&report, 1), before);
+    }
+}

@@ -138,6 +138,8 @@ pub(crate) struct Resources<'a> {
     names: HashMap<String, Target>,
     /// Names as a shader spells them.
     spelt: HashMap<String, String>,
+    /// Spellings that two names share, with these.
+    ambiguous: HashMap<String, [String; 2]>,
     /// Declared, but with a mistake that was reported; nothing more is said about them.
     broken: HashSet<String>,
     /// What unknown names begin with that are no mistake, because an include that would have brought them has one.
@@ -169,6 +171,7 @@ pub(crate) fn resolve<'a>(
         list: Vec::new(),
         names: HashMap::new(),
         spelt: HashMap::new(),
+        ambiguous: HashMap::new(),
         broken: HashSet::new(),
         hidden: Vec::new(),
         nearby: None,
@@ -248,7 +251,7 @@ impl Resources<'_> {
             _ => Part::ONE,
         };
         self.names.insert(name.clone(), Target { id, part });
-        self.spelt.insert(spelling(&name), name.clone());
+        self.spell(&name);
         let origin = match kind {
             ResourceKind::Provided(_) => Origin::Host,
             _ => Origin::Own,
@@ -260,6 +263,20 @@ impl Resources<'_> {
             origin,
         });
         id
+    }
+
+    /// Notes how a shader spells a name.
+    fn spell(&mut self, name: &str) {
+        let spelling = spelling(name);
+        let known = self.spelt.insert(spelling.clone(), name.to_owned());
+        if let Some(known) = known.filter(|known| known != name) {
+            self.ambiguous.insert(spelling, [known, name.to_owned()]);
+        }
+    }
+
+    /// The two names that a resource's spelling may mean.
+    pub fn ambiguous(&self, name: &str) -> Option<&[String; 2]> {
+        self.ambiguous.get(&spelling(name))
     }
 
     /// Marks a name as declared with a mistake.

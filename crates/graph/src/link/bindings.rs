@@ -227,6 +227,9 @@ impl Linker<'_, '_> {
             },
         };
         let resource = self.resources.get(target.id).clone();
+        if bound.is_none() {
+            self.ambiguous(global, &resource.name, pass);
+        }
         let wrong_kind = |this: &mut Self, needed: &str| {
             let mut error = Diagnostic::error(
                 Code::ResourceKind,
@@ -386,6 +389,27 @@ impl Linker<'_, '_> {
             step: 0,
         });
         finish(bind_target, ty)
+    }
+
+    /// Reports a global that two resources spell alike (`a.b_c` and `a_b.c`); one that is named just so wins.
+    fn ambiguous(&mut self, global: &Global, name: &str, pass: &LinkedPass) {
+        let Some([a, b]) = self.resources.ambiguous(name) else {
+            return;
+        };
+        if name.ends_with(&global.name) {
+            return;
+        }
+        let error = Diagnostic::error(
+            Code::Binding,
+            format!("the shader's `{}` may be `{a}` or `{b}`", global.name),
+        )
+        .at(global.span.clone(), "both are spelt so in a shader")
+        .at(pass.name.span.clone(), "bound by this pass")
+        .help(format!(
+            "say which: `bind: {{\"{}\": \"{a}\"}}`",
+            global.name
+        ));
+        self.report(error);
     }
 
     fn unknown(&mut self, global: &Global, pass: &LinkedPass) {

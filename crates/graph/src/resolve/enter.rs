@@ -2,7 +2,6 @@
 
 use super::{
     Buffer, Origin, Part, ResourceId, ResourceKind, Resources, Target, Texture, size_error,
-    spelling,
 };
 use crate::{
     diagnostics::{Code, Diagnostic},
@@ -162,8 +161,7 @@ impl Resources<'_> {
                             part: Part { mips, layers },
                         },
                     );
-                    self.spelt
-                        .insert(spelling(&view.name), view.name.value.clone());
+                    self.spell(&view.name);
                 }
                 _ => {
                     self.spoil(&view.name);

@@ -178,6 +178,12 @@ fn explain(
 ) -> Diagnostic {
     let name = &resources.get(access.resource).name;
     let pass = &passes[reader];
+    // A pass that changes what it reads depends on no pass below, whoever else changes it there: it lacks a beginning.
+    let itself = access.writes
+        || pass
+            .accesses
+            .iter()
+            .any(|other| other.writes && other.resource == access.resource);
     let below = (reader + 1..passes.len()).find(|&index| {
         passes[index].accesses.iter().any(|other| {
             other.writes && other.resource == access.resource && other.part.overlaps(&access.part)
@@ -196,12 +202,7 @@ fn explain(
             format!("it is first written by `{first}`")
         }));
     }
-    let Some(writer) = below else {
-        let itself = access.writes
-            || passes[reader]
-                .accesses
-                .iter()
-                .any(|other| other.writes && other.resource == access.resource);
+    let Some(writer) = below.filter(|_| !itself) else {
         let help = if itself {
             format!(
                 "put `Clear(name: \"clear_{name}\", target: \"{name}\")` above it: it starts from what was there before"

@@ -379,6 +379,12 @@ fn reads_of_nothing() {
             ],
             vec![Code::ReadBeforeWrite],
         ),
+        // Neither needs the other's result: what both lack is a beginning.
+        (
+            "p0 adds to r0 ; p1 adds to r0 : nobody cleared it",
+            vec![vec![whole(0, Change)], vec![whole(0, Change)]],
+            vec![Code::ReadBeforeWrite],
+        ),
         (
             "p0 ─▶ r0.mip0 ; p1 reads r0.mip0..2",
             vec![vec![whole(0, Write)], vec![(0, Read, 0..2, 0..1)]],

@@ -5,7 +5,7 @@ use crate::{
     uniforms::{CameraUniform, LightUniform},
 };
 use skiagraph_graph::{Provided, Provider, ProviderError};
-use skiagraph_scene::{Bvh, BvhNode, Scene, View};
+use skiagraph_scene::{Adjacency, Bvh, BvhNode, Scene, View};
 use std::{collections::BTreeMap, sync::Arc};
 use wgpu::util::DeviceExt;
 
@@ -13,6 +13,7 @@ const POSITIONS: &str = "scene.positions";
 const INDICES: &str = "scene.indices";
 const NORMALS: &str = "scene.normals";
 const NORMAL_INDICES: &str = "scene.normal_indices";
+const ADJACENCY: &str = "scene.adjacency";
 const BVH_NODES: &str = "scene.bvh_nodes";
 const BVH_PRIMITIVES: &str = "scene.bvh_primitives";
 /// The uniform of `shared/camera.wgsl`.
@@ -20,11 +21,12 @@ pub const CAMERA: &str = "camera";
 /// The uniform of `shared/light.wgsl`.
 pub const LIGHT: &str = "light";
 
-const NAMES: [&str; 8] = [
+const NAMES: [&str; 9] = [
     POSITIONS,
     INDICES,
     NORMALS,
     NORMAL_INDICES,
+    ADJACENCY,
     BVH_NODES,
     BVH_PRIMITIVES,
     CAMERA,
@@ -39,6 +41,7 @@ const NAMES: [&str; 8] = [
 /// | `scene.indices` | `array<u32>`, three per primitive |
 /// | `scene.normals` | `array<vec4<f32>>`, unit length, w = 0 |
 /// | `scene.normal_indices` | `array<u32>`, three per primitive |
+/// | `scene.adjacency` | `array<u32>`, three per primitive: [`Adjacency::opposite`] |
 /// | `scene.bvh_nodes` | 32-byte [`BvhNode`]s, node 0 is the root |
 /// | `scene.bvh_primitives` | `array<u32>`, primitive ids in leaf order |
 /// | `camera` | [`CameraUniform`] |
@@ -161,6 +164,7 @@ impl SceneProvider {
             }
             INDICES => self.upload_items(name, mesh.triangles.as_flattened(), device),
             NORMAL_INDICES => self.upload_items(name, mesh.normal_indices.as_flattened(), device),
+            ADJACENCY => self.upload_items(name, &Adjacency::new(mesh).opposite, device),
             CAMERA => self.upload_items(name, &[self.camera], device),
             LIGHT => self.upload_items(name, &[LightUniform::new(&scene)], device),
             _ => self.upload_hierarchy(device),
@@ -201,7 +205,7 @@ impl Provider for SceneProvider {
         };
         match name {
             POSITIONS => array(Some(mesh.positions.len()), 16),
-            INDICES | NORMAL_INDICES => array(Some(corners), 4),
+            INDICES | NORMAL_INDICES | ADJACENCY => array(Some(corners), 4),
             NORMALS => array(Some(mesh.normals.len()), 16),
             // Known only once the hierarchy is built.
             BVH_NODES => array(None, 32),

@@ -3,6 +3,7 @@
 //! The crate knows no GPU. World space is right-handed, units are the scene's own; positions are `f32` (what a file
 //! holds and a GPU reads), cameras and lights are `f64` so that an exact reference starts from unrounded input.
 
+pub mod adjacency;
 pub mod bvh;
 pub mod camera;
 pub mod error;
@@ -15,6 +16,7 @@ pub mod report;
 pub mod scene_file;
 mod weld;
 
+pub use adjacency::{Adjacency, NO_NEIGHBOUR};
 pub use bvh::{Bvh, BvhNode};
 pub use camera::{Camera, View};
 pub use error::SceneError;

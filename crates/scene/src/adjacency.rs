@@ -1,0 +1,133 @@
+//! Which triangle lies across each edge.
+
+use crate::Mesh;
+use std::collections::HashMap;
+
+/// What [`Adjacency::opposite`] holds for an edge that has not exactly two triangles.
+pub const NO_NEIGHBOUR: u32 = u32::MAX;
+
+/// Edge adjacency of a mesh over its welded positions: the *corner table* of Rossignac, Safonova and Szymczak ("3D
+/// Compression Made Simple", SMI 2001).
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Adjacency {
+    /// Three entries per triangle. Entry `3 * p + i` belongs to the edge from corner i to corner i + 1 (mod 3) of triangle p and
+    /// names the corner `3 * q + k` of the triangle q across it that does not lie on the edge: q is the entry divided by 3, and its
+    /// edge is the one after k. [`NO_NEIGHBOUR`] for an edge with one triangle, or with more than two. Windings play no part.
+    pub opposite: Vec<u32>,
+}
+
+/// The triangles met so far at an edge.
+#[derive(Clone, Copy)]
+enum Edge {
+    One { entry: u32 },
+    Two,
+    More,
+}
+
+impl Adjacency {
+    /// Of a mesh, in time linear in its triangles. Triangles that name a position twice have no area whatever their place, and
+    /// no neighbours: what lies on both sides of one is adjacent.
+    pub fn new(mesh: &Mesh) -> Self {
+        let mut opposite = vec![NO_NEIGHBOUR; 3 * mesh.triangles.len()];
+        let mut edges = HashMap::with_capacity(3 * mesh.triangles.len() / 2);
+        for (primitive, &[a, b, c]) in mesh.triangles.iter().enumerate() {
+            if a == b || b == c || c == a {
+                continue;
+            }
+            for (side, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
+                let entry = (3 * primitive + side) as u32;
+                let edge = edges.entry((from.min(to), from.max(to)));
+                edge.and_modify(|edge| match *edge {
+                    Edge::One { entry: other } => {
+                        opposite[entry as usize] = corner_across(other);
+                        opposite[other as usize] = corner_across(entry);
+                        *edge = Edge::Two;
+                    }
+                    Edge::Two | Edge::More => *edge = Edge::More,
+                })
+                .or_insert(Edge::One { entry });
+            }
+        }
+        // An edge with more than two triangles had joined its first two before the third came.
+        for (primitive, &[a, b, c]) in mesh.triangles.iter().enumerate() {
+            for (side, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
+                if let Some(Edge::More) = edges.get(&(from.min(to), from.max(to))) {
+                    opposite[3 * primitive + side] = NO_NEIGHBOUR;
+                }
+            }
+        }
+        Self { opposite }
+    }
+}
+
+/// The corner that the edge of this entry does not touch.
+fn corner_across(entry: u32) -> u32 {
+    entry - entry % 3 + (entry + 2) % 3
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn adjacency(triangles: &[[u32; 3]]) -> Vec<u32> {
+        let mesh = Mesh {
+            triangles: triangles.to_vec(),
+            ..Mesh::default()
+        };
+        Adjacency::new(&mesh).opposite
+    }
+
+    const NONE: u32 = NO_NEIGHBOUR;
+
+    #[test]
+    fn two_triangles_of_a_quad_see_each_other() {
+        assert_eq!(
+            adjacency(&[[0, 1, 2], [2, 1, 3]]),
+            // Edge 1–2 is the second of the first triangle and the first of the second one.
+            [NONE, 5, NONE, 0, NONE, NONE]
+        );
+        // The second one wound the other way.
+        assert_eq!(
+            adjacency(&[[0, 1, 2], [1, 2, 3]]),
+            [NONE, 5, NONE, 0, NONE, NONE]
+        );
+    }
+
+    #[test]
+    fn a_closed_mesh_has_neighbours_everywhere_and_they_are_mutual() {
+        let triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        let opposite = adjacency(&triangles);
+        for (entry, &corner) in opposite.iter().enumerate() {
+            let corner = corner as usize;
+            // The edge of the other triangle is the one after its opposite corner.
+            let back = 3 * (corner / 3) + (corner + 1) % 3;
+            assert_eq!(opposite[back] as usize / 3, entry / 3);
+            let edge = [entry % 3, (entry + 1) % 3].map(|i| triangles[entry / 3][i]);
+            assert!(!edge.contains(&triangles[corner / 3][corner % 3]));
+        }
+    }
+
+    #[test]
+    fn three_triangles_at_an_edge_or_a_double_one_have_no_neighbour_there() {
+        let fan = adjacency(&[[0, 1, 2], [1, 0, 3], [0, 1, 4], [1, 2, 5]]);
+        assert_eq!(
+            fan,
+            [
+                NONE, 11, NONE, NONE, NONE, NONE, NONE, NONE, NONE, 0, NONE, NONE
+            ]
+        );
+        // Four at one edge: not two pairs.
+        let four = adjacency(&[[0, 1, 2], [1, 0, 3], [0, 1, 4], [1, 0, 5]]);
+        assert_eq!(four, [NONE; 12]);
+        // A triangle and its copy close nothing: each edge has two, folded onto itself; the sides tell, not the table.
+        let double = adjacency(&[[0, 1, 2], [0, 1, 2]]);
+        assert_eq!(double, [5, 3, 4, 2, 0, 1]);
+    }
+
+    #[test]
+    fn a_triangle_that_names_a_position_twice_is_passed_over() {
+        let opposite = adjacency(&[[0, 1, 2], [1, 1, 2], [2, 1, 3]]);
+        assert_eq!(opposite, [NONE, 8, NONE, NONE, NONE, NONE, 0, NONE, NONE]);
+        assert_eq!(adjacency(&[]), []);
+    }
+}

@@ -21,18 +21,19 @@ struct Answer {
 
 @fragment
 fn fragment(@builtin(position) centre: vec4<f32>) -> Answer {
-    let pixel = vec2<u32>(centre.xy);
+    let status = compare(vec2<u32>(centre.xy));
+    return Answer(shown(status), status);
+}
+
+fn compare(pixel: vec2<u32>) -> u32 {
     if textureLoad(primitive, pixel, 0).x == NO_PRIMITIVE {
-        return Answer(base_visibility(STATUS_BACKGROUND), STATUS_BACKGROUND);
+        return STATUS_BACKGROUND;
     }
     let receiver = textureLoad(position, pixel, 0);
     if receiver.w <= 0.0 {
-        return Answer(base_visibility(STATUS_FACING_AWAY), STATUS_FACING_AWAY);
+        return STATUS_FACING_AWAY;
     }
-    if is_lit(receiver.xyz, receiver.w) {
-        return Answer(1u, STATUS_LIGHT);
-    }
-    return Answer(0u, STATUS_SHADOW);
+    return select(STATUS_SHADOW, STATUS_LIGHT, is_lit(receiver.xyz, receiver.w));
 }
 
 fn is_lit(receiver: vec3<f32>, n_dot_l: f32) -> bool {

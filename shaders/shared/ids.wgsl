@@ -9,7 +9,8 @@ const STATUS_LIGHT: u32 = 2u;
 const STATUS_SHADOW: u32 = 3u;
 const STATUS_UNCERTAIN: u32 = 4u;
 
-// What a pixel without a shadow question shows: nothing shades the background, a surface that faces away shades itself.
-fn base_visibility(status: u32) -> u32 {
-    return select(0u, 1u, status == STATUS_BACKGROUND);
+// What a pixel shows before any ray: nothing shades the background, a surface that faces away shades itself, and whoever is
+// uncertain waits in the dark.
+fn shown(status: u32) -> u32 {
+    return select(0u, 1u, status == STATUS_BACKGROUND || status == STATUS_LIGHT);
 }

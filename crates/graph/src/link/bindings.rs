@@ -58,6 +58,7 @@ impl Linker<'_, '_> {
         &mut self,
         program: &Program,
         stages: &[ShaderStage],
+        depth_only: bool,
         pass: &mut LinkedPass,
     ) -> Option<LinkedProgram> {
         let shader = self.shader(program)?;
@@ -73,7 +74,7 @@ impl Linker<'_, '_> {
                 ShaderStage::Fragment => &program.fragment,
                 _ => &program.compute,
             };
-            match shader.entry(*stage, name.as_ref(), &wanted) {
+            match shader.entry(*stage, depth_only, name.as_ref(), &wanted) {
                 Ok(entry) => entries.push(entry),
                 Err(error) => self.report(error),
             }

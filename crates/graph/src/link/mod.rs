@@ -220,7 +220,8 @@ impl<'a, 'p> Linker<'a, 'p> {
         match step {
             Step::Draw(draw) => self.draw(draw, pass).map(LinkedStep::Draw),
             Step::Dispatch(dispatch) => {
-                let program = self.program(&dispatch.program, &[ShaderStage::Compute], pass)?;
+                let program =
+                    self.program(&dispatch.program, &[ShaderStage::Compute], false, pass)?;
                 let size = self.workgroup_size(&program, &pass.name)?;
                 let groups = self.groups(&dispatch.groups, size, pass)?;
                 Some(LinkedStep::Dispatch { program, groups })
@@ -264,14 +265,21 @@ impl<'a, 'p> Linker<'a, 'p> {
     }
 
     fn draw(&mut self, draw: &Draw, pass: &mut LinkedPass) -> Option<LinkedDraw> {
-        let fragment =
-            !draw.colors.is_empty() || draw.fullscreen || draw.program.fragment.is_some();
+        // Without colours, a fragment shader that yields none may still discard and set depths.
+        let mut colourless = || {
+            let shader = self.shader(&draw.program);
+            shader.is_some_and(|shader| shader.colourless_fragments().next().is_some())
+        };
+        let fragment = !draw.colors.is_empty()
+            || draw.fullscreen
+            || draw.program.fragment.is_some()
+            || colourless();
         let stages: &[ShaderStage] = match (draw.fullscreen, fragment) {
             (true, _) => &[ShaderStage::Fragment],
             (false, true) => &[ShaderStage::Vertex, ShaderStage::Fragment],
             (false, false) => &[ShaderStage::Vertex],
         };
-        let program = self.program(&draw.program, stages, pass);
+        let program = self.program(&draw.program, stages, draw.colors.is_empty(), pass);
         let colors = self.colors(draw, program.as_ref(), pass);
         let depth = draw.depth.as_ref().map(|depth| self.depth(depth, pass));
         let call = match &draw.call {
@@ -304,6 +312,18 @@ impl<'a, 'p> Linker<'a, 'p> {
             Some(depth) => depth,
             None => None,
         };
+        let needed = wgpu::Features::CONSERVATIVE_RASTERIZATION;
+        if draw.primitive.conservative && !self.features.contains(needed) {
+            self.report(
+                Diagnostic::error(
+                    Code::Feature,
+                    "this adapter has no conservative rasterisation",
+                )
+                .at(pass.name.span.clone(), "`conservative: true`")
+                .help("list it in `requires: [(feature: \"CONSERVATIVE_RASTERIZATION\")]`, so that devices that have it are opened with it"),
+            );
+            return None;
+        }
         let (program, colors) = (program?, colors?);
         self.attachment_sizes(&colors, depth.as_ref(), pass);
         Some(LinkedDraw {

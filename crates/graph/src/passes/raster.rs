@@ -29,6 +29,9 @@ pub struct Raster {
     front_face: Winding,
     #[serde(default)]
     topology: Topology,
+    /// Whether a pixel that a triangle touches anywhere counts, not only one whose centre it covers.
+    #[serde(default)]
+    conservative: bool,
     #[serde(default)]
     vertex: Option<Located<String>>,
     #[serde(default)]
@@ -263,6 +266,7 @@ impl PassKind for Raster {
                 Face::Front => Some(wgpu::Face::Front),
                 Face::Back => Some(wgpu::Face::Back),
             },
+            conservative: self.conservative,
             ..wgpu::PrimitiveState::default()
         };
         let colors = self.color.iter().map(ColorEntry::target).collect();

@@ -80,10 +80,22 @@ impl Shader {
         })
     }
 
-    /// The entry point of `stage`: the one called `name`, or the only one of the stage. `wanted` is where it is asked for.
+    /// Fragment entry points without colour outputs.
+    pub fn colourless_fragments(&self) -> impl Iterator<Item = usize> {
+        let entries = self.module.entry_points.iter().enumerate();
+        entries
+            .filter(|(index, entry)| {
+                entry.stage == ShaderStage::Fragment && self.fragment_outputs(*index).is_empty()
+            })
+            .map(|(index, _)| index)
+    }
+
+    /// The entry point of `stage`: the one called `name`, or the only one of the stage, of those without colour outputs
+    /// in a fragment stage that draws `depth_only`. `wanted` is where it is asked for.
     pub fn entry(
         &self,
         stage: ShaderStage,
+        depth_only: bool,
         name: Option<&Located<String>>,
         wanted: &Span,
     ) -> Result<usize, Diagnostic> {
@@ -92,7 +104,14 @@ impl Shader {
             .entry_points
             .iter()
             .enumerate()
-            .filter(|(_, entry)| entry.stage == stage)
+            .filter(|(index, entry)| {
+                let colourless = || self.fragment_outputs(*index).is_empty();
+                entry.stage == stage
+                    && (stage != ShaderStage::Fragment
+                        || !depth_only
+                        || name.is_some()
+                        || colourless())
+            })
             .map(|(index, entry)| (index, entry.name.as_str()))
             .collect();
         let stage_name = format!("{stage:?}").to_lowercase();

@@ -1,0 +1,10 @@
+// The ray of a thread in a dispatch over `ray_groups`, whose workgroups are folded to two dimensions. Group sizes as in trace_fold.wgsl.
+
+const RAYS_PER_GROUP: u32 = 64u;
+const GROUPS_PER_ROW: u32 = 65535u;
+
+var<storage, read> ray_count: u32;
+
+fn ray_slot(group: vec3<u32>, lane: u32) -> u32 {
+    return (group.y * GROUPS_PER_ROW + group.x) * RAYS_PER_GROUP + lane;
+}

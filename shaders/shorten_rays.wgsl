@@ -1,0 +1,26 @@
+// Stage to end each ray at the nearest depth of anything in its texel of the map: nothing is left to hit between there and the light.
+// One thread per ray. Hertel, Hormann, Westermann 2009 start their traversal at that depth.
+
+#import "shared/light_triangle.wgsl"
+#import "shared/ray_slots.wgsl"
+#import "shared/ray.wgsl"
+
+var nearest: texture_depth_2d;
+var<storage, read_write> rays: array<Ray>;
+
+@compute @workgroup_size(RAYS_PER_GROUP)
+fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    let slot = ray_slot(group, lane);
+    if slot >= ray_count {
+        return;
+    }
+    let size = textureDimensions(nearest);
+    let place = light_texel(rays[slot].origin, f32(size.x));
+    if any(place.xy < vec2(0.0)) || any(place.xy >= vec2<f32>(size)) {
+        return;
+    }
+    let stored = textureLoad(nearest, vec2<u32>(place.xy), 0);
+    // Units of the scene; a thousandth of the depth range is room for all rounding. An empty texel holds 1, behind the receiver.
+    let way = (place.z - stored + 0.001) * light.extent.z;
+    rays[slot].t_max = min(rays[slot].t_max, way);
+}

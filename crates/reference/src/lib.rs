@@ -34,6 +34,7 @@ mod ray;
 mod receiver;
 pub mod statistics;
 mod tree;
+pub mod twin;
 
 pub use error::Error;
 pub use image::Image;

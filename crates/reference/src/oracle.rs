@@ -352,7 +352,7 @@ impl<'a> Oracle<'a> {
 }
 
 /// One value per pixel, rows in parallel. The first error, in no particular order, ends the run.
-fn per_pixel<T: Send>(
+pub(crate) fn per_pixel<T: Send>(
     viewport: [u32; 2],
     progress: Progress,
     pixel: impl Fn(u32, u32, &mut Vec<u32>) -> Result<T, Error> + Sync,

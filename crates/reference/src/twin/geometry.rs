@@ -190,22 +190,28 @@ impl TexelTriangle {
         value.clamp(0.0, 1.0)
     }
 
-    /// What the plane's depth at a point may be off by: corner i moves it by its weight there times the slope; then what f32 loses on the way.
+    /// What the plane's depth at a point may be off by: a corner moves it by its weight there, in the moved triangle, times the
+    /// slope; then what f32 loses on the way, where areas are differences of products as long as the triangle.
     fn plane_doubt(&self, point: DVec2, slope: DVec2, range: f64, error: DepthError) -> f64 {
         if error.bound.is_none() {
             return 0.0;
         }
-        let area = self.area();
+        let (area, height, longest) = (self.area(), self.height(), self.longest());
+        let away = self
+            .corners
+            .map(|corner| (point - corner.truncate()).length())
+            .into_iter()
+            .fold(0.0, f64::max);
         let weights: f64 = (0..3)
             .map(|i| {
                 let (p, edge) = self.edge(i);
                 (edge.perp_dot(point - p) / area).abs()
             })
             .sum();
-        let (height, longest) = (self.height(), self.longest());
-        let away = (point - self.corners[0].truncate()).length();
-        let tilt = 1.0 - 2.0 * error.across / height;
-        weights * (slope.length() * error.across / tilt + error.depth)
+        // The weights in the moved triangle: its own area, and each corner's part of it, have moved as well.
+        let moved = error.across / height;
+        let weights = (weights + 3.0 * moved * (1.0 + 2.0 * away / longest)) / (1.0 - 2.0 * moved);
+        weights * (slope.length() * error.across + error.depth)
             + NOISE
                 * F32_ROUNDING
                 * away

@@ -48,7 +48,7 @@ impl From<&Camera> for CameraUniform {
     }
 }
 
-/// Twin of WGSL's `Light`: a directional light and the light space fitted to the scene's box, 112 bytes.
+/// Twin of WGSL's `Light`: a directional light and the light space fitted to the scene's corners, 112 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LightUniform {
@@ -69,10 +69,10 @@ pub struct LightUniform {
 }
 
 impl LightUniform {
-    /// The light of `scene` over the box of its mesh; an empty mesh counts as a point at the origin.
+    /// The light of `scene` over all corners of its mesh; an empty mesh counts as a point at the origin.
     pub fn new(scene: &Scene) -> Self {
         let (min, max) = scene.mesh.bounds().unwrap_or((Vec3::ZERO, Vec3::ZERO));
-        let fit = scene.light.fit_box(min, max);
+        let fit = scene.light.fit(scene.mesh.corner_positions());
         let (min, max) = (min.as_dvec3(), max.as_dvec3());
         let centre = ((min + max) * 0.5).as_vec3();
         let to_relative = glam::DMat4::from_translation(centre.as_dvec3());

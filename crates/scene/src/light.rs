@@ -1,6 +1,6 @@
 //! Directional lights and the orthographic light space of a shadow map.
 
-use glam::{DMat4, DVec3, Vec3};
+use glam::{DMat4, DVec2, DVec3, Vec3};
 
 /// A light infinitely far away.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,8 +24,9 @@ impl DirectionalLight {
         -self.direction.normalize()
     }
 
-    /// The tightest light-space box around an axis-aligned world box, in a frame whose third axis is the light's direction.
-    pub fn fit_box(&self, min: Vec3, max: Vec3) -> LightFit {
+    /// The smallest light-space box around some points whose third axis is the light's direction: one side of the rectangle of least area
+    /// around a convex polygon lies on an edge of it (Freeman and Shapira, CACM 18(7), 1975). No points count as one at the origin.
+    pub fn fit(&self, points: impl IntoIterator<Item = Vec3>) -> LightFit {
         let forward = self.direction.normalize();
         let helper = if forward.y.abs() < 0.9 {
             DVec3::Y
@@ -34,20 +35,20 @@ impl DirectionalLight {
         };
         let right = forward.cross(helper).normalize();
         let up = right.cross(forward);
-        let (min, max) = (min.as_dvec3(), max.as_dvec3());
-        let corners = (0..8).map(|i| {
-            DVec3::new(
-                if i & 1 == 0 { min.x } else { max.x },
-                if i & 2 == 0 { min.y } else { max.y },
-                if i & 4 == 0 { min.z } else { max.z },
-            )
-        });
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for corner in corners {
-            let p = DVec3::new(right.dot(corner), up.dot(corner), forward.dot(corner));
-            low = low.min(p);
-            high = high.max(p);
+        let (mut places, mut nearest, mut farthest) =
+            (Vec::new(), f64::INFINITY, f64::NEG_INFINITY);
+        for point in points {
+            let point = point.as_dvec3();
+            let depth = forward.dot(point);
+            (nearest, farthest) = (nearest.min(depth), farthest.max(depth));
+            places.push(DVec2::new(right.dot(point), up.dot(point)));
         }
+        if places.is_empty() {
+            (places, nearest, farthest) = (vec![DVec2::ZERO], 0.0, 0.0);
+        }
+        let (turn, low, high) = least_rectangle(&convex_hull(places));
+        let (right, up) = (right * turn.x + up * turn.y, up * turn.x - right * turn.y);
+        let (low, high) = (low.extend(nearest), high.extend(farthest));
         let centre = (low + high) * 0.5;
         // A flat scene still needs a box of some volume, and one large enough to be told from its place.
         let largest = (high - low)
@@ -74,6 +75,53 @@ impl DirectionalLight {
     }
 }
 
+/// The corners of the convex hull, counter-clockwise (Andrew's monotone chain).
+fn convex_hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.dedup();
+    let mut hull: Vec<DVec2> = Vec::new();
+    for half in 0..2 {
+        let first = hull.len();
+        for &point in &points {
+            while let [.., a, b] = hull[first..]
+                && (b - a).perp_dot(point - b) <= 0.0
+            {
+                hull.pop();
+            }
+            hull.push(point);
+        }
+        // The last point of a half is the first of the other.
+        if points.len() > 1 || half == 1 {
+            hull.pop();
+        }
+        points.reverse();
+    }
+    if hull.is_empty() { points } else { hull }
+}
+
+/// The rectangle of least area around a convex polygon: its unit x axis, and its lower and upper corner in its own axes. An upright one
+/// that is as small to a thousandth is preferred.
+fn least_rectangle(hull: &[DVec2]) -> (DVec2, DVec2, DVec2) {
+    let around = |axis: DVec2| {
+        let turned = hull
+            .iter()
+            .map(|p| DVec2::new(axis.dot(*p), axis.perp_dot(*p)));
+        let empty = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let (low, high) = turned.fold(empty, |(low, high), p| (low.min(p), high.max(p)));
+        (axis, low, high)
+    };
+    let area = |(_, low, high): (DVec2, DVec2, DVec2)| (high - low).element_product();
+    let mut best = around(DVec2::X);
+    let sides = hull.iter().zip(hull.iter().cycle().skip(1));
+    for axis in sides.filter_map(|(a, b)| (*b - *a).try_normalize()) {
+        let turned = around(axis);
+        if area(turned) < area(best) * 0.999 {
+            best = turned;
+        }
+    }
+    best
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -87,13 +135,14 @@ mod tests {
     ];
 
     #[test]
-    fn the_whole_box_lies_in_clip_space_and_depth_grows_away_from_the_light() {
+    fn all_points_lie_in_clip_space_and_depth_grows_away_from_the_light() {
         let (min, max) = (Vec3::new(-3.0, 1.0, 20.0), Vec3::new(5.0, 1.5, 90.0));
+        let pick = |i: u32, bit: u32, axis: usize| if i & bit == 0 { min[axis] } else { max[axis] };
+        let corners = (0..8).map(|i| Vec3::new(pick(i, 1, 0), pick(i, 2, 1), pick(i, 4, 2)));
         for direction in LIGHTS {
-            let fit = DirectionalLight { direction }.fit_box(min, max);
-            for i in 0..8 {
-                let pick = |bit: u32, axis: usize| if i & bit == 0 { min[axis] } else { max[axis] };
-                let corner = Vec3::new(pick(1, 0), pick(2, 1), pick(4, 2)).as_dvec3();
+            let fit = DirectionalLight { direction }.fit(corners.clone());
+            for corner in corners.clone() {
+                let corner = corner.as_dvec3();
                 let clip = fit.view_projection.project_point3(corner);
                 assert!(
                     clip.x.abs() <= 1.0 && clip.y.abs() <= 1.0 && (0.0..=1.0).contains(&clip.z),
@@ -113,10 +162,51 @@ mod tests {
     }
 
     #[test]
-    fn a_single_point_still_makes_a_finite_box() {
+    fn the_map_turns_with_the_scene() {
+        // A rectangle of 8 by 2, turned by 30 degrees, seen from above.
+        let (sin, cos) = 30f32.to_radians().sin_cos();
+        let corners = [
+            [-4.0, -1.0],
+            [4.0, -1.0],
+            [4.0, 1.0],
+            [-4.0, 1.0],
+            [0.0, 0.5],
+        ];
+        let points =
+            corners.map(|[x, z]: [f32; 2]| Vec3::new(x * cos - z * sin, 0.0, x * sin + z * cos));
+        let fit = DirectionalLight {
+            direction: DVec3::NEG_Y,
+        }
+        .fit(points);
+        let sides = [
+            fit.extent.x.max(fit.extent.y),
+            fit.extent.x.min(fit.extent.y),
+        ];
+        assert!(
+            (sides[0] - 4.0 * 1.002).abs() < 1e-5 && (sides[1] - 1.002).abs() < 1e-5,
+            "{sides:?}"
+        );
+        // Points on a line, and a hull that is its own least rectangle.
+        assert_eq!(
+            convex_hull(vec![DVec2::X, DVec2::ZERO, DVec2::X * 0.5]).len(),
+            2
+        );
+        let square = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
+        assert_eq!(
+            least_rectangle(&square),
+            (DVec2::X, DVec2::ZERO, DVec2::ONE)
+        );
+    }
+
+    #[test]
+    fn one_point_or_none_still_makes_a_finite_box() {
         for direction in LIGHTS {
-            let fit = DirectionalLight { direction }.fit_box(Vec3::ONE, Vec3::ONE);
-            assert!(fit.view_projection.as_mat4().is_finite() && fit.extent.min_element() > 0.0);
+            for points in [&[][..], &[Vec3::ONE], &[Vec3::ONE, Vec3::ONE]] {
+                let fit = DirectionalLight { direction }.fit(points.iter().copied());
+                assert!(
+                    fit.view_projection.as_mat4().is_finite() && fit.extent.min_element() > 0.0
+                );
+            }
         }
     }
 }

@@ -45,13 +45,15 @@ impl Mesh {
         self.normal_indices[primitive as usize].map(|index| self.normals[index as usize].as_dvec3())
     }
 
+    /// The position of each corner of each triangle.
+    pub fn corner_positions(&self) -> impl Iterator<Item = Vec3> {
+        let corners = self.triangles.iter().flatten();
+        corners.map(|&index| self.positions[index as usize])
+    }
+
     /// Smallest box around all positions that a triangle uses, or `None` for an empty mesh.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
-        let mut used = self
-            .triangles
-            .iter()
-            .flatten()
-            .map(|&index| self.positions[index as usize]);
+        let mut used = self.corner_positions();
         let first = used.next()?;
         Some(used.fold((first, first), |(min, max), p| (min.min(p), max.max(p))))
     }

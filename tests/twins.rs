@@ -1,0 +1,219 @@
+//! The statuses of the hybrids' presets against their twins in f64: they agree on every pixel outside the twin's band.
+
+mod support;
+
+use glam::{DVec3, Vec3};
+use skiagraph_graph::{Capture, ParamValue, gpu::Gpu};
+use skiagraph_passes::SceneProvider;
+use skiagraph_reference::{
+    Progress,
+    statistics::status,
+    twin::{Cull, Depth, Method, Twin},
+};
+use skiagraph_scene::{Adjacency, DirectionalLight, Scene, SceneLibrary, SceneRequest, View};
+use std::sync::Arc;
+use support::{
+    graphs::{open, plan, provider, run_on, values},
+    meshes,
+};
+
+/// A scene under one view on one device.
+struct Bench<'a> {
+    scene: &'a Scene,
+    viewport: [u32; 2],
+    gpu: Gpu,
+    provider: SceneProvider,
+    adjacency: Adjacency,
+}
+
+/// What a twin and its preset have said of the pixels that face the light.
+#[derive(Debug, Default)]
+struct Agreement {
+    facing_light: usize,
+    light: usize,
+    shadow: usize,
+    uncertain: usize,
+    in_band: usize,
+    /// Of the pixels outside the band.
+    disagree: usize,
+}
+
+impl Agreement {
+    fn band(&self) -> f64 {
+        self.in_band as f64 / self.facing_light as f64
+    }
+}
+
+impl<'a> Bench<'a> {
+    fn new(scene: &'a Arc<Scene>, viewport: [u32; 2]) -> Self {
+        Self {
+            scene,
+            viewport,
+            gpu: open(),
+            provider: provider(scene, &scene.views[0], viewport),
+            adjacency: Adjacency::new(&scene.mesh),
+        }
+    }
+
+    fn judge(&mut self, twin: Twin) -> Agreement {
+        let (preset, has_layers) = match twin.method {
+            Method::HybridPcf => ("hybrid_pcf", false),
+            Method::Crsm => ("crsm", true),
+            Method::Crsma => ("crsma", true),
+            Method::CrsmaFull => ("crsma_full", true),
+        };
+        let choice = |word: &str| ParamValue::Choice(word.into());
+        let cull = match twin.cull {
+            Cull::None => "none",
+            Cull::Front => "front",
+            Cull::Back => "back",
+        };
+        let depth = match twin.depth {
+            Depth::Plane => "plane",
+            Depth::Conservative => "conservative",
+        };
+        let path = format!("pipelines/{preset}.ron");
+        let plan = plan(&path, &self.provider, self.viewport, |request| {
+            let mut set = |name: &str, value| request.params.insert(name.into(), value);
+            set("map_size", ParamValue::U32(twin.map_size));
+            set("cull", choice(cull));
+            if has_layers {
+                set("depth", choice(depth));
+                set("n", ParamValue::F32(twin.n as f32));
+            }
+            request.captures.push(Capture {
+                material: "primitive".into(),
+                after: None,
+            });
+        });
+        let report = run_on(
+            &self.gpu,
+            plan,
+            &mut self.provider,
+            &["status", "primitive"],
+        );
+        let primitives = values(&report, "primitive");
+        let camera = self.scene.views[0].camera(self.viewport);
+        let maps = twin
+            .maps(&self.scene.mesh, &self.adjacency, &self.scene.light)
+            .unwrap();
+        let expected = maps
+            .classify(&camera, &primitives, Progress::default())
+            .unwrap();
+
+        let mut counts = Agreement::default();
+        for (index, &found) in values(&report, "status").iter().enumerate() {
+            let (status, in_band) = (expected.status[index], expected.in_band[index]);
+            if found >= status::CERTAIN_LIGHT {
+                counts.facing_light += 1;
+                counts.in_band += usize::from(in_band);
+            }
+            match found {
+                status::CERTAIN_LIGHT => counts.light += 1,
+                status::CERTAIN_SHADOW => counts.shadow += 1,
+                status::UNCERTAIN => counts.uncertain += 1,
+                _ => {}
+            }
+            if found != status && !in_band {
+                if counts.disagree < 3 {
+                    println!("pixel {index}: {found} instead of {status}");
+                }
+                counts.disagree += 1;
+            }
+        }
+        println!(
+            "{} {:?} {twin:?}: {counts:?}, band {:.4}",
+            self.scene.name,
+            self.viewport,
+            counts.band()
+        );
+        counts
+    }
+}
+
+/// All methods and both depths.
+fn twins(map_size: u32, cull: Cull, n: f64) -> Vec<Twin> {
+    let twin = |method, depth| Twin {
+        method,
+        map_size,
+        cull,
+        n,
+        depth,
+    };
+    let layered = [Method::Crsm, Method::Crsma, Method::CrsmaFull]
+        .map(|method| [Depth::Plane, Depth::Conservative].map(|depth| twin(method, depth)));
+    [twin(Method::HybridPcf, Depth::Plane)]
+        .into_iter()
+        .chain(layered.into_iter().flatten())
+        .collect()
+}
+
+#[test]
+fn the_statuses_on_park_are_their_twins() {
+    let request = SceneRequest {
+        argument: "park".into(),
+        obj: None,
+    };
+    let (scene, _) = SceneLibrary::from_environment().load(&request).unwrap();
+    let scene = Arc::new(scene);
+    let mut bench = Bench::new(&scene, [160, 120]);
+    for map_size in [256, 1024] {
+        for twin in twins(map_size, Cull::Front, 1.0) {
+            let counts = bench.judge(twin);
+            assert_eq!(counts.disagree, 0, "{twin:?}: {counts:?}");
+        }
+    }
+}
+
+/// A rough potato above a soup of needles above a floor: open, non-manifold, sub-texel and edge-on for the light.
+fn hard() -> Arc<Scene> {
+    let potato = meshes::potato(3, 0.3, 7);
+    let soup = meshes::soup(60, 0.4, 3);
+    let mut positions = vec![];
+    let mut triangles: Vec<[u32; 3]> = vec![];
+    let mut add = |mesh: &skiagraph_scene::Mesh, scale: Vec3, up: f32| {
+        let first = positions.len() as u32;
+        positions.extend(mesh.positions.iter().map(|&p| p * scale + Vec3::Y * up));
+        triangles.extend(mesh.triangles.iter().map(|t| t.map(|i| first + i)));
+    };
+    add(&potato, Vec3::new(0.8, 0.8, 0.8), 2.6);
+    add(&soup, Vec3::new(1.5, 0.4, 1.5), 1.0);
+    let first = positions.len() as u32;
+    let corners = [(-3.0, 3.0), (3.0, 3.0), (3.0, -3.0), (-3.0, -3.0)];
+    positions.extend(corners.map(|(x, z)| Vec3::new(x, 0.0, z)));
+    triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+    let view = View {
+        name: "main".into(),
+        eye: DVec3::new(0.5, 4.0, 6.0),
+        direction: DVec3::new(0.0, -0.5, -1.0),
+        up: DVec3::Y,
+        fov_y_degrees: 50.0,
+        near: 0.5,
+        far: 50.0,
+    };
+    Arc::new(Scene {
+        name: "hard".into(),
+        mesh: meshes::mesh(positions, triangles),
+        views: vec![view],
+        light: DirectionalLight {
+            direction: DVec3::new(-0.3, -1.0, 0.2),
+        },
+    })
+}
+
+#[test]
+fn the_statuses_on_a_hard_mesh_are_their_twins() {
+    let scene = hard();
+    let mut bench = Bench::new(&scene, [160, 120]);
+    for (map_size, cull, n) in [
+        (64, Cull::None, 1.0),
+        (200, Cull::Front, 0.5),
+        (200, Cull::Back, 1.7),
+        (1500, Cull::Front, 1.0),
+    ] {
+        for twin in twins(map_size, cull, n) {
+            let counts = bench.judge(twin);
+            assert_eq!(counts.disagree, 0, "{twin:?}: {counts:?}");
+        }
+    }
+}

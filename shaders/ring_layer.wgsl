@@ -1,10 +1,10 @@
 // Stage to draw every caster on the texels that it covers together with the triangles around it (SGSM with the whole one-ring; the
 // dissertation's section 4.5 asks for it). From the triangle at the texel's centre it walks over every edge that meets the texel; no boundary, fold or
 // triangle outside the one-ring may turn up, and exactly one triangle of the patch may contain the centre. Then the patch covers the texel,
-// and its farthest point there is the depth. Vertex pulling, three vertices per primitive.
+// and its farthest point there is the depth.
 
-#import "shared/light_triangle.wgsl"
 #import "shared/light_edges.wgsl"
+#import "shared/casters.wgsl"
 
 struct Params {
     map_size: u32,
@@ -14,48 +14,57 @@ struct Params {
 
 var<uniform> params: Params;
 
-struct Vertex {
-    @builtin(position) clip: vec4<f32>,
-    @location(0) @interpolate(flat) primitive: u32,
-}
-
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Vertex {
-    let primitive = index / 3u;
-    let map_size = f32(params.map_size);
-    let triangle = light_triangle(primitive, map_size);
-    var vertex = Vertex(vec4(0.0), primitive);
-    if casts(triangle, params.cull) {
-        let corners = array(triangle.a.xy, triangle.b.xy, triangle.c.xy);
-        vertex.clip = texel_clip(corners[index % 3u], map_size);
-    }
-    return vertex;
-}
-
-@fragment
-fn fragment(vertex: Vertex) -> @builtin(frag_depth) f32 {
-    let depth = patch_depth(vertex.primitive, vertex.clip.xy);
-    if depth < 0.0 {
-        discard;
-    }
-    return depth;
+    return caster_vertex(index, f32(params.map_size));
 }
 
 // Triangles of a patch; a texel that needs more is not covered.
 const MOST_MEMBERS: u32 = 16u;
 const NOT_COVERED: f32 = -1.0;
 
-fn patch_depth(first: u32, centre: vec2<f32>) -> f32 {
-    let map_size = f32(params.map_size);
+@fragment
+fn fragment(vertex: Vertex) -> @builtin(frag_depth) f32 {
+    let depth = patch_depth(vertex);
+    if depth < 0.0 {
+        discard;
+    }
+    return depth;
+}
+
+fn patch_depth(vertex: Vertex) -> f32 {
+    let centre = vertex.clip.xy;
+    let first = vertex.tags.x & PRIMITIVE;
+    var triangle = caster_triangle(vertex);
+    var depth = texel_depth(triangle, centre, params.depth, FARTHEST);
+    var met = vec3(
+        meets(vertex.a.xy, vertex.b.xy, centre),
+        meets(vertex.b.xy, vertex.c.xy, centre),
+        meets(vertex.c.xy, vertex.a.xy, centre),
+    );
+    // The commonest answers first, for which nothing need be read: the texel meets no edge, or one beyond which nothing goes on.
+    if !any(met) {
+        return depth;
+    }
+    if any(met & (vertex.tags < vec3(KEPT))) {
+        return NOT_COVERED;
+    }
+
     var members: array<u32, MOST_MEMBERS>;
     members[0] = first;
     var count = 1u;
-    var containing = 0u;
-    var depth = 0.0;
-    for (var member = 0u; member < count; member++) {
+    for (var side = 0u; side < 3u; side++) {
+        if met[side] {
+            members[count] = scene_adjacency[3u * first + side] / 3u;
+            count += 1u;
+        }
+    }
+    let map_size = f32(params.map_size);
+    var containing = select(0u, 1u, contains(first, triangle, centre));
+    for (var member = 1u; member < count; member++) {
         let primitive = members[member];
-        let triangle = light_triangle(primitive, map_size);
-        if member == 0u || params.depth != DEPTH_PLANE {
+        triangle = light_triangle(primitive, map_size);
+        if params.depth != DEPTH_PLANE {
             depth = max(depth, texel_depth(triangle, centre, params.depth, FARTHEST));
         }
         containing += select(0u, 1u, contains(primitive, triangle, centre));

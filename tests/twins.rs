@@ -39,8 +39,20 @@ struct Agreement {
 }
 
 impl Agreement {
+    /// Share of the band among the pixels that face the light.
     fn band(&self) -> f64 {
         self.in_band as f64 / self.facing_light as f64
+    }
+
+    /// No pixel outside the band disagrees, and the band is narrow: wider where a rasteriser snaps corners and draws triangles that are
+    /// lower than its steps, as park's leaves are.
+    fn check(&self, twin: &Twin) {
+        assert_eq!(self.disagree, 0, "{twin:?}: {self:?}");
+        let most = match twin.method {
+            Method::HybridPcf => 0.03,
+            Method::Crsm | Method::Crsma | Method::CrsmaFull => 0.005,
+        };
+        assert!(self.band() < most, "{twin:?}: {self:?}");
     }
 }
 
@@ -156,11 +168,10 @@ fn the_statuses_on_park_are_their_twins() {
     };
     let (scene, _) = SceneLibrary::from_environment().load(&request).unwrap();
     let scene = Arc::new(scene);
-    let mut bench = Bench::new(&scene, [160, 120]);
-    for map_size in [256, 1024] {
+    let mut bench = Bench::new(&scene, [128, 96]);
+    for map_size in [200, 512] {
         for twin in twins(map_size, Cull::Front, 1.0) {
-            let counts = bench.judge(twin);
-            assert_eq!(counts.disagree, 0, "{twin:?}: {counts:?}");
+            bench.judge(twin).check(&twin);
         }
     }
 }
@@ -212,8 +223,7 @@ fn the_statuses_on_a_hard_mesh_are_their_twins() {
         (1500, Cull::Front, 1.0),
     ] {
         for twin in twins(map_size, cull, n) {
-            let counts = bench.judge(twin);
-            assert_eq!(counts.disagree, 0, "{twin:?}: {counts:?}");
+            bench.judge(twin).check(&twin);
         }
     }
 }

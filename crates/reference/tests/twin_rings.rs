@@ -13,7 +13,7 @@ const SIZE: u32 = 64;
 const ROUNDING: f64 = 1e-9;
 
 /// A light space whose texels are the mesh's own x and y.
-fn space() -> LightSpace {
+fn space(mesh: &Mesh) -> LightSpace {
     let half = f64::from(SIZE) * 0.5;
     let extent = DVec3::new(half, half, 1.0);
     let place = glam::DMat4::from_translation(DVec3::new(-1.0, 1.0, 0.0));
@@ -22,7 +22,7 @@ fn space() -> LightSpace {
         view_projection: place * scale,
         extent,
     };
-    LightSpace::of_fit(fit, DVec3::ZERO, SIZE)
+    LightSpace::of_fit(fit, mesh, SIZE)
 }
 
 fn mesh(corners: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Mesh {
@@ -149,7 +149,7 @@ fn texels(triangle: &TexelTriangle) -> impl Iterator<Item = DVec2> {
 /// Every patch of a mesh covers its texel. Returns how many there are, and how many of several triangles.
 fn judge(mesh: &Mesh, cull: Cull) -> Result<(usize, usize), TestCaseError> {
     let adjacency = Adjacency::new(mesh);
-    let casters = Casters::new(mesh, &adjacency, space(), cull);
+    let casters = Casters::new(mesh, &adjacency, space(mesh), cull);
     let (mut patches, mut joint) = (0, 0);
     for first in 0..mesh.triangles.len() as u32 {
         if !casters.casts(first, 0.0) {
@@ -217,7 +217,7 @@ proptest! {
     fn the_patch_of_a_rounded_sheet_covers_its_texel(sheet in sheets(), by in prop::collection::vec([-1.0..1.0f64, -1.0..1.0], 49)) {
         let mesh = sheet.mesh();
         let adjacency = Adjacency::new(&mesh);
-        let casters = Casters::new(&mesh, &adjacency, space(), Cull::None);
+        let casters = Casters::new(&mesh, &adjacency, space(&mesh), Cull::None);
         let exactly = |primitive: u32| {
             let mut triangle = *casters.triangle(primitive);
             for (corner, &index) in triangle.corners.iter_mut().zip(&mesh.triangles[primitive as usize]) {
@@ -279,7 +279,7 @@ fn a_fan_that_winds_twice_covers_nothing_at_its_hub() {
         let triangles = (0..10).map(|i| [0, 1 + i, 1 + (i + 1) % 10]).collect();
         let fan = mesh(positions, triangles);
         let adjacency = Adjacency::new(&fan);
-        let casters = Casters::new(&fan, &adjacency, space(), Cull::None);
+        let casters = Casters::new(&fan, &adjacency, space(&fan), Cull::None);
         let centre = DVec2::splat(32.5);
         let mut any = false;
         for first in 0..10 {

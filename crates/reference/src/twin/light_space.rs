@@ -1,36 +1,39 @@
 //! Light space in texels, and how far f32 may err there.
 
-use glam::{DVec3, Vec3};
+use crate::receiver::F32_ROUNDING;
+use glam::{DVec3, DVec4, Vec3};
 use skiagraph_scene::{DirectionalLight, LightFit, Mesh};
 
-/// Roundings of a clip coordinate of at most 1 that add up to one another: the matrix and its product, three sums, and the way to texels, of which not
-/// all align.
+/// Roundings of a sum of four products that add up to one another: each product (2) and the sums (3), of which not all align.
 const ROUNDINGS: f64 = 4.0;
 
 /// Share of a texel by which rasterisers may move a corner: they keep at least 8 bits of a coordinate's fraction, rounded.
 const SNAP: f64 = 1.0 / 256.0;
 
-/// The light space of a mesh in texels of a square map: `DirectionalLight::fit_box` over the mesh's box.
+/// The light space of a mesh in texels of a square map.
 #[derive(Clone, Copy, Debug)]
 pub struct LightSpace {
     fit: LightFit,
     centre: DVec3,
+    /// Half the extents of the mesh's box.
+    half: DVec3,
     size: f64,
 }
 
 impl LightSpace {
-    /// Fitted to the mesh; an empty one counts as a point at the origin.
+    /// Fitted to the corners of the mesh, as the presets do; without any, to a point at the origin.
     pub fn new(mesh: &Mesh, light: &DirectionalLight, map_size: u32) -> Self {
-        let (min, max) = mesh.bounds().unwrap_or((Vec3::ZERO, Vec3::ZERO));
-        let centre = (min.as_dvec3() + max.as_dvec3()) * 0.5;
-        Self::of_fit(light.fit_box(min, max), centre, map_size)
+        Self::of_fit(light.fit(mesh.corner_positions()), mesh, map_size)
     }
 
-    /// Of a given fit; `centre` is what a shader subtracts before it transforms a position.
-    pub fn of_fit(fit: LightFit, centre: DVec3, map_size: u32) -> Self {
+    /// Of a given fit.
+    pub fn of_fit(fit: LightFit, mesh: &Mesh, map_size: u32) -> Self {
+        let (min, max) = mesh.bounds().unwrap_or((Vec3::ZERO, Vec3::ZERO));
+        let (min, max) = (min.as_dvec3(), max.as_dvec3());
         Self {
             fit,
-            centre,
+            centre: (min + max) * 0.5,
+            half: (max - min) * 0.5,
             size: f64::from(map_size),
         }
     }
@@ -63,14 +66,22 @@ impl LightSpace {
         DVec3::new(x * 0.5 * self.size, y * 0.5 * self.size, z)
     }
 
-    /// What rounding may move a transformed point by across, texels.
+    /// The absolute values of the matrix times a vector of none but positive ones: all that is summed up for clip x, y, z.
+    fn summands(&self, size: DVec3) -> DVec3 {
+        let rows = self.fit.view_projection.transpose();
+        let sum = |row: DVec4| row.truncate().abs().dot(size);
+        DVec3::new(sum(rows.x_axis), sum(rows.y_axis), sum(rows.z_axis))
+    }
+
+    /// What rounding may move a transformed point by across, texels: in clip space, and on the way to texels.
     pub fn across_error(&self) -> f64 {
-        ROUNDINGS * crate::receiver::F32_ROUNDING * self.size
+        let clip = self.summands(self.half).truncate().max_element();
+        ROUNDINGS * F32_ROUNDING * (clip + 1.0) * 0.5 * self.size
     }
 
     /// What rounding may move its depth by.
     pub fn depth_error(&self) -> f64 {
-        2.0 * ROUNDINGS * crate::receiver::F32_ROUNDING
+        ROUNDINGS * F32_ROUNDING * (self.summands(self.half).z + 1.0)
     }
 
     /// [`across_error`](Self::across_error) and what a rasteriser adds to it.
@@ -81,11 +92,8 @@ impl LightSpace {
     /// What the status's own comparison takes a receiver to be off by, in shares of the map's edge and as depth: 4 ulp of all that
     /// is summed up. Twin of `rounding` in shaders/detect_uncertain.wgsl.
     pub fn allowance(&self, position: DVec3) -> (f64, f64) {
-        let rows = self.fit.view_projection.transpose();
-        let size = position.abs() + self.centre.abs();
-        let [x, y, z] =
-            [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.truncate().abs().dot(size));
-        let ulps = ROUNDINGS * crate::receiver::F32_ROUNDING;
-        (ulps * (x.max(y) + 1.0), ulps * (z + 1.0))
+        let clip = self.summands(position.abs() + self.centre.abs());
+        let ulps = ROUNDINGS * F32_ROUNDING;
+        (ulps * (clip.x.max(clip.y) + 1.0), ulps * (clip.z + 1.0))
     }
 }

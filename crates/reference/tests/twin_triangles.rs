@@ -197,15 +197,16 @@ proptest! {
         }
         for centre in texels(&triangle) {
             let cell = n * SQRT_2;
-            let grown = |t: &TexelTriangle, leeway| t.grown_covers(centre, cell, leeway);
-            let shrunk = |t: &TexelTriangle, leeway| t.shrunk_covers(centre, cell, leeway);
-            let adjacent = |t: &TexelTriangle, leeway| t.adjacent_covers(centre, cell, kept, leeway);
-            let contains = |t: &TexelTriangle, leeway| t.contains(centre, leeway);
-            let predicates: [&dyn Fn(&TexelTriangle, f64) -> bool; 4] = [&grown, &shrunk, &adjacent, &contains];
-            for (which, holds) in predicates.iter().enumerate() {
-                let truth = holds(&moved, 0.0);
-                prop_assert!(!holds(&triangle, -size) || truth, "{which} {centre}");
-                prop_assert!(!truth || holds(&triangle, size), "{which} {centre}");
+            let all = |t: &TexelTriangle, leeway| [
+                t.grown_covers(centre, cell, leeway),
+                t.shrunk_covers(centre, cell, leeway),
+                t.adjacent_covers(centre, cell, kept, leeway),
+                t.contains(centre, leeway),
+            ];
+            let (surely, truth, perhaps) = (all(&triangle, -size), all(&moved, 0.0), all(&triangle, size));
+            for which in 0..4 {
+                prop_assert!(!surely[which] || truth[which], "{which} {centre}");
+                prop_assert!(!truth[which] || perhaps[which], "{which} {centre}");
             }
             for depth in [Depth::Plane, Depth::Conservative] {
                 for towards in [-1.0, 1.0] {

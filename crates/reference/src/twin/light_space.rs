@@ -3,12 +3,13 @@
 use crate::receiver::F32_ROUNDING;
 use glam::{DVec3, DVec4, Vec3};
 use skiagraph_scene::{DirectionalLight, LightFit, Mesh};
+use std::f64::consts::SQRT_2;
 
 /// Roundings of a sum of four products that add up to one another: each product (2) and the sums (3), of which not all align.
 const ROUNDINGS: f64 = 4.0;
 
-/// Share of a texel by which rasterisers may move a corner: they keep at least 8 bits of a coordinate's fraction, rounded.
-const SNAP: f64 = 1.0 / 256.0;
+/// What a rasteriser may move a corner by, texels: it keeps eight bits of each coordinate's fraction, rounded to the nearest.
+const SNAP: f64 = SQRT_2 / 512.0;
 
 /// The light space of a mesh in texels of a square map.
 #[derive(Clone, Copy, Debug)]

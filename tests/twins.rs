@@ -176,10 +176,24 @@ fn the_statuses_on_park_are_their_twins() {
     }
 }
 
-/// A rough potato above a soup of needles above a floor: open, non-manifold, sub-texel and edge-on for the light.
+/// A rough potato with some triangles turned over above a soup of needles above a floor, and a fan that goes round twice: open, non-manifold,
+/// sub-texel and edge-on for the light.
 fn hard() -> Arc<Scene> {
-    let potato = meshes::potato(3, 0.3, 7);
+    let mut potato = meshes::potato(3, 0.3, 7);
+    for triangle in potato.triangles.iter_mut().step_by(5) {
+        triangle.swap(0, 1);
+    }
     let soup = meshes::soup(60, 0.4, 3);
+    let hub = Vec3::new(-2.2, 0.5, 1.5);
+    let spoke = |i: u16| {
+        let angle = 2.0 * std::f32::consts::TAU * f32::from(i) / 9.0;
+        hub + Vec3::new(angle.cos(), 0.0, angle.sin()) * 0.7
+    };
+    let around = (0..9).map(|i| [0, 1 + (i + 1) % 9, 1 + i]);
+    let fan = meshes::mesh(
+        [hub].into_iter().chain((0..9).map(spoke)).collect(),
+        around.collect(),
+    );
     let mut positions = vec![];
     let mut triangles: Vec<[u32; 3]> = vec![];
     let mut add = |mesh: &skiagraph_scene::Mesh, scale: Vec3, up: f32| {
@@ -187,8 +201,9 @@ fn hard() -> Arc<Scene> {
         positions.extend(mesh.positions.iter().map(|&p| p * scale + Vec3::Y * up));
         triangles.extend(mesh.triangles.iter().map(|t| t.map(|i| first + i)));
     };
-    add(&potato, Vec3::new(0.8, 0.8, 0.8), 2.6);
+    add(&potato, Vec3::splat(0.8), 2.6);
     add(&soup, Vec3::new(1.5, 0.4, 1.5), 1.0);
+    add(&fan, Vec3::ONE, 0.0);
     let first = positions.len() as u32;
     let corners = [(-3.0, 3.0), (3.0, 3.0), (3.0, -3.0), (-3.0, -3.0)];
     positions.extend(corners.map(|(x, z)| Vec3::new(x, 0.0, z)));

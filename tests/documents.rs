@@ -29,6 +29,7 @@ fn plan(path: &str, outputs: Option<&[&str]>) -> Plan {
         light,
     }));
     let mut request = PlanRequest::new([640, 480], &provider);
+    request.features = wgpu::Features::all();
     request.outputs = outputs.map(|names| names.iter().map(|&name| name.to_owned()).collect());
     load(path)
         .plan(&request)
@@ -42,7 +43,20 @@ fn live(plan: &Plan) -> Vec<String> {
 #[test]
 fn presets_are_listed_by_name() {
     let names: Vec<String> = presets().into_iter().map(|preset| preset.name).collect();
-    assert_eq!(names, ["nsm", "rt"]);
+    assert_eq!(
+        names,
+        [
+            "crsm",
+            "crsm_depth",
+            "crsm_hw",
+            "crsm_single",
+            "crsma",
+            "crsma_full",
+            "hybrid_pcf",
+            "nsm",
+            "rt"
+        ]
+    );
 }
 
 #[test]
@@ -82,20 +96,79 @@ fn presets_keep_the_contract() {
 #[test]
 fn the_steps_of_a_frame_are_passes() {
     let rt = [
-        "primitive",
-        "surface",
-        "clear_ray_count",
-        "fill_rays",
+        "gbuffer.primitive",
+        "gbuffer.surface",
+        "detect_facing",
+        "fill_rays.clear",
+        "fill_rays.compact",
+        "fill_rays.fold",
         "trace_rays",
         "fix_pixels",
     ];
     assert_eq!(live(&plan("pipelines/rt.ron", None)), rt);
-    let nsm = ["create_shadow_map", "primitive", "surface", "shadow_lookup"];
+    let nsm = [
+        "create_shadow_map",
+        "gbuffer.primitive",
+        "gbuffer.surface",
+        "shadow_lookup",
+    ];
     assert_eq!(live(&plan("pipelines/nsm.ron", None)), nsm);
     assert_eq!(
         live(&plan("pipelines/shared/gbuffer.ron", Some(&["primitive"]))),
-        ["primitive"]
+        ["gbuffer.primitive"]
     );
+    let crsma = [
+        "create_shadow_map.reset",
+        "create_shadow_map.select",
+        "create_shadow_map.big",
+        "create_shadow_map.small",
+        "gbuffer.primitive",
+        "gbuffer.surface",
+        "detect_uncertain",
+        "fill_rays.clear",
+        "fill_rays.compact",
+        "fill_rays.fold",
+        "trace_rays",
+        "fix_pixels",
+    ];
+    assert_eq!(live(&plan("pipelines/crsma.ron", None)), crsma);
+}
+
+#[test]
+fn only_what_asks_for_neighbours_needs_adjacency() {
+    for preset in presets() {
+        let needs = plan(&preset.path, None)
+            .provided()
+            .iter()
+            .any(|&name| name == "scene.adjacency");
+        let asks = ["crsma", "crsma_full"].contains(&preset.name.as_str());
+        assert_eq!(needs, asks, "{}", preset.name);
+    }
+}
+
+#[test]
+fn hardware_that_is_not_there_is_one_diagnostic() {
+    let errors = load("pipelines/crsm_hw.ron")
+        .plan(&PlanRequest::new(
+            [64, 64],
+            &SceneProvider::new(Arc::new(empty())),
+        ))
+        .err()
+        .expect("wgpu's default features have no conservative rasterisation");
+    assert_eq!(errors.iter().count(), 1, "{errors}");
+    let text = errors.to_string();
+    assert!(text.contains("CONSERVATIVE_RASTERIZATION"), "{text}");
+}
+
+fn empty() -> Scene {
+    Scene {
+        name: "none".into(),
+        mesh: Mesh::default(),
+        views: vec![],
+        light: DirectionalLight {
+            direction: DVec3::NEG_Z,
+        },
+    }
 }
 
 #[test]
@@ -116,24 +189,21 @@ fn what_no_output_needs_is_culled() {
     let plan = plan("pipelines/rt.ron", Some(&["ray_count"]));
     assert_eq!(
         live(&plan),
-        ["primitive", "surface", "clear_ray_count", "fill_rays"]
+        [
+            "gbuffer.primitive",
+            "gbuffer.surface",
+            "detect_facing",
+            "fill_rays.clear",
+            "fill_rays.compact"
+        ]
     );
     let culled: Vec<String> = plan.culled().iter().map(|pass| pass.name.clone()).collect();
-    assert_eq!(culled, ["trace_rays", "fix_pixels"]);
+    assert_eq!(culled, ["fill_rays.fold", "trace_rays", "fix_pixels"]);
 }
 
 #[test]
 fn more_rays_than_a_device_binds_are_refused_by_name() {
-    let light = DirectionalLight {
-        direction: DVec3::NEG_Z,
-    };
-    let scene = Scene {
-        name: "none".into(),
-        mesh: Mesh::default(),
-        views: vec![],
-        light,
-    };
-    let provider = SceneProvider::new(Arc::new(scene));
+    let provider = SceneProvider::new(Arc::new(empty()));
     // 8.3 million rays of 32 bytes; the request's default limits bind 128 MiB.
     let errors = load("pipelines/rt.ron")
         .plan(&PlanRequest::new([3840, 2160], &provider))

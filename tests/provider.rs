@@ -129,7 +129,12 @@ fn a_new_camera_renews_what_depends_on_the_camera() {
 
     let first = next(&mut executor);
     assert_eq!(first.skipped, [""; 0]);
-    let everything = ["create_shadow_map", "primitive", "surface", "shadow_lookup"];
+    let everything = [
+        "create_shadow_map",
+        "gbuffer.primitive",
+        "gbuffer.surface",
+        "shadow_lookup",
+    ];
     let second = next(&mut executor);
     assert_eq!(second.skipped, everything);
     assert_eq!(second.readbacks, first.readbacks);
@@ -151,19 +156,23 @@ fn a_new_camera_renews_what_depends_on_the_camera() {
         (
             "cull",
             ParamValue::Choice("none".into()),
-            &["primitive", "surface"][..],
+            &["gbuffer.primitive", "gbuffer.surface"][..],
         ),
         (
             "slope_bias",
             ParamValue::F32(2.0),
-            &["create_shadow_map", "primitive", "surface"],
+            &["create_shadow_map", "gbuffer.primitive", "gbuffer.surface"],
         ),
-        ("map_size", ParamValue::U32(64), &["primitive", "surface"]),
+        (
+            "map_size",
+            ParamValue::U32(64),
+            &["gbuffer.primitive", "gbuffer.surface"],
+        ),
     ] {
         executor.set_param(param, value, &mut provider).unwrap();
         assert_eq!(next(&mut executor).skipped, skipped, "{param}");
         assert_eq!(next(&mut executor).skipped, everything, "{param}");
     }
     executor.touch("light").unwrap();
-    assert_eq!(next(&mut executor).skipped, ["primitive"]);
+    assert_eq!(next(&mut executor).skipped, ["gbuffer.primitive"]);
 }

@@ -41,7 +41,12 @@ fn json(path: &Path) -> Value {
 }
 
 const NSM: &str = "profile nsm --size 32x24 --map-size 32 --frames 6 --warmup 1";
-const PASSES: [&str; 4] = ["create_shadow_map", "primitive", "surface", "shadow_lookup"];
+const PASSES: [&str; 4] = [
+    "create_shadow_map",
+    "gbuffer.primitive",
+    "gbuffer.surface",
+    "shadow_lookup",
+];
 
 #[test]
 fn a_profile_says_under_what_it_was_measured_and_writes_all_its_files() {
@@ -173,7 +178,7 @@ fn a_baseline_stands_beside_and_other_conditions_are_called_out() {
         "viewport: then 32x24, now 16x16",
         "method: then nsm, now rt",
         "Only then: create_shadow_map, shadow_lookup",
-        "Only now: clear_ray_count, fill_rays, trace_rays, fix_pixels",
+        "Only now: detect_facing, fill_rays.clear, fill_rays.compact, fill_rays.fold, trace_rays, fix_pixels",
     ] {
         assert!(other.contains(part), "no {part:?} in\n{other}");
     }
@@ -183,7 +188,7 @@ fn a_baseline_stands_beside_and_other_conditions_are_called_out() {
         .iter()
         .map(|pass| pass["name"].as_str().unwrap())
         .collect();
-    assert_eq!(names, ["primitive", "surface"]);
+    assert_eq!(names, ["gbuffer.primitive", "gbuffer.surface"]);
     for pass in passes {
         let [old, new, ratio] =
             ["old_ms", "new_ms", "ratio"].map(|key| pass["cpu"][key].as_f64().unwrap());

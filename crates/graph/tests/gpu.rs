@@ -202,6 +202,31 @@ fn depth_only_and_depth_read_while_tested() {
     );
 }
 
+/// Of a shader with two fragment stages, a pass without colour targets runs the one without colours; it discards and sets depths.
+#[test]
+fn a_depth_only_pass_runs_the_fragment_stage_without_colours() {
+    let files = files(
+        "Texture(name: \"depth\", format: Depth32Float, size: Viewport)",
+        "Raster(name: \"halves\", draw: Vertices(3), depth: (target: \"depth\"))",
+        "(name: \"depth\")",
+    )
+    .with(
+        "halves.wgsl",
+        "@vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+             return vec4<f32>(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.5, 1.0);
+         }
+         @fragment fn coloured() -> @location(0) f32 { return 1.0; }
+         @fragment fn fragment(@builtin(position) position: vec4<f32>) -> @builtin(frag_depth) f32 {
+             if position.x > 3.0 { discard; }
+             return position.y / 64.0;
+         }",
+    );
+    let expected = pixels(SIZE, |x, y| {
+        if x < 3 { (y as f32 + 0.5) / 64.0 } else { 1.0 }
+    });
+    assert_eq!(f32s(&run(&files, &["depth"])[0]), expected);
+}
+
 /// Several targets at once, of formats whose rows are padded in different ways when they are read back.
 #[test]
 fn several_targets_of_several_formats() {

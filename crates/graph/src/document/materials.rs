@@ -204,6 +204,15 @@ impl Count {
             Self::Times(a, b) => a.refers_to(names) || b.refers_to(names),
         }
     }
+
+    /// Whether it is taken from something else's count, which may be 0 through no fault of the document.
+    pub(crate) fn is_taken(&self) -> bool {
+        match self {
+            Self::CountOf(_) => true,
+            Self::Times(a, b) => a.is_taken() || b.is_taken(),
+            Self::Number(_) | Self::Pixels | Self::PixelsOf(_) => false,
+        }
+    }
 }
 
 impl<'de> Deserialize<'de> for Count {

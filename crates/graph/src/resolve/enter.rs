@@ -109,6 +109,8 @@ impl Resources<'_> {
         let count = match &entry.count {
             None => None,
             Some(written) => match self.count(written, params, diagnostics) {
+                // As for what a host provides: wgpu binds nothing of size zero.
+                Some(0) if written.is_taken() => Some(1),
                 Some(0) => {
                     diagnostics.push(size_error(
                         &entry.name,

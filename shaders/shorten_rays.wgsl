@@ -20,6 +20,10 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         return;
     }
     let stored = textureLoad(nearest, vec2<u32>(place.xy), 0);
+    // 0 may stand for something before the near plane, however near to the light.
+    if stored <= 0.0 {
+        return;
+    }
     // Units of the scene; a thousandth of the depth range is room for all rounding. An empty texel holds 1, behind the receiver.
     let way = (place.z - stored + 0.001) * light.extent.z;
     rays[slot].t_max = min(rays[slot].t_max, way);

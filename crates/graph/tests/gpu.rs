@@ -221,9 +221,12 @@ fn a_depth_only_pass_runs_the_fragment_stage_without_colours() {
              return position.y / 64.0;
          }",
     );
-    let expected = pixels(SIZE, |x, y| {
-        if x < 3 { (y as f32 + 0.5) / 64.0 } else { 1.0 }
-    });
+    let expected = pixels(
+        SIZE,
+        |x, y| {
+            if x < 3 { (y as f32 + 0.5) / 64.0 } else { 1.0 }
+        },
+    );
     assert_eq!(f32s(&run(&files, &["depth"])[0]), expected);
 }
 

@@ -218,6 +218,7 @@ impl Setting<'_> {
         Ok(Measured {
             certain: counts.certain,
             uncertain: counts.uncertain,
+            split: counts.split,
             rays,
             wrong: counts.wrong,
             facing_mismatch: counts.facing_mismatch,

@@ -2,7 +2,7 @@
 
 use crate::{error::CliError, files::write_whole, table::thousands};
 use serde::{Deserialize, Serialize};
-use skiagraph_reference::{CertainCounts, PixelCounts, WrongCounts};
+use skiagraph_reference::{CertainCounts, PixelCounts, Split, WrongCounts};
 use std::{collections::BTreeMap, fmt, path::Path, time::Duration};
 
 /// Everything that one `compare` measured.
@@ -99,6 +99,9 @@ pub struct Measured {
     pub certain: CertainCounts,
     /// Pixels that it left to rays, or all that it traced.
     pub uncertain: u64,
+    /// Both by the reference's class, with those that are wrong; absent in files of older programs.
+    #[serde(default)]
+    pub split: Split,
     /// Rays traced per frame; null where the graph does not count them.
     pub rays: Option<u64>,
     /// Pixels facing the light on which method and reference disagree.
@@ -218,6 +221,7 @@ impl Results {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use skiagraph_reference::ClassSplit;
 
     /// Results with every field in use: one full run, one without a map or GPU times, one unavailable.
     pub(crate) fn sample() -> Results {
@@ -248,17 +252,33 @@ pub(crate) mod tests {
         };
         let measured = |name: &str, gpu: bool, rays| Measured {
             certain: CertainCounts {
-                lit: 59_000,
-                shadow: 41_000,
+                lit: 57_100,
+                shadow: 37_900,
             },
-            uncertain: 0,
+            uncertain: 5_000,
+            split: Split {
+                lit: ClassSplit {
+                    certain_right: 57_000,
+                    certain_wrong: 400,
+                    certain_wrong_outside_band: 396,
+                    uncertain: 2_600,
+                    uncertain_wrong: 1,
+                },
+                shadow: ClassSplit {
+                    certain_right: 37_500,
+                    certain_wrong: 100,
+                    certain_wrong_outside_band: 99,
+                    uncertain: 2_400,
+                    uncertain_wrong: 2,
+                },
+            },
             rays,
             wrong: WrongCounts {
-                lit: 1_000,
-                shadow: 2_500,
-                total: 3_500,
-                certain: 3_495,
-                in_band: 5,
+                lit: 102,
+                shadow: 401,
+                total: 503,
+                certain: 495,
+                in_band: 6,
             },
             facing_mismatch: 3,
             passes: ["gbuffer", name]

@@ -109,6 +109,7 @@ fn comparison(runs: &[Run], look: Look) -> String {
         "wrong shadow",
         "in band",
         "uncertain",
+        "certain wrong",
         "rays",
     ]);
     let mut table = new_table(look, &header, 1);
@@ -129,7 +130,7 @@ fn comparison(runs: &[Run], look: Look) -> String {
     table.to_string()
 }
 
-fn figures(measured: &Measured, facing_light: u64) -> [String; 8] {
+fn figures(measured: &Measured, facing_light: u64) -> [String; 9] {
     [
         measured
             .frame
@@ -141,6 +142,7 @@ fn figures(measured: &Measured, facing_light: u64) -> [String; 8] {
         thousands(measured.wrong.shadow),
         thousands(measured.wrong.in_band),
         percent(measured.uncertain, facing_light),
+        percent(measured.split.certain_wrong(), facing_light),
         measured.rays.map_or("–".into(), thousands),
     ]
 }

@@ -93,6 +93,12 @@ fn compare_measures_judges_and_pictures_every_run() {
             count(&wrong["lit"]) + count(&wrong["shadow"]),
             count(&wrong["total"])
         );
+        for class in ["lit", "shadow"] {
+            let split = &run["split"][class];
+            let said =
+                ["certain_right", "certain_wrong", "uncertain"].map(|word| count(&split[word]));
+            assert_eq!(said.iter().sum::<u64>(), count(&pixels[class]), "{split}");
+        }
         match run["preset"].as_str() {
             // Its map depends on the light, not on the camera, which is all that moves.
             Some("nsm") => assert_eq!(run["cached"]["skipped"][0], "create_shadow_map"),

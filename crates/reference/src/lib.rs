@@ -38,4 +38,4 @@ mod tree;
 pub use error::Error;
 pub use image::Image;
 pub use oracle::{BACKGROUND, Class, Oracle, OracleMode, Progress, Reference};
-pub use statistics::{CertainCounts, PixelCounts, Statistics, WrongCounts};
+pub use statistics::{CertainCounts, ClassSplit, PixelCounts, Split, Statistics, WrongCounts};

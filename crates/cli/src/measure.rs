@@ -227,7 +227,7 @@ impl Setting<'_> {
             cached,
             memory_bytes,
             saved_bytes,
-            images: self.pictures(method, &visibility, &status)?,
+            images: self.pictures(method, &visibility, &status, &counts)?,
         })
     }
 
@@ -236,6 +236,7 @@ impl Setting<'_> {
         method: &Method,
         visibility: &[u32],
         status: &[u32],
+        counts: &Statistics,
     ) -> Result<Images, CliError> {
         let stem = stem(method, self.view, self.reference.viewport);
         let reference = self.reference;
@@ -253,6 +254,13 @@ impl Setting<'_> {
                 Image::visibility(reference.viewport, visibility, status),
             )?,
             error: save("error", Image::error(visibility, status, reference))?,
+            uncertain: match counts.certain.lit + counts.certain.shadow + counts.uncertain {
+                0 => None,
+                _ => {
+                    let image = Image::uncertain(visibility, status, reference);
+                    Some(save("uncertain", image)?)
+                }
+            },
         })
     }
 

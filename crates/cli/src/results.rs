@@ -160,6 +160,9 @@ pub struct Images {
     pub visibility: String,
     /// Blue where wrongly lit, red where wrongly in shadow.
     pub error: String,
+    /// `shaded` with purple where uncertain; absent where the method calls no pixel certain or uncertain.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uncertain: Option<String>,
 }
 
 /// Least, median and 95th percentile over frames, milliseconds.
@@ -305,6 +308,7 @@ pub(crate) mod tests {
                 shaded: format!("{name}-shaded.png"),
                 visibility: format!("{name}-visibility.png"),
                 error: format!("{name}-error.png"),
+                uncertain: rays.map(|_| format!("{name}-uncertain.png")),
             },
         };
         Results {

@@ -106,11 +106,18 @@ fn compare_measures_judges_and_pictures_every_run() {
         }
         assert!(run["frame"]["wall_ms"]["median"].as_f64().unwrap() > 0.0);
         assert!(!run["passes"].as_array().unwrap().is_empty());
-        for kind in ["shaded", "visibility", "error"] {
+        for kind in ["shaded", "visibility", "error", "uncertain"] {
             let picture = png(&out.join(run["images"][kind].as_str().unwrap()));
             assert_eq!(picture.dimensions(), (width as u32, height as u32));
         }
     }
+    let purple = |stem: &str| {
+        let picture = png(&out.join(format!("{stem}-uncertain.png")));
+        let purple = |pixel: &&image::Rgb<u8>| pixel.0 == [160, 32, 240];
+        picture.pixels().filter(purple).count() as u64
+    };
+    assert_eq!(purple("nsm-bench_side-64x64-map64"), 0);
+    assert!(purple("rt-bench_side-64x64") >= count(&runs[0]["uncertain"]));
     let of = |preset| runs.iter().filter(move |run| run["preset"] == preset);
     for run in of("rt") {
         assert_eq!(

@@ -10,7 +10,9 @@ mod contract;
 mod csv_table;
 mod date;
 mod error;
+mod fault;
 mod files;
+mod fingerprint;
 mod interrupt;
 mod items;
 mod measure;
@@ -22,6 +24,7 @@ mod progress;
 mod reference;
 mod render;
 mod results;
+mod resume;
 mod stage;
 mod table;
 

@@ -3,6 +3,7 @@
 use crate::{
     contract::Outputs,
     error::CliError,
+    fingerprint::Fingerprint,
     picture,
     preset::{self, Preset},
     progress::Step,
@@ -65,6 +66,11 @@ impl<'a> Method<'a> {
         self.preset.graph.plan(&request)
     }
 
+    /// Of all that a run on a scene and view depends on, but the params.
+    pub fn fingerprint(&self, scene: Fingerprint) -> String {
+        scene.with_all(self.preset.fingerprint).to_string()
+    }
+
     /// All params with the values that it runs with.
     pub fn all_params(&self) -> BTreeMap<String, serde_json::Value> {
         let params = self.preset.graph.params().iter();
@@ -103,6 +109,8 @@ pub struct Setting<'a> {
     pub timestamps: bool,
     /// Name of the view.
     pub view: &'a str,
+    /// Of mesh, light and view.
+    pub fingerprint: Fingerprint,
     /// The right answer.
     pub reference: &'a Reference,
     /// Timed frames.
@@ -279,6 +287,7 @@ impl Setting<'_> {
             viewport: self.reference.viewport,
             map_size: method.map_size,
             params: method.all_params(),
+            fingerprint: method.fingerprint(self.fingerprint),
             pixels: counts.pixels,
             band: counts.band,
             measured: None,
@@ -314,7 +323,7 @@ pub fn reference_stem(view: &str, [width, height]: [u32; 2]) -> String {
 }
 
 /// The errors in one line each, for a table's footnote.
-fn reasons(diagnostics: &Diagnostics) -> String {
+pub fn reasons(diagnostics: &Diagnostics) -> String {
     let errors = diagnostics
         .iter()
         .filter(|diagnostic| diagnostic.severity == Severity::Error);

@@ -80,6 +80,10 @@ pub struct Run {
     pub map_size: Option<u32>,
     /// All params of the graph with the values it ran with.
     pub params: BTreeMap<String, serde_json::Value>,
+    /// Of all else that the run depends on: the texts of the graph, of what it includes and of their shaders, the same of the graph that
+    /// finds the visible triangles, mesh, light and view. Empty in files of older programs.
+    #[serde(default)]
+    pub fingerprint: String,
     /// The reference's pixels.
     pub pixels: PixelCounts,
     /// Of those facing the light, the ones whose answer flips within the rounding error of receiver and casters.
@@ -242,6 +246,7 @@ pub(crate) mod tests {
                 ("slope_bias".into(), 1.5.into()),
                 ("cull".into(), "front".into()),
             ]),
+            fingerprint: "85944171f73967e8".into(),
             pixels: PixelCounts {
                 background: 72,
                 facing_away: 31_000,

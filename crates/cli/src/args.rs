@@ -155,9 +155,21 @@ pub struct CompareArgs {
     /// Keep the runs in DIR/results.json whose graph, shaders, params, scene and view are still the same, and go on with the others.
     #[arg(long)]
     pub resume: bool,
+    /// Which pictures are written.
+    #[arg(long, value_enum, default_value_t = Images::All)]
+    pub images: Images,
     /// What is printed on standard output.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,
+}
+
+/// Which pictures are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Images {
+    /// Those of every run, and of the reference of every view and viewport.
+    All,
+    /// None.
+    None,
 }
 
 /// How results are printed.
@@ -165,7 +177,7 @@ pub struct CompareArgs {
 pub enum Format {
     /// For a terminal.
     Table,
-    /// For a document.
+    /// For a document: the command, the conditions, and a table per view and viewport with the times of steps.
     Markdown,
     /// The contents of results.json.
     Json,

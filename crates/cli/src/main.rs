@@ -15,6 +15,7 @@ mod files;
 mod fingerprint;
 mod interrupt;
 mod items;
+mod markdown;
 mod measure;
 mod parse;
 mod picture;

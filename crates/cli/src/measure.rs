@@ -2,6 +2,7 @@
 
 use crate::{
     contract::Outputs,
+    date,
     error::CliError,
     fingerprint::Fingerprint,
     picture,
@@ -117,8 +118,8 @@ pub struct Setting<'a> {
     pub frames: u32,
     /// Frames before them.
     pub warmup: u32,
-    /// Folder for pictures.
-    pub out: &'a Path,
+    /// Folder for pictures, if there are to be any.
+    pub pictures: Option<&'a Path>,
 }
 
 impl Setting<'_> {
@@ -235,12 +236,18 @@ impl Setting<'_> {
             cached,
             memory_bytes,
             saved_bytes,
-            images: self.pictures(method, &visibility, &status, &counts)?,
+            images: match self.pictures {
+                None => None,
+                Some(folder) => {
+                    Some(self.save_pictures(folder, method, &visibility, &status, &counts)?)
+                }
+            },
         })
     }
 
-    fn pictures(
+    fn save_pictures(
         &self,
+        folder: &Path,
         method: &Method,
         visibility: &[u32],
         status: &[u32],
@@ -252,7 +259,7 @@ impl Setting<'_> {
             let name = format!("{stem}-{kind}.png");
             let image =
                 image.map_err(|error| CliError::Input(format!("no picture {name}: {error}")))?;
-            picture::save(&self.out.join(&name), &image)?;
+            picture::save(&folder.join(&name), &image)?;
             Ok::<_, CliError>(name)
         };
         Ok(Images {
@@ -288,6 +295,7 @@ impl Setting<'_> {
             map_size: method.map_size,
             params: method.all_params(),
             fingerprint: method.fingerprint(self.fingerprint),
+            date: date::today(),
             pixels: counts.pixels,
             band: counts.band,
             measured: None,

@@ -84,6 +84,9 @@ pub struct Run {
     /// finds the visible triangles, mesh, light and view. Empty in files of older programs.
     #[serde(default)]
     pub fingerprint: String,
+    /// The day on which it was measured, `2026-11-21` (UTC). Empty in files of older programs.
+    #[serde(default)]
+    pub date: String,
     /// The reference's pixels.
     pub pixels: PixelCounts,
     /// Of those facing the light, the ones whose answer flips within the rounding error of receiver and casters.
@@ -122,8 +125,9 @@ pub struct Measured {
     pub memory_bytes: u64,
     /// Bytes saved by letting materials share memory.
     pub saved_bytes: u64,
-    /// The run's pictures, file names in the results' folder.
-    pub images: Images,
+    /// The run's pictures, file names in the results' folder; absent with `--images none`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub images: Option<Images>,
 }
 
 /// Times of one pass.
@@ -247,6 +251,7 @@ pub(crate) mod tests {
                 ("cull".into(), "front".into()),
             ]),
             fingerprint: "85944171f73967e8".into(),
+            date: "2026-11-20".into(),
             pixels: PixelCounts {
                 background: 72,
                 facing_away: 31_000,
@@ -309,12 +314,12 @@ pub(crate) mod tests {
             }),
             memory_bytes: 12_582_912,
             saved_bytes: 1_048_576,
-            images: Images {
+            images: gpu.then(|| Images {
                 shaded: format!("{name}-shaded.png"),
                 visibility: format!("{name}-visibility.png"),
                 error: format!("{name}-error.png"),
-                uncertain: rays.map(|_| format!("{name}-uncertain.png")),
-            },
+                uncertain: Some(format!("{name}-uncertain.png")),
+            }),
         };
         Results {
             schema: 1,

@@ -382,7 +382,10 @@ fn timeless(mut value: Value) -> Value {
     fn clear(value: &mut Value) {
         match value {
             Value::Object(fields) if fields.contains_key("p95") => *value = Value::Null,
-            Value::Object(fields) => fields.values_mut().for_each(clear),
+            Value::Object(fields) => {
+                fields.remove("date");
+                fields.values_mut().for_each(clear);
+            }
             Value::Array(items) => items.iter_mut().for_each(clear),
             _ => {}
         }
@@ -431,6 +434,27 @@ fn a_resumed_comparison_is_the_one_in_one_go() {
         text.contains("2 of 6 runs are kept") && text.contains("4 of the 6"),
         "{text}"
     );
+}
+
+#[test]
+fn a_document_holds_what_was_measured_and_needs_no_pictures() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "compare nsm rt --view all --size 16x16 --map-size 8 --frames 1 --images none --out . --format markdown";
+    let output = skiagraph(folder.path(), line);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains(&format!("    skiagraph {line}\n")), "{text}");
+    assert_eq!(text.matches("\n### ").count(), 9, "{text}");
+    assert_eq!(text.matches("\n| nsm | 8 |").count(), 9, "{text}");
+    let results = results(folder.path());
+    for run in results["runs"].as_array().unwrap() {
+        assert!(run.get("images").is_none() && run["wrong"].is_object());
+    }
+    let files = fs::read_dir(folder.path()).unwrap().count();
+    assert_eq!(files, 2, "results.json and results.csv");
+    // A document is written from kept runs alone, too.
+    let again = skiagraph(folder.path(), &format!("{line} --resume"));
+    let again = String::from_utf8_lossy(&again.stdout);
+    assert_eq!(again.replace(" --resume", ""), text);
 }
 
 #[test]

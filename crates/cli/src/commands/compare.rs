@@ -3,7 +3,7 @@
 mod comparison;
 
 use crate::{
-    args::CompareArgs,
+    args::{CompareArgs, Images},
     contract,
     error::{CliError, note},
     interrupt,
@@ -49,7 +49,9 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
         wanted.fold(wgpu::Features::empty(), |all, own| all | own),
     )?;
     let Stage { scene, views } = Stage::load(&args.scene)?;
-    check_pictures(&methods, &views, args)?;
+    if args.images == Images::All {
+        check_pictures(&methods, &views, args)?;
+    }
     let scene = Arc::new(scene);
     let provider = SceneProvider::new(scene.clone());
     check_plans(&gpu, &primary, &methods, args, &provider)?;

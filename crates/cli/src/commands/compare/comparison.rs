@@ -1,9 +1,11 @@
 //! The runs of a comparison, one after the other; whatever is measured is on disk at once.
 
 use crate::{
-    args::{CompareArgs, Format},
+    args::{CompareArgs, Format, Images},
+    date,
     error::{CliError, note, print},
     fingerprint::Fingerprint,
+    markdown,
     measure::{self, Method, Setting, reference_stem},
     picture,
     progress::Step,
@@ -11,13 +13,13 @@ use crate::{
     render,
     results::{Results, Run},
     resume::{Identity, resume},
-    table::{Look, group},
+    table::group,
 };
 use skiagraph_graph::gpu::Gpu;
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Image, Oracle, Reference};
 use skiagraph_scene::{Scene, View};
-use std::cell::OnceCell;
+use std::{cell::OnceCell, path::Path};
 
 /// What a comparison is of.
 pub struct Subject<'a> {
@@ -119,23 +121,30 @@ impl<'a> Comparison<'a> {
     /// # Errors
     /// Ctrl-C, a lost device, files that cannot be written, a reference that cannot be had.
     pub fn run(&mut self) -> Result<(), CliError> {
+        let format = self.args.format;
+        if format == Format::Markdown {
+            let is_done = self.before(self.states.len()) == self.states.len();
+            let today = (!is_done).then(date::today);
+            print(&markdown::header(&self.results, today.as_deref()))?;
+        }
         let mut first = 0;
         for view in self.subject.views {
+            if format == Format::Markdown {
+                print(&markdown::view(&view.name))?;
+            }
             for &viewport in self.subject.viewports {
                 let outcome = self.view(view, viewport, first);
                 let end = first + self.subject.methods.len();
-                let runs = self.before(first)..self.before(end);
-                first = end;
-                let look = match self.args.format {
-                    Format::Table => Some(Look::Terminal),
-                    Format::Markdown => Some(Look::Markdown),
-                    Format::Json => None,
-                };
-                if let Some(look) = look {
-                    let text = group(&self.results, &self.results.runs[runs], look);
-                    print(&format!("{text}\n"))?;
+                let runs = &self.results.runs[self.before(first)..self.before(end)];
+                match format {
+                    Format::Table => print(&format!("{}\n", group(&self.results, runs)))?,
+                    Format::Markdown => {
+                        print(&markdown::viewport(&self.results, runs))?;
+                    }
+                    Format::Json => {}
                 }
                 outcome?;
+                first = end;
             }
         }
         Ok(())
@@ -164,7 +173,7 @@ impl<'a> Comparison<'a> {
             reference: &reference,
             frames: self.args.frames,
             warmup: self.args.warmup,
-            out: &self.args.out,
+            pictures: self.pictures(),
         };
         for (place, method) in (first..).zip(methods) {
             if is_done(&self.states[place]) {
@@ -228,11 +237,18 @@ impl<'a> Comparison<'a> {
         step.end();
         let (camera, mode) = (view.camera(viewport), self.args.oracle);
         let reference = reference::judge(oracle, &camera, &scene.light, &ids, mode, &what)?;
-        let name = format!("{}-visibility.png", reference_stem(&view.name, viewport));
-        let image = Image::visibility(viewport, &reference.visibility(), &reference.status())
-            .map_err(|error| CliError::Input(format!("no picture {name}: {error}")))?;
-        picture::save(&self.args.out.join(name), &image)?;
+        if let Some(folder) = self.pictures() {
+            let name = format!("{}-visibility.png", reference_stem(&view.name, viewport));
+            let image = Image::visibility(viewport, &reference.visibility(), &reference.status())
+                .map_err(|error| CliError::Input(format!("no picture {name}: {error}")))?;
+            picture::save(&folder.join(name), &image)?;
+        }
         Ok(reference)
+    }
+
+    /// Where pictures go, if there are to be any.
+    fn pictures(&self) -> Option<&'a Path> {
+        (self.args.images == Images::All).then_some(&self.args.out)
     }
 
     fn done(&mut self, place: usize, run: Run) {
@@ -288,10 +304,18 @@ impl<'a> Comparison<'a> {
                 results.adapter.name
             )));
         }
-        note(&format!(
-            "results.json, results.csv and the pictures are in {}",
-            args.out.display()
-        ));
+        let files = match args.images {
+            Images::All => "results.json, results.csv and the pictures",
+            Images::None => "results.json and results.csv",
+        };
+        note(&format!("{files} are in {}", args.out.display()));
+        let runs = results.runs.iter().filter_map(|run| run.measured.as_ref());
+        let bare = runs.filter(|run| run.images.is_none()).count();
+        if args.images == Images::All && bare > 0 {
+            note(&format!(
+                "{bare} of the runs that were kept have no pictures: they were measured with --images none"
+            ));
+        }
         Ok(())
     }
 }

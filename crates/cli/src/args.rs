@@ -34,7 +34,8 @@ pub enum Command {
     #[command(after_help = "Examples:\n  skiagraph compare\n  \
         skiagraph compare rt nsm --scene park --view all --size 512x512,1024x1024 --map-size 1024,2048\n  \
         skiagraph compare nsm --scene house.obj --eye 0,2,8 --look 0,0,-1 --light 0.3,-1,-0.2\n  \
-        skiagraph compare rt my_method.ron --oracle offset:0.03 --format markdown")]
+        skiagraph compare rt my_method.ron --oracle offset:0.03 --format markdown\n  \
+        skiagraph compare --view all --map-size 512,1024,2048 --out park --resume   # after Ctrl-C: only what is missing")]
     Compare(CompareArgs),
     /// Render one frame with one graph and save any of its materials.
     #[command(
@@ -139,7 +140,7 @@ pub struct CompareArgs {
     /// A param of the graphs that have it. May be repeated.
     #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub params: Vec<Assignment>,
-    /// Timed frames per run.
+    /// Timed frames per run. The frame that is judged and pictured is one more behind them, as its readback would be timed, too.
     #[arg(long, default_value_t = 10, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_FRAMES), allow_negative_numbers = true)]
     pub frames: u32,
     /// Frames before the timed ones.
@@ -151,9 +152,24 @@ pub struct CompareArgs {
     /// Folder for results.json, results.csv and the pictures.
     #[arg(long, default_value = "compare", value_name = "DIR")]
     pub out: PathBuf,
+    /// Keep the runs in DIR/results.json whose graph, shaders, params, scene and view are still the same, and go on with the others.
+    #[arg(long)]
+    pub resume: bool,
+    /// Which pictures are written.
+    #[arg(long, value_enum, default_value_t = Images::All)]
+    pub images: Images,
     /// What is printed on standard output.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,
+}
+
+/// Which pictures are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Images {
+    /// Those of every run, and of the reference of every view and viewport.
+    All,
+    /// None.
+    None,
 }
 
 /// How results are printed.
@@ -161,7 +177,7 @@ pub struct CompareArgs {
 pub enum Format {
     /// For a terminal.
     Table,
-    /// For a document.
+    /// For a document: the command, the conditions, and a table per view and viewport with the times of steps.
     Markdown,
     /// The contents of results.json.
     Json,

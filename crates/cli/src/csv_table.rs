@@ -62,11 +62,21 @@ impl Results {
             ms(measured
                 .and_then(|m| m.cached.as_ref())
                 .and_then(|cached| cached.frame.gpu_ms)),
+            count(|m| m.split.lit.certain_right),
+            count(|m| m.split.lit.certain_wrong),
+            count(|m| m.split.lit.certain_wrong_outside_band),
+            count(|m| m.split.lit.uncertain),
+            count(|m| m.split.lit.uncertain_wrong),
+            count(|m| m.split.shadow.certain_right),
+            count(|m| m.split.shadow.certain_wrong),
+            count(|m| m.split.shadow.certain_wrong_outside_band),
+            count(|m| m.split.shadow.uncertain),
+            count(|m| m.split.shadow.uncertain_wrong),
         ]
     }
 }
 
-const COLUMNS: [&str; 31] = [
+const COLUMNS: [&str; 41] = [
     "adapter",
     "scene",
     "triangles",
@@ -98,6 +108,16 @@ const COLUMNS: [&str; 31] = [
     "saved_bytes",
     "unavailable",
     "cached_gpu_ms",
+    "lit_certain_right",
+    "lit_certain_wrong",
+    "lit_certain_wrong_outside_band",
+    "lit_uncertain",
+    "lit_uncertain_wrong",
+    "shadow_certain_right",
+    "shadow_certain_wrong",
+    "shadow_certain_wrong_outside_band",
+    "shadow_uncertain",
+    "shadow_uncertain_wrong",
 ];
 
 #[cfg(test)]

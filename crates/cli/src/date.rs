@@ -28,6 +28,11 @@ pub fn utc(time: SystemTime) -> String {
     format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z")
 }
 
+/// `2026-11-21`, today.
+pub fn today() -> String {
+    utc(SystemTime::now())[..10].to_owned()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

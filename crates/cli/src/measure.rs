@@ -2,7 +2,9 @@
 
 use crate::{
     contract::Outputs,
+    date,
     error::CliError,
+    fingerprint::Fingerprint,
     picture,
     preset::{self, Preset},
     progress::Step,
@@ -65,6 +67,11 @@ impl<'a> Method<'a> {
         self.preset.graph.plan(&request)
     }
 
+    /// Of all that a run on a scene and view depends on, but the params.
+    pub fn fingerprint(&self, scene: Fingerprint) -> String {
+        scene.with_all(self.preset.fingerprint).to_string()
+    }
+
     /// All params with the values that it runs with.
     pub fn all_params(&self) -> BTreeMap<String, serde_json::Value> {
         let params = self.preset.graph.params().iter();
@@ -103,14 +110,16 @@ pub struct Setting<'a> {
     pub timestamps: bool,
     /// Name of the view.
     pub view: &'a str,
+    /// Of mesh, light and view.
+    pub fingerprint: Fingerprint,
     /// The right answer.
     pub reference: &'a Reference,
     /// Timed frames.
     pub frames: u32,
     /// Frames before them.
     pub warmup: u32,
-    /// Folder for pictures.
-    pub out: &'a Path,
+    /// Folder for pictures, if there are to be any.
+    pub pictures: Option<&'a Path>,
 }
 
 impl Setting<'_> {
@@ -218,6 +227,7 @@ impl Setting<'_> {
         Ok(Measured {
             certain: counts.certain,
             uncertain: counts.uncertain,
+            split: counts.split,
             rays,
             wrong: counts.wrong,
             facing_mismatch: counts.facing_mismatch,
@@ -226,15 +236,22 @@ impl Setting<'_> {
             cached,
             memory_bytes,
             saved_bytes,
-            images: self.pictures(method, &visibility, &status)?,
+            images: match self.pictures {
+                None => None,
+                Some(folder) => {
+                    Some(self.save_pictures(folder, method, &visibility, &status, &counts)?)
+                }
+            },
         })
     }
 
-    fn pictures(
+    fn save_pictures(
         &self,
+        folder: &Path,
         method: &Method,
         visibility: &[u32],
         status: &[u32],
+        counts: &Statistics,
     ) -> Result<Images, CliError> {
         let stem = stem(method, self.view, self.reference.viewport);
         let reference = self.reference;
@@ -242,7 +259,7 @@ impl Setting<'_> {
             let name = format!("{stem}-{kind}.png");
             let image =
                 image.map_err(|error| CliError::Input(format!("no picture {name}: {error}")))?;
-            picture::save(&self.out.join(&name), &image)?;
+            picture::save(&folder.join(&name), &image)?;
             Ok::<_, CliError>(name)
         };
         Ok(Images {
@@ -252,6 +269,13 @@ impl Setting<'_> {
                 Image::visibility(reference.viewport, visibility, status),
             )?,
             error: save("error", Image::error(visibility, status, reference))?,
+            uncertain: match counts.certain.lit + counts.certain.shadow + counts.uncertain {
+                0 => None,
+                _ => {
+                    let image = Image::uncertain(visibility, status, reference);
+                    Some(save("uncertain", image)?)
+                }
+            },
         })
     }
 
@@ -270,6 +294,8 @@ impl Setting<'_> {
             viewport: self.reference.viewport,
             map_size: method.map_size,
             params: method.all_params(),
+            fingerprint: method.fingerprint(self.fingerprint),
+            date: date::today(),
             pixels: counts.pixels,
             band: counts.band,
             measured: None,
@@ -305,7 +331,7 @@ pub fn reference_stem(view: &str, [width, height]: [u32; 2]) -> String {
 }
 
 /// The errors in one line each, for a table's footnote.
-fn reasons(diagnostics: &Diagnostics) -> String {
+pub fn reasons(diagnostics: &Diagnostics) -> String {
     let errors = diagnostics
         .iter()
         .filter(|diagnostic| diagnostic.severity == Severity::Error);

@@ -4,6 +4,7 @@ use crate::{
     args::MethodArgs,
     commands::check::all_at_once,
     error::{CliError, colour, count_errors, note},
+    fingerprint::{Fingerprint, Recorded},
     parse::Assignment,
 };
 use skiagraph_graph::{
@@ -42,6 +43,8 @@ pub struct Preset {
     pub name: String,
     /// The graph.
     pub graph: Graph,
+    /// Of the texts that it was read from.
+    pub fingerprint: Fingerprint,
 }
 
 /// Loads all arguments, each once.
@@ -57,10 +60,12 @@ pub fn load_all(arguments: &[String], sources: &dyn Sources) -> Result<Vec<Prese
             continue;
         }
         let path = locate(argument, sources)?;
-        match Graph::load(&path, &registry, sources) {
+        let recorded = Recorded::new(sources);
+        match Graph::load(&path, &registry, &recorded) {
             Ok(graph) => presets.push(Preset {
                 name: argument.clone(),
                 graph,
+                fingerprint: recorded.fingerprint(),
             }),
             // What planning would find besides is shown in the same go.
             Err(diagnostics) => {

@@ -1,6 +1,13 @@
 //! The right answer for one view and viewport: the GPU's primitive ids, judged by the oracle.
 
-use crate::{error::CliError, interrupt, preset::Faults, progress::Step, render};
+use crate::{
+    error::CliError,
+    fingerprint::{Fingerprint, Recorded},
+    interrupt,
+    preset::Faults,
+    progress::Step,
+    render,
+};
 use skiagraph_graph::{Content, Executor, Graph, Plan, PlanRequest, Provider, Sources, gpu::Gpu};
 use skiagraph_reference::{Error, Oracle, OracleMode, Progress, Reference};
 use skiagraph_scene::{Camera, DirectionalLight};
@@ -9,7 +16,11 @@ use skiagraph_scene::{Camera, DirectionalLight};
 const GBUFFER: &str = "pipelines/shared/gbuffer.ron";
 
 /// Renders primitive ids as every method's G-buffer does, so that all are judged on the surface that they saw.
-pub struct Primary(Graph);
+pub struct Primary {
+    graph: Graph,
+    /// Of the texts that it was read from.
+    pub fingerprint: Fingerprint,
+}
 
 impl Primary {
     /// Loads the graph.
@@ -17,9 +28,13 @@ impl Primary {
     /// # Errors
     /// It is faulty: it may be one on disk.
     pub fn load(sources: &dyn Sources) -> Result<Self, CliError> {
-        Graph::load(GBUFFER, &skiagraph_passes::registry(), sources)
-            .map(Self)
-            .map_err(|diagnostics| Faults::of(GBUFFER, &diagnostics))
+        let recorded = Recorded::new(sources);
+        let graph = Graph::load(GBUFFER, &skiagraph_passes::registry(), &recorded)
+            .map_err(|diagnostics| Faults::of(GBUFFER, &diagnostics))?;
+        Ok(Self {
+            graph,
+            fingerprint: recorded.fingerprint(),
+        })
     }
 
     /// The plan on a viewport.
@@ -36,7 +51,7 @@ impl Primary {
         request.limits = gpu.device.limits();
         request.features = gpu.device.features();
         request.outputs = Some(vec!["primitive".to_owned()]);
-        self.0
+        self.graph
             .plan(&request)
             .map_err(|diagnostics| Faults::of(GBUFFER, &diagnostics))
     }

@@ -2,7 +2,7 @@
 
 use crate::{error::CliError, files::write_whole, table::thousands};
 use serde::{Deserialize, Serialize};
-use skiagraph_reference::{CertainCounts, PixelCounts, WrongCounts};
+use skiagraph_reference::{CertainCounts, PixelCounts, Split, WrongCounts};
 use std::{collections::BTreeMap, fmt, path::Path, time::Duration};
 
 /// Everything that one `compare` measured.
@@ -80,6 +80,13 @@ pub struct Run {
     pub map_size: Option<u32>,
     /// All params of the graph with the values it ran with.
     pub params: BTreeMap<String, serde_json::Value>,
+    /// Of all else that the run depends on: the texts of the graph, of what it includes and of their shaders, the same of the graph that
+    /// finds the visible triangles, mesh, light and view. Empty in files of older programs.
+    #[serde(default)]
+    pub fingerprint: String,
+    /// The day on which it was measured, `2026-11-21` (UTC). Empty in files of older programs.
+    #[serde(default)]
+    pub date: String,
     /// The reference's pixels.
     pub pixels: PixelCounts,
     /// Of those facing the light, the ones whose answer flips within the rounding error of receiver and casters.
@@ -99,6 +106,9 @@ pub struct Measured {
     pub certain: CertainCounts,
     /// Pixels that it left to rays, or all that it traced.
     pub uncertain: u64,
+    /// Both by the reference's class, with those that are wrong; absent in files of older programs.
+    #[serde(default)]
+    pub split: Split,
     /// Rays traced per frame; null where the graph does not count them.
     pub rays: Option<u64>,
     /// Pixels facing the light on which method and reference disagree.
@@ -115,8 +125,9 @@ pub struct Measured {
     pub memory_bytes: u64,
     /// Bytes saved by letting materials share memory.
     pub saved_bytes: u64,
-    /// The run's pictures, file names in the results' folder.
-    pub images: Images,
+    /// The run's pictures, file names in the results' folder; absent with `--images none`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub images: Option<Images>,
 }
 
 /// Times of one pass.
@@ -157,6 +168,9 @@ pub struct Images {
     pub visibility: String,
     /// Blue where wrongly lit, red where wrongly in shadow.
     pub error: String,
+    /// `shaded` with purple where uncertain; absent where the method calls no pixel certain or uncertain.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uncertain: Option<String>,
 }
 
 /// Least, median and 95th percentile over frames, milliseconds.
@@ -218,6 +232,7 @@ impl Results {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use skiagraph_reference::ClassSplit;
 
     /// Results with every field in use: one full run, one without a map or GPU times, one unavailable.
     pub(crate) fn sample() -> Results {
@@ -235,6 +250,8 @@ pub(crate) mod tests {
                 ("slope_bias".into(), 1.5.into()),
                 ("cull".into(), "front".into()),
             ]),
+            fingerprint: "85944171f73967e8".into(),
+            date: "2026-11-20".into(),
             pixels: PixelCounts {
                 background: 72,
                 facing_away: 31_000,
@@ -248,17 +265,33 @@ pub(crate) mod tests {
         };
         let measured = |name: &str, gpu: bool, rays| Measured {
             certain: CertainCounts {
-                lit: 59_000,
-                shadow: 41_000,
+                lit: 57_100,
+                shadow: 37_900,
             },
-            uncertain: 0,
+            uncertain: 5_000,
+            split: Split {
+                lit: ClassSplit {
+                    certain_right: 57_000,
+                    certain_wrong: 400,
+                    certain_wrong_outside_band: 396,
+                    uncertain: 2_600,
+                    uncertain_wrong: 1,
+                },
+                shadow: ClassSplit {
+                    certain_right: 37_500,
+                    certain_wrong: 100,
+                    certain_wrong_outside_band: 99,
+                    uncertain: 2_400,
+                    uncertain_wrong: 2,
+                },
+            },
             rays,
             wrong: WrongCounts {
-                lit: 1_000,
-                shadow: 2_500,
-                total: 3_500,
-                certain: 3_495,
-                in_band: 5,
+                lit: 102,
+                shadow: 401,
+                total: 503,
+                certain: 495,
+                in_band: 6,
             },
             facing_mismatch: 3,
             passes: ["gbuffer", name]
@@ -281,11 +314,12 @@ pub(crate) mod tests {
             }),
             memory_bytes: 12_582_912,
             saved_bytes: 1_048_576,
-            images: Images {
+            images: gpu.then(|| Images {
                 shaded: format!("{name}-shaded.png"),
                 visibility: format!("{name}-visibility.png"),
                 error: format!("{name}-error.png"),
-            },
+                uncertain: Some(format!("{name}-uncertain.png")),
+            }),
         };
         Results {
             schema: 1,

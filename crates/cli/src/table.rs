@@ -1,42 +1,26 @@
-//! Results as tables: speed beside error, then the time of each pass.
+//! Results as tables for a terminal: speed beside error, then the time of each pass.
 
 use crate::results::{Measured, Results, Run, Spread};
 use comfy_table::{Cell, CellAlignment, Table, presets};
 
-/// How a table is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Look {
-    /// Box-drawing characters.
-    Terminal,
-    /// A Markdown table.
-    Markdown,
-}
-
 /// A heading and both tables for the runs of one view and viewport, which must stand together in `runs`.
-pub fn group(results: &Results, runs: &[Run], look: Look) -> String {
+pub fn group(results: &Results, runs: &[Run]) -> String {
     let Some(first) = runs.first() else {
         return String::new();
     };
-    let mut text = heading(results, first, look);
-    text.push_str(&comparison(runs, look));
+    let mut text = heading(results, first);
+    text.push_str(&comparison(runs));
     text.push('\n');
     if runs.iter().any(|run| run.measured.is_some()) {
         text.push_str(&format!(
             "\nEach pass, ms: least, median and 95th percentile of {}\n",
             frames(results.frames)
         ));
-        if look == Look::Markdown {
-            text.push('\n');
-        }
-        text.push_str(&passes(runs, look));
+        text.push_str(&passes(runs));
         text.push('\n');
     }
     for (index, note) in footnotes(results, runs).iter().enumerate() {
-        text.push_str(if index == 0 || look == Look::Markdown {
-            "\n"
-        } else {
-            ""
-        });
+        text.push_str(if index == 0 { "\n" } else { "" });
         text.push_str(note);
         text.push('\n');
     }
@@ -46,7 +30,7 @@ pub fn group(results: &Results, runs: &[Run], look: Look) -> String {
 /// A band of more than one pixel in so many of those facing the light leaves too much open.
 const MOST_BAND: u128 = 1000;
 
-fn heading(results: &Results, run: &Run, look: Look) -> String {
+fn heading(results: &Results, run: &Run) -> String {
     let Run {
         view,
         viewport: [width, height],
@@ -77,25 +61,18 @@ fn heading(results: &Results, run: &Run, look: Look) -> String {
             percent(*band, pixels.facing_light)
         ),
     ];
-    if u128::from(*band) * MOST_BAND > u128::from(pixels.facing_light) {
-        lines.push(
-            "warning: the band is larger than 0.1 % of PFL; what lies in it is not proven".into(),
-        );
-    }
-    match look {
-        Look::Terminal => format!("{title}\n{}\n", lines.join("\n")),
-        Look::Markdown => format!(
-            "### {title}\n\n{}\n\n",
-            lines
-                .iter()
-                .map(|line| format!("- {line}"))
-                .collect::<Vec<_>>()
-                .join("\n")
-        ),
-    }
+    lines.extend(warning(run));
+    format!("{title}\n{}\n", lines.join("\n"))
 }
 
-fn comparison(runs: &[Run], look: Look) -> String {
+/// That the band of a view and viewport leaves too much open, if it does.
+pub fn warning(run: &Run) -> Option<String> {
+    let is_large = u128::from(run.band) * MOST_BAND > u128::from(run.pixels.facing_light);
+    let text = "warning: the band is larger than 0.1 % of PFL; what lies in it is not proven";
+    is_large.then(|| text.to_owned())
+}
+
+fn comparison(runs: &[Run]) -> String {
     let maps = runs.iter().any(|run| run.map_size.is_some());
     let mut header = vec!["method"];
     if maps {
@@ -109,9 +86,10 @@ fn comparison(runs: &[Run], look: Look) -> String {
         "wrong shadow",
         "in band",
         "uncertain",
+        "certain wrong",
         "rays",
     ]);
-    let mut table = new_table(look, &header, 1);
+    let mut table = new_table(&header, 1);
     for run in runs {
         let mut row = vec![run.preset.clone()];
         if maps {
@@ -129,7 +107,7 @@ fn comparison(runs: &[Run], look: Look) -> String {
     table.to_string()
 }
 
-fn figures(measured: &Measured, facing_light: u64) -> [String; 8] {
+fn figures(measured: &Measured, facing_light: u64) -> [String; 9] {
     [
         measured
             .frame
@@ -141,11 +119,12 @@ fn figures(measured: &Measured, facing_light: u64) -> [String; 8] {
         thousands(measured.wrong.shadow),
         thousands(measured.wrong.in_band),
         percent(measured.uncertain, facing_light),
+        percent(measured.split.certain_wrong(), facing_light),
         measured.rays.map_or("–".into(), thousands),
     ]
 }
 
-fn passes(runs: &[Run], look: Look) -> String {
+fn passes(runs: &[Run]) -> String {
     let header = [
         "method",
         "pass",
@@ -154,7 +133,7 @@ fn passes(runs: &[Run], look: Look) -> String {
         "GPU p95",
         "CPU median",
     ];
-    let mut table = new_table(look, &header, 2);
+    let mut table = new_table(&header, 2);
     for run in runs {
         let Some(measured) = &run.measured else {
             continue;
@@ -170,8 +149,8 @@ fn passes(runs: &[Run], look: Look) -> String {
         for (index, (name, gpu, cpu)) in rows.chain([whole]).chain(cached).enumerate() {
             let gpu = |pick: fn(Spread) -> f64| gpu.map_or("–".into(), |spread| ms(pick(spread)));
             let row = vec![
-                // On a terminal the eye finds groups by their first line; a Markdown row may be quoted alone.
-                if index == 0 || look == Look::Markdown {
+                // The eye finds groups by their first line.
+                if index == 0 {
                     method_name.clone()
                 } else {
                     String::new()
@@ -221,7 +200,7 @@ fn method(run: &Run) -> String {
 }
 
 /// Which GPU times a run lacks on an adapter whose timestamps are true.
-fn times_missing(run: &Run) -> Option<String> {
+pub fn times_missing(run: &Run) -> Option<String> {
     let measured = run.measured.as_ref()?;
     let passes = measured.passes.iter();
     let passes = passes.map(|pass| (pass.name.as_str(), pass.gpu_ms.is_some()));
@@ -248,12 +227,9 @@ pub fn untimed<'a>(passes: impl Iterator<Item = (&'a str, bool)>, frame: bool) -
 }
 
 /// An empty table whose first `left` columns hold words.
-pub fn new_table(look: Look, header: &[&str], left: usize) -> Table {
+pub fn new_table(header: &[&str], left: usize) -> Table {
     let mut table = Table::new();
-    table.load_style(match look {
-        Look::Terminal => presets::UTF8_FULL_CONDENSED,
-        Look::Markdown => presets::ASCII_MARKDOWN,
-    });
+    table.load_style(presets::UTF8_FULL_CONDENSED);
     table.set_header(
         header
             .iter()
@@ -342,30 +318,18 @@ mod tests {
     fn the_terminal_shows_speed_beside_error() {
         let mut results = sample();
         results.adapter.gpu_unavailable = Some("the driver's timestamps are not true".into());
-        insta::assert_snapshot!(group(&results, &results.runs, Look::Terminal));
-    }
-
-    #[test]
-    fn markdown_holds_the_same() {
-        let results = sample();
-        insta::assert_snapshot!(group(&results, &results.runs, Look::Markdown));
+        insta::assert_snapshot!(group(&results, &results.runs));
     }
 
     #[test]
     fn a_band_of_more_than_a_thousandth_is_warned_of() {
         let mut results = sample();
-        let warned = |results: &Results, look| {
-            group(results, &results.runs, look).contains("the band is larger than 0.1 % of PFL")
+        let warned = |results: &Results| {
+            group(results, &results.runs).contains("the band is larger than 0.1 % of PFL")
         };
         for (band, expected) in [(0, false), (100, false), (101, true)] {
             results.runs.iter_mut().for_each(|run| run.band = band);
-            for look in [Look::Terminal, Look::Markdown] {
-                assert_eq!(
-                    warned(&results, look),
-                    expected,
-                    "{band} of 100,000, {look:?}"
-                );
-            }
+            assert_eq!(warned(&results), expected, "{band} of 100,000");
         }
     }
 
@@ -374,7 +338,7 @@ mod tests {
         let mut results = sample();
         let passes = |run: &mut Run| run.measured.as_mut().map(|m| m.passes[0].gpu_ms = None);
         passes(&mut results.runs[0]);
-        let text = group(&results, &results.runs, Look::Terminal);
+        let text = group(&results, &results.runs);
         for note in [
             "nsm 1024: the whole frame is timed over its other passes, there are no GPU times of gbuffer\n",
             "rt: no GPU time of the whole frame: there are none of gbuffer, trace_rays\n",

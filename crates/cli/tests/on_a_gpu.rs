@@ -93,6 +93,12 @@ fn compare_measures_judges_and_pictures_every_run() {
             count(&wrong["lit"]) + count(&wrong["shadow"]),
             count(&wrong["total"])
         );
+        for class in ["lit", "shadow"] {
+            let split = &run["split"][class];
+            let said =
+                ["certain_right", "certain_wrong", "uncertain"].map(|word| count(&split[word]));
+            assert_eq!(said.iter().sum::<u64>(), count(&pixels[class]), "{split}");
+        }
         match run["preset"].as_str() {
             // Its map depends on the light, not on the camera, which is all that moves.
             Some("nsm") => assert_eq!(run["cached"]["skipped"][0], "create_shadow_map"),
@@ -100,11 +106,18 @@ fn compare_measures_judges_and_pictures_every_run() {
         }
         assert!(run["frame"]["wall_ms"]["median"].as_f64().unwrap() > 0.0);
         assert!(!run["passes"].as_array().unwrap().is_empty());
-        for kind in ["shaded", "visibility", "error"] {
+        for kind in ["shaded", "visibility", "error", "uncertain"] {
             let picture = png(&out.join(run["images"][kind].as_str().unwrap()));
             assert_eq!(picture.dimensions(), (width as u32, height as u32));
         }
     }
+    let purple = |stem: &str| {
+        let picture = png(&out.join(format!("{stem}-uncertain.png")));
+        let purple = |pixel: &&image::Rgb<u8>| pixel.0 == [160, 32, 240];
+        picture.pixels().filter(purple).count() as u64
+    };
+    assert_eq!(purple("nsm-bench_side-64x64-map64"), 0);
+    assert!(purple("rt-bench_side-64x64") >= count(&runs[0]["uncertain"]));
     let of = |preset| runs.iter().filter(move |run| run["preset"] == preset);
     for run in of("rt") {
         assert_eq!(
@@ -347,9 +360,161 @@ fn an_interrupt_keeps_what_was_measured() {
     progress.read_to_string(&mut rest).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130), "{rest}");
     assert!(rest.contains("1 of 2 runs are kept"), "{rest}");
-    let results = fs::read_to_string(folder.path().join("results.json")).unwrap();
-    let results: Value = serde_json::from_str(&results).unwrap();
-    assert_eq!(results["runs"].as_array().unwrap().len(), 1);
+    let begun = results(folder.path());
+    assert_eq!(begun["runs"].as_array().unwrap().len(), 1);
+
+    let line = "compare nsm rt --size 16x16 --map-size 16 --frames 200 --out . --resume";
+    let output = skiagraph(folder.path(), line);
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(text.contains("1 of 2 runs are kept"), "{text}");
+    let whole = results(folder.path());
+    assert_eq!(whole["runs"].as_array().unwrap().len(), 2);
+    assert_eq!(whole["runs"][0], begun["runs"][0]);
+}
+
+fn results(folder: &Path) -> Value {
+    let text = fs::read_to_string(folder.join("results.json")).unwrap();
+    serde_json::from_str(&text).unwrap()
+}
+
+/// Results with all times at zero.
+fn timeless(mut value: Value) -> Value {
+    fn clear(value: &mut Value) {
+        match value {
+            Value::Object(fields) if fields.contains_key("p95") => *value = Value::Null,
+            Value::Object(fields) => {
+                fields.remove("date");
+                fields.values_mut().for_each(clear);
+            }
+            Value::Array(items) => items.iter_mut().for_each(clear),
+            _ => {}
+        }
+    }
+    clear(&mut value);
+    value
+}
+
+#[test]
+fn a_resumed_comparison_is_the_one_in_one_go() {
+    let folder = tempfile::tempdir().unwrap();
+    let compare = |methods: &str, rest: &str| {
+        let line = format!("compare {methods} --size 24x16,16x16 --frames 1 --warmup 0 {rest}");
+        let output = skiagraph(folder.path(), &line);
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    compare("rt nsm", "--map-size 8,16 --out whole");
+    compare("nsm", "--map-size 16 --out parts");
+    let parts = folder.path().join("parts");
+    let begun = results(&parts);
+    let text = compare("rt nsm", "--map-size 8,16 --out parts --resume");
+    assert!(text.contains("2 of 6 runs are kept"), "{text}");
+    let resumed = results(&parts);
+    assert_eq!(
+        timeless(resumed.clone()),
+        timeless(results(&folder.path().join("whole")))
+    );
+    assert_eq!(resumed["runs"][2], begun["runs"][0]);
+    assert_eq!(resumed["runs"][5], begun["runs"][1]);
+
+    // Nothing is left to do, so nothing is drawn.
+    let text = compare("rt nsm", "--map-size 8,16 --out parts --resume");
+    assert!(
+        text.contains("6 of 6 runs are kept") && !text.contains("starting"),
+        "{text}"
+    );
+    assert_eq!(results(&parts), resumed);
+
+    // A shader that is not the same any more.
+    let shader = skiagraph(folder.path(), "presets --show shadow_lookup.wgsl");
+    fs::create_dir(folder.path().join("shaders")).unwrap();
+    let text = [&shader.stdout[..], b"// changed\n"].concat();
+    fs::write(folder.path().join("shaders/shadow_lookup.wgsl"), text).unwrap();
+    let text = compare("rt nsm", "--map-size 8,16 --out parts --resume");
+    assert!(
+        text.contains("2 of 6 runs are kept") && text.contains("4 of the 6"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_document_holds_what_was_measured_and_needs_no_pictures() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "compare nsm rt --view all --size 16x16 --map-size 8 --frames 1 --images none --out . --format markdown";
+    let output = skiagraph(folder.path(), line);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains(&format!("    skiagraph {line}\n")), "{text}");
+    assert_eq!(text.matches("\n### ").count(), 9, "{text}");
+    assert_eq!(text.matches("\n| nsm | 8 |").count(), 9, "{text}");
+    let results = results(folder.path());
+    for run in results["runs"].as_array().unwrap() {
+        assert!(run.get("images").is_none() && run["wrong"].is_object());
+    }
+    let files = fs::read_dir(folder.path()).unwrap().count();
+    assert_eq!(files, 2, "results.json and results.csv");
+    // A document is written from kept runs alone, too.
+    let again = skiagraph(folder.path(), &format!("{line} --resume"));
+    let again = String::from_utf8_lossy(&again.stdout);
+    assert_eq!(again.replace(" --resume", ""), text);
+}
+
+#[test]
+fn results_of_other_conditions_are_not_resumed() {
+    let folder = tempfile::tempdir().unwrap();
+    let compare = |rest: &str| {
+        Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+            .args("compare nsm --size 8x8 --map-size 8 --warmup 0 --out .".split(' '))
+            .args(rest.split(' '))
+            .current_dir(folder.path())
+            .output()
+            .unwrap()
+    };
+    let first = compare("--frames 1 --resume");
+    let text = String::from_utf8_lossy(&first.stderr);
+    assert!(text.contains("there is no ./results.json yet"), "{text}");
+    let before = results(folder.path());
+    let other = compare("--frames 2 --resume");
+    let text = String::from_utf8_lossy(&other.stderr);
+    assert_eq!(other.status.code(), Some(1), "{text}");
+    assert!(text.contains("frames: there 1, here 2"), "{text}");
+    assert_eq!(results(folder.path()), before);
+    assert_eq!(compare("--frames 2").status.code(), Some(0));
+    assert_eq!(
+        results(folder.path())["frames"],
+        2,
+        "without --resume it is overwritten"
+    );
+}
+
+#[test]
+fn what_could_not_run_is_tried_again() {
+    let folder = tempfile::tempdir().unwrap();
+    // One is for Windows, one for Android: no adapter has both.
+    let nowhere = LIT.replace(
+        "format: 1,",
+        r#"format: 1, requires: [
+            (feature: "VULKAN_EXTERNAL_MEMORY_WIN32"),
+            (feature: "VULKAN_GOOGLE_DISPLAY_TIMING"),
+        ],"#,
+    );
+    fs::write(folder.path().join("nowhere.ron"), nowhere).unwrap();
+    let compare = || {
+        let line = "compare nsm nowhere.ron --size 8x8 --map-size 8 --frames 1 --out . --resume";
+        let output = skiagraph(folder.path(), line);
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    compare();
+    let before = results(folder.path());
+    assert!(
+        before["runs"][1]["unavailable"].is_string(),
+        "{}",
+        before["runs"][1]
+    );
+    let text = compare();
+    assert!(
+        text.contains("1 of 2 runs are kept") && !text.contains("starting"),
+        "{text}"
+    );
+    assert_eq!(results(folder.path()), before);
 }
 
 #[test]

@@ -84,41 +84,11 @@ impl Image {
         V: Copy + Into<u32>,
         S: Copy + Into<u32>,
     {
-        Self::of_status(viewport, visibility, status, None)
-    }
-
-    /// As [`visibility`](Self::visibility), with the uncertain pixels in purple.
-    ///
-    /// # Errors
-    /// [`Error::PixelCount`] if a buffer does not fit `viewport`.
-    pub fn uncertain<V, S>(
-        viewport: [u32; 2],
-        visibility: &[V],
-        status: &[S],
-    ) -> Result<Self, Error>
-    where
-        V: Copy + Into<u32>,
-        S: Copy + Into<u32>,
-    {
-        Self::of_status(viewport, visibility, status, Some(UNCERTAIN))
-    }
-
-    fn of_status<V, S>(
-        viewport: [u32; 2],
-        visibility: &[V],
-        status: &[S],
-        uncertain: Option<Colour>,
-    ) -> Result<Self, Error>
-    where
-        V: Copy + Into<u32>,
-        S: Copy + Into<u32>,
-    {
         check_pixel_count("visibility", viewport, visibility.len())?;
         check_pixel_count("status", viewport, status.len())?;
-        let colour = |visibility: u32, status: u32| match (status, uncertain) {
-            (status::BACKGROUND, _) => BACKGROUND,
-            (status::FACING_AWAY, _) => FACING_AWAY,
-            (status::UNCERTAIN, Some(uncertain)) => uncertain,
+        let colour = |visibility: u32, status: u32| match status {
+            status::BACKGROUND => BACKGROUND,
+            status::FACING_AWAY => FACING_AWAY,
             _ if visibility == 0 => SHADOW,
             _ => LIGHT,
         };
@@ -130,6 +100,29 @@ impl Image {
             size: viewport,
             rgb,
         })
+    }
+
+    /// As [`shaded`](Self::shaded), with the pixels that the method calls uncertain in purple.
+    ///
+    /// # Errors
+    /// [`Error::PixelCount`] if a buffer does not fit the reference.
+    pub fn uncertain<V, S>(
+        visibility: &[V],
+        status: &[S],
+        reference: &Reference,
+    ) -> Result<Self, Error>
+    where
+        V: Copy + Into<u32>,
+        S: Copy + Into<u32>,
+    {
+        check_pixel_count("status", reference.viewport, status.len())?;
+        let mut image = Self::shaded(visibility, reference)?;
+        for (pixel, &status) in image.rgb.chunks_exact_mut(3).zip(status) {
+            if status.into() == status::UNCERTAIN {
+                pixel.copy_from_slice(&UNCERTAIN);
+            }
+        }
+        Ok(image)
     }
 
     /// The scene in grey under Lambert's law: max(n · l, 0) × visibility + ambient, with the reference's n · l and the given
@@ -258,8 +251,12 @@ mod tests {
         let (visibility, status) = ([1u8, 1, 1, 0, 1], [0u8, 1, 2, 3, 4]);
         let shown = colours(Image::visibility([5, 1], &visibility, &status).expect("same sizes"));
         assert_eq!(shown, [BACKGROUND, FACING_AWAY, LIGHT, SHADOW, LIGHT]);
-        let shown = colours(Image::uncertain([5, 1], &visibility, &status).expect("same sizes"));
-        assert_eq!(shown, [BACKGROUND, FACING_AWAY, LIGHT, SHADOW, UNCERTAIN]);
+        let reference = reference();
+        let shaded = colours(Image::shaded(&visibility, &reference).expect("same size"));
+        let shown =
+            colours(Image::uncertain(&visibility, &status, &reference).expect("same sizes"));
+        assert_eq!((&shown[..4], shown[4]), (&shaded[..4], UNCERTAIN));
+        assert!(Image::uncertain(&visibility, &status[1..], &reference).is_err());
         assert!(Image::visibility([5, 2], &visibility, &status).is_err());
     }
 

@@ -39,4 +39,4 @@ pub mod twin;
 pub use error::Error;
 pub use image::Image;
 pub use oracle::{BACKGROUND, Class, Oracle, OracleMode, Progress, Reference};
-pub use statistics::{CertainCounts, PixelCounts, Statistics, WrongCounts};
+pub use statistics::{CertainCounts, ClassSplit, PixelCounts, Split, Statistics, WrongCounts};

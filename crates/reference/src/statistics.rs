@@ -56,6 +56,62 @@ pub struct WrongCounts {
     pub in_band: u64,
 }
 
+/// The PFL pixels of one class by what the method said of them. `certain_right + certain_wrong + uncertain` is the class, but for
+/// pixels that the method does not take for facing the light; in-band pixels are included.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ClassSplit {
+    /// Called certain, and rightly so.
+    pub certain_right: u64,
+    /// Called certain, and wrong.
+    pub certain_wrong: u64,
+    /// Of `certain_wrong`: not in band.
+    pub certain_wrong_outside_band: u64,
+    /// Called uncertain.
+    pub uncertain: u64,
+    /// Of `uncertain`: wrong in the final picture.
+    pub uncertain_wrong: u64,
+}
+
+/// [`ClassSplit`] of each class of the reference that faces the light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Split {
+    /// Pixels that the reference lights.
+    pub lit: ClassSplit,
+    /// Pixels in the reference's shadow.
+    pub shadow: ClassSplit,
+}
+
+impl ClassSplit {
+    fn add(&mut self, status: u32, in_band: bool, verdict: Verdict) {
+        let wrong = verdict != Verdict::Right;
+        match (status, wrong) {
+            (status::CERTAIN_LIGHT | status::CERTAIN_SHADOW, false) => self.certain_right += 1,
+            (status::CERTAIN_LIGHT | status::CERTAIN_SHADOW, true) => {
+                self.certain_wrong += 1;
+                self.certain_wrong_outside_band += u64::from(!in_band);
+            }
+            (status::UNCERTAIN, _) => {
+                self.uncertain += 1;
+                self.uncertain_wrong += u64::from(wrong);
+            }
+            // Not taken for facing the light.
+            _ => {}
+        }
+    }
+}
+
+impl Split {
+    /// PFL pixels called certain, and rightly so.
+    pub fn certain_right(&self) -> u64 {
+        self.lit.certain_right + self.shadow.certain_right
+    }
+
+    /// PFL pixels called certain, and wrong.
+    pub fn certain_wrong(&self) -> u64 {
+        self.lit.certain_wrong + self.shadow.certain_wrong
+    }
+}
+
 /// How one method's picture compares with the reference.
 ///
 /// *Which pixels are judged.* Every PFL pixel of the reference, by the visibility it shows (0 is shadow): one that the method calls background or facing
@@ -74,6 +130,8 @@ pub struct Statistics {
     pub certain: CertainCounts,
     /// PFL pixels called uncertain.
     pub uncertain: u64,
+    /// The same PFL pixels by the reference's class, and how many of them are wrong.
+    pub split: Split,
     /// Wrong pixels.
     pub wrong: WrongCounts,
     /// PFL pixels in band, right or wrong.
@@ -114,8 +172,14 @@ impl Statistics {
         match class {
             Class::Background => self.pixels.background += 1,
             Class::FacingAway => self.pixels.facing_away += 1,
-            Class::Lit => self.pixels.lit += 1,
-            Class::Shadow => self.pixels.shadow += 1,
+            Class::Lit => {
+                self.pixels.lit += 1;
+                self.split.lit.add(status, in_band, verdict);
+            }
+            Class::Shadow => {
+                self.pixels.shadow += 1;
+                self.split.shadow.add(status, in_band, verdict);
+            }
         }
         if faces_light {
             self.pixels.facing_light += 1;
@@ -268,6 +332,22 @@ mod tests {
             },
             certain: CertainCounts { lit: 3, shadow: 2 },
             uncertain: 2,
+            split: Split {
+                lit: ClassSplit {
+                    certain_right: 1,
+                    certain_wrong: 1,
+                    certain_wrong_outside_band: 1,
+                    uncertain: 2,
+                    uncertain_wrong: 1,
+                },
+                shadow: ClassSplit {
+                    certain_right: 1,
+                    certain_wrong: 2,
+                    certain_wrong_outside_band: 1,
+                    uncertain: 0,
+                    uncertain_wrong: 0,
+                },
+            },
             wrong: WrongCounts {
                 lit: 5,
                 shadow: 3,
@@ -313,10 +393,20 @@ mod tests {
                 "certain",
                 "facing_mismatch",
                 "pixels",
+                "split",
                 "uncertain",
                 "wrong"
             ]
         );
+        assert_eq!(keys(&json["split"]), ["lit", "shadow"]);
+        let class = [
+            "certain_right",
+            "certain_wrong",
+            "certain_wrong_outside_band",
+            "uncertain",
+            "uncertain_wrong",
+        ];
+        assert_eq!(keys(&json["split"]["lit"]), class);
         assert_eq!(
             keys(&json["pixels"]),
             ["background", "facing_away", "facing_light", "lit", "shadow"]

@@ -1,35 +1,35 @@
 //! `skiagraph compare`: every method on every view, viewport and map size, speed beside error.
 
+mod comparison;
+
 use crate::{
-    args::{CompareArgs, Format},
+    args::{CompareArgs, Images},
     contract,
-    error::{CliError, note, print},
+    error::{CliError, note},
     interrupt,
-    measure::{Method, Setting, reference_stem, stem},
+    measure::{Method, reference_stem, stem},
     parse::Size,
-    picture,
     preset::{self, Faults, Preset},
-    progress::Step,
-    reference::{self, Primary},
+    reference::Primary,
     render,
     results::{Results, Scene as SceneResult},
     stage::Stage,
-    table::{Look, group},
 };
+use comparison::{Comparison, Subject};
 use skiagraph_graph::{LayeredSources, gpu::Gpu};
 use skiagraph_passes::SceneProvider;
-use skiagraph_reference::{Image, Oracle};
-use skiagraph_scene::{DirectionalLight, View};
+use skiagraph_scene::View;
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
     sync::Arc,
 };
 
-/// Runs the comparison; whatever is measured is on disk at once.
+/// Checks everything, then runs the comparison.
 ///
 /// # Errors
-/// Faulty graphs, a scene that cannot be loaded, no GPU, Ctrl-C, no method that runs on this adapter.
+/// Faulty graphs, a scene that cannot be loaded, no GPU, earlier results that cannot be resumed, Ctrl-C, no method that runs on this
+/// adapter.
 pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError> {
     let sources = preset::sources();
     let names = if args.presets.is_empty() {
@@ -49,13 +49,12 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
         wanted.fold(wgpu::Features::empty(), |all, own| all | own),
     )?;
     let Stage { scene, views } = Stage::load(&args.scene)?;
-    check_pictures(&methods, &views, args)?;
+    if args.images == Images::All {
+        check_pictures(&methods, &views, args)?;
+    }
     let scene = Arc::new(scene);
     let provider = SceneProvider::new(scene.clone());
     check_plans(&gpu, &primary, &methods, args, &provider)?;
-    fs::create_dir_all(&args.out).map_err(|error| CliError::write(&args.out, error))?;
-    interrupt::install()?;
-
     let trust = render::trust(&gpu);
     let results = Results {
         schema: 1,
@@ -70,22 +69,21 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
         warmup: args.warmup,
         runs: Vec::new(),
     };
-    let step = Step::begin(format!("hierarchy of {}", scene.name), 1, "steps");
-    let oracle = Oracle::new(&scene.mesh);
-    step.end();
-    let planned = views.len() * unique(&args.size).len() * methods.len();
-    let mut comparison = Comparison {
-        args,
-        primary,
-        gpu,
-        light: scene.light,
-        provider,
-        oracle,
-        results,
-        broken: Vec::new(),
+    let viewports: Vec<[u32; 2]> = unique(&args.size).iter().map(|size| size.0).collect();
+    let subject = Subject {
+        gpu: &gpu,
+        scene: &scene,
+        views: &views,
+        viewports: &viewports,
+        methods: &methods,
+        primary: &primary,
+        fingerprint: primary.fingerprint.with_scene(&scene.mesh, &scene.light),
     };
-    let outcome = comparison.views(&views, &methods);
-    comparison.finish(outcome, planned)
+    let mut comparison = Comparison::new(args, subject, provider, results)?;
+    fs::create_dir_all(&args.out).map_err(|error| CliError::write(&args.out, error))?;
+    interrupt::install()?;
+    let outcome = comparison.run();
+    comparison.finish(outcome)
 }
 
 /// Loads the graphs and refuses those that are no shadow methods.
@@ -99,129 +97,6 @@ fn load(names: &[String], sources: &LayeredSources) -> Result<Vec<Preset>, CliEr
         Ok(presets)
     } else {
         Err(CliError::Input(incomplete.join("\nerror: ")))
-    }
-}
-
-struct Comparison<'a> {
-    args: &'a CompareArgs,
-    primary: Primary,
-    gpu: Gpu,
-    light: DirectionalLight,
-    provider: SceneProvider,
-    oracle: Oracle<'a>,
-    results: Results,
-    /// Why graphs broke the contract of outputs.
-    broken: Vec<String>,
-}
-
-impl Comparison<'_> {
-    fn views(&mut self, views: &[View], methods: &[Method]) -> Result<(), CliError> {
-        for view in views {
-            for viewport in unique(&self.args.size) {
-                let first = self.results.runs.len();
-                let outcome = self.view(view, viewport.0, methods);
-                let runs = &self.results.runs[first..];
-                match self.args.format {
-                    Format::Table => {
-                        print(&format!("{}\n", group(&self.results, runs, Look::Terminal)))?
-                    }
-                    Format::Markdown => {
-                        print(&format!("{}\n", group(&self.results, runs, Look::Markdown)))?
-                    }
-                    Format::Json => {}
-                }
-                outcome?;
-            }
-        }
-        Ok(())
-    }
-
-    fn view(
-        &mut self,
-        view: &View,
-        viewport: [u32; 2],
-        methods: &[Method],
-    ) -> Result<(), CliError> {
-        let camera = view.camera(viewport);
-        self.provider.set_view(view, viewport);
-        let [width, height] = viewport;
-        let what = format!("{} {width}x{height}", view.name);
-        let step = Step::begin(format!("visible triangles, {what}"), 1, "frames");
-        let ids = self.primary.ids(&self.gpu, viewport, &mut self.provider)?;
-        step.end();
-        let reference = reference::judge(
-            &self.oracle,
-            &camera,
-            &self.light,
-            &ids,
-            self.args.oracle,
-            &what,
-        )?;
-        let name = format!("{}-visibility.png", reference_stem(&view.name, viewport));
-        let image = Image::visibility(viewport, &reference.visibility(), &reference.status())
-            .map_err(|error| CliError::Input(format!("no picture {name}: {error}")))?;
-        picture::save(&self.args.out.join(name), &image)?;
-        let setting = Setting {
-            gpu: &self.gpu,
-            timestamps: self.results.adapter.gpu_unavailable.is_none(),
-            view: &view.name,
-            reference: &reference,
-            frames: self.args.frames,
-            warmup: self.args.warmup,
-            out: &self.args.out,
-        };
-        for method in methods {
-            let run = match setting.measure(method, &mut self.provider) {
-                // The others are worth measuring all the same.
-                Err(CliError::Contract(reason)) => {
-                    let run = setting.unavailable(method, reason.clone());
-                    self.broken.push(reason);
-                    run
-                }
-                run => run?,
-            };
-            self.results.runs.push(run);
-            self.results.save(&self.args.out)?;
-        }
-        Ok(())
-    }
-
-    fn finish(self, outcome: Result<(), CliError>, planned: usize) -> Result<(), CliError> {
-        let Self {
-            args,
-            results,
-            broken,
-            ..
-        } = self;
-        if args.format == Format::Json && !results.runs.is_empty() {
-            print(&results.to_json())?;
-        }
-        let done = results.runs.len();
-        if let Err(CliError::Interrupted { .. }) = outcome {
-            let kept = match done {
-                0 => "no run was finished".into(),
-                _ => format!(
-                    "{done} of {planned} runs are kept in {}",
-                    args.out.join("results.json").display()
-                ),
-            };
-            return Err(CliError::Interrupted { kept });
-        }
-        outcome?;
-        if !broken.is_empty() {
-            return Err(CliError::Contract(broken.join("\nerror: ")));
-        }
-        if results.runs.iter().all(|run| run.measured.is_none()) {
-            return Err(CliError::Input(format!(
-                "no method can run on {}; the reasons stand above",
-                results.adapter.name
-            )));
-        }
-        note(&format!(
-            "results.json, results.csv and the pictures are in {}",
-            args.out.display()
-        ));
-        Ok(())
     }
 }
 

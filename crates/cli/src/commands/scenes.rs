@@ -2,7 +2,7 @@
 
 use crate::{
     error::{CliError, print},
-    table::{Look, add_row, new_table},
+    table::{add_row, new_table},
 };
 use skiagraph_scene::{SceneLibrary, SceneListing};
 
@@ -11,11 +11,7 @@ use skiagraph_scene::{SceneLibrary, SceneListing};
 /// # Errors
 /// Standard output.
 pub fn scenes() -> Result<(), CliError> {
-    let mut table = new_table(
-        Look::Terminal,
-        &["scene", "mesh", "views", "description"],
-        4,
-    );
+    let mut table = new_table(&["scene", "mesh", "views", "description"], 4);
     let listings = SceneLibrary::from_environment().list();
     let missing = listings.iter().any(|listing| !listing.mesh_found);
     for SceneListing {

@@ -1,12 +1,13 @@
 //! Reading what `profile --json` wrote, for `--baseline`.
 
 use crate::{
-    error::{CliError, colour},
+    error::CliError,
+    fault::Fault,
     profile::record::{KIND, Profile, Series},
 };
 use serde::Deserialize;
 use serde_json::Value;
-use skiagraph_graph::{Code, Diagnostic, SourceFile, diagnostics};
+use skiagraph_graph::SourceFile;
 use std::{fs, path::Path};
 
 /// Reads an older profile.
@@ -17,50 +18,17 @@ pub fn read(path: &Path) -> Result<Profile, CliError> {
     let text = fs::read_to_string(path)
         .map_err(|error| CliError::Input(format!("--baseline {}: {error}", path.display())))?;
     let file = SourceFile::new(path.display().to_string(), text);
-    parse(&file).map_err(|fault| fault.in_file(&file))
+    parse(&file).map_err(|fault| shown(fault, &file))
 }
 
-/// What is wrong, at a byte of the text.
-struct Fault {
-    at: usize,
-    what: String,
-}
-
-impl Fault {
-    fn json(text: &str, error: &serde_json::Error) -> Self {
-        // serde_json counts lines and, in bytes, columns from 1; an empty text has column 0.
-        let lines = text.split_inclusive('\n').map(str::len);
-        let before: usize = lines.take(error.line().saturating_sub(1)).sum();
-        let message = error.to_string();
-        let place = format!(" at line {} column {}", error.line(), error.column());
-        Self {
-            at: before + error.column().saturating_sub(1),
-            what: message.strip_suffix(&place).unwrap_or(&message).to_owned(),
-        }
-    }
-
-    /// At the first place where `field` is written, or at the begin of the file.
-    fn at_field(text: &str, field: &str, what: String) -> Self {
-        let at = text.find(field).unwrap_or(0);
-        Self { at, what }
-    }
-
-    fn in_file(self, file: &SourceFile) -> CliError {
-        // Rendering moves a place inside a character or behind the text to where it can be shown.
-        let error = Diagnostic::error(
-            Code::Syntax,
-            format!(
-                "`{}` is no profile to compare with: {}",
-                file.name, self.what
-            ),
-        )
-        .at(file.span(self.at..self.at + 1), "")
-        .help("a baseline is what `skiagraph profile --json FILE` writes");
-        CliError::Diagnostics {
-            rendered: diagnostics::render(&[error], colour()),
-            summary: "the baseline cannot be used".into(),
-        }
-    }
+fn shown(fault: Fault, file: &SourceFile) -> CliError {
+    let help = "a baseline is what `skiagraph profile --json FILE` writes";
+    fault.in_file(
+        file,
+        "profile to compare with",
+        help,
+        "the baseline cannot be used",
+    )
 }
 
 /// What kind of file it is. Any other one lacks many fields, and to name the first that is missing would mislead.
@@ -122,7 +90,7 @@ mod tests {
     fn refused(text: String) -> String {
         let file = SourceFile::new("old.json", text);
         let fault = parse(&file).expect_err("refused");
-        let error = fault.in_file(&file);
+        let error = shown(fault, &file);
         assert_eq!(error.exit_code(), 1);
         error.to_string()
     }

@@ -5,7 +5,7 @@ use crate::{
         baseline::{Comparison, Difference, FEWEST, Ratio, Verdict},
         record::{Conditions, Material, PassProfile, Profile, Series},
     },
-    table::{Look, add_row, bytes, frames, ms, new_table, untimed},
+    table::{add_row, bytes, frames, ms, new_table, untimed},
 };
 
 impl Profile {
@@ -45,7 +45,7 @@ impl Profile {
             "of frame",
             "CPU median",
         ];
-        let mut table = new_table(Look::Terminal, &header, 2);
+        let mut table = new_table(&header, 2);
         for PassProfile {
             name,
             kind,
@@ -145,7 +145,7 @@ fn row(name: &str, kind: &str, gpu: Option<&Series>, share: String, cpu: &Series
 
 fn memory(materials: &[Material]) -> String {
     let header = ["material", "format", "shares memory with", "size", "memory"];
-    let mut table = new_table(Look::Terminal, &header, 3);
+    let mut table = new_table(&header, 3);
     for material in materials {
         let [width, height] = material.size;
         let mut size = match material.format {
@@ -186,7 +186,7 @@ fn comparison(baseline: &Comparison, new: &Profile) -> String {
         "its spread",
         "",
     ];
-    let mut table = new_table(Look::Terminal, &header, 2);
+    let mut table = new_table(&header, 2);
     let mut rows = |clock: &str, name: &str, ratio: Option<&Ratio>| {
         add_row(&mut table, ratio_row(clock, name, ratio), 2);
     };

@@ -1,6 +1,6 @@
 //! The command line as clap reads it. Exit codes: 0 fine, 1 the input is wrong, 2 usage, 3 no usable GPU.
 
-use crate::parse::{self, Assignment, Save, Size};
+use crate::parse::{self, Assignment, Beside, Save, Size};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use skiagraph_reference::OracleMode;
@@ -155,6 +155,10 @@ pub struct CompareArgs {
     /// Keep the runs in DIR/results.json whose graph, shaders, params, scene and view are still the same, and go on with the others.
     #[arg(long)]
     pub resume: bool,
+    /// Published figures to stand beside ours in results.json and in --format markdown, there as (LABEL VALUE): a CSV with the columns
+    /// scene, view, viewport, map_size, preset, quantity, value, source, note. May be repeated.
+    #[arg(long, value_name = "LABEL:FILE.csv")]
+    pub beside: Vec<Beside>,
     /// Which pictures are written.
     #[arg(long, value_enum, default_value_t = Images::All)]
     pub images: Images,

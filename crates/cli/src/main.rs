@@ -22,6 +22,7 @@ mod picture;
 mod preset;
 mod profile;
 mod progress;
+mod published;
 mod reference;
 mod render;
 mod results;

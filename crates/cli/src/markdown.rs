@@ -1,6 +1,7 @@
 //! Results as a document: a header, then for every view and viewport one table of errors and of the times of steps.
 
 use crate::{
+    parse::Beside,
     results::{Measured, Results, Run},
     table::{frames, ms, thousands, times_missing, warning},
 };
@@ -36,7 +37,7 @@ pub fn command_line(arguments: impl Iterator<Item = OsString>) -> String {
 }
 
 /// What all tables have in common. `today` is the date of the runs that are still to be measured, if there are any.
-pub fn header(results: &Results, today: Option<&str>) -> String {
+pub fn header(results: &Results, today: Option<&str>, beside: &[Beside]) -> String {
     let dates = results.runs.iter().map(|run| run.date.as_str());
     let dates: BTreeSet<&str> = dates.chain(today).filter(|date| !date.is_empty()).collect();
     let date = match (dates.first(), dates.last()) {
@@ -60,6 +61,10 @@ pub fn header(results: &Results, today: Option<&str>) -> String {
         format!("oracle: {}", results.oracle),
         "shares are of the pixels that face the light (PFL), in-band pixels included; *wrong* is the final picture".into(),
     ];
+    lines.extend(beside.iter().map(|Beside { label, file }| {
+        let file = file.display().to_string().replace('\\', "/");
+        format!("in parentheses: {label}, published figures of `{file}`")
+    }));
     if let Some(reason) = &results.adapter.gpu_unavailable {
         lines.push(format!("no GPU times: {reason}"));
     }
@@ -81,7 +86,8 @@ pub fn viewport(results: &Results, runs: &[Run]) -> String {
     let Some(first) = runs.first() else {
         return String::new();
     };
-    let mut text = format!("\n{}\n", pixels(first));
+    let mut marks = Marks::default();
+    let mut text = format!("\n{}\n", pixels(first, &mut marks));
     let measured: Vec<(&Run, &Measured)> = runs
         .iter()
         .filter_map(|run| Some((run, run.measured.as_ref()?)))
@@ -91,7 +97,7 @@ pub fn viewport(results: &Results, runs: &[Run]) -> String {
         text.push('\n');
         text.push_str(&header_row(&steps));
         for (run, measured) in &measured {
-            text.push_str(&line(&cells(run, measured, &steps)));
+            text.push_str(&line(&cells(run, measured, &steps, &mut marks)));
         }
     }
     let mut notes: Vec<String> = warning(first).into_iter().collect();
@@ -99,36 +105,37 @@ pub fn viewport(results: &Results, runs: &[Run]) -> String {
         notes.extend(runs.iter().filter_map(times_missing));
     }
     notes.extend(unavailable(runs));
+    notes.extend(marks.notes());
     if !notes.is_empty() {
         text.push_str(&format!("\n{}", list(&notes)));
     }
     text
 }
 
-fn pixels(run: &Run) -> String {
+fn pixels<'a>(run: &'a Run, marks: &mut Marks<'a>) -> String {
     let [width, height] = run.viewport;
     let counts = &run.pixels;
+    let mut count = |count, quantity| marks.beside(thousands(count), run, quantity);
+    let facing_light = count(counts.facing_light, "facing_light");
+    let (lit, shadow) = (count(counts.lit, "lit"), count(counts.shadow, "shadow"));
+    let facing_away = count(counts.facing_away, "facing_away");
     format!(
-        "**{width}×{height}**: PFL {} = lit {} + shadow {}; PnFL {}; background {}; in the band {} ({} % of PFL)",
-        thousands(counts.facing_light),
-        thousands(counts.lit),
-        thousands(counts.shadow),
-        thousands(counts.facing_away),
+        "**{width}×{height}**: PFL {facing_light} = lit {lit} + shadow {shadow}; PnFL {facing_away}; background {}; in the band {} ({} % of PFL)",
         thousands(counts.background),
         thousands(run.band),
         share(run.band, counts.facing_light),
     )
 }
 
-/// The steps of all runs in the order of their first use.
+/// The steps of all runs in the order of their first use, then those that only others have published.
 fn steps<'a>(runs: &[(&'a Run, &'a Measured)]) -> Vec<&'a str> {
+    let passes = runs.iter().flat_map(|(_, measured)| &measured.passes);
+    let published = runs.iter().flat_map(|(run, _)| &run.published);
+    let published = published.filter_map(|figure| figure.quantity.strip_prefix("ms."));
     let mut steps = Vec::new();
-    for (_, measured) in runs {
-        for pass in &measured.passes {
-            let step = step(&pass.name);
-            if !steps.contains(&step) {
-                steps.push(step);
-            }
+    for step in passes.map(|pass| step(&pass.name)).chain(published) {
+        if !steps.contains(&step) && step != "frame" {
+            steps.push(step);
         }
     }
     steps
@@ -157,25 +164,91 @@ fn header_row(steps: &[&str]) -> String {
     format!("{}|---{}|\n", line(&row), "|---:".repeat(row.len() - 1))
 }
 
-fn cells(run: &Run, measured: &Measured, steps: &[&str]) -> Vec<String> {
+fn cells<'a>(
+    run: &'a Run,
+    measured: &Measured,
+    steps: &[&str],
+    marks: &mut Marks<'a>,
+) -> Vec<String> {
     let whole = run.pixels.facing_light;
     let unknown = || "–".to_owned();
     let wrong = &measured.wrong;
+    let mut beside = |ours: String, quantity: &str| marks.beside(ours, run, quantity);
+    let right = share(measured.split.certain_right(), whole);
+    let uncertain = share(measured.uncertain, whole);
+    let certain_wrong = share(measured.split.certain_wrong(), whole);
     let mut row = vec![
         run.preset.clone(),
         run.map_size.map_or_else(unknown, |size| size.to_string()),
-        share(measured.split.certain_right(), whole),
-        share(measured.uncertain, whole),
-        share(measured.split.certain_wrong(), whole),
-        share(wrong.total, whole),
+        beside(right, "certain_right_percent"),
+        beside(uncertain, "uncertain_percent"),
+        beside(certain_wrong, "certain_wrong_percent"),
+        beside(share(wrong.total, whole), "wrong_percent"),
         format!("{} / {}", thousands(wrong.lit), thousands(wrong.shadow)),
-        measured.rays.map_or_else(unknown, thousands),
+        beside(measured.rays.map_or_else(unknown, thousands), "rays"),
     ];
-    let times = steps.iter().map(|step| step_ms(measured, step));
+    let times = steps.iter().map(|step| (*step, step_ms(measured, step)));
     let frame = measured.frame.gpu_ms.map(|spread| spread.median);
-    let times = times.chain([frame]);
-    row.extend(times.map(|time| time.map_or_else(unknown, ms)));
+    let times = times.chain([("frame", frame)]);
+    row.extend(times.map(|(step, time)| {
+        let ours = time.map_or_else(unknown, ms);
+        beside(ours, &format!("ms.{step}"))
+    }));
     row
+}
+
+/// Footnotes of published figures, each once per table.
+#[derive(Default)]
+struct Marks<'a>(Vec<(&'a str, &'a str, &'a str)>);
+
+impl<'a> Marks<'a> {
+    /// Our figure with the published ones in parentheses.
+    fn beside(&mut self, mut ours: String, run: &'a Run, quantity: &str) -> String {
+        let figures = run.published.iter();
+        for figure in figures.filter(|figure| figure.quantity == quantity) {
+            let value = published(figure.value, quantity);
+            let mark = figure.note.as_deref().map_or_else(String::new, |note| {
+                let note = (figure.by.as_str(), figure.source.as_str(), note);
+                let known = self.0.iter().position(|known| *known == note);
+                let index = known.unwrap_or_else(|| {
+                    self.0.push(note);
+                    self.0.len() - 1
+                });
+                superscript(index + 1)
+            });
+            ours.push_str(&format!(" ({} {value}{mark})", figure.by));
+        }
+        ours
+    }
+
+    fn notes(self) -> impl Iterator<Item = String> {
+        let notes = self.0.into_iter().enumerate();
+        notes.map(|(index, (by, source, note))| {
+            format!("{} {by}, {source}: {note}", superscript(index + 1))
+        })
+    }
+}
+
+/// A published figure as it is usually printed: counts in thousands, shares with two decimals at least.
+fn published(value: f64, quantity: &str) -> String {
+    let text = value.to_string();
+    let decimals = text
+        .split_once('.')
+        .map_or(0, |(_, decimals)| decimals.len());
+    match quantity {
+        _ if quantity.starts_with("ms.") => text,
+        _ if quantity.ends_with("_percent") => format!("{value:.*}", decimals.max(2)),
+        _ => thousands(value as u64),
+    }
+}
+
+/// A number in small raised digits.
+fn superscript(number: usize) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let digits = number.to_string().into_bytes().into_iter();
+    digits
+        .map(|digit| DIGITS[usize::from(digit - b'0')])
+        .collect()
 }
 
 /// The sum of the medians of a step's passes; `None` if it has none, or one without a GPU time.
@@ -243,7 +316,8 @@ mod tests {
     #[test]
     fn a_document_has_a_table_per_viewport() {
         let results = sample();
-        let header = header(&results, None);
+        let beside = ["D:docs/d.csv".parse().unwrap()];
+        let header = header(&results, None, &beside);
         // The test runner's own arguments.
         let command = command_line(env::args_os());
         let text = [header, view("main"), viewport(&results, &results.runs)].concat();
@@ -266,11 +340,11 @@ mod tests {
     #[test]
     fn dates_are_a_day_or_a_span() {
         let mut results = sample();
-        assert!(header(&results, None).contains("date: 2026-11-20 (UTC)"));
-        let both = header(&results, Some("2026-11-21"));
+        assert!(header(&results, None, &[]).contains("date: 2026-11-20 (UTC)"));
+        let both = header(&results, Some("2026-11-21"), &[]);
         assert!(both.contains("date: 2026-11-20 to 2026-11-21"), "{both}");
         results.runs.clear();
-        assert!(header(&results, Some("2026-11-21")).contains("date: 2026-11-21"));
+        assert!(header(&results, Some("2026-11-21"), &[]).contains("date: 2026-11-21"));
     }
 
     #[test]
@@ -295,6 +369,18 @@ mod tests {
         let reason = "needs ray queries, \"not\" here";
         let expected = format!("rt_hw, map 512, 1024, is unavailable: {reason}");
         assert_eq!(unavailable(&runs), [expected]);
+    }
+
+    #[test]
+    fn published_figures_keep_their_decimals() {
+        let texts = [
+            published(5.3, "wrong_percent"),
+            published(0.125, "wrong_percent"),
+            published(12.5, "ms.frame"),
+            published(829_652.0, "facing_light"),
+            superscript(120),
+        ];
+        assert_eq!(texts, ["5.30", "0.125", "12.5", "829,652", "¹²⁰"]);
     }
 
     #[test]

@@ -300,6 +300,7 @@ impl Setting<'_> {
             band: counts.band,
             measured: None,
             unavailable: None,
+            published: Vec::new(),
         }
     }
 

@@ -168,6 +168,36 @@ impl FromStr for Save {
     }
 }
 
+/// `--beside [LABEL:]FILE.csv`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Beside {
+    /// How the figures are marked in tables. Without one: the file's name.
+    pub label: String,
+    /// The file.
+    pub file: PathBuf,
+}
+
+impl FromStr for Beside {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (label, file) = match text.split_once(':') {
+            Some((label, file)) if !label.contains(['/', '\\']) => (Some(label), file),
+            _ => (None, text),
+        };
+        let path = PathBuf::from(file);
+        let stem = path.file_stem().map(|stem| stem.to_string_lossy());
+        let label = label.map(str::to_owned);
+        match label.or(stem.map(|stem| stem.into_owned())) {
+            Some(label) if !label.trim().is_empty() && !file.is_empty() => Ok(Self {
+                label: label.trim().into(),
+                file: path,
+            }),
+            _ => Err("expected LABEL:FILE.csv, for example D:published.csv".into()),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -220,6 +250,22 @@ mod tests {
             "v=",
         ] {
             assert!(wrong.parse::<Save>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn published_figures_have_a_label_and_a_file() {
+        let beside = |label: &str, file: &str| {
+            Ok(Beside {
+                label: label.into(),
+                file: file.into(),
+            })
+        };
+        assert_eq!("D:docs/d.csv".parse(), beside("D", "docs/d.csv"));
+        assert_eq!("docs/d.csv".parse(), beside("d", "docs/d.csv"));
+        assert_eq!("./a:b.csv".parse(), beside("a:b", "./a:b.csv"));
+        for wrong in ["", ":d.csv", "D:"] {
+            assert!(wrong.parse::<Beside>().is_err(), "{wrong}");
         }
     }
 

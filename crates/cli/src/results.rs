@@ -97,6 +97,25 @@ pub struct Run {
     /// Why the preset could not run on this adapter; absent where it did.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unavailable: Option<String>,
+    /// What others have published, with `--beside`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub published: Vec<Published>,
+}
+
+/// A figure that somebody else published about such a run or about its view and viewport.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Published {
+    /// Label of who did.
+    pub by: String,
+    /// What it is of: `wrong_percent`, `ms.trace_rays` …
+    pub quantity: String,
+    /// The figure.
+    pub value: f64,
+    /// Where it stands, `table 12`.
+    pub source: String,
+    /// What is wrong with it as it is printed there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
 }
 
 /// What a run measured.
@@ -262,6 +281,14 @@ pub(crate) mod tests {
             band: 12,
             measured: None,
             unavailable: None,
+            published: Vec::new(),
+        };
+        let published = |quantity: &str, value, note: Option<&str>| Published {
+            by: "D".into(),
+            quantity: quantity.into(),
+            value,
+            source: "table 12".into(),
+            note: note.map(Into::into),
         };
         let measured = |name: &str, gpu: bool, rays| Measured {
             certain: CertainCounts {
@@ -341,6 +368,11 @@ pub(crate) mod tests {
             runs: vec![
                 Run {
                     measured: Some(measured("create_shadow_map", true, None)),
+                    published: vec![
+                        published("lit", 60_001.0, None),
+                        published("wrong_percent", 0.5, Some("misprint: 5.0")),
+                        published("ms.trace_rays", 1.25, None),
+                    ],
                     ..run("nsm", Some(1024))
                 },
                 Run {

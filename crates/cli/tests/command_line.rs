@@ -262,6 +262,8 @@ fn wrong_input_has_exit_code_1_and_says_what_there_is() {
         ),
         (&["compare", "nsm", "--map-size", "many"], "invalid value"),
         (&["compare", "crsn"], "no preset `crsn`"),
+        (&["compare", "--beside", "D:nowhere.csv"], "nowhere.csv"),
+        (&["compare", "--beside", "D:other.ron"], "other.ron:1:1"),
     ];
     for (line, part) in faults {
         let output = skiagraph(folder.path(), line);

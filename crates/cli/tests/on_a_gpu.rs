@@ -458,6 +458,32 @@ fn a_document_holds_what_was_measured_and_needs_no_pictures() {
 }
 
 #[test]
+fn published_figures_stand_beside_ours_even_in_kept_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "compare nsm rt --size 16x16 --map-size 8 --frames 1 --out . --format markdown";
+    skiagraph(folder.path(), line);
+    let published = "scene,view,viewport,map_size,preset,quantity,value,source,note
+park,bench_side,16x16,,,facing_light,12345,table 6,
+park,bench_side,16x16,8,nsm,wrong_percent,5.3,table 12,misprint
+park,bench_side,16x16,16,nsm,wrong_percent,6.3,table 12,
+";
+    fs::write(folder.path().join("d.csv"), published).unwrap();
+    let output = skiagraph(folder.path(), &format!("{line} --resume --beside D:d.csv"));
+    let text = String::from_utf8_lossy(&output.stdout);
+    for part in [" (D 12,345) ", " (D 5.30¹) ", "¹ D, table 12: misprint"] {
+        assert!(text.contains(part), "no {part:?} in\n{text}");
+    }
+    assert!(!text.contains("6.3"), "{text}");
+    let results = results(folder.path());
+    let counts = ["nsm", "rt"].map(|preset| {
+        let mut runs = results["runs"].as_array().unwrap().iter();
+        let run = runs.find(|run| run["preset"] == preset).unwrap();
+        run["published"].as_array().unwrap().len()
+    });
+    assert_eq!(counts, [2, 1]);
+}
+
+#[test]
 fn results_of_other_conditions_are_not_resumed() {
     let folder = tempfile::tempdir().unwrap();
     let compare = |rest: &str| {

@@ -10,6 +10,7 @@ use crate::{
     measure::{Method, reference_stem, stem},
     parse::Size,
     preset::{self, Faults, Preset},
+    published,
     reference::Primary,
     render,
     results::{Results, Scene as SceneResult},
@@ -31,6 +32,7 @@ use std::{
 /// Faulty graphs, a scene that cannot be loaded, no GPU, earlier results that cannot be resumed, Ctrl-C, no method that runs on this
 /// adapter.
 pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError> {
+    let published = published::read(&args.beside)?;
     let sources = preset::sources();
     let names = if args.presets.is_empty() {
         skiagraph_passes::presets()
@@ -79,7 +81,7 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
         primary: &primary,
         fingerprint: primary.fingerprint.with_scene(&scene.mesh, &scene.light),
     };
-    let mut comparison = Comparison::new(args, subject, provider, results)?;
+    let mut comparison = Comparison::new(args, subject, provider, published, results)?;
     fs::create_dir_all(&args.out).map_err(|error| CliError::write(&args.out, error))?;
     interrupt::install()?;
     let outcome = comparison.run();

@@ -9,6 +9,7 @@ use crate::{
     measure::{self, Method, Setting, reference_stem},
     picture,
     progress::Step,
+    published::{Row, put_beside},
     reference::{self, Primary},
     render,
     results::{Results, Run},
@@ -67,6 +68,8 @@ pub struct Comparison<'a> {
     provider: SceneProvider,
     /// Built when the first run needs it.
     oracle: OnceCell<Oracle<'a>>,
+    /// What others have published.
+    published: Vec<Row>,
     /// Of each planned run.
     states: Vec<State>,
     /// Holds the runs that are done, in the order in which they were planned.
@@ -91,6 +94,7 @@ impl<'a> Comparison<'a> {
         args: &'a CompareArgs,
         subject: Subject<'a>,
         provider: SceneProvider,
+        published: Vec<Row>,
         results: Results,
     ) -> Result<Self, CliError> {
         let planned = subject.planned();
@@ -99,6 +103,7 @@ impl<'a> Comparison<'a> {
             subject,
             provider,
             oracle: OnceCell::new(),
+            published,
             states: planned.iter().map(|_| State::Open).collect(),
             results,
             broken: Vec::new(),
@@ -125,7 +130,11 @@ impl<'a> Comparison<'a> {
         if format == Format::Markdown {
             let is_done = self.before(self.states.len()) == self.states.len();
             let today = (!is_done).then(date::today);
-            print(&markdown::header(&self.results, today.as_deref()))?;
+            print(&markdown::header(
+                &self.results,
+                today.as_deref(),
+                &self.args.beside,
+            ))?;
         }
         let mut first = 0;
         for view in self.subject.views {
@@ -251,7 +260,8 @@ impl<'a> Comparison<'a> {
         (self.args.images == Images::All).then_some(&self.args.out)
     }
 
-    fn done(&mut self, place: usize, run: Run) {
+    fn done(&mut self, place: usize, mut run: Run) {
+        put_beside(&self.published, &self.results, &mut run);
         let index = self.before(place);
         self.results.runs.insert(index, run);
         self.states[place] = State::Done;
@@ -308,6 +318,11 @@ impl<'a> Comparison<'a> {
             Images::All => "results.json, results.csv and the pictures",
             Images::None => "results.json and results.csv",
         };
+        if !args.beside.is_empty() && results.runs.iter().all(|run| run.published.is_empty()) {
+            note(
+                "--beside has no effect: none of its figures is of these scenes, views, viewports, maps and presets",
+            );
+        }
         note(&format!("{files} are in {}", args.out.display()));
         let runs = results.runs.iter().filter_map(|run| run.measured.as_ref());
         let bare = runs.filter(|run| run.images.is_none()).count();

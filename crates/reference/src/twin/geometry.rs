@@ -69,8 +69,11 @@ impl TexelTriangle {
             };
         }
         let share = to_point.dot(edge) / (length * length);
-        let lever = (share.abs() + (1.0 - share).abs()) / (1.0 - 2.0 * noise / length);
-        winding * edge.perp_dot(to_point) / length + leeway * lever
+        let distance = winding * edge.perp_dot(to_point) / length;
+        // The edge turns, too, which takes the turn's cosine from the distance.
+        let turn = 2.0 * noise / (length - 2.0 * noise);
+        let lever = (share.abs() + (1.0 - share).abs()) * (1.0 + turn);
+        distance + leeway * lever + leeway.signum() * distance.abs() * turn * turn
     }
 
     /// Evaluates a condition on the inward distances from all edges for the triangle's winding, or for both where leeway leaves

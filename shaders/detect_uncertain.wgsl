@@ -33,7 +33,8 @@ fn compare(receiver: vec3<f32>) -> u32 {
     let size = textureDimensions(big);
     let place = light_texel(receiver, f32(size.x));
     let error = rounding(receiver);
-    if any(place.xy < vec2(0.0)) || any(place.xy >= vec2<f32>(size)) || error.x * f32(size.x) > SLACK {
+    // Half of the slack is the corners'.
+    if any(place.xy < vec2(0.0)) || any(place.xy >= vec2<f32>(size)) || error.x * f32(size.x) > 0.5 * SLACK {
         return STATUS_UNCERTAIN;
     }
     let texel = vec2<u32>(place.xy);

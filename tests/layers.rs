@@ -49,18 +49,26 @@ fn choice(word: &str) -> ParamValue {
 /// The layers `big` and `small` of a preset.
 fn layers(preset: &str, scene: &Arc<Scene>, params: &[(&str, ParamValue)]) -> [Vec<f32>; 2] {
     let mut provider = provider(scene, &scene.views[0], VIEWPORT);
-    let plan = plan(&format!("pipelines/{preset}.ron"), &provider, VIEWPORT, |request| {
-        set(request, params);
-        for layer in ["big", "small"] {
-            request.captures.push(Capture {
-                material: layer.into(),
-                after: None,
-            });
-        }
-    });
+    let plan = plan(
+        &format!("pipelines/{preset}.ron"),
+        &provider,
+        VIEWPORT,
+        |request| {
+            set(request, params);
+            for layer in ["big", "small"] {
+                request.captures.push(Capture {
+                    material: layer.into(),
+                    after: None,
+                });
+            }
+        },
+    );
     let report = run(plan, &mut provider, &["big", "small"]);
     ["big", "small"].map(|layer| {
-        let found = report.readbacks.iter().find(|readback| readback.name == layer);
+        let found = report
+            .readbacks
+            .iter()
+            .find(|readback| readback.name == layer);
         match &found.unwrap().content {
             Content::Texture { bytes, .. } => bytemuck::pod_collect_to_vec(bytes),
             Content::Buffer(_) => panic!("a layer is a texture"),
@@ -166,10 +174,8 @@ fn behind_the_shrunk_layer_and_the_ring_layer_is_no_hole() {
                     continue;
                 }
                 covered += 1;
-                let corner = DVec2::new(
-                    (index % MAP as usize) as f64,
-                    (index / MAP as usize) as f64,
-                );
+                let corner =
+                    DVec2::new((index % MAP as usize) as f64, (index / MAP as usize) as f64);
                 for turn in 0..24 {
                     let mut within = DVec2::new(random.unit().into(), random.unit().into());
                     if turn < 8 {
@@ -187,7 +193,10 @@ fn behind_the_shrunk_layer_and_the_ring_layer_is_no_hole() {
                         let depth = sides.dot(DVec3::new(a.z, b.z, c.z)) / area;
                         inside && area != 0.0 && depth <= f64::from(stored) + 1e-3
                     });
-                    assert!(blocked, "{name}, {preset}: a hole at {point} before {stored}");
+                    assert!(
+                        blocked,
+                        "{name}, {preset}: a hole at {point} before {stored}"
+                    );
                 }
             }
         }
@@ -208,9 +217,18 @@ fn one_above_floor(corners: [[f32; 3]; 3]) -> Mesh {
     above_floor(corners.map(Vec3::from).to_vec(), vec![[0, 1, 2]])
 }
 
-fn judge(preset: &str, scene: &Arc<Scene>, provider: &mut dyn Provider, params: &[(&str, ParamValue)]) -> Statistics {
+fn judge(
+    preset: &str,
+    scene: &Arc<Scene>,
+    provider: &mut dyn Provider,
+    params: &[(&str, ParamValue)],
+) -> Statistics {
     let path = format!("pipelines/{preset}.ron");
-    let graph = skiagraph_graph::Graph::load(&path, &skiagraph_passes::registry(), &skiagraph_passes::EmbeddedSources);
+    let graph = skiagraph_graph::Graph::load(
+        &path,
+        &skiagraph_passes::registry(),
+        &skiagraph_passes::EmbeddedSources,
+    );
     let mut request = PlanRequest::new(VIEWPORT, provider);
     set(&mut request, params);
     request.captures.push(Capture {
@@ -224,7 +242,13 @@ fn judge(preset: &str, scene: &Arc<Scene>, provider: &mut dyn Provider, params: 
     let camera = scene.views[0].camera(VIEWPORT);
     let primitives = values(&report, "primitive");
     let reference = Oracle::new(&scene.mesh)
-        .shade(&camera, &scene.light, &primitives, OracleMode::Exact, Progress::default())
+        .shade(
+            &camera,
+            &scene.light,
+            &primitives,
+            OracleMode::Exact,
+            Progress::default(),
+        )
         .unwrap();
     let (visibility, status) = (values(&report, "visibility"), values(&report, "status"));
     Statistics::judged(&visibility, &status, &reference).unwrap()
@@ -235,16 +259,40 @@ const STRAIGHT_DOWN: DVec3 = DVec3::NEG_Y;
 /// Degenerate casters over a floor, each with what must come of it.
 fn degenerate() -> Vec<(&'static str, Mesh)> {
     vec![
-        ("edge-on", one_above_floor([[-3.0, 1.0, 0.0], [3.0, 1.0, 0.0], [0.0, 3.0, 0.0]])),
-        ("zero area", one_above_floor([[-3.0, 2.0, -1.0], [0.0, 2.0, 0.0], [3.0, 2.0, 1.0]])),
+        (
+            "edge-on",
+            one_above_floor([[-3.0, 1.0, 0.0], [3.0, 1.0, 0.0], [0.0, 3.0, 0.0]]),
+        ),
+        (
+            "zero area",
+            one_above_floor([[-3.0, 2.0, -1.0], [0.0, 2.0, 0.0], [3.0, 2.0, 1.0]]),
+        ),
         ("a point", one_above_floor([[0.5, 2.0, 0.5]; 3])),
-        ("shrunk away", one_above_floor([[0.0, 2.0, 0.0], [0.1, 2.0, 0.0], [0.0, 2.0, 0.1]])),
-        ("needle", one_above_floor([[-5.0, 2.0, -3.0], [5.0, 1.0, 3.0], [5.0, 1.0, 3.01]])),
+        (
+            "shrunk away",
+            one_above_floor([[0.0, 2.0, 0.0], [0.1, 2.0, 0.0], [0.0, 2.0, 0.1]]),
+        ),
+        (
+            "needle",
+            one_above_floor([[-5.0, 2.0, -3.0], [5.0, 1.0, 3.0], [5.0, 1.0, 3.01]]),
+        ),
         // Shrunk by more than its inner radius, the moved edges meet on the wrong sides.
-        ("inside out", one_above_floor([[-4.0, 2.0, 0.0], [4.0, 2.0, 0.3], [4.0, 2.0, -0.3]])),
-        ("seen from behind", one_above_floor([[-2.0, 2.0, -2.0], [2.0, 2.0, -2.0], [0.0, 2.0, 2.0]])),
-        ("steep", one_above_floor([[-2.0, 0.1, -2.0], [-1.9, 6.0, 2.0], [2.0, 3.0, -2.0]])),
-        ("standing on the floor", one_above_floor([[-2.0, 0.0, 0.0], [2.0, 0.0, 0.5], [0.0, 3.0, -2.0]])),
+        (
+            "inside out",
+            one_above_floor([[-4.0, 2.0, 0.0], [4.0, 2.0, 0.3], [4.0, 2.0, -0.3]]),
+        ),
+        (
+            "seen from behind",
+            one_above_floor([[-2.0, 2.0, -2.0], [2.0, 2.0, -2.0], [0.0, 2.0, 2.0]]),
+        ),
+        (
+            "steep",
+            one_above_floor([[-2.0, 0.1, -2.0], [-1.9, 6.0, 2.0], [2.0, 3.0, -2.0]]),
+        ),
+        (
+            "standing on the floor",
+            one_above_floor([[-2.0, 0.0, 0.0], [2.0, 0.0, 0.5], [0.0, 3.0, -2.0]]),
+        ),
     ]
 }
 
@@ -255,11 +303,17 @@ fn degenerate_casters_leave_no_certain_pixel_wrong() {
             for map_size in [32, 100] {
                 let scene = scene(mesh.clone(), STRAIGHT_DOWN);
                 let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
-                let params = [("map_size", ParamValue::U32(map_size)), ("cull", choice("none"))];
+                let params = [
+                    ("map_size", ParamValue::U32(map_size)),
+                    ("cull", choice("none")),
+                ];
                 let counts = judge(preset, &scene, &mut provider, &params);
                 let outside = counts.wrong.total - counts.wrong.in_band;
                 assert_eq!(outside, 0, "{name}, {preset}, map {map_size}: {counts:?}");
-                assert!(counts.pixels.facing_light > 5000 && counts.band * 200 < counts.pixels.facing_light);
+                assert!(
+                    counts.pixels.facing_light > 5000
+                        && counts.band * 200 < counts.pixels.facing_light
+                );
             }
         }
     }
@@ -272,13 +326,26 @@ fn a_caster_that_vanishes_when_shrunk_stays_in_the_grown_layer() {
         let params = [("map_size", ParamValue::U32(MAP)), ("cull", choice("none"))];
         let [big, small] = layers("crsm", &scene, &params);
         // The floor is the farthest: in `big` all that is nearer is the caster.
-        let (floor, above) = (big.iter().copied().fold(0.0, f32::max), |layer: &[f32]| {
-            layer.iter().filter(|&&depth| depth < 0.95).count()
-        });
+        let (floor, above) = (
+            big.iter().copied().fold(0.0, f32::max),
+            |layer: &[f32]| layer.iter().filter(|&&depth| depth < 0.95).count(),
+        );
         assert!(floor > 0.99, "{name}: the floor is at {floor}");
         assert!(above(&big) > 0, "{name} is gone from the grown layer");
-        let vanishes = ["edge-on", "zero area", "a point", "shrunk away", "needle", "inside out"];
-        assert_eq!(above(&small) == 0, vanishes.contains(&name), "{name}: {}", above(&small));
+        let vanishes = [
+            "edge-on",
+            "zero area",
+            "a point",
+            "shrunk away",
+            "needle",
+            "inside out",
+        ];
+        assert_eq!(
+            above(&small) == 0,
+            vanishes.contains(&name),
+            "{name}: {}",
+            above(&small)
+        );
     }
 }
 
@@ -303,11 +370,13 @@ impl Provider for OtherLight {
         if name != LIGHT {
             return self.0.build(name, device, queue);
         }
-        Ok(device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some(name),
-            contents: bytemuck::bytes_of(&self.1),
-            usage: wgpu::BufferUsages::UNIFORM,
-        }))
+        Ok(
+            device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some(name),
+                contents: bytemuck::bytes_of(&self.1),
+                usage: wgpu::BufferUsages::UNIFORM,
+            }),
+        )
     }
 }
 
@@ -322,8 +391,15 @@ fn what_crosses_the_near_plane_still_casts() {
         let inner = provider(&scene, &scene.views[0], VIEWPORT);
         let params = [("map_size", ParamValue::U32(MAP)), ("cull", choice("none"))];
         let counts = judge(preset, &scene, &mut OtherLight(inner, light), &params);
-        assert_eq!(counts.wrong.total - counts.wrong.in_band, 0, "{preset}: {counts:?}");
-        assert!(counts.certain.shadow > 500 && counts.pixels.shadow > 1000, "{preset}: {counts:?}");
+        assert_eq!(
+            counts.wrong.total - counts.wrong.in_band,
+            0,
+            "{preset}: {counts:?}"
+        );
+        assert!(
+            counts.certain.shadow > 500 && counts.pixels.shadow > 1000,
+            "{preset}: {counts:?}"
+        );
     }
 }
 
@@ -346,16 +422,31 @@ fn a_thin_neighbour_deceives_crsma_and_not_the_ring() {
     };
     let [crsm, crsma, full] = ["crsm", "crsma", "crsma_full"].map(count);
     assert_eq!((crsm.certain, full.certain), (0, 0));
-    assert!(crsma.certain > 10 && crsma.shadow == crsma.certain + crsma.in_band, "{crsma:?}");
+    assert!(
+        crsma.certain > 10 && crsma.shadow == crsma.certain + crsma.in_band,
+        "{crsma:?}"
+    );
 }
 
 #[test]
 fn no_uncertain_pixel_is_no_ray() {
     // A floor alone, its underside left out: nothing is uncertain.
     let scene = scene(above_floor(vec![], vec![]), STRAIGHT_DOWN);
-    for preset in ["hybrid_pcf", "crsm", "crsm_single", "crsm_depth", "crsma", "crsma_full"] {
+    for preset in [
+        "hybrid_pcf",
+        "crsm",
+        "crsm_single",
+        "crsm_depth",
+        "crsma",
+        "crsma_full",
+    ] {
         let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
-        let plan = plan(&format!("pipelines/{preset}.ron"), &provider, VIEWPORT, |_| ());
+        let plan = plan(
+            &format!("pipelines/{preset}.ron"),
+            &provider,
+            VIEWPORT,
+            |_| (),
+        );
         let report = run(plan, &mut provider, &["ray_count", "status"]);
         assert_eq!(values(&report, "ray_count"), [0], "{preset}");
         assert!(values(&report, "status").contains(&2), "{preset}");

@@ -97,8 +97,9 @@ fn texel_depth(triangle: LightTriangle, centre: vec2<f32>, depth: u32, towards: 
     if !(height >= LOWEST) {
         return saturate(extreme);
     }
-    // Corners that are off by the slack tilt the plane, the more so the lower the triangle.
-    let reach = 0.5 + SLACK * (1.0 + 2.0 / height);
+    // Corners that are off by the slack tilt the plane, the more so the lower the triangle; and the area of a long one is a small
+    // difference of large products, 4 ulp of the longest edge's square.
+    let reach = 0.5 + SLACK * (1.0 + 2.0 / height) + 2.3841858e-7 * longest * longest / height;
     let bound = plane + towards * reach * (abs(slope.x) + abs(slope.y));
     return saturate(clamp(bound, least, greatest));
 }

@@ -189,14 +189,17 @@ proptest! {
     #[test]
     fn leeway_covers_every_displacement(
         triangle in triangles(), off in prop::array::uniform3([-1.0..1.0f64, -1.0..1.0, -1.0..1.0]),
-        n in 0.0..2.0f64, kept in any::<[bool; 3]>(), size in prop_oneof![Just(1e-4), Just(5e-3)],
+        aim in 0..3usize, short in -3.0..3.0f64, kept in any::<[bool; 3]>(), size in prop_oneof![Just(1e-4), Just(5e-3)],
     ) {
         let mut moved = triangle;
         for (corner, off) in moved.corners.iter_mut().zip(off) {
             *corner += DVec3::from(off) * DVec3::new(size / SQRT_2, size / SQRT_2, 1e-6);
         }
         for centre in texels(&triangle) {
-            let cell = n * SQRT_2;
+            // As much as the centre's distance from an edge, give or take what is at stake.
+            let (p, q) = (triangle.corners[aim].truncate(), triangle.corners[(aim + 1) % 3].truncate());
+            let distance = (q - p).perp_dot(centre - p).abs() / (q - p).length().max(1e-9);
+            let cell = (distance + short * size).clamp(0.0, 1e3);
             let all = |t: &TexelTriangle, leeway| [
                 t.grown_covers(centre, cell, leeway),
                 t.shrunk_covers(centre, cell, leeway),

@@ -19,6 +19,9 @@ pub struct TexelTriangle {
     pub corners: [DVec3; 3],
 }
 
+/// What f32 may lose of an area, in shares of the longest edge's square: 4 ulp, as the shaders allow for.
+const AREA_ROUNDING: f64 = 2.384_185_8e-7;
+
 impl TexelTriangle {
     /// Twice the signed area; negative if the triangle faces the light.
     pub fn area(&self) -> f64 {
@@ -69,8 +72,11 @@ impl TexelTriangle {
             };
         }
         let share = to_point.dot(edge) / (length * length);
-        let lever = (share.abs() + (1.0 - share).abs()) / (1.0 - 2.0 * noise / length);
-        winding * edge.perp_dot(to_point) / length + leeway * lever
+        let distance = winding * edge.perp_dot(to_point) / length;
+        // The edge turns, too, which takes the turn's cosine from the distance.
+        let turn = 2.0 * noise / (length - 2.0 * noise);
+        let lever = (share.abs() + (1.0 - share).abs()) * (1.0 + turn);
+        distance + leeway * lever + leeway.signum() * distance.abs() * turn * turn
     }
 
     /// Evaluates a condition on the inward distances from all edges for the triangle's winding, or for both where leeway leaves
@@ -172,7 +178,9 @@ impl TexelTriangle {
             match depth {
                 Depth::Plane => plane + error.along(doubt),
                 Depth::Conservative => {
-                    let reach = 0.5 + SLACK * (1.0 + 2.0 / height);
+                    let reach = 0.5
+                        + SLACK * (1.0 + 2.0 / height)
+                        + AREA_ROUNDING * longest * longest / height;
                     let steepness = slope.x.abs() + slope.y.abs();
                     let tilt = steepness * (2.0 * reach * height_error / height);
                     let bound = plane + towards * reach * steepness + error.along(doubt + tilt);

@@ -73,7 +73,7 @@ pub fn resume(
     })?;
     let differences = differences(&earlier, now);
     if !differences.is_empty() {
-        return Err(refused(&name, "other conditions", &differences));
+        return Err(refused(&name, "was measured under other conditions", &differences));
     }
     let foreign: Vec<String> = earlier
         .runs
@@ -84,7 +84,7 @@ pub fn resume(
     if !foreign.is_empty() {
         return Err(refused(
             &name,
-            "more than this comparison, and it would be lost",
+            "holds runs that this comparison has not, and they would be lost",
             &foreign,
         ));
     }
@@ -120,7 +120,7 @@ fn refused(name: &str, what: &str, lines: &[String]) -> CliError {
         shown.push_str(&format!("\n  and {} more", lines.len() - MOST_LINES));
     }
     CliError::Input(format!(
-        "--resume: {name} holds {what}\n  {shown}\n  ask for the same, {WAY_OUT}"
+        "--resume: {name} {what}\n  {shown}\n  ask for the same, {WAY_OUT}"
     ))
 }
 

@@ -139,8 +139,7 @@ fn only_what_asks_for_neighbours_needs_adjacency() {
     for preset in presets() {
         let needs = plan(&preset.path, None)
             .provided()
-            .iter()
-            .any(|&name| name == "scene.adjacency");
+            .contains(&"scene.adjacency");
         let asks = ["crsma", "crsma_full"].contains(&preset.name.as_str());
         assert_eq!(needs, asks, "{}", preset.name);
     }
@@ -153,8 +152,7 @@ fn hardware_that_is_not_there_is_one_diagnostic() {
             [64, 64],
             &SceneProvider::new(Arc::new(empty())),
         ))
-        .err()
-        .expect("wgpu's default features have no conservative rasterisation");
+        .expect_err("wgpu's default features have no conservative rasterisation");
     assert_eq!(errors.iter().count(), 1, "{errors}");
     let text = errors.to_string();
     assert!(text.contains("CONSERVATIVE_RASTERIZATION"), "{text}");

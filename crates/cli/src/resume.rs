@@ -73,7 +73,11 @@ pub fn resume(
     })?;
     let differences = differences(&earlier, now);
     if !differences.is_empty() {
-        return Err(refused(&name, "was measured under other conditions", &differences));
+        return Err(refused(
+            &name,
+            "was measured under other conditions",
+            &differences,
+        ));
     }
     let foreign: Vec<String> = earlier
         .runs

@@ -146,6 +146,9 @@ pub struct CompareArgs {
     /// Frames before the timed ones.
     #[arg(long, default_value_t = 2, value_name = "N", value_parser = clap::value_parser!(u32).range(..=MOST_FRAMES), allow_negative_numbers = true)]
     pub warmup: u32,
+    /// Timed frames in which only the camera moves, so that passes may be skipped: as many as --frames, 0 for none.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=MOST_FRAMES), allow_negative_numbers = true)]
+    pub cached_frames: Option<u32>,
     /// What is right: `exact` (own primitive excluded, no offset) or `offset:LENGTH` (ray origin moved towards the light).
     #[arg(long, default_value = "exact", value_name = "MODE")]
     pub oracle: OracleMode,

@@ -118,6 +118,8 @@ pub struct Setting<'a> {
     pub frames: u32,
     /// Frames before them.
     pub warmup: u32,
+    /// Timed frames in which only the camera moves.
+    pub cached_frames: u32,
     /// Folder for pictures, if there are to be any.
     pub pictures: Option<&'a Path>,
 }
@@ -188,7 +190,7 @@ impl Setting<'_> {
             |frames| step.reach(frames),
         )?;
         let Some(times) = times else { return Ok(None) };
-        let cached = render::cached(self.gpu, &mut executor, self.frames)?;
+        let cached = render::cached(self.gpu, &mut executor, self.cached_frames)?;
         // Only now: a readback would be timed, too.
         let contents = render::read(self.gpu, &mut executor, &Outputs::names(method.preset))?;
         Ok(Some(Executed {

@@ -196,6 +196,9 @@ pub fn cached(
     executor: &mut Executor,
     frames: u32,
 ) -> Result<Option<Cached>, ExecuteError> {
+    if frames == 0 {
+        return Ok(None);
+    }
     let first = sample(gpu, executor, Work::CameraMoves, 0, 1, |_| {})?;
     let Some(TimedFrame { skipped, .. }) =
         first.into_iter().find(|frame| !frame.skipped.is_empty())

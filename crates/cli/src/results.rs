@@ -22,6 +22,8 @@ pub struct Results {
     pub frames: u32,
     /// Frames before the timed ones.
     pub warmup: u32,
+    /// Timed frames in which only the camera moves, per run.
+    pub cached_frames: u32,
     /// One entry per view, viewport, preset and map size, in this order.
     pub runs: Vec<Run>,
 }
@@ -365,6 +367,7 @@ pub(crate) mod tests {
             oracle: "exact".into(),
             frames: 10,
             warmup: 2,
+            cached_frames: 10,
             runs: vec![
                 Run {
                     measured: Some(measured("create_shadow_map", true, None)),

@@ -150,6 +150,7 @@ fn differences(earlier: &Results, now: &Results) -> Vec<String> {
             ("oracle", results.oracle.clone()),
             ("frames", results.frames.to_string()),
             ("warmup", results.warmup.to_string()),
+            ("cached frames", results.cached_frames.to_string()),
         ]
     };
     let pairs = facts(earlier).into_iter().zip(facts(now));
@@ -249,7 +250,7 @@ mod tests {
     #[test]
     fn other_conditions_are_named_with_the_way_out() {
         type Change = fn(&mut Results);
-        let changes: [(Change, &str); 7] = [
+        let changes: [(Change, &str); 8] = [
             (|now| now.program = "x".into(), "program: there"),
             (|now| now.adapter.driver = "x".into(), "adapter: there"),
             (
@@ -260,6 +261,10 @@ mod tests {
             (|now| now.oracle = "offset:1".into(), "here offset:1"),
             (|now| now.frames = 7, "frames: there 10, here 7"),
             (|now| now.warmup = 0, "warmup: there 2, here 0"),
+            (
+                |now| now.cached_frames = 0,
+                "cached frames: there 10, here 0",
+            ),
         ];
         for (change, part) in changes {
             let error = kept(|now, _| change(now)).unwrap_err();

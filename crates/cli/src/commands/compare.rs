@@ -69,6 +69,7 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
         oracle: args.oracle.to_string(),
         frames: args.frames,
         warmup: args.warmup,
+        cached_frames: args.cached_frames.unwrap_or(args.frames),
         runs: Vec::new(),
     };
     let viewports: Vec<[u32; 2]> = unique(&args.size).iter().map(|size| size.0).collect();

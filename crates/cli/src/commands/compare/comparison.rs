@@ -182,6 +182,7 @@ impl<'a> Comparison<'a> {
             reference: &reference,
             frames: self.args.frames,
             warmup: self.args.warmup,
+            cached_frames: self.results.cached_frames,
             pictures: self.pictures(),
         };
         for (place, method) in (first..).zip(methods) {

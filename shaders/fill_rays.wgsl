@@ -5,6 +5,7 @@
 #import "shared/light.wgsl"
 #import "shared/ray.wgsl"
 #import "shared/ids.wgsl"
+#import "shared/predicates.wgsl"
 
 struct Params {
     per_pixel: u32,
@@ -52,14 +53,8 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>, @builtin(local_invocat
     let receiver = textureLoad(position, pixel, 0).xyz;
     // The background has no receiver: its ray is empty.
     let reach = select(light.reach, -1.0, id == NO_PRIMITIVE);
-    rays[slot] = Ray(receiver, own_rounding(receiver), light.towards, reach);
+    rays[slot] = Ray(receiver, own_rounding(receiver, camera.eye), light.towards, reach);
     ray_primitives[slot] = id;
     // Rays of pixels that ask nothing cost their time and change no pixel.
     ray_pixels[slot] = select(NO_PIXEL, pixel.y * viewport.x + pixel.x, asks);
-}
-
-// What rounding may have moved the receiver by, half an ulp of its distance to the origin and to the eye: a surface that is met
-// sooner is the receiver's own, beyond an edge.
-fn own_rounding(receiver: vec3<f32>) -> f32 {
-    return 5.9604645e-8 * (length(receiver) + length(receiver - camera.eye));
 }

@@ -96,16 +96,6 @@ fn patch_depth(vertex: Vertex) -> f32 {
     return select(NOT_COVERED, depth, containing == 1u);
 }
 
-// Whether an edge meets the texel; errs towards yes. Separating axes of a segment and a square.
-fn meets(p: vec2<f32>, q: vec2<f32>, centre: vec2<f32>) -> bool {
-    let half = 0.5 + SLACK;
-    if any(min(p, q) > centre + half) || any(max(p, q) < centre - half) {
-        return false;
-    }
-    let edge = q - p;
-    return abs(cross_2d(edge, centre - p)) <= half * (abs(edge.x) + abs(edge.y));
-}
-
 // Whether two triangles have a corner in common.
 fn touch(first: u32, second: u32) -> bool {
     for (var corner = 0u; corner < 3u; corner++) {

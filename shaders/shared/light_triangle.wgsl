@@ -3,6 +3,7 @@
 
 #import "shared/light.wgsl"
 #import "shared/geometry.wgsl"
+#import "shared/predicates.wgsl"
 
 struct LightTriangle {
     a: vec3<f32>,
@@ -11,10 +12,6 @@ struct LightTriangle {
     // Twice the signed area in texels: negative if the triangle faces the light.
     area: f32,
 }
-
-// What rounding, of f32 coordinates and of rasterisers that snap vertices, may move a corner or a receiver by, in texels: a
-// texel is taken this much larger than it is.
-const SLACK: f32 = 0.0078125;
 
 // Words of the params `cull` and `depth`.
 const CULL_FRONT: u32 = 1u;
@@ -35,10 +32,6 @@ fn texel_clip(texel: vec2<f32>, map_size: f32) -> vec4<f32> {
     return vec4(across.x, -across.y, 0.5, 1.0);
 }
 
-fn cross_2d(p: vec2<f32>, q: vec2<f32>) -> f32 {
-    return p.x * q.y - p.y * q.x;
-}
-
 fn light_triangle(primitive: u32, map_size: f32) -> LightTriangle {
     let a = light_texel(corner_position(3u * primitive), map_size);
     let b = light_texel(corner_position(3u * primitive + 1u), map_size);
@@ -49,16 +42,6 @@ fn light_triangle(primitive: u32, map_size: f32) -> LightTriangle {
 // Whether the triangle is in the map at all. One seen edge-on, n . l = 0, is.
 fn casts(triangle: LightTriangle, cull: u32) -> bool {
     return !(cull == CULL_FRONT && triangle.area < 0.0) && !(cull == CULL_BACK && triangle.area > 0.0);
-}
-
-// Inward distance of a point from the line of an edge, in texels; an edge without length constrains nothing.
-fn inward_distance(p: vec2<f32>, q: vec2<f32>, point: vec2<f32>, area: f32) -> f32 {
-    let edge = q - p;
-    let length_squared = dot(edge, edge);
-    if length_squared == 0.0 {
-        return 3e38;
-    }
-    return select(1.0, -1.0, area < 0.0) * cross_2d(edge, point - p) * inverseSqrt(length_squared);
 }
 
 // Of the edges ab, bc and ca.

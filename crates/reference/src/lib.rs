@@ -30,6 +30,7 @@ mod band;
 mod error;
 pub mod image;
 pub mod oracle;
+pub mod predicates;
 mod ray;
 mod receiver;
 pub mod statistics;

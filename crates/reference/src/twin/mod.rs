@@ -24,7 +24,7 @@ pub use ring::Patch;
 pub use status::{Classification, Maps};
 
 /// Half of what a texel is taken larger than it is, per axis, for all rounding (δ): shaders/shared/light_triangle.wgsl.
-pub const SLACK: f64 = 1.0 / 128.0;
+pub const SLACK: f64 = crate::predicates::SLACK as f64;
 
 /// Corners nearer to an edge's line than this, in texels, are on no side of it.
 pub const CLEAR_OF_EDGE: f64 = 1.0 / 512.0;

@@ -1,0 +1,297 @@
+//! Twins of `shaders/shared/predicates.wgsl` in f32, under every arithmetic that WGSL allows a compiler: what the bounds stated there are
+//! tested with. Points are (x, y); names are the shader's.
+
+/// How a·b − c·d is evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arithmetic {
+    /// Every operation rounded.
+    Rounded,
+    /// The first product goes into the difference unrounded.
+    FirstFused,
+    /// The second one does.
+    SecondFused,
+    /// Every operation rounded, subnormal results flushed to zero.
+    Flushed,
+}
+
+/// Half an ulp of 1.
+pub const HALF_ULP: f32 = 1.0 / (1u32 << 24) as f32;
+
+/// Share of a product below which the difference of two counts as 0.
+pub const EDGE_ERROR: f32 = 4.0 * HALF_ULP;
+
+/// By how much a texel is taken larger than it is, on every side.
+pub const SLACK: f32 = 1.0 / 128.0;
+
+type Point = [f32; 2];
+
+impl Arithmetic {
+    /// All of them.
+    pub const ALL: [Self; 4] = [
+        Self::Rounded,
+        Self::FirstFused,
+        Self::SecondFused,
+        Self::Flushed,
+    ];
+
+    fn flush(self, value: f32) -> f32 {
+        if self == Self::Flushed && value.is_subnormal() {
+            0.0
+        } else {
+            value
+        }
+    }
+
+    /// a · b − c · d.
+    fn products(self, [a, b]: Point, [c, d]: Point) -> f32 {
+        match self {
+            Self::FirstFused => a.mul_add(b, -(c * d)),
+            Self::SecondFused => (-c).mul_add(d, a * b),
+            Self::Rounded | Self::Flushed => self.flush(self.flush(a * b) - self.flush(c * d)),
+        }
+    }
+
+    /// `cross_2d`.
+    pub fn cross(self, p: Point, q: Point) -> f32 {
+        self.products([p[0], q[1]], [p[1], q[0]])
+    }
+
+    /// `edge_area`: twice the signed area of the origin, p and q, 0 where rounding could decide its sign.
+    pub fn edge_area(self, p: Point, q: Point) -> f32 {
+        let swap = q[0] < p[0] || (q[0] == p[0] && q[1] < p[1]);
+        let (lesser, greater) = if swap { (q, p) } else { (p, q) };
+        let area = self.cross(lesser, greater);
+        if area.abs() > EDGE_ERROR * self.flush(lesser[0] * greater[1]).abs() {
+            if swap { -area } else { area }
+        } else {
+            0.0
+        }
+    }
+
+    /// Whether a triangle around the origin, edges and corners included, would be hit: `intersect` of `trace_rays.wgsl` but for the distance.
+    pub fn hits(self, [a, b, c]: [Point; 3]) -> bool {
+        let weights = [(b, c), (c, a), (a, b)].map(|(p, q)| self.edge_area(p, q));
+        if weights.iter().any(|&w| w < 0.0) && weights.iter().any(|&w| w > 0.0) {
+            return false;
+        }
+        if weights.contains(&0.0) && !surrounds([a, b, c]) {
+            return false;
+        }
+        weights.iter().any(|&w| w != 0.0)
+    }
+
+    /// `meets`: whether an edge meets the texel around `centre`, taken larger by [`SLACK`].
+    pub fn meets(self, p: Point, q: Point, centre: Point) -> bool {
+        let half = 0.5 + SLACK;
+        let beyond = |axis: usize| {
+            p[axis].min(q[axis]) > centre[axis] + half || p[axis].max(q[axis]) < centre[axis] - half
+        };
+        if beyond(0) || beyond(1) {
+            return false;
+        }
+        let edge = [q[0] - p[0], q[1] - p[1]];
+        self.cross(edge, [centre[0] - p[0], centre[1] - p[1]]).abs()
+            <= half * (edge[0].abs() + edge[1].abs())
+    }
+
+    /// `inward_distance` of a point from the line of an edge of a triangle with positive area; infinite for an edge without length.
+    pub fn inward_distance(self, p: Point, q: Point, point: Point) -> f32 {
+        let edge = [q[0] - p[0], q[1] - p[1]];
+        let length_squared = edge[0] * edge[0] + edge[1] * edge[1];
+        if length_squared == 0.0 {
+            return f32::INFINITY;
+        }
+        self.cross(edge, [point[0] - p[0], point[1] - p[1]]) / length_squared.sqrt()
+    }
+}
+
+/// `surrounds`: whether the box around three points has the origin in it.
+pub fn surrounds(points: [Point; 3]) -> bool {
+    (0..2)
+        .all(|axis| points.iter().any(|p| p[axis] <= 0.0) && points.iter().any(|p| p[axis] >= 0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The sign of an edge function, exactly: products of two f32 are exact in f64.
+    fn sign(p: Point, q: Point) -> i32 {
+        let left = f64::from(p[0]) * f64::from(q[1]);
+        let right = f64::from(p[1]) * f64::from(q[0]);
+        i32::from(left > right) - i32::from(left < right)
+    }
+
+    /// Points that are all but collinear with the origin, a few ulps off.
+    fn nearly_collinear() -> impl Strategy<Value = (Point, Point)> {
+        let ulps = |value: f32, by: i32| f32::from_bits(value.to_bits().wrapping_add_signed(by));
+        let scale = prop_oneof![Just(1.0f32), Just(1e-18), Just(3e-20), Just(1e12)];
+        (
+            prop::array::uniform2(-1.0f32..1.0),
+            -2.0f32..2.0,
+            -3..=3i32,
+            -3..=3i32,
+            scale,
+        )
+            .prop_map(move |(p, along, x, y, scale)| {
+                let p = p.map(|c| c * scale);
+                (p, [ulps(p[0] * along, x), ulps(p[1] * along, y)])
+            })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 20_000, max_global_rejects: 1_000_000, ..ProptestConfig::default() })]
+
+        #[test]
+        fn an_edge_area_never_has_the_wrong_sign((p, q) in nearly_collinear()) {
+            for arithmetic in Arithmetic::ALL {
+                let area = arithmetic.edge_area(p, q);
+                let claimed = i32::from(area > 0.0) - i32::from(area < 0.0);
+                prop_assert!(claimed == 0 || claimed == sign(p, q), "{arithmetic:?}: {area}");
+                prop_assert_eq!(area.to_bits() << 1, arithmetic.edge_area(q, p).to_bits() << 1);
+                prop_assert_eq!(area, -arithmetic.edge_area(q, p));
+            }
+        }
+
+        /// A fan around a corner near the origin: some triangle of it is hit.
+        #[test]
+        fn nothing_slips_through_a_fan(
+            spokes in prop::collection::vec((0.2f32..1.0, 0.0f32..1.0), 3..9), hub in prop::array::uniform2(-4..=4i32), tiny in 0..40i32,
+        ) {
+            let count = spokes.len() as f32;
+            let rim: Vec<Point> = spokes.iter().enumerate().map(|(i, (radius, turn))| {
+                let angle = (i as f32 + 0.9 * turn) / count * std::f32::consts::TAU;
+                [radius * angle.cos(), radius * angle.sin()]
+            }).collect();
+            let hub = hub.map(|c| c as f32 * (-tiny as f32).exp2() * 0.01);
+            let next = |i: usize| rim[(i + 1) % rim.len()];
+            // The origin is in the star-shaped polygon if it lies to the left of all of its sides.
+            prop_assume!((0..rim.len()).all(|i| {
+                let (p, q) = (rim[i], next(i));
+                sign(p, q) > 0 && sign([p[0] - hub[0], p[1] - hub[1]], [q[0] - hub[0], q[1] - hub[1]]) > 0
+            }));
+            for arithmetic in Arithmetic::ALL {
+                prop_assert!((0..rim.len()).any(|i| arithmetic.hits([hub, rim[i], next(i)])), "{arithmetic:?}: {hub:?} {rim:?}");
+            }
+        }
+
+        /// What is hit has the origin in it but for rounding: no thin triangle is hit beyond its end.
+        #[test]
+        fn a_hit_is_no_farther_than_rounding((p, q) in nearly_collinear(), along in -2.0f32..2.0, off in -2.0f32..2.0) {
+            let r = [p[0] * along, p[1] * along + off * HALF_ULP * p[1]];
+            for arithmetic in Arithmetic::ALL {
+                if arithmetic.hits([p, q, r]) {
+                    prop_assert!(surrounds([p, q, r]), "{arithmetic:?}");
+                }
+            }
+        }
+
+        /// In a map of 16,384 texels an edge that passes a texel's corner at the bound is met, whatever the arithmetic.
+        #[test]
+        fn an_edge_that_meets_a_texel_is_found(
+            texel in prop::array::uniform2(0..16384u32), corner in prop::array::uniform2(-0.5f32..=0.5), way in prop::array::uniform2(-1.0f32..1.0),
+            back in 0.0f32..16384.0, forth in 0.0f32..16384.0,
+        ) {
+            let centre = texel.map(|t| t as f32 + 0.5);
+            let through = [centre[0] + corner[0].signum() * 0.5, centre[1] + corner[1].signum() * 0.5];
+            let clip = |c: f32| c.clamp(0.0, 16384.0);
+            let p = [clip(through[0] - way[0] * back), clip(through[1] - way[1] * back)];
+            let q = [clip(through[0] + way[0] * forth), clip(through[1] + way[1] * forth)];
+            // Exact on these f32 coordinates: does the segment meet the closed square?
+            let [px, py, qx, qy] = [p[0], p[1], q[0], q[1]].map(f64::from);
+            let [cx, cy] = centre.map(f64::from);
+            let (ex, ey) = (qx - px, qy - py);
+            let apart = px.min(qx) > cx + 0.5 || px.max(qx) < cx - 0.5 || py.min(qy) > cy + 0.5 || py.max(qy) < cy - 0.5;
+            let met = !apart && (ex * (cy - py) - ey * (cx - px)).abs() <= 0.5 * (ex.abs() + ey.abs());
+            for arithmetic in Arithmetic::ALL {
+                prop_assert!(!met || arithmetic.meets(p, q, centre), "{arithmetic:?}: {p:?} {q:?}");
+            }
+        }
+
+        /// The bound that `n >= 0.51` rests on.
+        #[test]
+        fn a_distance_errs_by_less_than_it_may(p in prop::array::uniform2(0.0f32..16384.0), q in prop::array::uniform2(0.0f32..16384.0), share in 0.0f32..1.0, off in -1.0f32..1.0) {
+            let edge = [q[0] - p[0], q[1] - p[1]];
+            let length = edge[0].hypot(edge[1]);
+            prop_assume!(length > 0.01);
+            let point = [p[0] + edge[0] * share - off * edge[1] / length, p[1] + edge[1] * share + off * edge[0] / length];
+            let [px, py, qx, qy, x, y] = [p[0], p[1], q[0], q[1], point[0], point[1]].map(f64::from);
+            let (ex, ey) = (qx - px, qy - py);
+            let exact = (ex * (y - py) - ey * (x - px)) / ex.hypot(ey);
+            let bound = 8.0 * f64::from(HALF_ULP) * (x - px).hypot(y - py);
+            for arithmetic in Arithmetic::ALL {
+                let error = (f64::from(arithmetic.inward_distance(p, q, point)) - exact).abs();
+                prop_assert!(error <= bound + 1e-9, "{arithmetic:?}: {error} above {bound}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_wrong_sign_needs_a_fused_product() {
+        // All but collinear: unbounded, a fused product says the opposite of the truth for some.
+        let mut wrong = 0;
+        for i in 1..2000u16 {
+            let p = [f32::from(i) * 0.731_9, f32::from(i) * 1.317];
+            let q = p.map(|c| c * 1.3);
+            for arithmetic in Arithmetic::ALL {
+                let area = arithmetic.cross(p, q);
+                wrong += i32::from(area != 0.0 && (area > 0.0) != (sign(p, q) > 0));
+            }
+        }
+        assert!(
+            wrong > 0,
+            "the bound in edge_area would guard against nothing"
+        );
+    }
+
+    #[test]
+    fn three_points_on_a_line_beside_the_origin_are_no_hit() {
+        // From a ray in the plane of a triangle: two areas are 0, the third is rounding.
+        let line = [[-2.0, -1.0], [-4.0, -2.0], [-6.0, -3.0]];
+        for arithmetic in Arithmetic::ALL {
+            assert!(!arithmetic.hits(line));
+            assert!(!arithmetic.hits([[-2.0, -1.0], [-4.0, -2.0], [-6.0, -3.000_001]]));
+        }
+    }
+
+    #[test]
+    fn corners_and_edges_on_the_point_and_on_the_texel_s_border_count() {
+        let grid: Vec<Point> = (0..25u8)
+            .map(|i| [f32::from(i % 5) - 2.0, f32::from(i / 5) - 2.0])
+            .collect();
+        for arithmetic in Arithmetic::ALL {
+            for (&a, &b) in grid.iter().flat_map(|a| grid.iter().map(move |b| (a, b))) {
+                for &c in &grid {
+                    let sides = [sign(a, b), sign(b, c), sign(c, a)];
+                    let inside = sides.iter().all(|&s| s >= 0) || sides.iter().all(|&s| s <= 0);
+                    let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+                    assert_eq!(
+                        arithmetic.hits([a, b, c]),
+                        inside && area != 0.0,
+                        "{arithmetic:?} {a:?} {b:?} {c:?}"
+                    );
+                }
+                // Half the grid: edges that end on, or run along, the border of the texel around the origin.
+                let [p, q] = [a, b].map(|p| p.map(|c| 0.5 * c));
+                let apart = (0..2).any(|i| p[i].min(q[i]) > 0.5 || p[i].max(q[i]) < -0.5);
+                let edge = [q[0] - p[0], q[1] - p[1]];
+                let offset = (p[1] * edge[0] - p[0] * edge[1]).abs();
+                let met = !apart && offset <= 0.5 * (edge[0].abs() + edge[1].abs());
+                assert_eq!(arithmetic.meets(p, q, [0.0; 2]), met, "{p:?} {q:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn constants_are_those_of_the_shader() {
+        let shader = include_str!("../../../shaders/shared/predicates.wgsl");
+        for line in [
+            format!("const HALF_ULP: f32 = {HALF_ULP:e};"),
+            "const EDGE_ERROR: f32 = 4.0 * HALF_ULP;".into(),
+            format!("const SLACK: f32 = {SLACK};"),
+        ] {
+            assert!(shader.contains(&line), "no {line:?}");
+        }
+    }
+}

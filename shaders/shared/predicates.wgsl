@@ -1,0 +1,67 @@
+// The tests on which all answers hang, of f32 coordinates as they are given. Bounds hold whether or not a compiler fuses a product with the
+// sum that it goes into, and with subnormal numbers flushed to zero. Twins and tests at the bounds: crates/reference/src/predicates.rs.
+
+// Half an ulp of 1: what one rounding errs by, relative to its result.
+const HALF_ULP: f32 = 5.9604645e-8;
+
+fn cross_2d(p: vec2<f32>, q: vec2<f32>) -> f32 {
+    return p.x * q.y - p.y * q.x;
+}
+
+// --- A ray, seen along itself: triangles around the origin of the plane ---
+
+// A difference of two products has the wrong sign only where a fused product meets a rounded one that differs from it by less than its half
+// ulp; then the result is below that half ulp, too. Rounded both, they are in order or equal. Four times as much is treated as 0.
+const EDGE_ERROR: f32 = 4.0 * HALF_ULP;
+
+// Twice the signed area of the origin, p and q; 0 where rounding could decide its sign, so that it is never the wrong one and a ray cannot
+// slip between two triangles. Products that are flushed to zero are such a case. Always evaluated from the lower corner to the higher:
+// edge_area(p, q) is -edge_area(q, p) to the bit.
+fn edge_area(p: vec2<f32>, q: vec2<f32>) -> f32 {
+    let swap = q.x < p.x || (q.x == p.x && q.y < p.y);
+    let lesser = select(p, q, swap);
+    let greater = select(q, p, swap);
+    let product = lesser.x * greater.y;
+    let area = product - lesser.y * greater.x;
+    return select(0.0, select(area, -area, swap), abs(area) > EDGE_ERROR * abs(product));
+}
+
+// Whether the box around three points has the origin in it: exact, and true of every triangle that has.
+fn surrounds(a: vec2<f32>, b: vec2<f32>, c: vec2<f32>) -> bool {
+    return all(min(a, min(b, c)) <= vec2(0.0)) && all(max(a, max(b, c)) >= vec2(0.0));
+}
+
+// What rounding may have moved a receiver by, half an ulp of its distance to the origin and to the eye: a surface that its shadow ray meets
+// sooner is the receiver's own, beyond an edge.
+fn own_rounding(receiver: vec3<f32>, eye: vec3<f32>) -> f32 {
+    return HALF_ULP * (length(receiver) + length(receiver - eye));
+}
+
+// --- A square map: texels are closed unit squares around their centres ---
+
+// What rounding, of f32 coordinates and of rasterisers that snap vertices, may move a corner or a receiver by, in texels: a
+// texel is taken this much larger than it is.
+const SLACK: f32 = 0.0078125;
+
+// Whether an edge meets the texel around a centre; errs towards yes, also by SLACK. Separating axes of a segment and a square. In a map of
+// 16,384 texels the cross product errs by 6 half ulps of the edge's |x| |y|, less than half of what SLACK adds.
+fn meets(p: vec2<f32>, q: vec2<f32>, centre: vec2<f32>) -> bool {
+    let half = 0.5 + SLACK;
+    if any(min(p, q) > centre + half) || any(max(p, q) < centre - half) {
+        return false;
+    }
+    let edge = q - p;
+    return abs(cross_2d(edge, centre - p)) <= half * (abs(edge.x) + abs(edge.y));
+}
+
+// Inward distance of a point from the line of an edge of a triangle of that area, in texels; an edge without length constrains nothing.
+// It errs by 8 half ulps of the point's distance to p, 0.008 in a map of 16,384 texels: a triangle that must hold a texel, whose corners are
+// 0.7072 from its centre, and may itself be off by SLACK, is sure to at a distance of 0.51 diagonals, 0.7212.
+fn inward_distance(p: vec2<f32>, q: vec2<f32>, point: vec2<f32>, area: f32) -> f32 {
+    let edge = q - p;
+    let length_squared = dot(edge, edge);
+    if length_squared == 0.0 {
+        return 3e38;
+    }
+    return select(1.0, -1.0, area < 0.0) * cross_2d(edge, point - p) * inverseSqrt(length_squared);
+}

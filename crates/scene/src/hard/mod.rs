@@ -1,0 +1,108 @@
+//! Scenes on which shadow methods go wrong: the catalogue of `skiagraph stress`.
+//!
+//! Every case is a function that builds a small scene, the same bits on every machine, with one view named `main`, and says in a line
+//! what it provokes. Where geometry alone tells which points are lit, it tells so, so that the oracle is tested, too.
+
+mod build;
+mod plain;
+
+use crate::Scene;
+use glam::DVec3;
+
+/// One case of the catalogue.
+#[derive(Clone, Copy, Debug)]
+pub struct HardCase {
+    /// Name on the command line: lower case, words joined by `_`.
+    pub name: &'static str,
+    /// What it provokes, in one line.
+    pub reason: &'static str,
+    /// What its casters are, which decides what may be asked of methods that cull front faces.
+    pub casters: Casters,
+    /// Most pixels in the band, as a share of the pixels that face the light.
+    pub band_cap: f64,
+    build: fn() -> Scene,
+    lit: Option<fn(DVec3) -> Option<bool>>,
+}
+
+/// What the casters of a scene are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Casters {
+    /// Closed surfaces wound outward that do not pass through each other: no lit surface is its own caster when front faces are culled.
+    Closed,
+    /// Sheets, surfaces wound both ways, or solids that pass through each other: front faces culled, some cast no shadow.
+    Open,
+}
+
+impl HardCase {
+    /// Builds it.
+    pub fn scene(&self) -> Scene {
+        (self.build)()
+    }
+
+    /// Whether light reaches a point of a surface that faces the light, told from the geometry; `None` where it is too close to call
+    /// or the case has no such answer.
+    pub fn lit(&self, point: DVec3) -> Option<bool> {
+        self.lit.and_then(|lit| lit(point))
+    }
+
+    /// Whether [`HardCase::lit`] has answers at all.
+    pub fn is_analytic(&self) -> bool {
+        self.lit.is_some()
+    }
+}
+
+/// The catalogue, in the order in which it is shown.
+pub fn cases() -> Vec<HardCase> {
+    [plain::CASES].concat()
+}
+
+/// The case of that name.
+pub fn case(name: &str) -> Option<HardCase> {
+    cases().into_iter().find(|case| case.name == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_case_is_a_sound_scene_with_a_name_and_a_reason_of_its_own() {
+        let mut names = BTreeSet::new();
+        for case in cases() {
+            assert!(names.insert(case.name), "{} twice", case.name);
+            assert!(
+                case.name
+                    .chars()
+                    .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_'),
+                "{}",
+                case.name
+            );
+            assert!(
+                !case.reason.is_empty() && !case.reason.contains('\n'),
+                "{}",
+                case.name
+            );
+            let Scene {
+                name,
+                mesh,
+                views,
+                light,
+            } = case.scene();
+            assert_eq!(name, case.name);
+            assert!(views.len() == 1 && views[0].name == "main", "{name}");
+            assert!(
+                light.direction.is_finite() && light.direction != DVec3::ZERO,
+                "{name}"
+            );
+            assert!(mesh.positions.iter().all(|p| p.is_finite()), "{name}");
+            let known = |index: &u32| (*index as usize) < mesh.positions.len();
+            assert!(mesh.triangles.iter().flatten().all(known), "{name}");
+            assert_eq!(mesh.triangles.len(), mesh.normal_indices.len(), "{name}");
+            assert!(
+                mesh.triangles.len() < 20_000,
+                "{name}: too large for a matrix that CI runs"
+            );
+        }
+    }
+}

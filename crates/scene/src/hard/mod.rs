@@ -3,8 +3,11 @@
 //! Every case is a function that builds a small scene, the same bits on every machine, with one view named `main`, and says in a line
 //! what it provokes. Where geometry alone tells which points are lit, it tells so, so that the oracle is tested, too.
 
+mod answer;
 mod build;
+mod light;
 mod plain;
+mod rounding;
 
 use crate::Scene;
 use glam::DVec3;
@@ -20,6 +23,8 @@ pub struct HardCase {
     pub casters: Casters,
     /// Most pixels in the band, as a share of the pixels that face the light.
     pub band_cap: f64,
+    /// What its picture shows.
+    pub shows: Shows,
     build: fn() -> Scene,
     lit: Option<fn(DVec3) -> Option<bool>>,
 }
@@ -33,10 +38,40 @@ pub enum Casters {
     Open,
 }
 
+/// What the pixels of a case's picture are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shows {
+    /// Some lit, some in shadow.
+    Both,
+    /// All that face the light are lit.
+    LitOnly,
+    /// None faces the light.
+    Nothing,
+}
+
+/// The band of a case that says nothing else, as a share of the pixels that face the light.
+const BAND_CAP: f64 = 0.01;
+
 impl HardCase {
+    /// A case whose picture shows both light and shadow, without an analytic answer, and still without a scene.
+    const fn new(name: &'static str, reason: &'static str, casters: Casters) -> Self {
+        Self {
+            name,
+            reason,
+            casters,
+            band_cap: BAND_CAP,
+            shows: Shows::Both,
+            build: || build::Shape::default().scene([0.0; 3], [1.0; 3], DVec3::NEG_Y),
+            lit: None,
+        }
+    }
+
     /// Builds it.
     pub fn scene(&self) -> Scene {
-        (self.build)()
+        Scene {
+            name: self.name.into(),
+            ..(self.build)()
+        }
     }
 
     /// Whether light reaches a point of a surface that faces the light, told from the geometry; `None` where it is too close to call
@@ -53,7 +88,7 @@ impl HardCase {
 
 /// The catalogue, in the order in which it is shown.
 pub fn cases() -> Vec<HardCase> {
-    [plain::CASES].concat()
+    [plain::CASES, rounding::CASES, light::CASES].concat()
 }
 
 /// The case of that name.

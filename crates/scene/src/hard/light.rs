@@ -1,0 +1,205 @@
+//! Directions of light at which surfaces stand along it.
+
+use super::{
+    Casters, HardCase, Shows,
+    answer::among,
+    build::{Block, Shape},
+};
+use crate::generate::numbers::turn;
+use glam::DVec3;
+
+const GRAZING: DVec3 = DVec3::new(1.0, -0.02, 0.13);
+const LOW: [Block; 4] = [
+    [[-4.0, -0.5, -4.0], [4.0, 0.0, 4.0]],
+    [[-3.0, 0.0, -1.5], [-2.8, 0.03, -0.5]],
+    [[-2.5, 0.0, -0.1], [-2.3, 0.05, 0.5]],
+    [[-1.0, 0.0, 0.9], [-0.9, 0.02, 1.3]],
+];
+const TABLE: [Block; 5] = [
+    [[-2.0, -0.5, -2.0], [2.0, 0.0, 2.0]],
+    [[-0.75, 0.75, -0.75], [0.75, 0.875, 0.75]],
+    [[-0.5, 0.0, -0.5], [-0.375, 0.75, -0.375]],
+    [[0.5, 0.0, -0.5], [0.625, 0.75, -0.375]],
+    [[-0.125, 0.0, 0.5], [0.0, 0.75, 0.625]],
+];
+const WALL_LIGHT: DVec3 = DVec3::new(1.0, -1.0, 0.0);
+const WALL: [Block; 3] = [
+    [[-3.0, -0.5, -3.0], [3.0, 0.0, 3.0]],
+    [[-1.0, 0.0, -0.5], [1.0, 1.0, 0.0]],
+    [[-2.0, 0.0, 0.0], [-1.5, 0.75, 0.5]],
+];
+const UP: DVec3 = DVec3::new(0.5, 1.0, 0.3);
+const CEILING: [Block; 3] = [
+    [[-3.0, 0.0, -3.0], [3.0, 0.5, 3.0]],
+    [[-0.6, -0.9, -0.5], [0.5, 0.0, 0.4]],
+    [[0.9, -1.6, -1.5], [1.7, -1.3, -0.6]],
+];
+
+/// Turn of the facets of `facing_by_an_ulp` out of the light, around x: the first three are within f32's rounding of it.
+const TURNS: [f32; 16] = [
+    0.0, 6e-8, -6e-8, 2e-6, 4e-6, 1e-5, 1e-4, 1e-3, -2e-6, -1e-5, 1e-2, 2e-5, 3e-6, 3e-4, -1e-3,
+    3e-2,
+];
+
+pub(super) const CASES: &[HardCase] = &[
+    HardCase {
+        build: || {
+            Shape::default()
+                .cuboids(&LOW)
+                .scene([1.0, 2.6, 4.0], [-1.0, 0.0, 0.0], GRAZING)
+        },
+        lit: Some(|p| among(p, GRAZING, &LOW, 1e-2)),
+        ..HardCase::new(
+            "grazing_light",
+            "light a degree above the floor: a hair of depth is a long shadow",
+            Casters::Closed,
+        )
+    },
+    HardCase {
+        shows: Shows::LitOnly,
+        build: || {
+            let facets = TURNS.iter().enumerate().map(|(i, turn)| {
+                let x = i as f32 * 0.25 - 2.0;
+                [
+                    [x, -1.0, *turn],
+                    [x + 0.24, -1.0, *turn],
+                    [x + 0.12, 1.0, -turn],
+                ]
+            });
+            Shape::default()
+                .triangles(facets)
+                .scene([0.0, 0.1, 4.0], [0.0; 3], DVec3::NEG_Y)
+        },
+        lit: Some(|_| Some(true)),
+        ..HardCase::new(
+            "facing_by_an_ulp",
+            "facets whose N·L is 0, an ulp, and powers of ten above and below",
+            Casters::Open,
+        )
+    },
+    HardCase {
+        build: || {
+            Shape::default()
+                .cuboids(&TABLE)
+                .scene([1.6, 2.1, 2.6], [0.1, 0.2, 0.1], DVec3::NEG_Y)
+        },
+        lit: Some(|p| among(p, DVec3::NEG_Y, &TABLE, 1e-3)),
+        ..HardCase::new(
+            "light_along_an_axis",
+            "light along -y: every upright face is a line in the map",
+            Casters::Closed,
+        )
+    },
+    HardCase {
+        build: || {
+            Shape::default()
+                .cuboids(&WALL)
+                .scene([1.6, 2.0, 3.2], [0.3, 0.2, 0.0], WALL_LIGHT)
+        },
+        lit: Some(|p| among(p, WALL_LIGHT, &WALL, 1e-3)),
+        ..HardCase::new(
+            "light_along_a_wall",
+            "light in the plane of a wall, which ends in its own shadow's edge",
+            Casters::Closed,
+        )
+    },
+    HardCase {
+        shows: Shows::LitOnly,
+        build: || {
+            // Its face towards +z leans to the light by a ten-thousandth.
+            let lean = |[x, y, z]: [f32; 3]| [x, y, if z > 0.0 { 0.5 + 1e-4 * (x - y) } else { z }];
+            Shape::default()
+                .moved_cuboid([[-1.0, -1.0, -0.5], [1.0, 1.0, 0.5]], lean)
+                .scene(
+                    [0.4, 0.3, 3.0],
+                    [0.0, 0.0, 0.5],
+                    WALL_LIGHT * DVec3::new(-1.0, 1.0, 0.0),
+                )
+        },
+        lit: Some(|_| Some(true)),
+        ..HardCase::new(
+            "light_nearly_along_a_wall",
+            "N·L of a ten-thousandth all over the picture",
+            Casters::Closed,
+        )
+    },
+    HardCase {
+        build: || {
+            Shape::default()
+                .cuboids(&CEILING)
+                .scene([1.5, -3.0, 3.0], [0.1, 0.0, 0.0], UP)
+        },
+        lit: Some(|p| among(p, UP, &CEILING, 1e-3)),
+        ..HardCase::new(
+            "light_travels_upwards",
+            "a ceiling lit from below: nothing may take down for away from the light",
+            Casters::Closed,
+        )
+    },
+    HardCase {
+        shows: Shows::LitOnly,
+        build: || {
+            Shape::default()
+                .floor(1.0, 0.3)
+                .scene([0.7, 2.3, 1.1], [0.0, 0.3, 0.0], DVec3::NEG_Y)
+        },
+        lit: Some(|_| Some(true)),
+        ..HardCase::new(
+            "no_depth_at_all",
+            "a flat scene across the light: the map's depths span nothing",
+            Casters::Open,
+        )
+    },
+    HardCase {
+        shows: Shows::LitOnly,
+        build: || {
+            let fins = (0..24u8).map(|i| {
+                let (x, z) = (f32::from(i % 6) * 0.5 - 1.3, f32::from(i / 6) * 0.6 - 1.0);
+                let lean = if i % 2 == 0 { 0.0 } else { 0.37 };
+                [
+                    [x, 0.2, z],
+                    [x + 0.4, 0.25, z + lean],
+                    [x + 0.2, 1.0, z + 0.5 * lean],
+                ]
+            });
+            Shape::default().floor(2.0, 0.0).triangles(fins).scene(
+                [0.9, 3.2, 2.2],
+                [0.0; 3],
+                DVec3::NEG_Y,
+            )
+        },
+        lit: Some(|_| Some(true)),
+        ..HardCase::new(
+            "edge_on_triangles",
+            "fins along the light: in the map they have no area, and they shade nothing",
+            Casters::Open,
+        )
+    },
+    HardCase {
+        build: || {
+            let sphere = |row: u32, column: u32| {
+                let ((up, out), (x, z)) = (
+                    turn(f64::from(row) / 24.0),
+                    turn(f64::from(column % 16) / 16.0),
+                );
+                // The poles are points, whatever the series leaves of the sine there.
+                let out = if row % 12 == 0 { 0.0 } else { out };
+                DVec3::new(x * out, 1.1 + up, -z * out)
+            };
+            Shape::default()
+                .lattice(12, 16, sphere)
+                .cuboid([[-3.0, -0.5, -3.0], [3.0, 0.0, 3.0]])
+                .smooth()
+                .scene(
+                    [-1.6, 2.9, 4.0],
+                    [0.3, 0.7, 0.1],
+                    DVec3::new(0.9, -1.0, 0.2),
+                )
+        },
+        ..HardCase::new(
+            "smooth_terminator",
+            "interpolated normals face the light where the triangle does not",
+            Casters::Closed,
+        )
+    },
+];

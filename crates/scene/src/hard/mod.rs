@@ -6,8 +6,12 @@
 mod answer;
 mod build;
 mod light;
+mod map;
 mod plain;
 mod rounding;
+mod solids;
+mod thin;
+mod topology;
 
 use crate::Scene;
 use glam::DVec3;
@@ -88,7 +92,16 @@ impl HardCase {
 
 /// The catalogue, in the order in which it is shown.
 pub fn cases() -> Vec<HardCase> {
-    [plain::CASES, rounding::CASES, light::CASES].concat()
+    [
+        plain::CASES,
+        rounding::CASES,
+        light::CASES,
+        map::CASES,
+        thin::CASES,
+        solids::CASES,
+        topology::CASES,
+    ]
+    .concat()
 }
 
 /// The case of that name.
@@ -99,7 +112,7 @@ pub fn case(name: &str) -> Option<HardCase> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::BTreeSet;
+    use std::collections::{BTreeSet, HashMap};
 
     #[test]
     fn every_case_is_a_sound_scene_with_a_name_and_a_reason_of_its_own() {
@@ -139,5 +152,53 @@ mod tests {
                 "{name}: too large for a matrix that CI runs"
             );
         }
+    }
+    /// Every edge as often one way as the other, and every connected part wound outward.
+    #[test]
+    fn closed_casters_are_closed() {
+        for case in cases().iter().filter(|c| c.casters == Casters::Closed) {
+            let mesh = case.scene().mesh;
+            let mut ways = HashMap::new();
+            for &[a, b, c] in &mesh.triangles {
+                for (from, to) in [(a, b), (b, c), (c, a)] {
+                    let way = if from < to { 1 } else { -1 };
+                    *ways.entry((from.min(to), from.max(to))).or_insert(0) += way;
+                }
+            }
+            let open = ways.values().filter(|&&sum| sum != 0).count();
+            assert_eq!(open, 0, "{}: open edges", case.name);
+            for (part, volume) in volumes(&mesh) {
+                assert!(
+                    volume > 0.0,
+                    "{}: the part of position {part} encloses {volume}",
+                    case.name
+                );
+            }
+        }
+    }
+
+    /// The volume within each set of triangles that hang together, by its lowest position.
+    fn volumes(mesh: &crate::Mesh) -> HashMap<u32, f64> {
+        let mut parts: Vec<u32> = (0..mesh.positions.len() as u32).collect();
+        loop {
+            let before = parts.clone();
+            for triangle in &mesh.triangles {
+                let lowest = triangle.map(|i| parts[i as usize]).into_iter().min();
+                triangle
+                    .iter()
+                    .for_each(|&i| parts[i as usize] = lowest.unwrap_or(i));
+            }
+            if parts == before {
+                break;
+            }
+        }
+        let mut volumes = HashMap::new();
+        for (i, triangle) in mesh.triangles.iter().enumerate() {
+            let part = parts[triangle[0] as usize];
+            let origin = mesh.positions[part as usize].as_dvec3();
+            let [a, b, c] = mesh.corners(i as u32).map(|corner| corner - origin);
+            *volumes.entry(part).or_insert(0.0) += a.dot(b.cross(c));
+        }
+        volumes
     }
 }

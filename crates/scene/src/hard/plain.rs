@@ -29,8 +29,8 @@ pub(super) const CASES: &[HardCase] = &[
     HardCase {
         build: || {
             Shape::default().cuboids(&BOX).scene(
-                [3.0, 4.0, 5.0],
-                [0.5, 0.2, 0.0],
+                [2.7, 1.8, 1.5],
+                [0.9, 0.1, 0.0],
                 DVec3::new(1.0, -1.0, 0.0),
             )
         },

@@ -152,9 +152,11 @@ pub(super) const CASES: &[HardCase] = &[
     },
     HardCase {
         build: || {
-            Shape::default()
-                .cuboids(&SMALL)
-                .scene([3e-4, 4e-4, 5e-4], [3e-5, 2e-5, 1e-5], LIGHT)
+            Shape::default().cuboids(&SMALL).scene(
+                [2.2e-4, 2.6e-4, 3e-4],
+                [4e-5, 2e-5, 2e-5],
+                LIGHT,
+            )
         },
         lit: Some(|p| among(p, LIGHT, &SMALL, 1e-7)),
         ..HardCase::new(

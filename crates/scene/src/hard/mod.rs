@@ -5,6 +5,7 @@
 
 mod answer;
 mod build;
+mod fences;
 mod light;
 mod map;
 mod plain;
@@ -97,6 +98,7 @@ pub fn cases() -> Vec<HardCase> {
         rounding::CASES,
         light::CASES,
         map::CASES,
+        fences::CASES,
         thin::CASES,
         solids::CASES,
         topology::CASES,

@@ -144,7 +144,7 @@ pub(super) const CASES: &[HardCase] = &[
             let mut random = Random::new(5);
             let radii: Vec<f64> = (0..20 * 24).map(|_| random.range(0.7, 1.0)).collect();
             let potato = |row: u32, column: u32| {
-                let ring = if row % 20 == 0 {
+                let ring = if row.is_multiple_of(20) {
                     0
                 } else {
                     24 * row + column % 24

@@ -9,16 +9,15 @@ use crate::generate::numbers::turn;
 use glam::DVec3;
 
 const LIGHT: DVec3 = DVec3::new(0.31, -1.0, 0.17);
-/// The camera is below the roofs: it sees their shadows and not their tops.
-const BELOW_ROOF: ([f64; 3], [f64; 3]) = ([1.3, 0.95, 2.3], [0.2, 0.0, 0.1]);
 
 const ROOF: [[f32; 2]; 2] = [[-0.75, -0.75], [0.75, 0.75]];
 
+/// The camera is below the roof: it sees the shadow and not the top.
 fn under_a_roof(roof: Shape) -> crate::Scene {
     Shape::default()
         .floor(2.0, 0.0)
         .and(roof)
-        .scene(BELOW_ROOF.0, BELOW_ROOF.1, LIGHT)
+        .scene([1.3, 0.95, 2.3], [0.2, 0.0, 0.1], LIGHT)
 }
 
 fn roof_lit(p: DVec3) -> Option<bool> {

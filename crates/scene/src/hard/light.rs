@@ -2,7 +2,7 @@
 
 use super::{
     Casters, HardCase, Shows,
-    answer::among,
+    answer::{among, in_sheet, judge},
     build::{Block, Shape},
 };
 use glam::DVec3;
@@ -27,6 +27,7 @@ const WALL: [Block; 3] = [
     [[-1.0, 0.0, -0.5], [1.0, 1.0, 0.0]],
     [[-2.0, 0.0, 0.0], [-1.5, 0.75, 0.5]],
 ];
+const SEAM_LIGHT: DVec3 = DVec3::new(0.0, -1.0, 0.13);
 const UP: DVec3 = DVec3::new(0.5, 1.0, 0.3);
 const CEILING: [Block; 3] = [
     [[-3.0, 0.0, -3.0], [3.0, 0.5, 3.0]],
@@ -174,6 +175,32 @@ pub(super) const CASES: &[HardCase] = &[
         ..HardCase::new(
             "edge_on_triangles",
             "fins along the light: in the map they have no area, and they shade nothing",
+            Casters::Open,
+        )
+    },
+    HardCase {
+        build: || {
+            // The floor is one triangle, its own mirror image: receivers of the middle column are at x = 0 exactly.
+            let roof = (0..16u8).fold(Shape::default(), |shape, i| {
+                let z = f32::from(i) * 0.25 - 2.0;
+                shape
+                    .sheet([[-0.5, z], [0.0, z + 0.25]], 1.0)
+                    .sheet([[0.0, z], [0.5, z + 0.25]], 1.0)
+            });
+            Shape::default()
+                .triangle([[0.0, 0.0, -6.0], [-5.0, 0.0, 2.0], [5.0, 0.0, 2.0]])
+                .and(roof.reversed())
+                .scene([0.0, 0.9, 1.8], [0.0, 0.0, 0.1], SEAM_LIGHT)
+        },
+        lit: Some(|p| {
+            judge(
+                [in_sheet(p, SEAM_LIGHT, [[-0.5, -2.0], [0.5, 2.0]], 1.0)],
+                1e-3,
+            )
+        }),
+        ..HardCase::new(
+            "light_along_a_seam",
+            "eye, light and the inner edges of a roof in one plane: with an odd width, a column of rays meets nothing but edges",
             Casters::Open,
         )
     },

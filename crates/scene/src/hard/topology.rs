@@ -24,7 +24,7 @@ fn roof_lit(p: DVec3) -> Option<bool> {
     judge([in_sheet(p, LIGHT, ROOF, 1.0)], 1e-3)
 }
 
-/// Width and height of the sheets of `open_sheets`, and whether they face up.
+/// Place and height of the sheets of `open_sheets`, and whether they face up.
 const SHEETS: [([[f32; 2]; 2], f32, bool); 4] = [
     ([[-1.2, -0.9], [-0.3, 0.2]], 0.5, true),
     ([[0.1, -1.1], [0.9, -0.2]], 0.7, false),

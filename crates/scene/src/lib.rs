@@ -8,6 +8,7 @@ pub mod bvh;
 pub mod camera;
 pub mod error;
 pub mod generate;
+pub mod hard;
 pub mod library;
 pub mod light;
 pub mod mesh;

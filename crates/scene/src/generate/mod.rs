@@ -3,7 +3,7 @@
 //! Only operations that IEEE 754 rounds correctly are used (`+ − × ÷ √`): angles go through a series of our own, not
 //! through the platform's `sin`.
 
-mod numbers;
+pub(crate) mod numbers;
 mod park;
 mod solid;
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 /// SplitMix64 (Steele, Lea and Flood 2014): one addition and three multiply-xorshifts per number.
-pub(super) struct Random(u64);
+pub(crate) struct Random(u64);
 
 impl Random {
     pub fn new(seed: u64) -> Self {
@@ -51,7 +51,7 @@ impl Random {
 }
 
 /// Cosine and sine of a fraction of a full turn.
-pub(super) fn turn(fraction: f64) -> (f64, f64) {
+pub(crate) fn turn(fraction: f64) -> (f64, f64) {
     // A quarter turn at most goes through the series: 12 terms are exact to the last bit of an f32 many times over.
     let quarters = (fraction * 4.0).floor();
     let angle = (fraction * 4.0 - quarters) * std::f64::consts::FRAC_PI_2;

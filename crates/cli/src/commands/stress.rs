@@ -157,12 +157,12 @@ fn finish(
         ))),
         (0, bands) => Err(CliError::Judged(format!(
             "{} failed",
-            plural(bands, "band")
+            plural(bands, "case")
         ))),
         (cells, bands) => Err(CliError::Judged(format!(
             "{} and {} failed",
             plural(cells, "cell"),
-            plural(bands, "band")
+            plural(bands, "case")
         ))),
     }
 }

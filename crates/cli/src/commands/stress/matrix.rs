@@ -62,10 +62,9 @@ fn table(report: &Report) -> String {
         let own: Vec<Option<&str>> = sets(case);
         for set in own {
             let row = heads(case, set).into_iter();
-            let cells = report.methods.iter().enumerate().map(|(index, column)| {
+            let cells = report.methods.iter().map(|column| {
                 let mut cells = case.cells.iter();
-                let here = |cell: &&Cell| cell.method == index && cell.set.as_deref() == set;
-                match cells.find(here) {
+                match cells.find(|cell| cell.is_of(column) && cell.set.as_deref() == set) {
                     Some(cell) => shown(cell),
                     None if set.is_some() => String::new(),
                     None if column.unavailable.is_some() => "n/a".into(),
@@ -105,10 +104,9 @@ fn heads(case: &Case, set: Option<&str>) -> [String; 3] {
     [
         format!("{}{open}", case.name),
         thousands(facing),
-        if case.exceeds_cap() || case.failed.is_some() {
-            format!("✗ {band}")
-        } else {
-            band
+        match case.verdict {
+            Verdict::Fail => format!("✗ {band}"),
+            _ => band,
         },
     ]
 }
@@ -132,13 +130,15 @@ fn shown(cell: &Cell) -> String {
 fn summary(report: &Report) -> String {
     let [passed, failed, open] =
         [Verdict::Pass, Verdict::Fail, Verdict::Open].map(|verdict| report.count(verdict));
-    let mut text = format!(
-        "{} of {} judged cells are as promised; {} of {} bands are within their caps",
-        passed,
-        passed + failed,
+    let mut text = match passed + failed {
+        0 => "no cell is judged: these methods promise nothing (--exact NAME judges one all the same)".into(),
+        judged => format!("{passed} of {judged} judged cells are as promised"),
+    };
+    text.push_str(&format!(
+        "; {} of {} bands are within their caps",
         report.cases.len() - report.failed_cases(),
         report.cases.len()
-    );
+    ));
     if open > 0 {
         text.push_str(
             "\nopen: casters that are not closed are wrong by culling; such methods are judged on them with cull=none",
@@ -162,11 +162,11 @@ fn failures(report: &Report, look: Look) -> String {
                 case.band_cap * 100.0
             ));
         }
-        let failed = case.cells.iter();
-        for cell in failed.filter(|cell| cell.verdict == Verdict::Fail) {
-            let Some(column) = report.methods.get(cell.method) else {
-                continue;
-            };
+        let pairs = report.methods.iter().flat_map(|column| {
+            let cells = case.cells.iter().filter(|cell| cell.is_of(column));
+            cells.map(move |cell| (column, cell))
+        });
+        for (column, cell) in pairs.filter(|(_, cell)| cell.verdict == Verdict::Fail) {
             let set = cell.set.as_deref();
             let with = set.map_or(String::new(), |set| format!(" with {set}"));
             let what = match (&cell.counts, &cell.failed) {
@@ -195,4 +195,39 @@ fn failures(report: &Report, look: Look) -> String {
         }
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::report::tests::sample, *};
+
+    #[test]
+    fn failures_stand_out_and_come_with_the_way_to_look_at_them() {
+        let look = |column: &Column, case: &str, set: Option<&str>| {
+            format!(
+                "look at {} {:?} {case} {set:?}",
+                column.preset, column.map_size
+            )
+        };
+        insta::assert_snapshot!(render(&sample(), &look));
+    }
+
+    #[test]
+    fn one_map_size_stands_above_and_several_in_the_heads() {
+        let mut report = sample();
+        report.methods[2].map_size = Some(64);
+        for case in &mut report.cases {
+            let cells = case.cells.iter_mut();
+            cells
+                .filter(|cell| cell.preset == "crsm")
+                .for_each(|cell| cell.map_size = Some(64));
+        }
+        let text = render(&report, &|_, _, _| String::new());
+        assert!(!text.contains("maps of"), "{text}");
+        assert!(
+            text.contains(" nsm 128 ") && text.contains(" crsm 64 "),
+            "{text}"
+        );
+        assert!(text.contains("crsm 64 on needles"), "{text}");
+    }
 }

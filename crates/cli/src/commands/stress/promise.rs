@@ -116,3 +116,75 @@ pub fn without_culling<'a>(method: &Method<'a>) -> Option<Method<'a>> {
     params.insert(CULL.into(), none);
     Some(Method::new(method.preset, params))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        parse::Assignment,
+        preset::{self, Preset},
+    };
+
+    fn presets() -> Vec<Preset> {
+        let built_in = skiagraph_passes::presets().into_iter();
+        let names: Vec<String> = built_in.map(|preset| preset.name).collect();
+        preset::load_all(&names, &skiagraph_passes::EmbeddedSources).unwrap()
+    }
+
+    fn method<'a>(presets: &'a [Preset], name: &str, set: &str) -> Method<'a> {
+        let preset = presets.iter().find(|preset| preset.name == name).unwrap();
+        let set: Vec<Assignment> = set
+            .split_whitespace()
+            .map(|set| set.parse().unwrap())
+            .collect();
+        Method::new(preset, preset::params(preset, &set, None).unwrap())
+    }
+
+    #[test]
+    fn every_claim_is_of_a_preset_and_holds_of_it_as_it_is() {
+        let presets = presets();
+        for claim in &CLAIMS {
+            let method = method(&presets, claim.preset, "");
+            assert_eq!(of(&method, &[]), Some((claim.promise, claim.reason)));
+        }
+    }
+
+    #[test]
+    fn a_claim_ends_where_its_proof_does() {
+        let presets = presets();
+        for (name, set, promised) in [
+            ("crsm", "n=0.51", true),
+            ("crsm", "n=0.5", false),
+            ("crsm", "depth=plane", false),
+            ("crsma_full", "map_size=7 cull=back", true),
+            ("crsm_single", "n=0.2", false),
+            ("crsma", "", false),
+            ("nsm", "", false),
+        ] {
+            let method = method(&presets, name, set);
+            assert_eq!(of(&method, &[]).is_some(), promised, "{name} {set}");
+            let asked = of(&method, &[name.into()]);
+            assert_eq!(asked.map(|(promise, _)| promise), Some(Promise::Exact));
+        }
+    }
+
+    #[test]
+    fn only_a_method_that_culls_has_another_without_culling() {
+        let presets = presets();
+        for (name, set, culls) in [
+            ("crsm", "", true),
+            ("crsm", "cull=back", true),
+            ("crsm", "cull=none", false),
+            ("rt", "", false),
+        ] {
+            let method = method(&presets, name, set);
+            let other = without_culling(&method);
+            assert_eq!(other.is_some(), culls, "{name} {set}");
+            if let Some(other) = other {
+                let params = other.all_params();
+                assert_eq!(params["cull"], "none");
+                assert!(of(&other, &[]).is_some());
+            }
+        }
+    }
+}

@@ -57,6 +57,8 @@ pub struct Case {
     pub casters: Casters,
     /// The greatest share of the pixels facing the light that the band may take.
     pub band_cap: f64,
+    /// Of the band: failed where it is above its cap, or there is no reference at all.
+    pub verdict: Verdict,
     /// Why there is no reference, and so no cell; absent where there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failed: Option<String>,
@@ -81,8 +83,10 @@ pub enum Casters {
 /// One method on one case.
 #[derive(Clone, Debug, Serialize)]
 pub struct Cell {
-    /// Index of its method.
-    pub method: usize,
+    /// Name of the preset, or path of the graph.
+    pub preset: String,
+    /// Value of the param `map_size`; null where the graph has none.
+    pub map_size: Option<u32>,
     /// The param that differs from the method's, `cull=none`; null where none does.
     pub set: Option<String>,
     /// What it comes to.
@@ -98,7 +102,7 @@ pub struct Cell {
     pub images: Option<Images>,
 }
 
-/// What a cell comes to.
+/// What a cell or band comes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -183,6 +187,13 @@ impl Counts {
     }
 }
 
+impl Cell {
+    /// Whether it is of this method.
+    pub fn is_of(&self, column: &Column) -> bool {
+        (&self.preset, self.map_size) == (&column.preset, column.map_size)
+    }
+}
+
 impl Case {
     /// Whether the band takes more than its cap: what lies in it is not proven, and a band that swallows a case proves nothing.
     pub fn exceeds_cap(&self) -> bool {
@@ -199,7 +210,7 @@ impl Report {
 
     /// How many cases have too large a band, or no reference.
     pub fn failed_cases(&self) -> usize {
-        let failed = |case: &&Case| case.exceeds_cap() || case.failed.is_some();
+        let failed = |case: &&Case| case.verdict == Verdict::Fail;
         self.cases.iter().filter(failed).count()
     }
 
@@ -217,5 +228,188 @@ impl Report {
     /// It cannot be written.
     pub fn save(&self, folder: &Path) -> Result<(), CliError> {
         write_whole(&folder.join("stress.json"), self.to_json().as_bytes())
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    fn cell(preset: &str, verdict: Verdict, outside: [u64; 3]) -> Cell {
+        let [lit, shadow, certain] = outside;
+        let wrong = WrongCounts {
+            lit: lit + 1,
+            shadow,
+            total: lit + shadow + 1,
+            certain,
+            in_band: 1,
+        };
+        Cell {
+            preset: preset.into(),
+            map_size: (preset != "rt").then_some(128),
+            set: None,
+            verdict,
+            counts: Some(Counts {
+                wrong,
+                outside_band: Outside {
+                    lit,
+                    shadow,
+                    certain,
+                },
+                uncertain: 250,
+                uncertain_share: 0.25,
+                rays: Some(250),
+            }),
+            failed: None,
+            images: None,
+        }
+    }
+
+    fn case(name: &str, casters: Casters, band: u64, cells: Vec<Cell>) -> Case {
+        let mut case = Case {
+            name: name.into(),
+            reason: format!("what {name} provokes"),
+            casters,
+            band_cap: 0.005,
+            verdict: Verdict::Pass,
+            failed: None,
+            pixels: PixelCounts {
+                background: 500,
+                facing_away: 200,
+                facing_light: 1000,
+                lit: 600,
+                shadow: 400,
+            },
+            band,
+            cells,
+        };
+        if case.exceeds_cap() {
+            case.verdict = Verdict::Fail;
+        }
+        case
+    }
+
+    /// A report with everything that can occur.
+    pub(crate) fn sample() -> Report {
+        let column = |preset: &str, promise: Option<Promise>| Column {
+            preset: preset.into(),
+            map_size: (preset != "rt").then_some(128),
+            params: BTreeMap::from([("cull".into(), "front".into())]),
+            promise,
+            because: promise.map(|_| "it is proven".into()),
+            unavailable: (preset == "crsm_hw").then(|| "needs what is not here".into()),
+        };
+        let exact = Some(Promise::Exact);
+        let unreferenced = Case {
+            verdict: Verdict::Fail,
+            failed: Some("the light is nowhere".into()),
+            pixels: PixelCounts::default(),
+            ..case("nothing", Casters::Closed, 0, Vec::new())
+        };
+        Report {
+            schema: 1,
+            program: "skiagraph 0.1.0".into(),
+            adapter: Adapter {
+                name: "Some GPU".into(),
+                backend: "vulkan".into(),
+                driver: "driver 1.2".into(),
+                device_type: "Cpu".into(),
+                gpu_unavailable: None,
+            },
+            viewport: [128, 96],
+            methods: vec![
+                column("rt", exact),
+                column("nsm", None),
+                column("crsm", exact),
+                column("crsm_hw", exact),
+            ],
+            cases: vec![
+                case(
+                    "needles",
+                    Casters::Closed,
+                    5,
+                    vec![
+                        Cell {
+                            counts: None,
+                            failed: Some("out of memory".into()),
+                            ..cell("rt", Verdict::Fail, [0; 3])
+                        },
+                        cell("nsm", Verdict::Unjudged, [12, 3, 15]),
+                        cell("crsm", Verdict::Fail, [0, 3, 2]),
+                    ],
+                ),
+                case(
+                    "sheet",
+                    Casters::Open,
+                    6,
+                    vec![
+                        cell("rt", Verdict::Pass, [0; 3]),
+                        cell("nsm", Verdict::Unjudged, [0; 3]),
+                        cell("crsm", Verdict::Open, [40, 0, 40]),
+                        Cell {
+                            set: Some("cull=none".into()),
+                            ..cell("crsm", Verdict::Pass, [0; 3])
+                        },
+                    ],
+                ),
+                unreferenced,
+            ],
+        }
+    }
+
+    #[test]
+    fn the_schema_is_pinned() {
+        insta::assert_snapshot!(sample().to_json());
+    }
+
+    #[test]
+    fn only_what_was_promised_is_judged() {
+        use Verdict::{Fail, Open, Pass, Unjudged};
+        let (right, guessed) = (
+            Outside::default(),
+            Outside {
+                lit: 1,
+                ..Outside::default()
+            },
+        );
+        let certain = Outside {
+            shadow: 1,
+            certain: 1,
+            ..Outside::default()
+        };
+        let exact = Some(Promise::Exact);
+        let only_certain = Some(Promise::Certain);
+        for (promise, culls, casters, outside, verdict) in [
+            (None, false, Casters::Closed, certain, Unjudged),
+            (None, true, Casters::Open, certain, Unjudged),
+            (exact, false, Casters::Closed, right, Pass),
+            (exact, true, Casters::Closed, right, Pass),
+            (exact, true, Casters::Closed, guessed, Fail),
+            (exact, false, Casters::Open, guessed, Fail),
+            (exact, false, Casters::Open, right, Pass),
+            (exact, true, Casters::Open, certain, Open),
+            (exact, true, Casters::Open, right, Open),
+            (only_certain, true, Casters::Closed, guessed, Pass),
+            (only_certain, true, Casters::Closed, certain, Fail),
+            (only_certain, false, Casters::Open, certain, Fail),
+            (only_certain, true, Casters::Open, certain, Open),
+        ] {
+            let found = Verdict::of(promise, culls, casters, &outside);
+            assert_eq!(
+                found, verdict,
+                "{promise:?} {culls} {casters:?} {outside:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_band_may_reach_its_cap_and_not_pass_it() {
+        let exceeds = |band| case("a", Casters::Closed, band, Vec::new()).exceeds_cap();
+        assert_eq!([0, 5, 6].map(exceeds), [false, false, true]);
+        let nothing = Case {
+            pixels: PixelCounts::default(),
+            ..case("nothing", Casters::Closed, 0, Vec::new())
+        };
+        assert!(!nothing.exceeds_cap(), "no pixel faces the light");
     }
 }

@@ -116,6 +116,7 @@ impl Trial<'_> {
             reason: hard.reason.into(),
             casters: casters(hard),
             band_cap: hard.band_cap,
+            verdict: Verdict::Fail,
             failed: None,
             pixels: PixelCounts::default(),
             band: 0,
@@ -139,10 +140,11 @@ impl Trial<'_> {
         let counts = Statistics::judged(&reference.visibility(), &reference.status(), &reference)
             .unwrap_or_default(); // Its own buffers fit it.
         (case.pixels, case.band) = (counts.pixels, counts.band);
-        for (index, contender) in self.contenders.iter().enumerate() {
-            if contender.unavailable.is_some() {
-                continue;
-            }
+        if !case.exceeds_cap() {
+            case.verdict = Verdict::Pass;
+        }
+        let able = |contender: &&Contender| contender.unavailable.is_none();
+        for contender in self.contenders.iter().filter(able) {
             for (method, set, culls) in contender.runs(case.casters) {
                 if interrupt::raised() {
                     return Err(CliError::Interrupted {
@@ -150,7 +152,8 @@ impl Trial<'_> {
                     });
                 }
                 let mut cell = Cell {
-                    method: index,
+                    preset: method.preset.name.clone(),
+                    map_size: method.map_size,
                     set: set.map(Into::into),
                     verdict: Verdict::Fail,
                     counts: None,
@@ -254,5 +257,36 @@ fn ends_all(error: &CliError) -> bool {
             Some(ExecuteError::DeviceLost { .. })
         ),
         _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::report::Outside, *};
+
+    #[test]
+    fn pixels_in_the_band_are_settled_by_the_reference_and_no_others() {
+        use Class::{Background, FacingAway, Lit, Shadow};
+        let reference = Reference {
+            viewport: [6, 1],
+            classes: vec![Background, FacingAway, Lit, Lit, Shadow, Shadow],
+            in_band: vec![false, true, true, false, true, false],
+            n_dot_l: vec![0.5; 6],
+        };
+        let wrong = [0, 1, 0, 0, 1, 1];
+        assert_eq!(settled(&wrong, &reference), [0, 0, 1, 0, 0, 1]);
+        let status = [0u32, 4, 3, 3, 2, 4];
+        let count = |visibility: &[u32]| Statistics::judged(visibility, &status, &reference);
+        let whole = count(&wrong).unwrap();
+        let counts = Counts::new(&whole, &count(&settled(&wrong, &reference)).unwrap(), None);
+        assert_eq!((counts.wrong.lit, counts.wrong.shadow), (3, 2));
+        assert_eq!(counts.wrong.in_band, 3);
+        let Outside {
+            lit,
+            shadow,
+            certain,
+        } = counts.outside_band;
+        assert_eq!((lit, shadow, certain), (1, 1, 1));
+        assert_eq!(certain, counts.wrong.certain);
     }
 }

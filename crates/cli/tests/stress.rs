@@ -197,15 +197,47 @@ fn what_this_adapter_cannot_run_is_said_once() {
         ],"#,
     );
     fs::write(folder.path().join("nowhere.ron"), nowhere).unwrap();
-    let (text, _) = run(folder.path(), "rt nowhere.ron --size 8x8", 0);
+    let (text, _) = run(
+        folder.path(),
+        "rt nowhere.ron --case box_on_floor --size 8x8",
+        0,
+    );
     assert_eq!(
         text.matches("nowhere.ron is unavailable").count(),
         1,
         "{text}"
     );
-    assert_eq!(text.matches(" n/a ").count(), hard::cases().len(), "{text}");
+    assert_eq!(text.matches("nowhere.ron").count(), 1, "no column: {text}");
     let (_, errors) = run(folder.path(), "nowhere.ron --size 8x8", 1);
     assert!(errors.contains("no method can run"), "{errors}");
+}
+
+#[test]
+fn every_promise_holds_on_every_case() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "rt crsm crsm_depth crsm_single crsma_full --size 64x64 --map-size 64";
+    run(folder.path(), line, 0);
+}
+
+#[test]
+fn open_casters_are_judged_without_culling() {
+    let folder = tempfile::tempdir().unwrap();
+    let is_open = |case: &hard::HardCase| case.casters == hard::Casters::Open;
+    let open = hard::cases().into_iter().find(is_open);
+    let name = open.expect("the catalogue has open cases").name;
+    let line = format!("crsm nsm --case {name} --size 32x32 --map-size 32 --format json");
+    let report: Value = serde_json::from_str(&run(folder.path(), &line, 0).0).unwrap();
+    let cells = report["cases"][0]["cells"].as_array().unwrap();
+    let verdicts: Vec<_> = cells
+        .iter()
+        .map(|cell| [&cell["preset"], &cell["set"], &cell["verdict"]].map(Value::as_str))
+        .collect();
+    let expected = [
+        [Some("crsm"), None, Some("open")],
+        [Some("crsm"), Some("cull=none"), Some("pass")],
+        [Some("nsm"), None, Some("unjudged")],
+    ];
+    assert_eq!(verdicts, expected);
 }
 
 /// Ctrl-C after the first case: the cases that are done stay.

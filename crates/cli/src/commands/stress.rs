@@ -59,6 +59,7 @@ pub fn stress(args: &StressArgs, adapter: Option<&str>) -> Result<(), CliError> 
         .into_iter()
         .map(|method| contender(method, args, &gpu, &provider))
         .collect();
+    check_abilities(&contenders, &gpu)?;
     if let Some(folder) = &args.save {
         check_pictures(&contenders, &cases, args)?;
         create(folder)?;
@@ -134,36 +135,20 @@ fn finish(
         return Err(CliError::Interrupted { kept });
     }
     outcome?;
-    if report
-        .methods
-        .iter()
-        .all(|method| method.unavailable.is_some())
-    {
-        return Err(CliError::Input(format!(
-            "no method can run on {}; the reasons stand above",
-            report.adapter.name
-        )));
-    }
-    let (cells, bands) = (report.count(Verdict::Fail), report.failed_cases());
-    let plural = |count: usize, noun: &str| match count {
-        1 => format!("1 {noun}"),
-        _ => format!("{count} {noun}s"),
-    };
-    match (cells, bands) {
-        (0, 0) => Ok(()),
-        (cells, 0) => Err(CliError::Judged(format!(
-            "{} failed",
-            plural(cells, "cell")
-        ))),
-        (0, bands) => Err(CliError::Judged(format!(
-            "{} failed",
-            plural(bands, "case")
-        ))),
-        (cells, bands) => Err(CliError::Judged(format!(
-            "{} and {} failed",
-            plural(cells, "cell"),
-            plural(bands, "case")
-        ))),
+    let failed = [
+        (report.count(Verdict::Fail), "cell"),
+        (report.failed_cases(), "case"),
+    ];
+    let failed = failed.into_iter().filter(|(count, _)| *count > 0);
+    let failed: Vec<String> = failed
+        .map(|(count, noun)| match count {
+            1 => format!("1 {noun}"),
+            _ => format!("{count} {noun}s"),
+        })
+        .collect();
+    match &failed[..] {
+        [] => Ok(()),
+        _ => Err(CliError::Judged(format!("{} failed", failed.join(" and ")))),
     }
 }
 
@@ -179,6 +164,21 @@ fn contender<'a>(
     Contender {
         unavailable,
         ..Contender::new(method, &args.exact)
+    }
+}
+
+/// Refuses to run where there is nothing to run.
+fn check_abilities(contenders: &[Contender], gpu: &Gpu) -> Result<(), CliError> {
+    let reasons = contenders.iter().map(|contender| {
+        let reason = contender.unavailable.as_ref()?;
+        Some(format!("\n  {}: {reason}", contender.method.preset.name))
+    });
+    match reasons.collect::<Option<String>>() {
+        Some(reasons) => Err(CliError::Input(format!(
+            "no method can run on {}{reasons}",
+            gpu.adapter.get_info().name
+        ))),
+        None => Ok(()),
     }
 }
 

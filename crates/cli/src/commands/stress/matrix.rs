@@ -54,20 +54,21 @@ fn table(report: &Report) -> String {
         let promise = column.promise.map_or("", Promise::word);
         format!("{}\n{promise}", named(report, column))
     };
+    let able = report.methods.iter();
+    let able: Vec<&Column> = able.filter(|column| column.unavailable.is_none()).collect();
     let mut header = vec!["case".to_owned(), "PFL".into(), "band".into()];
-    header.extend(report.methods.iter().map(head));
+    header.extend(able.iter().map(|column| head(column)));
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
     let mut table = new_table(&header, 1);
     for case in &report.cases {
         let own: Vec<Option<&str>> = sets(case);
         for set in own {
             let row = heads(case, set).into_iter();
-            let cells = report.methods.iter().map(|column| {
+            let cells = able.iter().map(|column| {
                 let mut cells = case.cells.iter();
                 match cells.find(|cell| cell.is_of(column) && cell.set.as_deref() == set) {
                     Some(cell) => shown(cell),
                     None if set.is_some() => String::new(),
-                    None if column.unavailable.is_some() => "n/a".into(),
                     None => "–".into(),
                 }
             });

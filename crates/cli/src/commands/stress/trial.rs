@@ -263,6 +263,26 @@ fn ends_all(error: &CliError) -> bool {
 #[cfg(test)]
 mod tests {
     use super::{super::report::Outside, *};
+    use crate::preset;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn only_a_promise_and_open_casters_make_a_second_run() {
+        let names = ["crsm".into(), "nsm".into(), "rt".into()];
+        let presets = preset::load_all(&names, &skiagraph_passes::EmbeddedSources).unwrap();
+        let runs = |index: usize, casters, exact: &[String]| {
+            let method = Method::new(&presets[index], BTreeMap::new());
+            let contender = Contender::new(method, exact);
+            let runs = contender.runs(casters).into_iter();
+            runs.map(|(_, set, culls)| (set, culls)).collect::<Vec<_>>()
+        };
+        let again = vec![(None, true), (Some("cull=none"), false)];
+        assert_eq!(runs(0, Casters::Closed, &[]), [(None, true)]);
+        assert_eq!(runs(0, Casters::Open, &[]), again);
+        assert_eq!(runs(1, Casters::Open, &[]), [(None, true)]);
+        assert_eq!(runs(1, Casters::Open, &names), again);
+        assert_eq!(runs(2, Casters::Open, &[]), [(None, false)]);
+    }
 
     #[test]
     fn pixels_in_the_band_are_settled_by_the_reference_and_no_others() {

@@ -180,6 +180,10 @@ fn intersect(ray: Prepared, primitive: u32, t_min: f32, hit: ptr<function, Hit>)
     if any(weights < vec3(0.0)) && any(weights > vec3(0.0)) {
         return false;
     }
+    // On the line of an edge, but beyond its end: all corners on one line with the ray, whose rounding would pass for an area.
+    if any(weights == vec3(0.0)) && !surrounds(a.xy, b.xy, c.xy) {
+        return false;
+    }
     // Zero for triangles without area and for those that the ray meets edge-on: a neighbour is hit instead.
     let sum = weights.x + weights.y + weights.z;
     if sum == 0.0 {
@@ -206,12 +210,23 @@ fn permute(v: vec3<f32>, last: u32) -> vec3<f32> {
     return select(select(v, v.zxy, last == 1u), v.yzx, last == 0u);
 }
 
-// Twice the signed area of the origin, p and q. Always evaluated from the lower corner to the higher: edge(p, q) is
-// -edge(q, p) to the bit even where a compiler fuses one of the products, so both triangles of an edge see the same sign.
+// Whether the box around three points has the origin in it: exact, and true of every triangle that has.
+fn surrounds(a: vec2<f32>, b: vec2<f32>, c: vec2<f32>) -> bool {
+    return all(min(a, min(b, c)) <= vec2(0.0)) && all(max(a, max(b, c)) >= vec2(0.0));
+}
+
+// What two products and their difference err by, fused or not, in shares of one of two nearly equal products: each half an ulp, 2^-24, and
+// as much again for the difference; doubled.
+const EDGE_ERROR: f32 = 2.3841858e-7;
+
+// Twice the signed area of the origin, p and q: 0 where rounding would decide its sign, so that it is never the wrong one and a ray cannot
+// slip between two triangles; products that are flushed to zero are such a case. Always evaluated from the lower corner to the higher:
+// edge(p, q) is -edge(q, p) to the bit even where a compiler fuses one of the products.
 fn edge(p: vec2<f32>, q: vec2<f32>) -> f32 {
     let swap = q.x < p.x || (q.x == p.x && q.y < p.y);
     let lesser = select(p, q, swap);
     let greater = select(q, p, swap);
-    let area = lesser.x * greater.y - lesser.y * greater.x;
-    return select(area, -area, swap);
+    let product = lesser.x * greater.y;
+    let area = product - lesser.y * greater.x;
+    return select(0.0, select(area, -area, swap), abs(area) > EDGE_ERROR * abs(product));
 }

@@ -8,48 +8,10 @@ use skiagraph_scene::{DirectionalLight, Mesh, Scene};
 use std::sync::Arc;
 use support::{
     brute::{self, Hit, MISS, Ray},
-    graphs::{Extended, run_text},
+    graphs::{Extended, run_text, trace, trace_all},
     meshes,
     random::Random,
 };
-
-/// Traces on the GPU through a graph of one `Trace` pass.
-fn trace(mesh: &Mesh, rays: &[Ray], skip: Option<&[u32]>, count: u32, mode: &str) -> Vec<Hit> {
-    let light = DirectionalLight {
-        direction: DVec3::NEG_Y,
-    };
-    let scene = Scene {
-        name: "test".into(),
-        mesh: mesh.clone(),
-        views: vec![],
-        light,
-    };
-    let mut provider = Extended::new(SceneProvider::new(Arc::new(scene)));
-    provider.add("test.rays", rays);
-    provider.add("test.count", &[count]);
-    if let Some(skip) = skip {
-        provider.add("test.skip", skip);
-    }
-    let skip = if skip.is_some() {
-        r#"skip: "test.skip", "#
-    } else {
-        ""
-    };
-    let document = format!(
-        r#"(
-            format: 1,
-            description: "rays in, hits out",
-            materials: [Buffer(name: "hits", count: CountOf("test.rays"))],
-            passes: [Trace(name: "trace", rays: "test.rays", hits: "hits", count: "test.count", {skip}mode: {mode})],
-            outputs: [(name: "hits")],
-        )"#
-    );
-    bytemuck::pod_collect_to_vec(&run_text(&document, &mut provider, "hits"))
-}
-
-fn trace_all(mesh: &Mesh, rays: &[Ray], mode: &str) -> Vec<Hit> {
-    trace(mesh, rays, None, rays.len() as u32, mode)
-}
 
 /// Weight by which a ray must miss or hit a triangle's border for f32 to be sure of it.
 const BORDER: f64 = 1e-5;
@@ -303,6 +265,24 @@ fn the_interval_of_a_ray_is_open_below_and_closed_above() {
             v: 0.25
         }
     );
+}
+
+#[test]
+fn a_ray_in_the_plane_of_a_triangle_beside_it_misses() {
+    // All corners on one line as the ray sees them, two of three edge functions 0, and the third off by rounding.
+    let corners = [
+        [-0.75, -0.75, 1.375],
+        [-0.625, -0.625, 0.875],
+        [-1.125, -0.75, 0.625],
+    ];
+    let mesh = meshes::mesh(corners.map(Vec3::from).to_vec(), vec![[0, 1, 2]]);
+    let ray = Ray {
+        origin: Vec3::new(0.0, -0.25, -0.125),
+        t_min: 0.0,
+        direction: Vec3::new(-0.875, -0.375, 0.5),
+        t_max: 10.0,
+    };
+    assert_eq!(trace_all(&mesh, &[ray], "Any")[0].primitive, MISS);
 }
 
 #[test]

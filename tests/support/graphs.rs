@@ -1,11 +1,12 @@
 //! Runs graphs for tests.
 
+use super::brute::{Hit, Ray};
 use skiagraph_graph::{
     Content, Executor, Frame, FrameReport, Graph, LayeredSources, Plan, PlanRequest, Provided,
     Provider, ProviderError, Sources, gpu,
 };
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
-use skiagraph_scene::{Scene, View};
+use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
 use std::{collections::BTreeMap, sync::Arc};
 use wgpu::util::DeviceExt;
 
@@ -97,6 +98,45 @@ pub fn run_text(document: &str, provider: &mut dyn Provider, output: &str) -> Ve
     match report.readbacks.into_iter().next().unwrap().content {
         Content::Buffer(bytes) | Content::Texture { bytes, .. } => bytes,
     }
+}
+
+/// Traces on the GPU through a graph of one `Trace` pass: the first `count` rays, each past its primitive in `skip`.
+pub fn trace(mesh: &Mesh, rays: &[Ray], skip: Option<&[u32]>, count: u32, mode: &str) -> Vec<Hit> {
+    let light = DirectionalLight {
+        direction: glam::DVec3::NEG_Y,
+    };
+    let scene = Scene {
+        name: "test".into(),
+        mesh: mesh.clone(),
+        views: vec![],
+        light,
+    };
+    let mut provider = Extended::new(SceneProvider::new(Arc::new(scene)));
+    provider.add("test.rays", rays);
+    provider.add("test.count", &[count]);
+    if let Some(skip) = skip {
+        provider.add("test.skip", skip);
+    }
+    let skip = if skip.is_some() {
+        r#"skip: "test.skip", "#
+    } else {
+        ""
+    };
+    let document = format!(
+        r#"(
+            format: 1,
+            description: "rays in, hits out",
+            materials: [Buffer(name: "hits", count: CountOf("test.rays"))],
+            passes: [Trace(name: "trace", rays: "test.rays", hits: "hits", count: "test.count", {skip}mode: {mode})],
+            outputs: [(name: "hits")],
+        )"#
+    );
+    bytemuck::pod_collect_to_vec(&run_text(&document, &mut provider, "hits"))
+}
+
+/// All of them, past nothing.
+pub fn trace_all(mesh: &Mesh, rays: &[Ray], mode: &str) -> Vec<Hit> {
+    trace(mesh, rays, None, rays.len() as u32, mode)
 }
 
 /// Plans a preset for a scene, all outputs, after `adjust` has had its say.

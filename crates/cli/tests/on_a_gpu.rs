@@ -439,7 +439,7 @@ fn a_resumed_comparison_is_the_one_in_one_go() {
 #[test]
 fn a_document_holds_what_was_measured_and_needs_no_pictures() {
     let folder = tempfile::tempdir().unwrap();
-    let line = "compare nsm rt --view all --size 16x16 --map-size 8 --frames 1 --images none --out . --format markdown";
+    let line = "compare nsm rt --view all --size 16x16 --map-size 8 --frames 1 --cached-frames 0 --images none --out . --format markdown";
     let output = skiagraph(folder.path(), line);
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(text.contains(&format!("    skiagraph {line}\n")), "{text}");
@@ -448,6 +448,7 @@ fn a_document_holds_what_was_measured_and_needs_no_pictures() {
     let results = results(folder.path());
     for run in results["runs"].as_array().unwrap() {
         assert!(run.get("images").is_none() && run["wrong"].is_object());
+        assert_eq!(run["cached"], Value::Null);
     }
     let files = fs::read_dir(folder.path()).unwrap().count();
     assert_eq!(files, 2, "results.json and results.csv");

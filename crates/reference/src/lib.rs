@@ -38,5 +38,5 @@ pub mod twin;
 
 pub use error::Error;
 pub use image::Image;
-pub use oracle::{BACKGROUND, Class, Oracle, OracleMode, Progress, Reference};
+pub use oracle::{BACKGROUND, Class, Occlusion, Oracle, OracleMode, Progress, Reference};
 pub use statistics::{CertainCounts, ClassSplit, PixelCounts, Split, Statistics, WrongCounts};

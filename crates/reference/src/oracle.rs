@@ -7,7 +7,7 @@ use crate::{
     receiver::Receiver,
     tree::Tree,
 };
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use skiagraph_scene::{Bvh, Camera, DirectionalLight, Mesh};
 use std::{
@@ -121,6 +121,15 @@ pub struct Reference {
 pub struct Oracle<'a> {
     mesh: &'a Mesh,
     tree: Tree<'a>,
+}
+
+/// What the oracle says of a ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Occlusion {
+    /// Whether a triangle stands in its way.
+    pub blocked: bool,
+    /// Whether that changes when the triangles move by what f32 makes of their corners, seen from the ray's origin.
+    pub in_band: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -246,6 +255,23 @@ impl<'a> Oracle<'a> {
             in_band: answers.iter().map(|answer| answer.in_band).collect(),
             n_dot_l: answers.iter().map(|answer| answer.n_dot_l).collect(),
         })
+    }
+
+    /// Traces rays given by origin and direction (any length but zero), for tracers of f32 to be held against: both count as exact, t > 0,
+    /// and triangles are two-sided.
+    pub fn occlusion(&self, rays: &[(Vec3, Vec3)]) -> Vec<Occlusion> {
+        let exact = Uncertainty {
+            segments: [DVec3::ZERO; 3],
+            radius: 0.0,
+        };
+        rays.par_iter()
+            .map_init(Vec::new, |stack, (origin, direction)| {
+                let towards = direction.as_dvec3().normalize();
+                let (blocked, in_band) =
+                    self.visibility(origin.as_dvec3(), towards, &exact, BACKGROUND, stack);
+                Occlusion { blocked, in_band }
+            })
+            .collect()
     }
 
     fn answer(

@@ -54,6 +54,17 @@ pub enum Command {
         docs/profiling.md says how to read the tables and the trace."
     )]
     Profile(ProfileArgs),
+    /// Run the hard cases with every method: which pixels does each get wrong, and are the exact ones wrong nowhere?
+    #[command(
+        after_help = "Examples:\n  skiagraph stress\n  skiagraph stress --list\n  \
+        skiagraph stress rt crsm --case box_on_floor --save pictures\n  \
+        skiagraph stress crsm --set cull=none --map-size 32,128,512 --out stress\n  \
+        skiagraph stress my_method.ron --exact my_method.ron\n\n\
+        A cell counts pixels outside the band, wrongly lit + wrongly in shadow. Methods that are called exact must show 0, and no\n\
+        band may be above its case's cap; else the exit code is 1. What casts shadows by its back faces alone (param `cull`) is\n\
+        judged on open casters with cull=none."
+    )]
+    Stress(StressArgs),
     /// Check graphs and their shaders. Needs no GPU.
     #[command(
         after_help = "Examples:\n  skiagraph check my_method.ron pipelines/*.ron\n  \
@@ -261,6 +272,50 @@ pub struct ProfileArgs {
     /// Compare with what an earlier --json wrote.
     #[arg(long, value_name = "OLD.json")]
     pub baseline: Option<PathBuf>,
+}
+
+/// `skiagraph stress`.
+#[derive(Args, Debug)]
+pub struct StressArgs {
+    /// Presets by name, or graphs (.ron) with the outputs `visibility` and `status`. Without any: all presets.
+    #[arg(value_name = "PRESET|FILE.ron")]
+    pub presets: Vec<String>,
+    /// List the cases instead: names, casters, reasons. Needs no GPU.
+    #[arg(long, exclusive = true)]
+    pub list: bool,
+    /// A case by name. May be repeated. Without any: all cases.
+    #[arg(long = "case", value_name = "NAME")]
+    pub cases: Vec<String>,
+    /// Viewport size in pixels.
+    #[arg(long, value_name = "WxH", default_value = "128x128")]
+    pub size: Size,
+    /// Shadow map sizes in texels, separated by commas: the param `map_size` of the graphs that have it.
+    #[arg(long, value_name = "N,…", value_delimiter = ',', default_value = "128", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
+    pub map_size: Vec<u32>,
+    /// A param of the graphs that have it. May be repeated.
+    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub params: Vec<Assignment>,
+    /// Judge this method as an exact one, too: no pixel outside the band may be wrong. May be repeated.
+    #[arg(long, value_name = "PRESET|FILE.ron")]
+    pub exact: Vec<String>,
+    /// Folder for the pictures of every cell: shaded, visibility, error, uncertain.
+    #[arg(long, value_name = "DIR")]
+    pub save: Option<PathBuf>,
+    /// Folder for stress.json, written anew after every case.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// What is printed on standard output.
+    #[arg(long, value_enum, default_value_t = StressFormat::Table)]
+    pub format: StressFormat,
+}
+
+/// How the matrix is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum StressFormat {
+    /// For a terminal.
+    Table,
+    /// The contents of stress.json.
+    Json,
 }
 
 /// `skiagraph check`.

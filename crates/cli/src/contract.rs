@@ -1,8 +1,13 @@
 //! What a graph must hand out to stand in `compare`, and how that is read.
 
-use crate::preset::Preset;
-use skiagraph_graph::{Content, Plan};
-use std::collections::BTreeMap;
+use crate::{
+    error::CliError,
+    measure::Method,
+    preset::{self, Faults, Preset},
+    render,
+};
+use skiagraph_graph::{Content, Plan, Provider, Sources};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The output with 0 in shadow and 1 in light.
 pub const VISIBILITY: &str = "visibility";
@@ -11,8 +16,50 @@ pub const STATUS: &str = "status";
 /// The optional output with the number of rays traced in the frame.
 pub const RAY_COUNT: &str = "ray_count";
 
+/// Loads graphs and refuses those that are no shadow methods.
+///
+/// # Errors
+/// Every fault of every graph together.
+pub fn load_all(names: &[String], sources: &dyn Sources) -> Result<Vec<Preset>, CliError> {
+    let presets = preset::load_all(names, sources)?;
+    let incomplete: Vec<String> = presets.iter().filter_map(missing_outputs).collect();
+    if incomplete.is_empty() {
+        Ok(presets)
+    } else {
+        Err(CliError::Input(incomplete.join("\nerror: ")))
+    }
+}
+
+/// Plans all methods on all viewports for the most able adapter there is: a graph that only this one cannot run is no mistake.
+///
+/// # Errors
+/// Every fault of every graph together, outputs that do not fit the contract.
+pub fn check_plans(
+    methods: &[Method],
+    viewports: &[[u32; 2]],
+    provider: &dyn Provider,
+) -> Result<(), CliError> {
+    let mut faults = Faults::default();
+    let mut misfits = BTreeSet::new();
+    for &viewport in viewports {
+        for method in methods {
+            match method.plan(viewport, render::greatest_abilities(), provider) {
+                Ok(plan) => misfits.extend(misfit(method.preset, &plan, viewport)),
+                Err(diagnostics) => faults.add(&method.preset.name, &diagnostics),
+            }
+        }
+    }
+    faults.none_or_error()?;
+    if misfits.is_empty() {
+        return Ok(());
+    }
+    Err(CliError::Input(
+        misfits.into_iter().collect::<Vec<_>>().join("\nerror: "),
+    ))
+}
+
 /// What the graph lacks as a shadow preset.
-pub fn missing_outputs(preset: &Preset) -> Option<String> {
+fn missing_outputs(preset: &Preset) -> Option<String> {
     let outputs = preset.graph.outputs();
     let missing: Vec<&str> = [VISIBILITY, STATUS]
         .into_iter()
@@ -36,7 +83,7 @@ pub fn missing_outputs(preset: &Preset) -> Option<String> {
 }
 
 /// What is wrong with the outputs' sizes and formats on this viewport.
-pub fn misfit(preset: &Preset, plan: &Plan, viewport: [u32; 2]) -> Option<String> {
+fn misfit(preset: &Preset, plan: &Plan, viewport: [u32; 2]) -> Option<String> {
     use wgpu::TextureFormat as F;
     plan.outputs().into_iter().find_map(|output| {
         let fits = match (output.name.as_str(), output.format) {

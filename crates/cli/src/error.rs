@@ -38,6 +38,9 @@ pub enum CliError {
     /// Graphs that ran, but whose outputs do not hold what a shadow method's must.
     #[error("{0}")]
     Contract(String),
+    /// Methods or cases that are not as they must be; which ones was printed before.
+    #[error("{0}")]
+    Judged(String),
     /// No adapter to run on.
     #[error("{0}")]
     NoGpu(String),

@@ -41,6 +41,7 @@ fn main() -> ExitCode {
         Command::Compare(args) => commands::compare::compare(args, adapter),
         Command::Run(args) => commands::run::run(args, adapter),
         Command::Profile(args) => commands::profile::profile(args, adapter),
+        Command::Stress(args) => commands::stress::stress(args, adapter),
         Command::Check(args) => commands::check::check(args),
         Command::Graph(args) => commands::graph::graph(args),
         Command::Presets(args) => commands::presets::presets(args),

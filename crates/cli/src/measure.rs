@@ -5,6 +5,7 @@ use crate::{
     date,
     error::CliError,
     fingerprint::Fingerprint,
+    parse::{Assignment, unique},
     picture,
     preset::{self, Preset},
     progress::Step,
@@ -86,6 +87,29 @@ impl<'a> Method<'a> {
             .map(|param| (param.name.to_string(), value(param)))
             .collect()
     }
+}
+
+/// Each preset with each map size; a preset without that param once.
+///
+/// # Errors
+/// A value that a param cannot take, and a name that no preset has.
+pub fn methods<'a>(
+    presets: &'a [Preset],
+    params: &[Assignment],
+    map_sizes: &[u32],
+) -> Result<Vec<Method<'a>>, CliError> {
+    preset::check_names(presets, params)?;
+    let mut methods = Vec::new();
+    for preset in presets {
+        let mut sizes: Vec<Option<u32>> = unique(map_sizes).into_iter().map(Some).collect();
+        if sizes.is_empty() || !preset::has_param(preset, preset::MAP_SIZE) {
+            sizes = vec![None];
+        }
+        for size in sizes {
+            methods.push(Method::new(preset, preset::params(preset, params, size)?));
+        }
+    }
+    Ok(methods)
 }
 
 /// A param's value for `results.json`. An f32 is written as the short decimal that it was read from, not as the f64
@@ -208,17 +232,7 @@ impl Setting<'_> {
             outputs,
             memory: (memory_bytes, saved_bytes),
         } = executed;
-        let broken = |reason: String| {
-            let name = &method.preset.name;
-            CliError::Contract(format!("`{name}` breaks the contract of outputs: {reason}"))
-        };
-        let Outputs {
-            visibility,
-            status,
-            rays,
-        } = outputs.map_err(broken)?;
-        let counts = Statistics::judged(&visibility, &status, self.reference)
-            .map_err(|error| broken(error.to_string()))?;
+        let (outputs, counts) = judged(method.preset, outputs, self.reference)?;
         if !self.timestamps {
             times.frame.gpu_ms = None;
             cached
@@ -230,7 +244,7 @@ impl Setting<'_> {
             certain: counts.certain,
             uncertain: counts.uncertain,
             split: counts.split,
-            rays,
+            rays: outputs.rays,
             wrong: counts.wrong,
             facing_mismatch: counts.facing_mismatch,
             passes: times.passes,
@@ -241,41 +255,14 @@ impl Setting<'_> {
             images: match self.pictures {
                 None => None,
                 Some(folder) => {
-                    Some(self.save_pictures(folder, method, &visibility, &status, &counts)?)
-                }
-            },
-        })
-    }
-
-    fn save_pictures(
-        &self,
-        folder: &Path,
-        method: &Method,
-        visibility: &[u32],
-        status: &[u32],
-        counts: &Statistics,
-    ) -> Result<Images, CliError> {
-        let stem = stem(method, self.view, self.reference.viewport);
-        let reference = self.reference;
-        let save = |kind: &str, image: Result<Image, skiagraph_reference::Error>| {
-            let name = format!("{stem}-{kind}.png");
-            let image =
-                image.map_err(|error| CliError::Input(format!("no picture {name}: {error}")))?;
-            picture::save(&folder.join(&name), &image)?;
-            Ok::<_, CliError>(name)
-        };
-        Ok(Images {
-            shaded: save("shaded", Image::shaded(visibility, reference))?,
-            visibility: save(
-                "visibility",
-                Image::visibility(reference.viewport, visibility, status),
-            )?,
-            error: save("error", Image::error(visibility, status, reference))?,
-            uncertain: match counts.certain.lit + counts.certain.shadow + counts.uncertain {
-                0 => None,
-                _ => {
-                    let image = Image::uncertain(visibility, status, reference);
-                    Some(save("uncertain", image)?)
+                    let stem = stem(method, self.view, self.reference.viewport);
+                    Some(save_pictures(
+                        folder,
+                        &stem,
+                        self.reference,
+                        &outputs,
+                        &counts,
+                    )?)
                 }
             },
         })
@@ -310,6 +297,95 @@ impl Setting<'_> {
     fn where_(&self, method: &Method) -> String {
         place(method, self.view, self.reference.viewport)
     }
+}
+
+/// A frame's outputs beside the reference.
+///
+/// # Errors
+/// [`CliError::Contract`] where they are not what a shadow method's must be.
+pub fn judged(
+    preset: &Preset,
+    outputs: Result<Outputs, String>,
+    reference: &Reference,
+) -> Result<(Outputs, Statistics), CliError> {
+    let broken = |reason: String| {
+        let name = &preset.name;
+        CliError::Contract(format!("`{name}` breaks the contract of outputs: {reason}"))
+    };
+    let outputs = outputs.map_err(broken)?;
+    let counts = Statistics::judged(&outputs.visibility, &outputs.status, reference)
+        .map_err(|error| broken(error.to_string()))?;
+    Ok((outputs, counts))
+}
+
+/// Writes the pictures of a frame, their names beginning with `stem`.
+///
+/// # Errors
+/// One cannot be written.
+pub fn save_pictures(
+    folder: &Path,
+    stem: &str,
+    reference: &Reference,
+    outputs: &Outputs,
+    counts: &Statistics,
+) -> Result<Images, CliError> {
+    let (visibility, status) = (&outputs.visibility, &outputs.status);
+    let save = |kind: &str, image| save_picture(folder, format!("{stem}-{kind}.png"), image);
+    Ok(Images {
+        shaded: save("shaded", Image::shaded(visibility, reference))?,
+        visibility: save(
+            "visibility",
+            Image::visibility(reference.viewport, visibility, status),
+        )?,
+        error: save("error", Image::error(visibility, status, reference))?,
+        uncertain: match counts.certain.lit + counts.certain.shadow + counts.uncertain {
+            0 => None,
+            _ => {
+                let image = Image::uncertain(visibility, status, reference);
+                Some(save("uncertain", image)?)
+            }
+        },
+    })
+}
+
+/// Writes the picture of the reference, its name beginning with `stem`.
+///
+/// # Errors
+/// It cannot be written.
+pub fn save_reference(folder: &Path, stem: &str, reference: &Reference) -> Result<(), CliError> {
+    let (visibility, status) = (reference.visibility(), reference.status());
+    let image = Image::visibility(reference.viewport, &visibility, &status);
+    save_picture(folder, format!("{stem}-visibility.png"), image).map(|_| ())
+}
+
+fn save_picture(
+    folder: &Path,
+    name: String,
+    image: Result<Image, skiagraph_reference::Error>,
+) -> Result<String, CliError> {
+    let image = image.map_err(|error| CliError::Input(format!("no picture {name}: {error}")))?;
+    picture::save(&folder.join(&name), &image)?;
+    Ok(name)
+}
+
+/// Refuses pictures that would overwrite each other, before anything runs: what the name of each begins with, and whose they are.
+///
+/// # Errors
+/// Names both owners; `option` is what says where pictures go.
+pub fn check_stems(
+    stems: impl IntoIterator<Item = (String, String)>,
+    option: &str,
+) -> Result<(), CliError> {
+    let mut owners: BTreeMap<String, String> = BTreeMap::new();
+    for (stem, owner) in stems {
+        if let Some(other) = owners.get(&stem) {
+            return Err(CliError::Input(format!(
+                "the pictures of {other} and of {owner} would overwrite each other: both are called {stem}-….png\n  rename one, or run them one after the other with another {option}"
+            )));
+        }
+        owners.insert(stem, owner);
+    }
+    Ok(())
 }
 
 fn place(method: &Method, view: &str, [width, height]: [u32; 2]) -> String {

@@ -33,6 +33,17 @@ impl fmt::Display for Size {
     }
 }
 
+/// A list without repeats, in its own order.
+pub fn unique<T: Clone + PartialEq>(list: &[T]) -> Vec<T> {
+    let mut kept = Vec::new();
+    for item in list {
+        if !kept.contains(item) {
+            kept.push(item.clone());
+        }
+    }
+    kept
+}
+
 /// A position or direction, `x,y,z`, finite.
 pub fn vector(text: &str) -> Result<DVec3, String> {
     let expected = "expected three numbers x,y,z, for example 0.3,-1,0.2";

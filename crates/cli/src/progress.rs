@@ -20,6 +20,11 @@ impl Step {
         if !io::stderr().is_terminal() {
             note(&format!("starting {what}"));
         }
+        Self::bar(what, total, unit)
+    }
+
+    /// The bar alone: dropped instead of ended, a pipe hears nothing of it.
+    pub fn bar(what: String, total: u64, unit: &str) -> Self {
         let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
         let template =
             format!("{{msg:40!}} {{wide_bar:.cyan/dim}} {{pos}}/{{len}} {unit} {{elapsed:>4}}");
@@ -35,6 +40,11 @@ impl Step {
             bar,
             began: Instant::now(),
         }
+    }
+
+    /// Says which part is under way.
+    pub fn name(&self, part: &str) {
+        self.bar.set_message(part.to_owned());
     }
 
     /// Says how many parts are done; from any thread.

@@ -87,7 +87,7 @@ impl Primary {
 /// Runs the oracle with a progress bar.
 ///
 /// # Errors
-/// Ctrl-C, ids of another mesh, an impossible light.
+/// Those of [`shade`].
 pub fn judge(
     oracle: &Oracle,
     camera: &Camera,
@@ -101,19 +101,34 @@ pub fn judge(
         camera.viewport[1].into(),
         "rows",
     );
+    let rows_done = |rows| step.reach(rows);
+    let reference = shade(oracle, camera, light, primitives, mode, &rows_done, what)?;
+    step.end();
+    Ok(reference)
+}
+
+/// Runs the oracle; `rows_done` hears how far it is.
+///
+/// # Errors
+/// Ctrl-C, ids of another mesh, an impossible light.
+pub fn shade(
+    oracle: &Oracle,
+    camera: &Camera,
+    light: &DirectionalLight,
+    primitives: &[u32],
+    mode: OracleMode,
+    rows_done: &(dyn Fn(u64) + Sync),
+    what: &str,
+) -> Result<Reference, CliError> {
     let progress = Progress {
-        rows_done: &|rows| step.reach(rows),
+        rows_done,
         interrupted: interrupt::flag(),
     };
     let reference = oracle.shade(camera, light, primitives, mode, progress);
-    match reference {
-        Ok(reference) => {
-            step.end();
-            Ok(reference)
-        }
-        Err(Error::Interrupted) => Err(CliError::Interrupted {
+    reference.map_err(|error| match error {
+        Error::Interrupted => CliError::Interrupted {
             kept: String::new(),
-        }),
-        Err(error) => Err(CliError::Input(format!("no reference for {what}: {error}"))),
-    }
+        },
+        error => CliError::Input(format!("no reference for {what}: {error}")),
+    })
 }

@@ -7,24 +7,19 @@ use crate::{
     contract,
     error::{CliError, note},
     interrupt,
-    measure::{Method, reference_stem, stem},
-    parse::Size,
-    preset::{self, Faults, Preset},
-    published,
+    measure::{self, Method, check_stems, reference_stem, stem},
+    parse::{Size, unique},
+    preset, published,
     reference::Primary,
     render,
     results::{Results, Scene as SceneResult},
     stage::Stage,
 };
 use comparison::{Comparison, Subject};
-use skiagraph_graph::{LayeredSources, gpu::Gpu};
+use skiagraph_graph::gpu::Gpu;
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::View;
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    fs,
-    sync::Arc,
-};
+use std::{fs, sync::Arc};
 
 /// Checks everything, then runs the comparison.
 ///
@@ -42,8 +37,11 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
     } else {
         args.presets.clone()
     };
-    let presets = load(&names, &sources)?;
-    let methods = methods(&presets, args)?;
+    let presets = contract::load_all(&names, &sources)?;
+    let methods = measure::methods(&presets, &args.params, &args.map_size)?;
+    if !args.map_size.is_empty() && methods.iter().all(|method| method.map_size.is_none()) {
+        note("--map-size has no effect: none of these graphs has the param `map_size`");
+    }
     let primary = Primary::load(&sources)?;
     let wanted = presets.iter().map(|preset| preset.graph.features());
     let gpu = render::open(
@@ -89,45 +87,6 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
     comparison.finish(outcome)
 }
 
-/// Loads the graphs and refuses those that are no shadow methods.
-fn load(names: &[String], sources: &LayeredSources) -> Result<Vec<Preset>, CliError> {
-    let presets = preset::load_all(names, sources)?;
-    let incomplete: Vec<String> = presets
-        .iter()
-        .filter_map(contract::missing_outputs)
-        .collect();
-    if incomplete.is_empty() {
-        Ok(presets)
-    } else {
-        Err(CliError::Input(incomplete.join("\nerror: ")))
-    }
-}
-
-/// Each preset with each map size; a preset without that param once.
-fn methods<'a>(presets: &'a [Preset], args: &CompareArgs) -> Result<Vec<Method<'a>>, CliError> {
-    preset::check_names(presets, &args.params)?;
-    let mapless = presets
-        .iter()
-        .all(|preset| !preset::has_param(preset, preset::MAP_SIZE));
-    if mapless && !args.map_size.is_empty() {
-        note("--map-size has no effect: none of these graphs has the param `map_size`");
-    }
-    let mut methods = Vec::new();
-    for preset in presets {
-        let mut sizes: Vec<Option<u32>> = unique(&args.map_size).into_iter().map(Some).collect();
-        if sizes.is_empty() || !preset::has_param(preset, preset::MAP_SIZE) {
-            sizes = vec![None];
-        }
-        for size in sizes {
-            methods.push(Method::new(
-                preset,
-                preset::params(preset, &args.params, size)?,
-            ));
-        }
-    }
-    Ok(methods)
-}
-
 /// Plans everything before anything runs: nobody should wait for an hour to read that the last file has a mistake. A graph
 /// that only this adapter cannot run is no mistake. What a provider describes is the same for every view.
 fn check_plans(
@@ -137,61 +96,29 @@ fn check_plans(
     args: &CompareArgs,
     provider: &SceneProvider,
 ) -> Result<(), CliError> {
-    let mut faults = Faults::default();
-    let mut misfits = BTreeSet::new();
-    for Size(viewport) in unique(&args.size) {
+    let viewports: Vec<[u32; 2]> = unique(&args.size).iter().map(|size| size.0).collect();
+    for &viewport in &viewports {
         primary.plan(gpu, viewport, provider)?;
-        for method in methods {
-            match method.plan(viewport, render::greatest_abilities(), provider) {
-                Ok(plan) => misfits.extend(contract::misfit(method.preset, &plan, viewport)),
-                Err(diagnostics) => faults.add(&method.preset.name, &diagnostics),
-            }
-        }
     }
-    faults.none_or_error()?;
-    if misfits.is_empty() {
-        return Ok(());
-    }
-    Err(CliError::Input(
-        misfits.into_iter().collect::<Vec<_>>().join("\nerror: "),
-    ))
+    contract::check_plans(methods, &viewports, provider)
 }
 
 /// Refuses runs that would overwrite each other's pictures, before anything runs.
 fn check_pictures(methods: &[Method], views: &[View], args: &CompareArgs) -> Result<(), CliError> {
-    let mut owners: BTreeMap<String, String> = BTreeMap::new();
+    let mut stems = Vec::new();
     for view in views {
         for Size(viewport) in unique(&args.size) {
-            let reference = (
-                reference_stem(&view.name, viewport),
-                format!("the reference on view `{}`", view.name),
-            );
-            let runs = methods.iter().map(|method| {
+            stems.extend(methods.iter().map(|method| {
                 (
                     stem(method, &view.name, viewport),
                     format!("`{}` on view `{}`", method.preset.name, view.name),
                 )
-            });
-            for (stem, owner) in runs.chain([reference]) {
-                if let Some(other) = owners.get(&stem) {
-                    return Err(CliError::Input(format!(
-                        "the pictures of {other} and of {owner} would overwrite each other: both are called {stem}-….png\n  rename one, or compare them one after the other with another --out"
-                    )));
-                }
-                owners.insert(stem, owner);
-            }
+            }));
+            stems.push((
+                reference_stem(&view.name, viewport),
+                format!("the reference on view `{}`", view.name),
+            ));
         }
     }
-    Ok(())
-}
-
-/// The list without repeats, in its own order.
-fn unique<T: Copy + PartialEq>(list: &[T]) -> Vec<T> {
-    let mut kept = Vec::new();
-    for &item in list {
-        if !kept.contains(&item) {
-            kept.push(item);
-        }
-    }
-    kept
+    check_stems(stems, "--out")
 }

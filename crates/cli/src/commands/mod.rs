@@ -8,3 +8,4 @@ pub mod presets;
 pub mod profile;
 pub mod run;
 pub mod scenes;
+pub mod stress;

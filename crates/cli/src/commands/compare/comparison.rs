@@ -7,7 +7,6 @@ use crate::{
     fingerprint::Fingerprint,
     markdown,
     measure::{self, Method, Setting, reference_stem},
-    picture,
     progress::Step,
     published::{Row, put_beside},
     reference::{self, Primary},
@@ -18,7 +17,7 @@ use crate::{
 };
 use skiagraph_graph::gpu::Gpu;
 use skiagraph_passes::SceneProvider;
-use skiagraph_reference::{Image, Oracle, Reference};
+use skiagraph_reference::{Oracle, Reference};
 use skiagraph_scene::{Scene, View};
 use std::{cell::OnceCell, path::Path};
 
@@ -248,10 +247,7 @@ impl<'a> Comparison<'a> {
         let (camera, mode) = (view.camera(viewport), self.args.oracle);
         let reference = reference::judge(oracle, &camera, &scene.light, &ids, mode, &what)?;
         if let Some(folder) = self.pictures() {
-            let name = format!("{}-visibility.png", reference_stem(&view.name, viewport));
-            let image = Image::visibility(viewport, &reference.visibility(), &reference.status())
-                .map_err(|error| CliError::Input(format!("no picture {name}: {error}")))?;
-            picture::save(&folder.join(name), &image)?;
+            measure::save_reference(folder, &reference_stem(&view.name, viewport), &reference)?;
         }
         Ok(reference)
     }

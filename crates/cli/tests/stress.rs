@@ -1,0 +1,274 @@
+//! `skiagraph stress` from outside. All but the first tests need an adapter; a machine without one fails here with the program's own
+//! advice.
+
+use serde_json::Value;
+use skiagraph_scene::hard;
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output, Stdio},
+};
+
+/// A graph that lights everything and is sure of it.
+const LIT: &str = r#"(
+    format: 1,
+    description: "everything is lit",
+    materials: [
+        Texture(name: "visibility", format: R8Uint, size: Viewport),
+        Texture(name: "status", format: R8Uint, size: Viewport),
+    ],
+    passes: [
+        Clear(name: "light", target: "visibility", value: (1, 0, 0, 0)),
+        Clear(name: "certain", target: "status", value: (2, 0, 0, 0)),
+    ],
+    outputs: [(name: "visibility"), (name: "status")],
+)"#;
+
+fn stress(folder: &Path, line: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_skiagraph"));
+    command
+        .arg("stress")
+        .args(line.split_whitespace())
+        .current_dir(folder)
+        .env("NO_COLOR", "1");
+    command
+}
+
+/// What it printed on standard output and standard error, once it has ended with `code`.
+#[track_caller]
+fn ends(output: Output, code: i32) -> (String, String) {
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let texts = (text(&output.stdout), text(&output.stderr));
+    assert_eq!(
+        output.status.code(),
+        Some(code),
+        "\nstdout:\n{}\nstderr:\n{}",
+        texts.0,
+        texts.1
+    );
+    texts
+}
+
+#[track_caller]
+fn run(folder: &Path, line: &str, code: i32) -> (String, String) {
+    let output = stress(folder, line).output();
+    ends(output.expect("the program was built for this test"), code)
+}
+
+fn without_gpu(mut command: Command) -> Output {
+    command
+        .env("VK_ICD_FILENAMES", "/nonexistent")
+        .env("VK_DRIVER_FILES", "/nonexistent")
+        .output()
+        .expect("the program was built for this test")
+}
+
+#[test]
+fn the_list_needs_no_gpu_and_has_every_case() {
+    let folder = tempfile::tempdir().unwrap();
+    let (text, _) = ends(without_gpu(stress(folder.path(), "--list")), 0);
+    for case in hard::cases() {
+        let mut lines = text.lines();
+        let row = lines.find(|line| line.contains(&format!(" {} ", case.name)));
+        assert!(
+            row.is_some_and(|row| row.contains(case.reason)),
+            "{} in\n{text}",
+            case.name
+        );
+    }
+    let (_, text) = ends(without_gpu(stress(folder.path(), "rt")), 3);
+    assert!(text.contains("mesa-vulkan-drivers"), "{text}");
+}
+
+#[test]
+fn an_unknown_case_or_method_is_named_before_anything_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    for (line, code, part) in [
+        ("--case box_on_flor", 1, "did you mean `box_on_floor`?"),
+        ("--case zzzzzzzz", 1, "`skiagraph stress --list` names them"),
+        ("nms", 1, "did you mean `nsm`?"),
+        ("rt nsm --exact nms", 2, "did you mean `nsm`?"),
+        ("rt --set cull=none", 1, "--set cull: no such param"),
+        ("--size 0x1", 2, "at least 1x1"),
+        ("--list rt", 2, "--list"),
+    ] {
+        let (_, text) = ends(without_gpu(stress(folder.path(), line)), code);
+        assert!(text.contains(part), "{line}: {text}");
+    }
+}
+
+#[test]
+fn the_matrix_judges_what_is_promised() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "rt nsm --case box_on_floor --size 32x32 --map-size 16 --out results --save pictures --format json";
+    let (text, errors) = run(folder.path(), line, 0);
+    let progress = errors.contains("starting") || errors.contains("box_on_floor");
+    assert!(!progress, "quiet in a pipe: {errors}");
+    let file = fs::read_to_string(folder.path().join("results/stress.json")).unwrap();
+    assert_eq!(text, file, "--format json prints the file");
+    let report: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(
+        (&report["schema"], &report["viewport"][1]),
+        (&1.into(), &32.into())
+    );
+    assert_eq!(report["methods"][0]["promise"], "exact");
+    assert_eq!(report["methods"][1]["promise"], Value::Null);
+    let case = &report["cases"][0];
+    assert_eq!(
+        (&case["name"], &case["casters"], &case["verdict"]),
+        (&"box_on_floor".into(), &"closed".into(), &"pass".into())
+    );
+    assert!(case["pixels"]["shadow"].as_u64().unwrap() > 0);
+    let [rt, nsm] = [0, 1].map(|index| &case["cells"][index]);
+    assert_eq!(
+        (&rt["preset"], &rt["verdict"]),
+        (&"rt".into(), &"pass".into())
+    );
+    assert_eq!(rt["rays"], case["pixels"]["facing_light"]);
+    assert_eq!(nsm["verdict"], "unjudged");
+    assert_eq!(nsm["map_size"], 16);
+    let outside = &nsm["outside_band"];
+    let count = |value: &Value| value.as_u64().unwrap();
+    assert!(
+        count(&outside["lit"]) + count(&outside["shadow"]) > 0,
+        "{nsm}"
+    );
+    for cell in [rt, nsm] {
+        for kind in ["shaded", "visibility", "error"] {
+            let name = cell["images"][kind].as_str().unwrap();
+            let picture = image::open(folder.path().join("pictures").join(name)).unwrap();
+            assert_eq!((picture.width(), picture.height()), (32, 32));
+        }
+    }
+}
+
+#[test]
+fn a_broken_promise_turns_its_cell_red() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("all_lit.ron"), LIT).unwrap();
+    let line = "rt all_lit.ron --case box_on_floor --size 32x32";
+    let (text, _) = run(folder.path(), line, 0);
+    let marks = |text: &str| text.matches('✗').count();
+    assert_eq!(marks(&text), 1, "only the legend's: {text}");
+    let (text, errors) = run(folder.path(), &format!("{line} --exact all_lit.ron"), 1);
+    assert!(errors.contains("error: 1 cell failed"), "{errors}");
+    let look = "skiagraph stress all_lit.ron --case box_on_floor --size 32x32 --exact all_lit.ron --save pictures";
+    assert_eq!(marks(&text), 2, "{text}");
+    for part in ["all_lit.ron on box_on_floor: ", look] {
+        assert!(text.contains(part), "no {part:?} in\n{text}");
+    }
+    // The command is one that runs.
+    let look = look.strip_prefix("skiagraph stress ").unwrap();
+    run(folder.path(), look, 1);
+    assert!(
+        folder
+            .path()
+            .join("pictures/all_lit-box_on_floor-32x32-error.png")
+            .is_file()
+    );
+}
+
+#[test]
+fn outputs_that_break_the_contract_fail_their_cell_and_no_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let odd = LIT.replace("value: (2,", "value: (7,");
+    fs::write(folder.path().join("odd.ron"), odd).unwrap();
+    let (text, _) = run(
+        folder.path(),
+        "odd.ron rt --case box_on_floor --size 16x16",
+        1,
+    );
+    assert!(
+        text.contains("✗ error") && text.contains("status is 7"),
+        "{text}"
+    );
+    assert!(text.contains("1 of 2 judged cells"), "{text}");
+}
+
+#[test]
+fn what_this_adapter_cannot_run_is_said_once() {
+    let folder = tempfile::tempdir().unwrap();
+    // One is for Windows, one for Android: no adapter has both.
+    let nowhere = LIT.replace(
+        "format: 1,",
+        r#"format: 1, requires: [
+            (feature: "VULKAN_EXTERNAL_MEMORY_WIN32"),
+            (feature: "VULKAN_GOOGLE_DISPLAY_TIMING"),
+        ],"#,
+    );
+    fs::write(folder.path().join("nowhere.ron"), nowhere).unwrap();
+    let (text, _) = run(
+        folder.path(),
+        "rt nowhere.ron --case box_on_floor --size 8x8",
+        0,
+    );
+    assert_eq!(
+        text.matches("nowhere.ron is unavailable").count(),
+        1,
+        "{text}"
+    );
+    assert!(!text.contains("┆ nowhere.ron"), "no column: {text}");
+    let (_, errors) = run(folder.path(), "nowhere.ron --size 8x8", 1);
+    assert!(errors.contains("no method can run"), "{errors}");
+}
+
+#[test]
+fn every_promise_holds_on_every_case() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "rt crsm crsm_depth crsm_single crsma_full --size 64x64 --map-size 64";
+    run(folder.path(), line, 0);
+}
+
+#[test]
+fn open_casters_are_judged_without_culling() {
+    let folder = tempfile::tempdir().unwrap();
+    let is_open = |case: &hard::HardCase| case.casters == hard::Casters::Open;
+    let open = hard::cases().into_iter().find(is_open);
+    let name = open.expect("the catalogue has open cases").name;
+    let line = format!("crsm nsm --case {name} --size 32x32 --map-size 32 --format json");
+    let report: Value = serde_json::from_str(&run(folder.path(), &line, 0).0).unwrap();
+    let cells = report["cases"][0]["cells"].as_array().unwrap();
+    let verdicts: Vec<_> = cells
+        .iter()
+        .map(|cell| [&cell["preset"], &cell["set"], &cell["verdict"]].map(Value::as_str))
+        .collect();
+    let expected = [
+        [Some("crsm"), None, Some("open")],
+        [Some("crsm"), Some("cull=none"), Some("pass")],
+        [Some("nsm"), None, Some("unjudged")],
+    ];
+    assert_eq!(verdicts, expected);
+}
+
+/// Ctrl-C after the first case: the cases that are done stay.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_keeps_the_cases_that_are_done() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = stress(folder.path(), "--size 256x256 --out .")
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let file = folder.path().join("stress.json");
+    while !file.exists() {
+        assert!(
+            child.try_wait().unwrap().is_none(),
+            "it ended before its first case"
+        );
+        std::thread::yield_now();
+    }
+    let sent = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(sent.unwrap().success());
+    let (_, errors) = ends(child.wait_with_output().unwrap(), 130);
+    let all = hard::cases().len();
+    assert!(
+        errors.contains(&format!("of {all} cases are kept in ./stress.json")),
+        "{errors}"
+    );
+    let report: Value = serde_json::from_str(&fs::read_to_string(file).unwrap()).unwrap();
+    let done = report["cases"].as_array().unwrap().len();
+    assert!(errors.contains(&format!("{done} of {all}")), "{errors}");
+}

@@ -299,10 +299,16 @@ impl<'a> Oracle<'a> {
             Some(uncertainty) => self.visibility(origin, towards, uncertainty, excluded, stack),
             None => (self.occluded(origin, towards, excluded, stack), true),
         };
+        // A rasteriser's snapping puts it beyond its primitive, where a neighbour may lie on top of it.
+        let snapped = |border: DVec3| {
+            let origin = border + (origin - receiver.position);
+            self.occluded(origin, towards, excluded, stack) != shadow
+        };
+        let in_band = in_band || facing_in_band || receiver.on_border.is_some_and(snapped);
         let class = if shadow { Class::Shadow } else { Class::Lit };
         Answer {
             class,
-            in_band: in_band || facing_in_band,
+            in_band,
             n_dot_l,
         }
     }

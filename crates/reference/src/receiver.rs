@@ -27,6 +27,8 @@ const INDETERMINATE: f64 = 0.25;
 pub(crate) struct Receiver {
     /// Hit on the primitive's plane, world space.
     pub(crate) position: DVec3,
+    /// The point of the primitive's border where it would lie, had the rasteriser not snapped corners; `None` where it lies on the primitive.
+    pub(crate) on_border: Option<DVec3>,
     /// Interpolated, unnormalised vertex normal · unit vector towards the light.
     pub(crate) n_dot_l: f64,
     /// Bound on the f32 error of `n_dot_l`.
@@ -68,6 +70,9 @@ impl Receiver {
             edges.map(|edge| edge / determinant)
         };
         let position = weighted(weights, world);
+        let clamped = weights.map(|weight| weight.max(0.0));
+        let on_border =
+            (clamped != weights).then(|| weighted(clamped, world) / clamped.iter().sum::<f64>());
         let n_dot_l = weighted(weights, normals).dot(towards_light);
         // The larger of both lengths: a shader may sum corners relative to the eye and add the eye last.
         let length = |corner: DVec3| corner.length().max((corner - eye).length());
@@ -101,6 +106,7 @@ impl Receiver {
         };
         Self {
             position,
+            on_border,
             n_dot_l,
             n_dot_l_error,
             uncertainty,

@@ -6,6 +6,9 @@ use thiserror::Error;
 /// How many faces an error or a warning spells out before it only counts.
 pub const FACES_SHOWN: usize = 5;
 
+/// Extents and coordinates of a mesh, in scene units, of which all products that shaders take stay within f32 (docs/precision.md).
+pub(crate) const EXTENTS: std::ops::RangeInclusive<f64> = 1e-12..=1e12;
+
 /// Why a scene could not be loaded. Every message names the file and what to do about it.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -71,6 +74,19 @@ pub enum SceneError {
     TooLarge {
         /// The OBJ file.
         path: PathBuf,
+    },
+    /// A mesh whose lengths, multiplied as geometry must, leave the range of f32.
+    #[error(
+        "{}: the model is {across:.1e} units across and reaches {farthest:.1e} from the origin, but f32 can only tell right from wrong between {:.0e} and {:.0e}: scale it",
+        path.display(), EXTENTS.start(), EXTENTS.end()
+    )]
+    Extent {
+        /// The OBJ file.
+        path: PathBuf,
+        /// Diagonal of its box.
+        across: f64,
+        /// Largest coordinate.
+        farthest: f64,
     },
     /// A scene file is not valid RON, or its content makes no scene.
     #[error("{file}:{line}:{column}: {reason}")]

@@ -255,6 +255,21 @@ fn a_missing_file_is_named() {
     );
 }
 
+#[test]
+fn a_model_whose_products_leave_f32_is_refused() {
+    let scaled =
+        |exponent: i32| format!("v 0 0 0\nv 1e{exponent} 0 0\nv 0 1e{exponent} 0\nf 1 2 3\n");
+    for exponent in [-11, 0, 11] {
+        assert!(parse_with(scaled(exponent), &ObjOptions::default()).is_ok());
+    }
+    assert_snapshot!(
+        error(scaled(13)),
+        @"house.obj: the model is 1.4e13 units across and reaches 1.0e13 from the origin, but f32 can only tell right from wrong between 1e-12 and 1e12: scale it"
+    );
+    assert!(error(scaled(-13)).contains("between 1e-12 and 1e12: scale it"));
+    assert!(error("v 1e13 0 0\nv 1e13 1 0\nv 1e13 1 1\nf 1 2 3\n").contains("reaches 1.0e13"));
+}
+
 fn any_line() -> impl Strategy<Value = String> {
     prop_oneof![
         "v( -?[0-9.e]{1,4}){2,7}",

@@ -10,7 +10,7 @@ mod guard;
 use crate::weld::Welder;
 use crate::{
     Group, ImportReport, Mesh, SceneError,
-    error::{FACES_SHOWN, FaceFault, FaceProblem},
+    error::{EXTENTS, FACES_SHOWN, FaceFault, FaceProblem},
 };
 use glam::{DVec3, Vec3};
 use guard::{FaceRecord, Guard};
@@ -115,7 +115,26 @@ pub fn parse_obj(
             points: report.points,
         });
     }
+    check_extent(&mesh, path)?;
     Ok((mesh, report))
+}
+
+/// Refuses what f32 cannot multiply. Points alone, of no extent, harm nobody.
+fn check_extent(mesh: &Mesh, path: &Path) -> Result<(), SceneError> {
+    let Some((low, high)) = mesh.bounds() else {
+        return Ok(());
+    };
+    let across = low.as_dvec3().distance(high.as_dvec3());
+    let farthest = f64::from(low.abs().max(high.abs()).max_element());
+    let too_far = across.max(farthest) > *EXTENTS.end();
+    if too_far || (across > 0.0 && across < *EXTENTS.start()) {
+        return Err(SceneError::Extent {
+            path: path.to_owned(),
+            across,
+            farthest,
+        });
+    }
+    Ok(())
 }
 
 struct Import<'a> {

@@ -3,9 +3,10 @@
 mod comparison;
 
 use crate::{
-    args::{CompareArgs, Images},
+    args::{CompareArgs, GpuArgs, Images},
     contract,
     error::{CliError, note},
+    files::check_folder,
     interrupt,
     measure::{Method, reference_stem, stem},
     parse::Size,
@@ -22,7 +23,6 @@ use skiagraph_passes::SceneProvider;
 use skiagraph_scene::View;
 use std::{
     collections::{BTreeMap, BTreeSet},
-    fs,
     sync::Arc,
 };
 
@@ -31,7 +31,7 @@ use std::{
 /// # Errors
 /// Faulty graphs, a scene that cannot be loaded, no GPU, earlier results that cannot be resumed, Ctrl-C, no method that runs on this
 /// adapter.
-pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError> {
+pub fn compare(args: &CompareArgs, asked: &GpuArgs) -> Result<(), CliError> {
     let published = published::read(&args.beside)?;
     let sources = preset::sources();
     let names = if args.presets.is_empty() {
@@ -43,11 +43,12 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
         args.presets.clone()
     };
     let presets = load(&names, &sources)?;
+    check_folder(&args.out)?;
     let methods = methods(&presets, args)?;
     let primary = Primary::load(&sources)?;
     let wanted = presets.iter().map(|preset| preset.graph.features());
     let gpu = render::open(
-        adapter,
+        asked,
         wanted.fold(wgpu::Features::empty(), |all, own| all | own),
     )?;
     let Stage { scene, views } = Stage::load(&args.scene)?;
@@ -83,7 +84,6 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
         fingerprint: primary.fingerprint.with_scene(&scene.mesh, &scene.light),
     };
     let mut comparison = Comparison::new(args, subject, provider, published, results)?;
-    fs::create_dir_all(&args.out).map_err(|error| CliError::write(&args.out, error))?;
     interrupt::install()?;
     let outcome = comparison.run();
     comparison.finish(outcome)
@@ -139,16 +139,27 @@ fn check_plans(
 ) -> Result<(), CliError> {
     let mut faults = Faults::default();
     let mut misfits = BTreeSet::new();
+    // Of methods that this adapter cannot run; and whether it can run one.
+    let (mut unable, mut is_able) = (Faults::default(), false);
     for Size(viewport) in unique(&args.size) {
         primary.plan(gpu, viewport, provider)?;
         for method in methods {
             match method.plan(viewport, render::greatest_abilities(), provider) {
-                Ok(plan) => misfits.extend(contract::misfit(method.preset, &plan, viewport)),
+                Ok(plan) => {
+                    misfits.extend(contract::misfit(method.preset, &plan, viewport));
+                    match method.plan(viewport, render::abilities(gpu), provider) {
+                        Ok(_) => is_able = true,
+                        Err(diagnostics) => unable.add(&method.preset.name, &diagnostics),
+                    }
+                }
                 Err(diagnostics) => faults.add(&method.preset.name, &diagnostics),
             }
         }
     }
     faults.none_or_error()?;
+    if !is_able {
+        unable.none_or_error()?;
+    }
     if misfits.is_empty() {
         return Ok(());
     }

@@ -1,4 +1,4 @@
-//! The command line as clap reads it. Exit codes: 0 fine, 1 the input is wrong, 2 usage, 3 no usable GPU.
+//! The command line as clap reads it. Exit codes: 0 fine, 1 the input is wrong, 2 usage, 3 no usable GPU, or it was lost or hangs.
 
 use crate::parse::{self, Assignment, Beside, Save, Size};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -13,16 +13,35 @@ use std::path::PathBuf;
     version,
     propagate_version = true,
     after_help = "Example:\n  skiagraph compare rt nsm --scene park --size 512x512\n\n\
-        Exit codes: 0 fine, 1 the input is wrong, 2 wrong usage, 3 no usable GPU, 130 stopped by Ctrl-C."
+        Exit codes: 0 fine, 1 the input is wrong, 2 wrong usage, 3 no usable GPU, or it was lost or hangs, 130 stopped by Ctrl-C."
 )]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
+    /// Where it is done.
+    #[command(flatten)]
+    pub gpu: GpuArgs,
+}
+
+/// The GPU, and how much of it and of our time a graph may take.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "GPU")]
+pub struct GpuArgs {
     /// GPU to use: part of its name, in any case. Without it: $WGPU_ADAPTER_NAME, else the best one found.
     #[arg(long, global = true, value_name = "NAME")]
     pub adapter: Option<String>,
+    /// Memory for the textures and buffers of a graph: 512MiB, 2GiB, or bytes. A graph that needs more is refused with a table of
+    /// what takes the most. Without it: on a software adapter what the machine has free, else what the driver gives.
+    #[arg(long, global = true, value_name = "SIZE", value_parser = parse::bytes)]
+    pub memory_limit: Option<u64>,
+    /// Give a frame up that takes longer than this, and with it the device: its shader may never end. 0 waits for ever.
+    #[arg(long, global = true, value_name = "SECONDS", default_value_t = 300, value_parser = clap::value_parser!(u64).range(..=MOST_SECONDS))]
+    pub timeout: u64,
 }
+
+/// A day: far above any frame, and far below what a clock can add.
+const MOST_SECONDS: u64 = 86_400;
 
 /// The samples of all frames are kept for the percentiles, and nobody waits for more.
 const MOST_FRAMES: i64 = 100_000;
@@ -428,7 +447,7 @@ mod tests {
             "skiagraph --adapter x doctor",
             "skiagraph doctor --adapter x",
         ] {
-            assert_eq!(parse(line).unwrap().adapter.as_deref(), Some("x"));
+            assert_eq!(parse(line).unwrap().gpu.adapter.as_deref(), Some("x"));
         }
     }
 
@@ -466,6 +485,9 @@ mod tests {
             "skiagraph profile rt nsm",
             "skiagraph profile nsm --frames 0",
             "skiagraph check a.ron --format yaml",
+            "skiagraph doctor --memory-limit lots",
+            "skiagraph doctor --timeout -1",
+            "skiagraph doctor --timeout 86401",
         ] {
             assert_eq!(parse(line).unwrap_err().exit_code(), 2, "{line}");
         }

@@ -6,7 +6,7 @@ use crate::{
     preset::{self, Faults, Preset},
     render,
 };
-use skiagraph_graph::{Content, Plan, Provider, Sources};
+use skiagraph_graph::{Content, Plan, Provider, Sources, gpu::Gpu};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The output with 0 in shadow and 1 in light.
@@ -30,26 +30,40 @@ pub fn load_all(names: &[String], sources: &dyn Sources) -> Result<Vec<Preset>, 
     }
 }
 
-/// Plans all methods on all viewports for the most able adapter there is: a graph that only this one cannot run is no mistake.
+/// Plans all methods on all viewports for the most able adapter there is: a graph that only this one cannot run is no mistake, unless there is no other.
 ///
 /// # Errors
-/// Every fault of every graph together, outputs that do not fit the contract.
+/// Every fault of every graph together, outputs that do not fit the contract; why `gpu`, if there is one yet, can run none.
 pub fn check_plans(
     methods: &[Method],
     viewports: &[[u32; 2]],
     provider: &dyn Provider,
+    gpu: Option<&Gpu>,
 ) -> Result<(), CliError> {
     let mut faults = Faults::default();
     let mut misfits = BTreeSet::new();
+    // Of methods that this adapter cannot run; and whether it can run one.
+    let (mut unable, mut is_able) = (Faults::default(), gpu.is_none());
     for &viewport in viewports {
         for method in methods {
             match method.plan(viewport, render::greatest_abilities(), provider) {
-                Ok(plan) => misfits.extend(misfit(method.preset, &plan, viewport)),
+                Ok(plan) => {
+                    misfits.extend(misfit(method.preset, &plan, viewport));
+                    if let Some(gpu) = gpu {
+                        match method.plan(viewport, render::abilities(gpu), provider) {
+                            Ok(_) => is_able = true,
+                            Err(diagnostics) => unable.add(&method.preset.name, &diagnostics),
+                        }
+                    }
+                }
                 Err(diagnostics) => faults.add(&method.preset.name, &diagnostics),
             }
         }
     }
     faults.none_or_error()?;
+    if !is_able {
+        unable.none_or_error()?;
+    }
     if misfits.is_empty() {
         return Ok(());
     }

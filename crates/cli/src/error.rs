@@ -1,7 +1,7 @@
 //! Everything that can end a command early, with its exit code.
 
 use crate::render;
-use skiagraph_graph::{Diagnostic, Severity};
+use skiagraph_graph::{Diagnostic, ExecuteError, Severity};
 use std::{
     error::Error,
     io::{self, IsTerminal, Write},
@@ -85,6 +85,7 @@ impl CliError {
         match self {
             Self::Usage(_) => 2,
             Self::NoGpu(_) => 3,
+            Self::Gpu { source, .. } if render::is_fatal(source.as_ref()) => 3,
             Self::Interrupted { .. } => 130,
             // The reader had enough, for example `skiagraph presets | head -1`.
             Self::Stdout(cause) if cause.kind() == io::ErrorKind::BrokenPipe => 0,
@@ -106,18 +107,42 @@ impl CliError {
                     "\n  because: {}",
                     error.to_string().replace('\n', "\n  ")
                 ));
+                if let Some(advice) = error.downcast_ref().and_then(way_out) {
+                    text.push_str(&format!("\n  {advice}"));
+                }
                 cause = error.source();
             }
-            if let Self::Gpu { source, .. } = self
-                && let Some(advice) = render::advice(source.as_ref())
-            {
-                text.push_str(&format!("\n  {advice}"));
+            if let Self::Gpu { source, .. } = self {
+                if let Some(advice) = render::advice(source.as_ref()) {
+                    text.push_str(&format!("\n  {advice}"));
+                }
+                if let Some(ExecuteError::OutOfMemory { table, .. }) = source.downcast_ref() {
+                    text.push_str(&format!("\n  {}", table.replace('\n', "\n  ")));
+                }
             }
             // With standard error closed there is nobody left to tell.
             let _ = writeln!(io::stderr(), "{text}");
         }
         ExitCode::from(code)
     }
+}
+
+/// What to do about a file that cannot be written.
+fn way_out(error: &io::Error) -> Option<&'static str> {
+    use io::ErrorKind as Kind;
+    Some(match error.kind() {
+        Kind::StorageFull | Kind::QuotaExceeded | Kind::FileTooLarge => {
+            "make room on the disk, or name a file or folder on another one"
+        }
+        Kind::PermissionDenied | Kind::ReadOnlyFilesystem => {
+            "name a file or folder that you may write"
+        }
+        Kind::NotADirectory | Kind::AlreadyExists => {
+            "a part of that path is a file, not a folder: name another one"
+        }
+        Kind::IsADirectory => "name a file, not a folder",
+        _ => return None,
+    })
 }
 
 /// Whether standard error takes colour: a terminal, and <https://no-color.org> not asked for.

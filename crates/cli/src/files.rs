@@ -2,7 +2,8 @@
 
 use crate::error::CliError;
 use std::{
-    io::Write,
+    fs,
+    io::{self, Write},
     path::{Component, Path, PathBuf},
 };
 
@@ -36,17 +37,59 @@ pub fn check_writable(files: &[(String, &Path)]) -> Result<(), CliError> {
                 folder.display()
             )));
         }
+        if file.is_dir() {
+            return Err(CliError::Input(format!(
+                "{writer}: cannot write {}: it is a folder",
+                file.display()
+            )));
+        }
+        if is_replaced(file) {
+            try_out(folder_of(file)).map_err(|error| CliError::write(file, error))?;
+        }
     }
     Ok(())
 }
 
-/// Writes a file whole or not at all: beside it first, then renamed over it, so that an interrupt keeps the old one.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
-    let folder = match path.parent() {
+/// Makes a folder if it is not there, and refuses one that takes no files, before anything runs for them.
+///
+/// # Errors
+/// Names the folder.
+pub fn check_folder(folder: &Path) -> Result<(), CliError> {
+    let made = fs::create_dir_all(folder).and_then(|()| try_out(folder));
+    made.map_err(|error| CliError::write(folder, error))
+}
+
+/// Writes a few bytes into a folder and takes them away again: permissions alone do not say whether that works, and a full disk
+/// has room for an empty file.
+fn try_out(folder: &Path) -> io::Result<()> {
+    let mut file = tempfile::Builder::new()
+        .prefix(".skiagraph-")
+        .tempfile_in(folder)?;
+    file.write_all(&[0; 4096])
+}
+
+/// Whether a path holds a file, or nothing yet. Devices and pipes (`/dev/stdout`) are written into; a file in their place would
+/// take them away from everybody else.
+fn is_replaced(path: &Path) -> bool {
+    fs::metadata(path).map_or(true, |found| found.is_file())
+}
+
+fn folder_of(file: &Path) -> &Path {
+    match file.parent() {
         Some(parent) if parent != Path::new("") => parent,
         _ => Path::new("."),
-    };
-    let write = || -> std::io::Result<()> {
+    }
+}
+
+/// Writes a file whole or not at all: beside it first, then renamed over it, so that an interrupt keeps the old one.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
+    let write = || -> io::Result<()> {
+        if !is_replaced(path) {
+            return fs::write(path, bytes);
+        }
+        // A link stays what it is; the file behind it is replaced.
+        let path = &fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        let folder = folder_of(path);
         let mut builder = tempfile::Builder::new();
         // Temporary files are private by default; a result should be as readable as any file the user makes.
         #[cfg(unix)]

@@ -36,17 +36,17 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    let adapter = cli.adapter.as_deref();
+    let gpu = &cli.gpu;
     let outcome = match &cli.command {
-        Command::Compare(args) => commands::compare::compare(args, adapter),
-        Command::Run(args) => commands::run::run(args, adapter),
-        Command::Profile(args) => commands::profile::profile(args, adapter),
-        Command::Stress(args) => commands::stress::stress(args, adapter),
+        Command::Compare(args) => commands::compare::compare(args, gpu),
+        Command::Run(args) => commands::run::run(args, gpu),
+        Command::Profile(args) => commands::profile::profile(args, gpu),
+        Command::Stress(args) => commands::stress::stress(args, gpu),
         Command::Check(args) => commands::check::check(args),
         Command::Graph(args) => commands::graph::graph(args),
         Command::Presets(args) => commands::presets::presets(args),
         Command::Scenes => commands::scenes::scenes(),
-        Command::Doctor => commands::doctor::doctor(adapter),
+        Command::Doctor => commands::doctor::doctor(gpu),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -9,7 +9,7 @@ use crate::{
     picture,
     preset::{self, Preset},
     progress::Step,
-    render::{self, Times},
+    render::{self, Abilities, Times},
     results::{Cached, Images, Measured, Run},
 };
 use skiagraph_graph::{
@@ -58,13 +58,12 @@ impl<'a> Method<'a> {
     pub fn plan(
         &self,
         viewport: [u32; 2],
-        (limits, features): (wgpu::Limits, wgpu::Features),
+        abilities: Abilities,
         provider: &dyn Provider,
     ) -> Result<Plan, Diagnostics> {
         let mut request = PlanRequest::new(viewport, provider);
         request.params = self.params.clone();
-        request.limits = limits;
-        request.features = features;
+        abilities.ask(&mut request);
         self.preset.graph.plan(&request)
     }
 
@@ -177,11 +176,8 @@ impl Setting<'_> {
                     kept: String::new(),
                 });
             }
-            Err(error @ ExecuteError::DeviceLost { .. }) => {
-                return Err(CliError::Gpu {
-                    graph: method.preset.name.clone(),
-                    source: Box::new(error),
-                });
+            Err(error) if render::is_fatal(&error) => {
+                return Err(render::failed(&method.preset.name, error));
             }
             Err(error) => self.unavailable(method, render::explain(&error)),
         };
@@ -409,14 +405,17 @@ pub fn reference_stem(view: &str, [width, height]: [u32; 2]) -> String {
     format!("reference-{}-{width}x{height}", slug(view))
 }
 
-/// The errors in one line each, for a table's footnote.
+/// The errors in one line each, for a table's footnote; of a help only its first line.
 pub fn reasons(diagnostics: &Diagnostics) -> String {
     let errors = diagnostics
         .iter()
         .filter(|diagnostic| diagnostic.severity == Severity::Error);
     let lines: Vec<String> = errors
         .map(|Diagnostic { message, help, .. }| match help {
-            Some(help) => format!("{message} ({help})"),
+            Some(help) => {
+                let help = help.lines().next().unwrap_or_default();
+                format!("{message} ({help})")
+            }
             None => message.clone(),
         })
         .collect();

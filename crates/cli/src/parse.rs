@@ -75,6 +75,33 @@ pub fn direction(text: &str) -> Result<DVec3, String> {
     }
 }
 
+/// A number of bytes, `1536`, `512MiB`, `2.5 GiB`; MB and GB are powers of ten.
+pub fn bytes(text: &str) -> Result<u64, String> {
+    let text = text.trim();
+    let split = text.find(|c: char| c.is_ascii_alphabetic());
+    let (number, unit) = text.split_at(split.unwrap_or(text.len()));
+    let unit = match unit.to_ascii_lowercase().as_str() {
+        "" | "b" => 1.0,
+        "kib" => 1024.0,
+        "mib" => 1_048_576.0,
+        "gib" => 1_073_741_824.0,
+        "tib" => 1_099_511_627_776.0,
+        "kb" => 1e3,
+        "mb" => 1e6,
+        "gb" => 1e9,
+        "tb" => 1e12,
+        _ => {
+            return Err(format!(
+                "`{unit}` is no unit; expected B, KiB, MiB, GiB or TiB"
+            ));
+        }
+    };
+    match number.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() && number >= 0.0 => Ok((number * unit) as u64),
+        _ => Err("expected a number of bytes, for example 512MiB or 2GiB".into()),
+    }
+}
+
 /// A finite number above zero.
 pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {

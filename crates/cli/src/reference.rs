@@ -48,8 +48,7 @@ impl Primary {
         provider: &dyn Provider,
     ) -> Result<Plan, CliError> {
         let mut request = PlanRequest::new(viewport, provider);
-        request.limits = gpu.device.limits();
-        request.features = gpu.device.features();
+        render::abilities(gpu).ask(&mut request);
         request.outputs = Some(vec!["primitive".to_owned()]);
         self.graph
             .plan(&request)
@@ -71,10 +70,7 @@ impl Primary {
             let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, provider)?;
             render::read(gpu, &mut executor, &["primitive"])
         };
-        let contents = read().map_err(|error| CliError::Gpu {
-            graph: GBUFFER.into(),
-            source: Box::new(error),
-        })?;
+        let contents = read().map_err(|error| render::failed(GBUFFER, error))?;
         contents
             .get("primitive")
             .and_then(Content::as_u32)

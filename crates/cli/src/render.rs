@@ -1,12 +1,13 @@
 //! The only code of the program that talks to a GPU: opening one, running frames, reading outputs.
 
 use crate::{
+    args::GpuArgs,
     error::CliError,
     interrupt,
     results::{Adapter, Cached, FrameTimes, Pass, Spread},
 };
 use skiagraph_graph::{
-    Content, ExecuteError, Executor, Frame, FrameReport, FrameTiming,
+    Content, ExecuteError, Executor, Frame, FrameReport, FrameTiming, PlanRequest,
     gpu::{self, Gpu, GpuError},
     timing::{self, Trust},
 };
@@ -20,24 +21,74 @@ use std::{
 ///
 /// # Errors
 /// [`CliError::NoGpu`] with the way out.
-pub fn open(name: Option<&str>, features: wgpu::Features) -> Result<Gpu, CliError> {
-    gpu::open_with(name, features).map_err(|error: GpuError| CliError::NoGpu(error.to_string()))
+pub fn open(asked: &GpuArgs, features: wgpu::Features) -> Result<Gpu, CliError> {
+    let mut gpu = gpu::open_with(asked.adapter.as_deref(), features)
+        .map_err(|error: GpuError| CliError::NoGpu(error.to_string()))?;
+    let is_software = gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+    gpu.memory = asked
+        .memory_limit
+        .or_else(|| is_software.then(free_memory).flatten());
+    gpu.patience = (asked.timeout > 0).then(|| Duration::from_secs(asked.timeout));
+    Ok(gpu)
+}
+
+/// Memory that the machine has free: a software adapter's. What it has besides is lent out by most systems before it is there,
+/// and a process that then uses it is killed. `None` where the system does not say.
+fn free_memory() -> Option<u64> {
+    let mut system = sysinfo::System::new();
+    system.refresh_memory();
+    if system.total_memory() == 0 {
+        return None;
+    }
+    // A container may have less than the machine. What it holds as file cache is free for all that.
+    let of_group = system.cgroup_limits().map_or(u64::MAX, |limits| {
+        limits.total_memory.saturating_sub(limits.rss)
+    });
+    Some(system.available_memory().min(of_group))
+}
+
+/// What a graph is planned for.
+#[derive(Clone, Debug)]
+pub struct Abilities {
+    /// Limits of a device.
+    pub limits: wgpu::Limits,
+    /// Its features.
+    pub features: wgpu::Features,
+    /// Bytes of memory for the graph, where that is known.
+    pub memory: Option<u64>,
+}
+
+impl Abilities {
+    /// Puts them into a request.
+    pub fn ask(self, request: &mut PlanRequest<'_>) {
+        request.limits = self.limits;
+        request.features = self.features;
+        request.memory_limit = self.memory;
+    }
 }
 
 /// What the opened device can do.
-pub fn abilities(gpu: &Gpu) -> (wgpu::Limits, wgpu::Features) {
-    (gpu.device.limits(), gpu.device.features())
+pub fn abilities(gpu: &Gpu) -> Abilities {
+    Abilities {
+        limits: gpu.device.limits(),
+        features: gpu.device.features(),
+        memory: gpu.memory,
+    }
 }
 
 /// What the most able adapters of today can do: a graph that cannot be planned for them is at fault itself.
-pub fn greatest_abilities() -> (wgpu::Limits, wgpu::Features) {
+pub fn greatest_abilities() -> Abilities {
     let limits = wgpu::Limits {
         max_texture_dimension_2d: 32768,
         max_texture_array_layers: 2048,
         max_compute_invocations_per_workgroup: 2048,
         ..wgpu::Limits::unlimited()
     };
-    (limits, wgpu::Features::all())
+    Abilities {
+        limits,
+        features: wgpu::Features::all(),
+        memory: None,
+    }
 }
 
 /// How results name the adapter; `trust` says whether its timestamps are true.
@@ -87,8 +138,50 @@ pub fn frame(
     executor.encode(&mut encoder, frame)?;
     gpu.queue.submit([encoder.finish()]);
     executor.submitted(&gpu.queue)?;
-    let report = executor.finish()?;
+    let report = wait(gpu, executor)?;
     Ok((report, began.elapsed()))
+}
+
+/// How often Ctrl-C is looked for while a frame is under way.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// Waits for a submitted frame, but no longer than [`Gpu::patience`], and not after Ctrl-C. The device of a frame that is given up is
+/// of no more use.
+fn wait(gpu: &Gpu, executor: &mut Executor) -> Result<FrameReport, ExecuteError> {
+    let began = Instant::now();
+    loop {
+        let passes = match executor.finish_within(Some(LOOK)) {
+            Err(ExecuteError::Unfinished { passes, .. }) => passes,
+            done => return done,
+        };
+        let after = began.elapsed();
+        if interrupt::raised() || gpu.patience.is_some_and(|patience| after >= patience) {
+            // wgpu waits for the queue when its last handle is dropped, and there would be no end to that either.
+            std::mem::forget(gpu.queue.clone());
+            return Err(ExecuteError::Unfinished { after, passes });
+        }
+    }
+}
+
+/// Why a command ends that was about to run `graph`.
+pub fn failed(graph: &str, error: ExecuteError) -> CliError {
+    match error {
+        ExecuteError::Unfinished { .. } if interrupt::raised() => CliError::Interrupted {
+            kept: String::new(),
+        },
+        error => CliError::Gpu {
+            graph: graph.to_owned(),
+            source: Box::new(error),
+        },
+    }
+}
+
+/// Whether the device is of no more use after an error, for any graph.
+pub fn is_fatal(error: &(dyn Error + 'static)) -> bool {
+    matches!(
+        error.downcast_ref(),
+        Some(ExecuteError::DeviceLost(_) | ExecuteError::Unfinished { .. })
+    )
 }
 
 /// A frame that was timed.
@@ -144,7 +237,10 @@ pub fn sample(
             all: work == Work::All,
             ..Frame::default()
         };
-        let (report, wall) = frame(gpu, executor, &request)?;
+        let (report, wall) = match frame(gpu, executor, &request) {
+            Err(ExecuteError::Unfinished { .. }) if interrupt::raised() => break,
+            done => done?,
+        };
         if index >= u64::from(warmup) {
             let timing = report.timing.ok_or(ExecuteError::Internal(
                 "a timed frame came back without times",
@@ -305,6 +401,12 @@ pub fn read(
 pub fn advice(error: &(dyn Error + 'static)) -> Option<&'static str> {
     match error.downcast_ref() {
         Some(ExecuteError::OutOfMemory { .. }) => Some("use a smaller --size or --map-size"),
+        Some(ExecuteError::Unfinished { .. }) => Some(
+            "it was given up: a loop of one of its shaders may never end; if it only takes long, give it a larger --timeout, or --timeout 0 to wait for ever",
+        ),
+        Some(ExecuteError::DeviceLost(_)) => Some(
+            "the driver resets a GPU that does not answer in time: a shader may never end, or take too long for this GPU",
+        ),
         _ => None,
     }
 }
@@ -335,7 +437,10 @@ mod tests {
 
     #[test]
     fn out_of_memory_comes_with_advice_and_nothing_else_does() {
-        let full = ExecuteError::OutOfMemory { name: "map".into() };
+        let full = ExecuteError::OutOfMemory {
+            name: "map".into(),
+            table: String::new(),
+        };
         assert!(explain(&full).ends_with("; use a smaller --size or --map-size"));
         let other = ExecuteError::Readback { name: "map".into() };
         assert_eq!(explain(&other), chain(&other));

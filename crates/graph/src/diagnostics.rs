@@ -115,6 +115,9 @@ codes! {
     /// A limit of the adapter.
     Limit = "limit",
         "Use less: fewer or smaller targets, bindings, workgroups; or run on an adapter that has more.";
+    /// Materials that take more memory together than the graph may have.
+    Memory = "memory",
+        "Use a smaller viewport or shadow map, fewer layers, a format with fewer bytes; or allow more memory where there is more.";
     /// A feature that the document requires and the device does not have, or that wgpu does not know.
     Feature = "feature",
         "Run on an adapter that has the feature, or give `requires` a `fallback`.";

@@ -1,6 +1,6 @@
 //! Opening an adapter and a device as the command line and the tests do. A host program brings its own.
 
-use std::cmp::Reverse;
+use std::{cmp::Reverse, time::Duration};
 
 /// An open device.
 #[derive(Clone, Debug)]
@@ -13,6 +13,10 @@ pub struct Gpu {
     pub device: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
+    /// Bytes for the textures and buffers of a graph, where somebody knows: for [`PlanRequest::memory_limit`](crate::PlanRequest::memory_limit).
+    pub memory: Option<u64>,
+    /// How long a frame may take, where there is a limit: for [`Executor::finish_within`](crate::Executor::finish_within).
+    pub patience: Option<Duration>,
 }
 
 /// Why no device could be opened.
@@ -141,6 +145,8 @@ pub fn open_with(name: Option<&str>, wanted: wgpu::Features) -> Result<Gpu, GpuE
             adapter,
             device,
             queue,
+            memory: None,
+            patience: None,
         }),
         Err(error) => Err(GpuError::Device {
             adapter: adapter.get_info().name,

@@ -262,7 +262,10 @@ impl Graph {
             fallbacks: instance.fallbacks,
             warnings: diagnostics,
         };
-        (Some(plan), Vec::new())
+        match plan.check_memory(request.memory_limit) {
+            Some(too_much) => (None, vec![too_much]),
+            None => (Some(plan), Vec::new()),
+        }
     }
 
     fn check_params(

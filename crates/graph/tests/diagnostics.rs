@@ -24,6 +24,7 @@ fn folder() -> FolderSources {
 /// Errors of loading or planning, or the warnings where there are no errors.
 fn diagnose(path: &str, sources: &FolderSources) -> Vec<Diagnostic> {
     let mut request = PlanRequest::new([64, 48], &Triangle);
+    request.memory_limit = Some(4 << 30);
     // What a host might hand over, made for too little.
     request.imports = BTreeMap::from([
         (
@@ -464,6 +465,7 @@ fn comments_and_a_byte_order_mark_are_no_mistakes() {
     let fill = include_str!("broken/fill.wgsl");
     let files = Files::new([("graph.ron", document), ("fill.wgsl", fill)]);
     let mut request = PlanRequest::new([64, 48], &Triangle);
+    request.memory_limit = Some(4 << 30);
     // What a host might hand over, made for too little.
     request.imports = BTreeMap::from([
         (

@@ -800,7 +800,7 @@ fn more_memory_than_there_is() {
         "(name: \"image\")",
     );
     match executor(&files, &[]).expect_err("no device has as much") {
-        ExecuteError::OutOfMemory { name } | ExecuteError::Resource { name, .. } => {
+        ExecuteError::OutOfMemory { name, .. } | ExecuteError::Resource { name, .. } => {
             assert_eq!(name, "image")
         }
         other => panic!("{other}"),

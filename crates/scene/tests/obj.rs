@@ -131,7 +131,8 @@ fn degenerate_triangles_are_reported_by_group_and_face() {
 
 #[test]
 fn a_tiny_area_is_an_area() {
-    let (_, report) = parse("v 0 0 0\nv 1e-30 0 0\nv 0 1e-30 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 4 5\n");
+    let (_, report) =
+        parse("v 0 0 0\nv 1e-30 0 0\nv 0 1e-30 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 4 5\n");
     assert_eq!(report.zero_area.triangles, 0);
 }
 

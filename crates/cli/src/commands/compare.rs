@@ -3,9 +3,10 @@
 mod comparison;
 
 use crate::{
-    args::{CompareArgs, Images},
+    args::{CompareArgs, GpuArgs, Images},
     contract,
     error::{CliError, note},
+    files::check_folder,
     interrupt,
     measure::{self, Method, check_stems, reference_stem, stem},
     parse::{Size, unique},
@@ -19,14 +20,14 @@ use comparison::{Comparison, Subject};
 use skiagraph_graph::gpu::Gpu;
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::View;
-use std::{fs, sync::Arc};
+use std::sync::Arc;
 
 /// Checks everything, then runs the comparison.
 ///
 /// # Errors
 /// Faulty graphs, a scene that cannot be loaded, no GPU, earlier results that cannot be resumed, Ctrl-C, no method that runs on this
 /// adapter.
-pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError> {
+pub fn compare(args: &CompareArgs, asked: &GpuArgs) -> Result<(), CliError> {
     let published = published::read(&args.beside)?;
     let sources = preset::sources();
     let names = if args.presets.is_empty() {
@@ -38,6 +39,7 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
         args.presets.clone()
     };
     let presets = contract::load_all(&names, &sources)?;
+    check_folder(&args.out)?;
     let methods = measure::methods(&presets, &args.params, &args.map_size)?;
     if !args.map_size.is_empty() && methods.iter().all(|method| method.map_size.is_none()) {
         note("--map-size has no effect: none of these graphs has the param `map_size`");
@@ -45,7 +47,7 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
     let primary = Primary::load(&sources)?;
     let wanted = presets.iter().map(|preset| preset.graph.features());
     let gpu = render::open(
-        adapter,
+        asked,
         wanted.fold(wgpu::Features::empty(), |all, own| all | own),
     )?;
     let Stage { scene, views } = Stage::load(&args.scene)?;
@@ -81,7 +83,6 @@ pub fn compare(args: &CompareArgs, adapter: Option<&str>) -> Result<(), CliError
         fingerprint: primary.fingerprint.with_scene(&scene.mesh, &scene.light),
     };
     let mut comparison = Comparison::new(args, subject, provider, published, results)?;
-    fs::create_dir_all(&args.out).map_err(|error| CliError::write(&args.out, error))?;
     interrupt::install()?;
     let outcome = comparison.run();
     comparison.finish(outcome)
@@ -100,7 +101,7 @@ fn check_plans(
     for &viewport in &viewports {
         primary.plan(gpu, viewport, provider)?;
     }
-    contract::check_plans(methods, &viewports, provider)
+    contract::check_plans(methods, &viewports, provider, Some(gpu))
 }
 
 /// Refuses runs that would overwrite each other's pictures, before anything runs.

@@ -1,6 +1,7 @@
 //! `skiagraph doctor`: what this machine can do, and why not where it cannot.
 
 use crate::{
+    args::GpuArgs,
     error::{CliError, print},
     render,
     table::bytes,
@@ -12,7 +13,7 @@ use skiagraph_scene::{SceneLibrary, library::ASSETS_VARIABLE};
 ///
 /// # Errors
 /// No usable adapter, after all that can be said without one.
-pub fn doctor(adapter: Option<&str>) -> Result<(), CliError> {
+pub fn doctor(asked: &GpuArgs) -> Result<(), CliError> {
     let mut text = String::from("Adapters\n");
     let adapters = gpu::adapters();
     for info in &adapters {
@@ -29,7 +30,7 @@ pub fn doctor(adapter: Option<&str>) -> Result<(), CliError> {
     }
     print(&text)?;
     print(&meshes())?;
-    let gpu = render::open(adapter, wgpu::Features::empty())?;
+    let gpu = render::open(asked, wgpu::Features::empty())?;
     print(&chosen(&gpu))?;
     let verdict = match render::trust(&gpu) {
         Trust::Trusted => "  GPU times: true (a long dispatch after a raster pass takes as long as the clock says)".into(),
@@ -62,6 +63,12 @@ fn chosen(gpu: &gpu::Gpu) -> String {
         "  buffer: up to {}\n",
         bytes(limits.max_buffer_size)
     ));
+    text.push_str(&match gpu.memory {
+        Some(free) => format!("  memory for a graph: {}\n", bytes(free)),
+        None => {
+            "  memory for a graph: what the driver gives (it does not say how much)\n".to_owned()
+        }
+    });
     text.push_str(&format!(
         "  compute: {} invocations per workgroup, {} groups per dimension\n",
         limits.max_compute_invocations_per_workgroup, limits.max_compute_workgroups_per_dimension

@@ -22,7 +22,7 @@ pub fn graph(args: &GraphArgs) -> Result<(), CliError> {
     let mut request = PlanRequest::new(viewport, &provider);
     request.params = params;
     request.outputs = (!args.outputs.is_empty()).then(|| args.outputs.clone());
-    (request.limits, request.features) = render::greatest_abilities();
+    render::greatest_abilities().ask(&mut request);
     let plan = preset
         .graph
         .plan(&request)

@@ -1,7 +1,7 @@
 //! `skiagraph profile`: one graph over many frames.
 
 use crate::{
-    args::ProfileArgs,
+    args::{GpuArgs, ProfileArgs},
     date,
     error::{CliError, note, print},
     files::{check_writable, write_whole},
@@ -27,7 +27,7 @@ use std::{path::Path, sync::Arc, time::SystemTime};
 ///
 /// # Errors
 /// A faulty graph or baseline, a scene that cannot be loaded, no GPU, Ctrl-C, a file that cannot be written.
-pub fn profile(args: &ProfileArgs, adapter: Option<&str>) -> Result<(), CliError> {
+pub fn profile(args: &ProfileArgs, asked: &GpuArgs) -> Result<(), CliError> {
     if args.scene.view.as_deref() == Some("all") {
         return Err(CliError::Usage(
             "a profile is one of one view; give its name instead of `all`".into(),
@@ -40,7 +40,7 @@ pub fn profile(args: &ProfileArgs, adapter: Option<&str>) -> Result<(), CliError
     };
     let (preset, params) = preset::load_one(&args.method, &preset::sources())?;
     let method = Method::new(&preset, params);
-    let gpu = render::open(adapter, preset.graph.features())?;
+    let gpu = render::open(asked, preset.graph.features())?;
     let Stage { scene, views } = Stage::load(&args.scene)?;
     let scene = Arc::new(scene);
     let Some(view) = views.first() else {
@@ -80,10 +80,7 @@ pub fn profile(args: &ProfileArgs, adapter: Option<&str>) -> Result<(), CliError
         warmup: args.warmup,
     };
     let (passes, memory) = (plan.passes(), memory(&plan));
-    let refused = |error| CliError::Gpu {
-        graph: preset.name.clone(),
-        source: Box::new(error),
-    };
+    let refused = |error| render::failed(&preset.name, error);
     let mut executor =
         Executor::new(&gpu.device, &gpu.queue, plan, &mut provider).map_err(refused)?;
     let step = Step::begin(

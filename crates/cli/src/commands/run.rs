@@ -1,7 +1,7 @@
 //! `skiagraph run`: one frame of one graph, and any of its materials as a file.
 
 use crate::{
-    args::RunArgs,
+    args::{GpuArgs, RunArgs},
     error::{CliError, print},
     files::{check_writable, write_whole},
     items,
@@ -12,9 +12,7 @@ use crate::{
     stage::Stage,
     table::{bytes, percent, thousands},
 };
-use skiagraph_graph::{
-    Capture, Content, ExecuteError, Executor, Item, Plan, PlanRequest, gpu::Gpu,
-};
+use skiagraph_graph::{Capture, Content, Executor, Item, Plan, PlanRequest, gpu::Gpu};
 use skiagraph_passes::{
     SceneProvider,
     provider::{CAMERA, LIGHT},
@@ -29,7 +27,7 @@ use std::{
 ///
 /// # Errors
 /// A faulty graph, a scene that cannot be loaded, no GPU, a file that cannot be written.
-pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
+pub fn run(args: &RunArgs, asked: &GpuArgs) -> Result<(), CliError> {
     let RunArgs {
         method,
         scene,
@@ -48,7 +46,7 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
         .map(|save| (writer(save), save.file.as_path()))
         .collect();
     check_writable(&files)?;
-    let gpu = render::open(adapter, preset.graph.features())?;
+    let gpu = render::open(asked, preset.graph.features())?;
     let stage = Stage::load(scene)?;
     let scene = Arc::new(stage.scene);
     let mut provider = SceneProvider::new(scene.clone());
@@ -57,8 +55,7 @@ pub fn run(args: &RunArgs, adapter: Option<&str>) -> Result<(), CliError> {
         let mut request = PlanRequest::new(method.size.0, &provider);
         request.params = params.clone();
         request.captures = captures(preset, save);
-        request.limits = gpu.device.limits();
-        request.features = gpu.device.features();
+        render::abilities(&gpu).ask(&mut request);
         let plan = preset
             .graph
             .plan(&request)
@@ -115,7 +112,7 @@ fn poisoned(
             let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, provider)?;
             render::read(gpu, &mut executor, &outputs)
         };
-        read().map_err(|error| gpu_error(preset, error))
+        read().map_err(|error| render::failed(&preset.name, error))
     };
     let (low, high) = (render(0x11)?, render(0xee)?);
     let mut differing = Vec::new();
@@ -141,13 +138,6 @@ fn poisoned(
         preset.name,
         differing.join(", ")
     )))
-}
-
-fn gpu_error(preset: &Preset, error: ExecuteError) -> CliError {
-    CliError::Gpu {
-        graph: preset.name.clone(),
-        source: Box::new(error),
-    }
 }
 
 fn capture(save: &Save) -> Capture {
@@ -228,7 +218,7 @@ fn render(
         let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, provider)?;
         render::read(gpu, &mut executor, &names)
     };
-    read().map_err(|error| gpu_error(preset, error))
+    read().map_err(|error| render::failed(&preset.name, error))
 }
 
 /// Which passes ran, which did not and why, and what was built for them.

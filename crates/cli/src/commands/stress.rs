@@ -6,7 +6,7 @@ mod report;
 mod trial;
 
 use crate::{
-    args::{StressArgs, StressFormat},
+    args::{GpuArgs, StressArgs, StressFormat},
     contract,
     error::{CliError, print},
     interrupt, markdown, measure,
@@ -29,7 +29,7 @@ use trial::{Contender, Trial};
 ///
 /// # Errors
 /// Faulty graphs, an unknown case, no GPU, Ctrl-C, files that cannot be written, a promise that is broken, a band above its cap.
-pub fn stress(args: &StressArgs, adapter: Option<&str>) -> Result<(), CliError> {
+pub fn stress(args: &StressArgs, asked: &GpuArgs) -> Result<(), CliError> {
     if args.list {
         return list();
     }
@@ -48,10 +48,10 @@ pub fn stress(args: &StressArgs, adapter: Option<&str>) -> Result<(), CliError> 
     let methods = measure::methods(&presets, &args.params, &args.map_size)?;
     let primary = Primary::load(&sources)?;
     let provider = SceneProvider::new(Arc::new(tangible(&cases).scene()));
-    contract::check_plans(&methods, &[args.size.0], &provider)?;
+    contract::check_plans(&methods, &[args.size.0], &provider, None)?;
     let wanted = presets.iter().map(|preset| preset.graph.features());
     let gpu = render::open(
-        adapter,
+        asked,
         wanted.fold(wgpu::Features::empty(), |all, own| all | own),
     )?;
     primary.plan(&gpu, args.size.0, &provider)?;

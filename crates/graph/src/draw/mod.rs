@@ -10,7 +10,7 @@ mod layout;
 mod layout_tests;
 mod legend;
 mod svg;
-mod text;
+pub(crate) mod text;
 mod words;
 
 use serde::Serialize;

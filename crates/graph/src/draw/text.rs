@@ -42,7 +42,7 @@ pub(super) fn bold(text: &str, size: f64) -> f64 {
 
 /// The text, cut to at most `characters`, with an ellipsis where something is missing. The end of a name often tells more than
 /// its middle, so the middle goes.
-pub(super) fn cut(text: &str, characters: usize) -> String {
+pub(crate) fn cut(text: &str, characters: usize) -> String {
     let all: Vec<char> = text.chars().collect();
     if all.len() <= characters {
         return text.to_owned();
@@ -74,7 +74,7 @@ pub(super) fn wrap(text: &str, size: f64, room: f64) -> Vec<String> {
 }
 
 /// Bytes in the unit that fits.
-pub(super) fn bytes(bytes: u64) -> String {
+pub(crate) fn bytes(bytes: u64) -> String {
     match bytes {
         0..1024 => format!("{bytes} B"),
         1024..1_048_576 => format!("{:.1} KiB", bytes as f64 / 1024.0),

@@ -2,6 +2,7 @@
 
 use super::{
     ExecuteError, Executor,
+    error::with_table,
     incremental::Contents,
     pass::{MadePass, Seen},
     poison::Poison,
@@ -85,7 +86,7 @@ impl Executor {
             positions,
             bound,
             mut renewed,
-        } = made?;
+        } = made.map_err(|error| with_table(error, &plan))?;
         // Everything that can fail has been done but binding; a pass whose resources are all the same is bound already.
         let before = std::mem::replace(&mut self.plan, plan);
         let old_memory = std::mem::replace(&mut self.memory, memory);

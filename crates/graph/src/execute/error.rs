@@ -1,7 +1,10 @@
 //! What can go wrong on a device, and the scopes that bring it back as errors.
 
-use crate::diagnostics::Diagnostics;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use crate::{diagnostics::Diagnostics, plan::Plan};
+use std::{
+    panic::{AssertUnwindSafe, catch_unwind},
+    time::Duration,
+};
 
 /// Why a plan could not be allocated or a frame not be run.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -30,6 +33,8 @@ pub enum ExecuteError {
     OutOfMemory {
         /// The resource or pass.
         name: String,
+        /// What of the graph takes the most: [`Plan::memory_table`].
+        table: String,
     },
     /// A provided resource could not be built.
     #[error("the provided resource `{name}` could not be built: {why}")]
@@ -107,6 +112,17 @@ pub enum ExecuteError {
     /// The device was lost or did not answer.
     #[error("the device was lost: {0}")]
     DeviceLost(String),
+    /// The GPU had not finished a frame in the time that it was given, and may never do so.
+    #[error(
+        "the GPU was not done with the frame after {:.1} s; in it ran {passes}",
+        after.as_secs_f64()
+    )]
+    Unfinished {
+        /// How long it was waited for.
+        after: Duration,
+        /// The passes of the frame.
+        passes: String,
+    },
     /// Timestamps could not be taken.
     #[error("timestamps could not be taken: {0}")]
     Timing(String),
@@ -138,6 +154,7 @@ pub(crate) fn scoped<T>(
         None => Ok(made),
         Some(wgpu::Error::OutOfMemory { .. }) => Err(ExecuteError::OutOfMemory {
             name: name.to_owned(),
+            table: String::new(),
         }),
         Some(error) => Err(ExecuteError::Resource {
             name: name.to_owned(),
@@ -153,6 +170,17 @@ pub(super) fn named(error: ExecuteError, pass: &str, place: &str) -> ExecuteErro
             pass: pass.to_owned(),
             place: place.to_owned(),
             message,
+        },
+        other => other,
+    }
+}
+
+/// The error of making or running what a plan says; without memory it shows where the plan's went.
+pub(super) fn with_table(error: ExecuteError, plan: &Plan) -> ExecuteError {
+    match error {
+        ExecuteError::OutOfMemory { name, .. } => ExecuteError::OutOfMemory {
+            name,
+            table: plan.memory_table(),
         },
         other => other,
     }
@@ -182,14 +210,17 @@ pub(super) fn alive(device: &wgpu::Device) -> Result<(), ExecuteError> {
     }
 }
 
-/// Waits until all that was submitted is done.
-pub(super) fn wait(device: &wgpu::Device) -> Result<(), ExecuteError> {
+/// Waits until all that was submitted is done; false if it is not after so long a time.
+pub(super) fn wait(device: &wgpu::Device, timeout: Option<Duration>) -> Result<bool, ExecuteError> {
+    let all = wgpu::PollType::Wait {
+        submission_index: None,
+        timeout,
+    };
     // wgpu panics where a device is lost while it is waited for.
-    let polled = catch_unwind(AssertUnwindSafe(|| {
-        device.poll(wgpu::PollType::wait_indefinitely())
-    }));
+    let polled = catch_unwind(AssertUnwindSafe(|| device.poll(all)));
     match polled {
-        Ok(Ok(_)) => Ok(()),
+        Ok(Ok(_)) => Ok(true),
+        Ok(Err(wgpu::PollError::Timeout)) => Ok(false),
         Ok(Err(error)) => Err(ExecuteError::DeviceLost(error.to_string())),
         Err(_) => Err(ExecuteError::DeviceLost(
             "it was lost while its work was waited for".to_owned(),

@@ -21,7 +21,7 @@ use crate::{
     timing::{FrameTiming, Timer},
 };
 use encode::encode_all;
-use error::{alive, wait};
+use error::{alive, wait, with_table};
 use incremental::Contents;
 use pass::MadePass;
 use poison::Poison;
@@ -92,14 +92,17 @@ impl Executor {
         provider: &mut dyn Provider,
     ) -> Result<Self, ExecuteError> {
         alive(device)?;
-        let memory = Memory::new(&plan, None, device, queue, provider)?;
+        let refused = |error| with_table(error, &plan);
+        let memory = Memory::new(&plan, None, device, queue, provider).map_err(refused)?;
         let mut pipelines = Pipelines::default();
         let passes = (0..plan.schedule.len())
             .map(|at| MadePass::new(&plan, at, None, &mut pipelines, device))
-            .collect::<Result<Vec<_>, _>>()?;
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(refused)?;
         let contents = Contents::of(&plan, 0);
+        let poison = Poison::new(&plan, &memory, device).map_err(refused)?;
         let mut executor = Self {
-            poison: Poison::new(&plan, &memory, device)?,
+            poison,
             timer: Timer::new(device, queue)?,
             device: device.clone(),
             queue: queue.clone(),
@@ -269,7 +272,8 @@ impl Executor {
             // The staging buffer is made here, so there may be no memory for it.
             let made = scoped(&self.device, name, || {
                 Pending::new(&self.device, &self.plan, &self.memory, &histories, name)
-            })??;
+            });
+            let made = made.map_err(|error| with_table(error, &self.plan))??;
             pending.push(made);
         }
         self.timed = frame.timing;
@@ -319,7 +323,26 @@ impl Executor {
     /// # Errors
     /// If the device was lost.
     pub fn finish(&mut self) -> Result<FrameReport, ExecuteError> {
-        wait(&self.device)?;
+        self.finish_within(None)
+    }
+
+    /// [`finish`](Self::finish) that waits no longer than `timeout`, if there is one. A shader that never ends blocks some drivers
+    /// for ever; others lose the device.
+    ///
+    /// # Errors
+    /// Besides those of `finish`: [`ExecuteError::Unfinished`]. The frame can be waited for again. A host that gives up must know that wgpu waits,
+    /// without end, when the last handle of the queue is dropped: `std::mem::forget` a clone of it to let the process end.
+    pub fn finish_within(
+        &mut self,
+        timeout: Option<Duration>,
+    ) -> Result<FrameReport, ExecuteError> {
+        let began = Instant::now();
+        if !wait(&self.device, timeout)? {
+            return Err(ExecuteError::Unfinished {
+                after: began.elapsed(),
+                passes: list(&self.ran()),
+            });
+        }
         // A device that was destroyed is waited for without complaint, but has no query buffers to take times from.
         alive(&self.device)?;
         let timing = self.timed.then(|| self.timer.take(&self.cpu));
@@ -332,6 +355,13 @@ impl Executor {
             skipped: self.skipped.iter().map(|name| name.to_string()).collect(),
             readbacks,
         })
+    }
+
+    /// Names of the passes of the last frame.
+    fn ran(&self) -> Vec<&str> {
+        let passes = self.passes.iter().map(|pass| &*pass.name);
+        let ran = passes.filter(|name| self.skipped.iter().all(|skipped| **skipped != **name));
+        ran.collect()
     }
 
     /// The resource of a name that a live pass uses.

@@ -1,7 +1,14 @@
-//! What a plan's own textures and buffers take.
+//! What a plan's own textures and buffers take, and whether that is too much.
 
 use super::{Plan, ResourceId, ResourceKind};
-use crate::pool::{Slot, bytes};
+use crate::{
+    diagnostics::{Code, Diagnostic},
+    draw::text,
+    pool::{Slot, bytes},
+};
+
+/// Rows of a memory table: what does not fit is rarely found among the small ones.
+const ROWS: usize = 12;
 
 /// One of the graph's own textures or buffers, and the memory it takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -72,6 +79,105 @@ impl Plan {
             .iter()
             .map(of_slot)
             .fold(0, u64::saturating_add)
+    }
+
+    /// What takes the most memory, for a person who must save some: a line per allocation, the largest first, then the rest in one,
+    /// then the sum. Materials that take turns in one allocation stand together.
+    pub fn memory_table(&self) -> String {
+        let mut rows: Vec<(u64, [String; 3])> = self
+            .slots
+            .list
+            .iter()
+            .map(|slot| (self.slot_bytes(slot), self.row(slot)))
+            .collect();
+        rows.sort_by_key(|(bytes, _)| std::cmp::Reverse(*bytes));
+        let rest = rows.split_off(rows.len().min(ROWS));
+        if !rest.is_empty() {
+            let sum = rest
+                .iter()
+                .fold(0, |sum: u64, (bytes, _)| sum.saturating_add(*bytes));
+            let name = format!("{} more", rest.len());
+            rows.push((sum, [name, String::new(), String::new()]));
+        }
+        let all = ["all together".to_owned(), String::new(), String::new()];
+        rows.push((self.memory_bytes(), all));
+        let width = |column: usize| {
+            let cells = rows.iter().map(|(_, cells)| cells[column].chars().count());
+            cells.max().unwrap_or_default()
+        };
+        let [name, size, format] = [0, 1, 2].map(width);
+        let line = |(bytes, cells): &(u64, [String; 3])| {
+            let bytes = text::bytes(*bytes);
+            format!(
+                "{:name$}  {:size$}  {:format$}  {bytes:>10}",
+                cells[0], cells[1], cells[2]
+            )
+        };
+        rows.iter().map(line).collect::<Vec<_>>().join("\n")
+    }
+
+    /// Name, size and format of an allocation.
+    fn row(&self, slot: &Slot) -> [String; 3] {
+        let names: Vec<&str> = slot
+            .tenants
+            .iter()
+            .map(|tenant| self.resources[tenant.0].name.as_str())
+            .collect();
+        let versions = match self.versions(slot.tenants[0]) {
+            1 => String::new(),
+            versions => format!(", {versions} versions"),
+        };
+        let (size, format) = match &self.resources[slot.tenants[0].0].kind {
+            ResourceKind::Texture(texture) => {
+                let mut size = format!("{}×{}", texture.size[0], texture.size[1]);
+                if texture.layers > 1 {
+                    size.push_str(&format!(", {} layers", texture.layers));
+                }
+                if texture.mips > 1 {
+                    size.push_str(&format!(", {} mips", texture.mips));
+                }
+                (size, format!("{:?}", texture.format))
+            }
+            _ => ("buffer".to_owned(), String::new()),
+        };
+        // One name may be as long as a line; many are as good as a few.
+        let names = match &names[..] {
+            [first, second, third, .., _] => {
+                format!(
+                    "{first}, {second}, {third} and {} more in turn",
+                    names.len() - 3
+                )
+            }
+            [_] | [] => names.join(""),
+            _ => format!("{} in turn", names.join(", ")),
+        };
+        [text::cut(&names, 40), size + &versions, format]
+    }
+
+    /// Refuses a plan that takes more than there is, with what takes the most.
+    pub(super) fn check_memory(&self, limit: Option<u64>) -> Option<Diagnostic> {
+        let takes = self.memory_bytes();
+        let limit = limit.filter(|limit| takes > *limit)?;
+        let message = format!(
+            "the materials of `{}` take {}, but there are only {} of memory for them",
+            self.graph.place().file.name,
+            text::bytes(takes),
+            text::bytes(limit)
+        );
+        let help = format!(
+            "make the largest ones smaller (a smaller viewport, the param that sizes them, fewer layers, a format with fewer bytes), or allow more memory\n{}",
+            self.memory_table()
+        );
+        let largest = self.slots.list.iter().max_by_key(|slot| {
+            // Of equals the first one: `max_by_key` would take the last.
+            (self.slot_bytes(slot), std::cmp::Reverse(slot.tenants[0]))
+        });
+        let place = largest.and_then(|slot| self.resources[slot.tenants[0].0].declared.clone());
+        let error = Diagnostic::error(Code::Memory, message).help(help);
+        Some(match place {
+            Some(span) => error.at(span, "the largest of them"),
+            None => error.at(self.graph.place(), ""),
+        })
     }
 
     fn slot_bytes(&self, slot: &Slot) -> u64 {

@@ -20,6 +20,9 @@ pub struct PlanRequest<'a> {
     pub limits: wgpu::Limits,
     /// Features that the device will have.
     pub features: wgpu::Features,
+    /// Bytes that the graph's own textures and buffers may take together; one that takes more is refused with a table of what
+    /// takes the most, before anything is allocated. `None`: whatever the device gives. (wgpu does not tell how much memory there is.)
+    pub memory_limit: Option<u64>,
     /// What the host will import, by name.
     pub imports: BTreeMap<String, Import>,
     /// Fills memory between uses with a pattern made of this byte: a graph whose outputs change with it reads what it has not
@@ -39,6 +42,7 @@ impl<'a> PlanRequest<'a> {
             captures: Vec::new(),
             limits: wgpu::Limits::default(),
             features: wgpu::Features::empty(),
+            memory_limit: None,
             imports: BTreeMap::new(),
             poison: None,
             provider,
@@ -55,6 +59,7 @@ pub(crate) struct Request {
     pub captures: Vec<Capture>,
     pub limits: wgpu::Limits,
     pub features: wgpu::Features,
+    pub memory_limit: Option<u64>,
     pub imports: BTreeMap<String, Import>,
     pub poison: Option<u8>,
     provider: Described,
@@ -69,6 +74,7 @@ impl Request {
             captures: request.captures.clone(),
             limits: request.limits.clone(),
             features: request.features,
+            memory_limit: request.memory_limit,
             imports: request.imports.clone(),
             poison: request.poison,
             provider: Described::by(request.provider),
@@ -89,6 +95,7 @@ impl Request {
             captures: self.captures.clone(),
             limits: self.limits.clone(),
             features: self.features,
+            memory_limit: self.memory_limit,
             imports: self.imports.clone(),
             poison: self.poison,
             provider: &self.provider,

@@ -285,19 +285,22 @@ impl<'a> Comparison<'a> {
         if args.format == Format::Json && !results.runs.is_empty() {
             print(&results.to_json())?;
         }
-        let done = results.runs.len();
-        if let Err(CliError::Interrupted { .. }) = outcome {
-            let kept = match done {
-                0 => "no run was finished".into(),
-                _ => format!(
-                    "{done} of {} runs are kept in {}; the same command with --resume goes on from there",
-                    states.len(),
-                    args.out.join("results.json").display()
-                ),
-            };
-            return Err(CliError::Interrupted { kept });
+        let kept = match results.runs.len() {
+            0 => "no run was finished".into(),
+            done => format!(
+                "{done} of {} runs are kept in {}; the same command with --resume goes on from there",
+                states.len(),
+                args.out.join("results.json").display()
+            ),
+        };
+        match outcome {
+            Ok(()) => {}
+            Err(CliError::Interrupted { .. }) => return Err(CliError::Interrupted { kept }),
+            Err(error) => {
+                note(&kept);
+                return Err(error);
+            }
         }
-        outcome?;
         if args.resume {
             // Where every run was kept, nothing has been written yet.
             results.save(&args.out)?;

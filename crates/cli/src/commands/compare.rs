@@ -39,7 +39,6 @@ pub fn compare(args: &CompareArgs, asked: &GpuArgs) -> Result<(), CliError> {
         args.presets.clone()
     };
     let presets = contract::load_all(&names, &sources)?;
-    check_folder(&args.out)?;
     let methods = measure::methods(&presets, &args.params, &args.map_size)?;
     if !args.map_size.is_empty() && methods.iter().all(|method| method.map_size.is_none()) {
         note("--map-size has no effect: none of these graphs has the param `map_size`");
@@ -57,6 +56,7 @@ pub fn compare(args: &CompareArgs, asked: &GpuArgs) -> Result<(), CliError> {
     let scene = Arc::new(scene);
     let provider = SceneProvider::new(scene.clone());
     check_plans(&gpu, &primary, &methods, args, &provider)?;
+    check_folder(&args.out)?;
     let trust = render::trust(&gpu);
     let results = Results {
         schema: 1,

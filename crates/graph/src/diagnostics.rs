@@ -2,7 +2,7 @@
 
 use crate::source::Span;
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource};
-use std::fmt;
+use std::{fmt, ops::Range};
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -211,9 +211,12 @@ impl Diagnostic {
 
 /// "did you mean …" for a misspelt `word`, or the list of what is known.
 pub fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    /// Names that a misspelt one is compared with: a document may hold thousands, and as many mistakes.
+    const COMPARED: usize = 1024;
     let known: Vec<&str> = known.into_iter().collect();
     let best = known
         .iter()
+        .take(COMPARED)
         .map(|name| (strsim::jaro_winkler(word, name), *name))
         .max_by(|a, b| a.0.total_cmp(&b.0))?;
     // Below 0.8 two short names share little more than a letter or two; a list helps more than a wild guess.
@@ -234,6 +237,13 @@ pub fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> O
     Some(format!("known here: {list}"))
 }
 
+/// More diagnostics than anybody reads; each is printed with a piece of its file.
+const MOST_SHOWN: usize = 200;
+
+/// Longest line of which a piece is printed, in bytes: there is no pointing at a word in one that fills a screen, and miette
+/// cannot count beyond 65,535 columns.
+const LONGEST_LINE: usize = 2000;
+
 /// A non-empty list of diagnostics, errors first, in source order.
 #[derive(Clone, Debug)]
 pub struct Diagnostics(Vec<Diagnostic>);
@@ -242,6 +252,17 @@ impl Diagnostics {
     pub(crate) fn new(mut list: Vec<Diagnostic>) -> Self {
         list.sort_by(|a, b| a.key().cmp(&b.key()));
         list.dedup_by(|a, b| a.message == b.message && a.key() == b.key());
+        if let Some(first) = list.get(MOST_SHOWN) {
+            let rest = list.len() - MOST_SHOWN;
+            let mut more = Diagnostic::error(first.code, format!("and {rest} mistakes more"));
+            let place = first.labels.first();
+            more.labels.extend(place.map(|label| Label {
+                span: label.span.clone(),
+                text: "the next one".to_owned(),
+            }));
+            list.truncate(MOST_SHOWN);
+            list.push(more.help("mend those above first: what is left may follow from them"));
+        }
         Self(list)
     }
 
@@ -335,13 +356,23 @@ impl<'a> Report<'a> {
 
     fn of_file(
         diagnostic: &'a Diagnostic,
-        message: String,
+        mut message: String,
         file: Option<&crate::source::SourceFile>,
     ) -> Self {
-        let labels = diagnostic
-            .labels
-            .iter()
+        let labels = diagnostic.labels.iter();
+        let mut labels: Vec<&Label> = labels
             .filter(|label| Some(&label.span.file) == file)
+            .collect();
+        let mut file = file;
+        if labels.iter().any(|label| is_too_wide(&label.span)) {
+            // The places in words.
+            for label in std::mem::take(&mut labels) {
+                message.push_str(&format!("\n{}: {}", label.span, label.text));
+            }
+            file = None;
+        }
+        let labels = labels
+            .into_iter()
             .map(|label| {
                 let text = (!label.text.is_empty()).then(|| label.text.clone());
                 let range = clamp(&label.span);
@@ -361,7 +392,7 @@ impl<'a> Report<'a> {
 }
 
 /// A span that miette can show: inside the text, on character borders.
-fn clamp(span: &Span) -> std::ops::Range<usize> {
+fn clamp(span: &Span) -> Range<usize> {
     let text = &span.file.text;
     let border = |mut at: usize| {
         at = at.min(text.len());
@@ -372,6 +403,19 @@ fn clamp(span: &Span) -> std::ops::Range<usize> {
     };
     let start = border(span.range.start);
     start..border(span.range.end).max(start)
+}
+
+/// Whether miette would have to print a line that is too long, or too many of them. It shows a line before and after a label.
+fn is_too_wide(span: &Span) -> bool {
+    let text = &span.file.text;
+    let Range { start, end } = clamp(span);
+    let before = text[..start].rsplit('\n').take(2).map(str::len).max();
+    let after = text[end..].split('\n').take(2).map(str::len).max();
+    let within = end - start;
+    [before, Some(within), after]
+        .into_iter()
+        .flatten()
+        .any(|length| length > LONGEST_LINE)
 }
 
 impl fmt::Display for Report<'_> {

@@ -12,7 +12,7 @@ use crate::{
     include::{self, Includes},
     instantiate::{Instance, LoweredPass, Purpose, instantiate, split_layer},
     registry::Registry,
-    source::{SourceFile, Sources, Span},
+    source::{self, SourceFile, Sources, Span},
     step::Step,
     wgsl::{Shader, ShaderFiles},
 };
@@ -120,7 +120,7 @@ impl Graph {
     ) -> Result<(Self, Vec<Diagnostic>), Diagnostics> {
         let missing =
             |message: String| Diagnostics::from(Diagnostic::error(Code::MissingFile, message));
-        let text = match sources.read(path) {
+        let text = match source::read(sources, path) {
             Ok(Some(text)) => text,
             Ok(None) => {
                 let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));

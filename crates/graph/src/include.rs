@@ -4,7 +4,7 @@ use crate::{
     diagnostics::{Code, Diagnostic, suggestion},
     document::{self, Document, Entry, IncludeEntry, located::Located},
     registry::Registry,
-    source::{SourceFile, Sources, Span, escapes, folder_of, include_candidates},
+    source::{self, SourceFile, Sources, Span, escapes, folder_of, include_candidates},
 };
 use std::{collections::HashMap, sync::Arc};
 
@@ -124,7 +124,7 @@ impl<'a> Includes<'a> {
         let includer = self.open.last().map_or("", |(path, _)| path);
         let candidates = include_candidates(includer, graph);
         for path in &candidates {
-            match self.sources.read(path) {
+            match source::read(self.sources, path) {
                 Ok(Some(text)) => return Ok(SourceFile::new(path.as_str(), text)),
                 Ok(None) => {}
                 Err(why) => {

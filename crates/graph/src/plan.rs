@@ -30,6 +30,9 @@ use crate::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
+/// With so many mistakes nobody misses those further down.
+const ENOUGH: usize = 1000;
+
 /// The kind of a pass that keeps a material as it stands after another pass.
 pub(crate) const CAPTURE: &str = "Capture";
 
@@ -122,6 +125,11 @@ impl Graph {
         // How many passes stand above the first one with a mistake: what that one writes is not known.
         let mut sound: Option<usize> = None;
         for (index, pass) in lowered.iter().enumerate() {
+            // For each mistake all names are searched for what was meant.
+            if linker.diagnostics.len() > ENOUGH {
+                sound.get_or_insert(passes.len());
+                break;
+            }
             if instance.first_broken == Some(index) {
                 sound.get_or_insert(passes.len());
             }

@@ -21,6 +21,28 @@ pub trait Sources: Send + Sync {
     fn list(&self, folder: &str) -> Vec<String>;
 }
 
+/// Longest document or shader file, in bytes; far above any that was written by hand, far below what memory holds.
+pub(crate) const LONGEST_FILE: usize = 8 << 20;
+
+/// Reads a text from a store.
+///
+/// # Errors
+/// Why it cannot be read; it may be too long.
+pub(crate) fn read(sources: &dyn Sources, path: &str) -> Result<Option<Arc<str>>, String> {
+    match sources.read(path)? {
+        Some(text) if text.len() > LONGEST_FILE => Err(too_long(text.len() as u64)),
+        text => Ok(text),
+    }
+}
+
+fn too_long(bytes: u64) -> String {
+    format!(
+        "it has {} MiB, a document or shader {} at most: split it into several (`Include`, `#import`), or let `repeat` say what is alike",
+        bytes.div_ceil(1 << 20),
+        LONGEST_FILE >> 20
+    )
+}
+
 /// Files below a folder on disk. Absolute paths are read as they are.
 #[derive(Clone, Debug)]
 pub struct FolderSources {
@@ -33,6 +55,13 @@ impl Sources for FolderSources {
         let path = self.root.join(path);
         if !path.is_file() {
             return Ok(None);
+        }
+        // Looked at first: a file of many gigabytes is not read to find that out.
+        match std::fs::metadata(&path) {
+            Ok(metadata) if metadata.len() > LONGEST_FILE as u64 => {
+                return Err(too_long(metadata.len()));
+            }
+            _ => {}
         }
         std::fs::read_to_string(&path)
             .map(|text| Some(text.into()))

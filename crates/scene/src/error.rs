@@ -1,6 +1,6 @@
 //! Everything that can go wrong between a scene's name and its triangles.
 
-use std::{fmt, io, path::PathBuf};
+use std::{borrow::Cow, fmt, io, path::PathBuf};
 use thiserror::Error;
 
 /// How many faces an error or a warning spells out before it only counts.
@@ -174,7 +174,9 @@ impl fmt::Display for FaceRef {
         write!(
             f,
             "face {} of group {:?} (line {})",
-            self.number, self.group, self.line
+            self.number,
+            beginning(&self.group),
+            self.line
         )
     }
 }
@@ -226,21 +228,24 @@ impl fmt::Display for FaceProblem {
             Self::NoSuchVertex { written, available } => {
                 write!(
                     f,
-                    "names vertex {written}, but {} above it",
+                    "names vertex {}, but {} above it",
+                    beginning(written),
                     plural(*available, "vertex stands", "vertices stand")
                 )
             }
             Self::NoSuchNormal { written, available } => {
                 write!(
                     f,
-                    "names normal {written}, but {} above it",
+                    "names normal {}, but {} above it",
+                    beginning(written),
                     plural(*available, "normal stands", "normals stand")
                 )
             }
             Self::NotACorner(text) => {
                 write!(
                     f,
-                    "has the corner {text:?}; expected v, v/vt, v//vn or v/vt/vn"
+                    "has the corner {:?}; expected v, v/vt, v//vn or v/vt/vn",
+                    beginning(text)
                 )
             }
             Self::NotFinite { corner, position } => {
@@ -250,6 +255,15 @@ impl fmt::Display for FaceProblem {
                 )
             }
         }
+    }
+}
+
+/// As much of a word from a file as fits a message; a damaged file may hold one of any length.
+pub(crate) fn beginning(text: &str) -> Cow<'_, str> {
+    const SHOWN: usize = 60;
+    match text.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{}…", &text[..end]).into(),
+        None => text.into(),
     }
 }
 
@@ -299,7 +313,7 @@ fn shorten(names: &[String]) -> String {
     let mut text = names
         .iter()
         .take(SHOWN)
-        .map(String::as_str)
+        .map(|name| beginning(name))
         .collect::<Vec<_>>()
         .join(", ");
     if names.len() > SHOWN {

@@ -4,7 +4,10 @@ use crate::{
     DirectionalLight, ImportReport, MeshSource, ObjOptions, QuadDiagonal, Scene, SceneError,
     SceneFile, View, generate, load_obj,
 };
-use std::path::{Path, PathBuf};
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
 
 /// The environment variable that lists folders of meshes, separated as in `PATH`.
 pub const ASSETS_VARIABLE: &str = "SKIAGRAPH_ASSETS";
@@ -162,7 +165,7 @@ impl SceneLibrary {
             None
         };
         if let Some(file) = file {
-            let text = std::fs::read_to_string(file).map_err(|source| SceneError::Read {
+            let text = read_scene_file(file).map_err(|source| SceneError::Read {
                 path: file.to_owned(),
                 source,
             })?;
@@ -240,6 +243,21 @@ impl SceneLibrary {
             report,
         ))
     }
+}
+
+/// The text of a scene file. One of many gigabytes is not read to find out that it is none.
+fn read_scene_file(file: &Path) -> io::Result<String> {
+    /// Bytes; room for thousands of views.
+    const LONGEST: u64 = 1 << 20;
+    let length = std::fs::metadata(file)?.len();
+    if length > LONGEST {
+        return Err(io::Error::other(format!(
+            "it has {} KiB, a scene file {} at most; a mesh belongs into an .obj file of its own",
+            length >> 10,
+            LONGEST >> 10
+        )));
+    }
+    std::fs::read_to_string(file)
 }
 
 fn load_bare_obj(

@@ -17,6 +17,7 @@
 use crate::{DirectionalLight, QuadDiagonal, SceneError, View};
 use glam::DVec3;
 use serde::{Deserialize, Deserializer, de::Error};
+use std::collections::HashSet;
 
 /// What a scene file says. Everything in it is checked, but no mesh is loaded yet.
 #[derive(Clone, Debug, Deserialize)]
@@ -159,16 +160,10 @@ fn views<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<View>, D::Err
     if views.is_empty() {
         return Err(D::Error::custom("a scene needs at least one view"));
     }
-    for (index, view) in views.iter().enumerate() {
-        if views[..index]
-            .iter()
-            .any(|earlier| earlier.name == view.name)
-        {
-            return Err(D::Error::custom(format!(
-                "two views are called {:?}",
-                view.name
-            )));
-        }
+    let mut names = HashSet::new();
+    if let Some(view) = views.iter().find(|view| !names.insert(&view.name)) {
+        let name = &view.name;
+        return Err(D::Error::custom(format!("two views are called {name:?}")));
     }
     Ok(views)
 }
@@ -206,6 +201,15 @@ impl View {
             return Err(format!(
                 "view {name:?}: near is {} and far is {}, expected 0 < near < far",
                 self.near, self.far
+            ));
+        }
+        // Shaders get it in 32 bits.
+        let camera = self.camera([1, 1]).view_projection();
+        if !camera.as_mat4().is_finite() {
+            return Err(format!(
+                "view {name:?}: its camera overflows 32-bit numbers with eye {}, fov_y_degrees {}, near {} and far {}; \
+                 bring them nearer to 1",
+                self.eye, self.fov_y_degrees, self.near, self.far
             ));
         }
         Ok(())

@@ -21,6 +21,9 @@ pub(crate) use requires::Requirement;
 use serde::Deserialize;
 use std::collections::HashMap;
 
+/// Most entries of a list as it is written; each may name all others, so time may grow with the square.
+const MOST_ENTRIES: usize = 4096;
+
 /// The only document format there is.
 const FORMAT: u32 = 1;
 
@@ -255,9 +258,22 @@ fn sections(fields: Vec<Field>, diagnostics: &mut Vec<Diagnostic>) -> HashMap<St
 }
 
 fn list(section: Option<&Node>, diagnostics: &mut Vec<Diagnostic>) -> Vec<Node> {
-    section
-        .and_then(|node| ok(node.list(), diagnostics))
-        .unwrap_or_default()
+    let nodes = section.and_then(|node| ok(node.list(), diagnostics));
+    let nodes = nodes.unwrap_or_default();
+    if let Some(node) = nodes.get(MOST_ENTRIES) {
+        let count = nodes.len();
+        let error = Diagnostic::error(
+            Code::Size,
+            format!("the list has {count} entries, {MOST_ENTRIES} is the most"),
+        );
+        diagnostics.push(
+            error.at(node.span.clone(), "this one is too many").help(
+                "let `repeat` say what is alike, or split the document and `Include` its parts",
+            ),
+        );
+        return Vec::new();
+    }
+    nodes
 }
 
 fn material(node: &Node) -> Result<Material, Diagnostic> {

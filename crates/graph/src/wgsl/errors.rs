@@ -88,6 +88,10 @@ pub(super) fn parse_error(error: &naga::front::wgsl::ParseError, source: &Expand
             diagnostic = diagnostic.at(source.locate(range), text);
         }
     }
+    if diagnostic.labels.is_empty() {
+        // naga gives no place where a type is too large.
+        diagnostic = diagnostic.at(source.file.span(0..0), "");
+    }
     let notes: Vec<&str> = error.notes().collect();
     if notes.is_empty() {
         diagnostic

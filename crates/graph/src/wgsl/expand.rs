@@ -4,7 +4,7 @@
 
 use crate::{
     diagnostics::{Code, Diagnostic, suggestion},
-    source::{SourceFile, Sources, Span, escapes, import_candidates, shader_candidates},
+    source::{self, SourceFile, Sources, Span, escapes, import_candidates, shader_candidates},
 };
 use std::{collections::HashMap, fmt::Write as _, ops::Range, sync::Arc};
 
@@ -60,10 +60,8 @@ impl<'a> ShaderFiles<'a> {
     fn find(&mut self, candidates: &[String]) -> Result<Option<SourceFile>, String> {
         for path in candidates {
             if !self.read.contains_key(path) {
-                let file = self
-                    .sources
-                    .read(path)
-                    .map_err(|why| format!("{path}: {why}"))?;
+                let file =
+                    source::read(self.sources, path).map_err(|why| format!("{path}: {why}"))?;
                 self.read.insert(
                     path.clone(),
                     file.map(|text: Arc<str>| SourceFile::new(path.as_str(), text)),

@@ -3,6 +3,7 @@
 mod class;
 mod errors;
 mod expand;
+mod guard;
 mod reflect;
 
 pub(crate) use class::{Class, Member, ScalarClass, TextureClass};

@@ -3,6 +3,7 @@
 use super::{
     Class, Expanded, ScalarClass, TextureClass,
     errors::{function_span, parse_error, validation_error, words},
+    guard,
 };
 use crate::{
     diagnostics::{Code, Diagnostic},
@@ -51,6 +52,7 @@ impl Shader {
     /// Parses and validates. Globals without `@group`/`@binding` get free numbers: group 0 those of imported modules,
     /// group 1 the shader's own.
     pub fn new(source: Expanded) -> Result<Self, Diagnostic> {
+        guard::check(&source)?;
         let mut module = naga::front::wgsl::parse_str(&source.text)
             .map_err(|error| parse_error(&error, &source))?;
         assign_bindings(&mut module, &source);
@@ -301,6 +303,7 @@ impl Shader {
 
 /// Gives every resource global without numbers the next free ones of its group.
 fn assign_bindings(module: &mut naga::Module, source: &Expanded) {
+    let mut next = [0; 2];
     let mut taken: BTreeSet<(u32, u32)> = module
         .global_variables
         .iter()
@@ -326,9 +329,12 @@ fn assign_bindings(module: &mut naga::Module, source: &Expanded) {
             continue;
         }
         let group = u32::from(!source.is_imported(at));
-        let binding = (0..)
-            .find(|&binding| !taken.contains(&(group, binding)))
-            .unwrap_or(0);
+        let binding = &mut next[group as usize];
+        // No module has as many globals as there are numbers.
+        while taken.contains(&(group, *binding)) {
+            *binding += 1;
+        }
+        let binding = *binding;
         taken.insert((group, binding));
         variable.binding = Some(naga::ResourceBinding { group, binding });
     }

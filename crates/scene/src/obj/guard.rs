@@ -4,8 +4,11 @@
 //! an `l` record of three points for a triangle, reuses the normal of the corner before where one is missing, and does
 //! not join lines continued by `\`. All of that is settled here, line by line, before it sees them.
 
-use crate::error::{FACES_SHOWN, FaceFault, FaceProblem, FaceRef};
-use std::io::{self, BufRead, Read};
+use crate::error::{FACES_SHOWN, FaceFault, FaceProblem, FaceRef, beginning};
+use std::{
+    collections::HashSet,
+    io::{self, BufRead, Read},
+};
 
 /// Where a face that was handed on stood, and whether the file gives it normals.
 pub(super) struct FaceRecord {
@@ -22,7 +25,7 @@ pub(super) struct FaceRecord {
 /// The reader that `tobj` reads from.
 pub(super) struct Guard<'a> {
     rest: &'a [u8],
-    leave_out: &'a [String],
+    leave_out: HashSet<&'a str>,
     handed_on: Vec<u8>,
     consumed: usize,
     /// Line last handed on: where `tobj` stands when it fails.
@@ -54,9 +57,9 @@ const UNNAMED: &str = "unnamed";
 
 impl<'a> Guard<'a> {
     pub fn new(bytes: &'a [u8], leave_out: &'a [String]) -> Self {
+        let leave_out: HashSet<&str> = leave_out.iter().map(String::as_str).collect();
         Self {
             rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), // a byte order mark is no part of the first word
-            leave_out,
             handed_on: Vec::new(),
             consumed: 0,
             line: 0,
@@ -68,7 +71,8 @@ impl<'a> Guard<'a> {
             faces_left_out: 0,
             points: 0,
             lines: 0,
-            group_left_out: leave_out.iter().any(|name| name == UNNAMED),
+            group_left_out: leave_out.contains(UNNAMED),
+            leave_out,
             number: 0,
             vertices: 0,
             normals: 0,
@@ -77,11 +81,7 @@ impl<'a> Guard<'a> {
 
     /// What `tobj` was last given to read, shortened to what fits a message.
     pub fn current_line(&self) -> String {
-        String::from_utf8_lossy(&self.handed_on)
-            .trim_end()
-            .chars()
-            .take(60)
-            .collect()
+        beginning(String::from_utf8_lossy(&self.handed_on).trim_end()).into_owned()
     }
 
     pub fn face_ref(&self, record: &FaceRecord) -> FaceRef {
@@ -167,7 +167,7 @@ impl<'a> Guard<'a> {
                 } else {
                     rest.trim()
                 };
-                self.group_left_out = self.leave_out.iter().any(|left_out| left_out == name);
+                self.group_left_out = self.leave_out.contains(name);
                 self.groups.push(name.to_owned());
                 self.number = 0;
                 self.hand_on("g", [name].into_iter());

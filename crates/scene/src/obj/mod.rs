@@ -15,7 +15,7 @@ use crate::{
 use glam::{DVec3, Vec3};
 use guard::{FaceRecord, Guard};
 use serde::Deserialize;
-use std::path::Path;
+use std::{collections::HashSet, path::Path};
 
 /// Which diagonal splits a quad, corners counted from the first; larger polygons are fanned from the same corner.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -86,11 +86,9 @@ pub fn parse_obj(
             total: guard.fault_count,
         });
     }
-    if let Some(name) = options
-        .leave_out
-        .iter()
-        .find(|name| !guard.groups.contains(name))
-    {
+    let groups: HashSet<&String> = guard.groups.iter().collect();
+    let missing = options.leave_out.iter().find(|name| !groups.contains(name));
+    if let Some(name) = missing {
         let groups = guard.groups.into_iter().skip(1).collect();
         return Err(SceneError::NoSuchGroup {
             path: path.to_owned(),

@@ -1,0 +1,514 @@
+//! Files made to break us: each gives a located answer, in bounded time, stack and memory.
+
+mod support;
+
+use skiagraph_graph::{Diagnostics, FolderSources, Graph, PlanRequest, Registry};
+use support::{Files, Triangle};
+
+/// A document that only runs a compute shader called `index`.
+const COMPUTE: &str = "(format: 1, materials: [Buffer(name: \"items\", count: 4)],
+    passes: [Compute(name: \"index\", dispatch: Over(\"items\"))], outputs: [(name: \"items\")])";
+
+fn answer(files: &Files) -> Result<(), Diagnostics> {
+    let request = PlanRequest::new([64, 48], &Triangle);
+    Graph::check("graph.ron", &Registry::standard(), files, &request).map(drop)
+}
+
+/// What is said about a document, beside a shader `index`.
+fn said(document: &str) -> String {
+    let shader = "var<storage, read_write> items: array<u32>;
+        @compute @workgroup_size(1) fn main() { items[0] = 1u; }";
+    let files = Files::new([("graph.ron", document), ("index.wgsl", shader)]);
+    answer(&files)
+        .err()
+        .map_or("nothing".to_owned(), |errors| errors.to_string())
+}
+
+/// What is said about a shader: declarations, and the body of its function, which has an array `items` of u32.
+fn of_shader(declarations: &str, body: &str) -> String {
+    let shader = format!(
+        "var<storage, read_write> items: array<u32>;\n{declarations}\n\
+         @compute @workgroup_size(1) fn main() {{ items[0] = 1u;\n{body}\n}}\n"
+    );
+    let files = Files::new([("graph.ron", COMPUTE), ("index.wgsl", &shader)]);
+    answer(&files)
+        .err()
+        .map_or("nothing".to_owned(), |errors| errors.to_string())
+}
+
+/// Asserts that what is said stands at `place` and holds `parts`.
+fn assert_said(said: &str, place: &str, parts: &[&str]) {
+    for part in parts.iter().chain([&place]) {
+        assert!(
+            said.contains(part),
+            "no {part:?} in\n{}",
+            said.chars().take(2000).collect::<String>()
+        );
+    }
+}
+
+fn many(count: usize, each: impl Fn(usize) -> String) -> String {
+    (0..count).map(each).collect::<Vec<_>>().join(",\n")
+}
+
+/// A document on lines of their own: params, materials, passes, in this order, beside a buffer `items`.
+fn document(params: &str, materials: &str, passes: &str) -> String {
+    format!(
+        "(format: 1,\nparams: [{params}],\nmaterials: [Buffer(name: \"items\", count: 4), {materials}],\n\
+         passes: [Compute(name: \"index\", dispatch: Over(\"items\")), {passes}],\noutputs: [(name: \"items\")])"
+    )
+}
+
+#[test]
+fn lists_without_end() {
+    let clear = |index: usize| format!("Clear(name: \"p{index}\", target: \"items\")");
+    let said_of = said(&document("", "", &many(5000, clear)));
+    assert_said(
+        &said_of,
+        "graph.ron:4099:1",
+        &[
+            "the list has 5001 entries, 4096 is the most",
+            "`repeat`",
+            "`Include`",
+        ],
+    );
+    let param = |index: usize| format!("(name: \"p{index}\", type: U32, default: 1)");
+    let said_of = said(&document(&many(5000, param), "", ""));
+    assert_said(&said_of, "graph.ron:4098:1", &["the list has 5000 entries"]);
+    // As many as there may be, each as slow to look at as it can be.
+    let buffer = |index: usize| {
+        format!(
+            "Buffer(name: \"m{index}\", count: CountOf(\"m{}\"))",
+            index + 1
+        )
+    };
+    let said_of = said(&document("", &many(2000, buffer), ""));
+    assert_said(&said_of, "graph.ron:2002", &["nothing is called `m2000`"]);
+}
+
+/// A million passes in one file are refused by its length, before any of them is read.
+#[test]
+fn a_million_passes() {
+    let said_of = said(&document(
+        "",
+        "",
+        &many(1_000_000, |_| {
+            "Clear(name: \"p\", target: \"items\")".to_owned()
+        }),
+    ));
+    assert_said(
+        &said_of,
+        "graph.ron",
+        &["it has 34 MiB, a document or shader 8 at most", "`repeat`"],
+    );
+}
+
+#[test]
+fn more_mistakes_than_anybody_reads() {
+    let said_of = said(&document(
+        "",
+        "",
+        &many(3000, |index| {
+            format!("Clear(name: \"p{index}\", target: \"no{index}\")")
+        }),
+    ));
+    assert_said(
+        &said_of,
+        "graph.ron:4",
+        &[
+            "nothing is called `no0`",
+            "mistakes more",
+            "mend those above first",
+        ],
+    );
+    assert!(!said_of.contains("`no400`"), "all are printed");
+}
+
+/// Only the number of passes counts, however it comes about.
+#[test]
+fn repeats_without_end() {
+    let one = "Clear(name: \"p\", target: \"items\")";
+    for (passes, place) in [
+        (one.replace(")", ", repeat: 4294967295)"), "graph.ron:4:"),
+        (
+            format!(
+                "Group(name: \"a\", repeat: 1000, passes: [Group(name: \"b\", repeat: 1000, passes: [Group(name: \"c\", repeat: 1000, passes: [{one}])])])"
+            ),
+            "graph.ron:4:",
+        ),
+        (
+            "Group(name: \"a\", repeat: 4294967295, passes: [])".to_owned(),
+            "graph.ron:4:",
+        ),
+        (
+            "Include(graph: \"graph.ron\", prefix: \"a\", repeat: 4294967295)".to_owned(),
+            "graph.ron:4:",
+        ),
+    ] {
+        let said_of = said(&document("", "", &passes));
+        let itself = passes.starts_with("Include");
+        assert_said(
+            &said_of,
+            place,
+            &[if itself {
+                "includes itself"
+            } else {
+                "more than 16,384 passes"
+            }],
+        );
+    }
+}
+
+#[test]
+fn groups_in_groups() {
+    let nested = |depth: usize| {
+        format!(
+            "{}Clear(name: \"p\", target: \"items\"){}",
+            "Group(name: \"g\", passes: [".repeat(depth),
+            "])".repeat(depth)
+        )
+    };
+    for depth in [200, 10_000] {
+        assert_said(
+            &said(&document("", "", &nested(depth))),
+            "graph.ron:",
+            &["nested too deep"],
+        );
+    }
+    // As deep as it is read; the clear comes after what it would spoil, so nothing is wrong but that.
+    assert!(!said(&document("", "", &nested(20))).contains("nested"));
+}
+
+#[test]
+fn sizes_without_end() {
+    let texture = |size: &str| format!("Texture(name: \"t\", format: Rgba32Float, size: {size}), ");
+    let uses = "Clear(name: \"p\", target: \"t\")";
+    for (material, part) in [
+        (
+            texture("Square(4294967295)"),
+            "4294967295×4294967295 texels are more than the adapter can hold",
+        ),
+        (
+            texture("ViewportTimes(1e30)"),
+            "more than the adapter can hold",
+        ),
+        (texture("ViewportTimes(NaN)"), "a texture of no texels"),
+        (
+            texture("ViewportTimes(inf)"),
+            "more than the adapter can hold",
+        ),
+        (texture("ViewportTimes(-inf)"), "a texture of no texels"),
+        (texture("ViewportTimes(-1)"), "a texture of no texels"),
+        (texture("Square(-1)"), "-1"),
+        (texture("Texels(1, 0)"), "a texture of no texels"),
+        (
+            texture("Square(1)").replace("size:", "layers: 4294967295, size:"),
+            "layers are more than the adapter can hold",
+        ),
+        (
+            texture("Square(1)").replace("size:", "mips: 4294967295, size:"),
+            "mips are too many",
+        ),
+        ("Buffer(name: \"t\", count: -1), ".to_owned(), "-1"),
+    ] {
+        assert_said(
+            &said(&document("", &material, uses)),
+            "graph.ron:3:",
+            &[part],
+        );
+    }
+    // 4 GiB: more than a buffer may have.
+    let said_of = said(&document("", "", "").replace("count: 4)", "count: 1073741824)"));
+    assert_said(&said_of, "graph.ron:3:", &["4294967296"]);
+    let said_of =
+        said(&document("", "", "").replace("Over(\"items\")", "Groups(4000000000, 1, 1)"));
+    assert_said(&said_of, "graph.ron:4:", &["4000000000"]);
+}
+
+#[test]
+fn params_that_are_no_numbers() {
+    for (value, part) in [
+        ("NaN", "finite"),
+        ("inf", "finite"),
+        ("-inf", "finite"),
+        ("1e39", "finite"),
+    ] {
+        let said_of = said(&document(
+            &format!("(name: \"p\", type: F32, default: {value})"),
+            "",
+            "",
+        ));
+        assert_said(
+            &said_of,
+            "graph.ron:2:",
+            &["the default of param `p` does not fit", part],
+        );
+    }
+    for value in ["-1", "4294967296", "1.5", "NaN"] {
+        let said_of = said(&document(
+            &format!("(name: \"p\", type: U32, default: {value})"),
+            "",
+            "",
+        ));
+        assert_said(
+            &said_of,
+            "graph.ron:2:",
+            &["the default of param `p` does not fit"],
+        );
+    }
+}
+
+#[test]
+fn files_of_nothing() {
+    for text in [
+        "",
+        " \n\t ",
+        "\u{feff}",
+        "\u{feff} \n",
+        "\0",
+        "\0\0\0(",
+        "(",
+    ] {
+        assert_ne!(said(text), "nothing", "{text:?}");
+        assert!(said(text).contains("graph.ron"), "{text:?}: {}", said(text));
+        let files = Files::new([("graph.ron", COMPUTE), ("index.wgsl", text)]);
+        let said_of = answer(&files).expect_err("there is no shader").to_string();
+        assert!(said_of.contains("index.wgsl"), "{text:?}: {said_of}");
+    }
+}
+
+/// A place on a line that no terminal shows is given in words.
+#[test]
+fn a_line_of_ten_thousand_columns() {
+    let said_of = said(
+        &document(
+            "",
+            &many(4000, |index| {
+                format!("Buffer(name: \"m{index}\", count: 4)")
+            }),
+            "Clear(name: \"p\", target: \"no\")",
+        )
+        .replace('\n', " "),
+    );
+    assert_said(
+        &said_of,
+        "graph.ron:1:1",
+        &[
+            "nothing is called `no`",
+            "no material or provided resource has this name",
+        ],
+    );
+    assert!(said_of.len() < 2000, "the line is printed");
+    let said_of = of_shader(&format!("const a = {};", "1 ".repeat(100_000)), "");
+    assert_said(&said_of, "index.wgsl:2:1", &["does not compile"]);
+}
+
+#[test]
+fn shaders_that_nest_without_end() {
+    let r = |text: &str, count: usize| text.repeat(count);
+    for count in [1000, 10_000] {
+        for body in [
+            format!("items[0] = items[1]{};", r(" + items[2]", count)),
+            format!("items[0] = items{};", r("[0]", count)),
+            format!("items[0] = items{};", r(".x", count)),
+            format!(
+                "if items[0] == 0u {{}} {}",
+                r("else if items[0] == 1u {}", count)
+            ),
+            format!(
+                "if items[0] == 0u {{}} {}",
+                r(
+                    "else\u{200e}/* } */if items[0] == 1u { items[0] = 1u; }\u{2028}// else\u{85}",
+                    count
+                )
+            ),
+            format!("items[0] = {}1u{};", r("(1u+", count), r(")", count)),
+        ] {
+            let said_of = of_shader("", &body);
+            assert_said(&said_of, "index.wgsl:", &["nested too deep", "`let`"]);
+        }
+        // What naga itself counts.
+        for body in [
+            format!("items[0] = u32({}1);", r("-", count)),
+            format!("{}{}", r("{", count), r("}", count)),
+            format!("var a: {}u32{};", r("array<", count), r(", 2>", count)),
+        ] {
+            let said_of = of_shader("", &body);
+            assert!(
+                said_of.contains("index.wgsl:")
+                    && (said_of.contains("recursion") || said_of.contains("too deep")),
+                "{said_of}"
+            );
+        }
+        let _ = of_shader("", &format!("{}{}", r("/*", count), r("*/", count)));
+    }
+    // As deep as it may be: the stack of a thread holds it.
+    for body in [
+        format!("items[0] = items[1]{};", r(" + items[2]", 240)),
+        format!(
+            "if items[0] == 0u {{}} {}",
+            r("else if items[0] == 1u {}", 120)
+        ),
+        format!("items[0] = {}1u{};", r("(1u+", 150), r(")", 150)),
+        format!("{}{}", r("if items[0] == 1u {", 120), r("}", 120)),
+    ] {
+        let said_of = of_shader("", &body);
+        assert!(!said_of.contains("too deep"), "{said_of}");
+    }
+    // Long is not deep.
+    assert_eq!(
+        of_shader(
+            "",
+            &r(
+                "items[0] = items[1] + 1u; if items[0] == 1u { items[1] = 2u; }\n",
+                2000
+            )
+        )
+        .matches("nested")
+        .count(),
+        0
+    );
+    assert_eq!(
+        of_shader(
+            &format!("const a = array({});", r("vec2(1 + 2, -3), ", 3000)),
+            ""
+        )
+        .matches("nested")
+        .count(),
+        0
+    );
+}
+
+#[test]
+fn declarations_that_name_the_next() {
+    let chain = |count: usize, each: &dyn Fn(usize) -> String, last: &str| {
+        (0..count).map(each).collect::<String>() + last
+    };
+    for (count, refused) in [(1900, false), (2100, true), (100_000, true)] {
+        for declarations in [
+            chain(
+                count,
+                &|i| format!("const a{i} = a{};\n", i + 1),
+                &format!("const a{count} = 1u;"),
+            ),
+            chain(
+                count,
+                &|i| format!("fn f{i}() -> u32 {{ return f{}(); }}\n", i + 1),
+                &format!("fn f{count}() -> u32 {{ return 1u; }}"),
+            ),
+            chain(
+                count,
+                &|i| format!("struct S{i} {{ a: S{} }}\n", i + 1),
+                &format!("struct S{count} {{ a: u32 }}"),
+            ),
+            chain(count, &|i| format!("var t{i}: texture_2d<f32>;\n"), ""),
+        ] {
+            let said_of = of_shader(&declarations, "");
+            if declarations.len() > 1 << 20 {
+                assert_said(
+                    &said_of,
+                    "index.wgsl:1:1",
+                    &["longer than 1024 KiB", "split it"],
+                );
+            } else if refused {
+                assert_said(
+                    &said_of,
+                    "index.wgsl:",
+                    &["more than 2048 declarations", "split it"],
+                );
+            } else {
+                assert!(!said_of.contains("declarations"), "{said_of}");
+            }
+        }
+    }
+}
+
+#[test]
+fn shaders_that_claim_without_end() {
+    for (declarations, body) in [
+        ("const a = array<u32, 4294967295>()[3];", "items[0] = a;"),
+        (
+            "const a = array<array<array<u32, 65536>, 65536>, 65536>()[0][0][0];",
+            "items[0] = a;",
+        ),
+        (
+            "var<workgroup> w: array<array<u32, 65535>, 65535>;",
+            "items[0] = w[1][2];",
+        ),
+        (
+            "var<private> p: array<u32, 4294967295>;",
+            "items[0] = p[3];",
+        ),
+        (
+            "override n: u32 = 4000000000u; var<workgroup> w: array<u32, n>;",
+            "items[0] = w[1];",
+        ),
+        (
+            "struct S { @size(4294967292) a: u32, b: u32 } var<private> s: S;",
+            "items[0] = s.b;",
+        ),
+        ("const a = 1u << 99u;", "items[0] = a;"),
+        ("const a = 1u / 0u;", "items[0] = a;"),
+        ("const a = -2147483648 / -1;", "items[0] = u32(a);"),
+    ] {
+        let said_of = of_shader(declarations, body);
+        assert!(
+            said_of == "nothing" || said_of.contains("index.wgsl:"),
+            "{declarations}: {said_of}"
+        );
+    }
+    let files = Files::new([
+        ("graph.ron", COMPUTE),
+        (
+            "index.wgsl",
+            "var<storage, read_write> items: array<u32, 4294967295>; @compute @workgroup_size(1) fn main() { items[0] = 1u; }",
+        ),
+    ]);
+    let said_of = answer(&files)
+        .expect_err("no buffer has 16 GiB")
+        .to_string();
+    assert_said(&said_of, "index.wgsl:1:", &["`index.wgsl`"]);
+    let files = Files::new([
+        ("graph.ron", COMPUTE),
+        (
+            "index.wgsl",
+            "var<storage, read_write> items: array<u32>; @compute @workgroup_size(4294967295, 4294967295, 4294967295) fn main() { items[0] = 1u; }",
+        ),
+    ]);
+    answer(&files).expect_err("no workgroup is as large");
+}
+
+/// Files that lie on disk: no text, too long, a folder.
+#[test]
+fn files_on_disk() {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let write = |name: &str, bytes: &[u8]| {
+        std::fs::write(folder.path().join(name), bytes).expect("it can be written")
+    };
+    let sources = FolderSources {
+        root: folder.path().to_owned(),
+    };
+    let load = |path: &str| match Graph::load(path, &Registry::standard(), &sources) {
+        Ok(_) => "nothing".to_owned(),
+        Err(errors) => errors.to_string(),
+    };
+    write("graph.ron", COMPUTE.as_bytes());
+    // 4 GiB that take no room: never read.
+    let huge = std::fs::File::create(folder.path().join("index.wgsl")).expect("it can be made");
+    huge.set_len(4 << 30).expect("a file may have holes");
+    assert_said(
+        &load("graph.ron"),
+        "graph.ron:2:",
+        &["the shader `index.wgsl` cannot be read", "it has 4096 MiB"],
+    );
+    write("index.wgsl", b"\xff\xfe\0(");
+    assert_said(
+        &load("graph.ron"),
+        "graph.ron:2:",
+        &["the shader `index.wgsl` cannot be read", "no text in UTF-8"],
+    );
+    write("binary.ron", b"(format: 1, description: \"\xc3\x28\")");
+    assert_said(&load("binary.ron"), "binary.ron", &["no text in UTF-8"]);
+    std::fs::create_dir(folder.path().join("folder.ron")).expect("it can be made");
+    assert_said(&load("folder.ron"), "folder.ron", &["there is no document"]);
+}

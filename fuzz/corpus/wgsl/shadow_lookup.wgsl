@@ -1,0 +1,57 @@
+// Stage to compare each pixel's depth in light space with the nearest texel of the shadow map; a full-screen triangle.
+// Williams, "Casting Curved Shadows on Curved Surfaces", SIGGRAPH 1978.
+
+#import "shared/light.wgsl"
+#import "shared/ids.wgsl"
+
+struct Params {
+    bias: f32,
+    slope_bias: f32,
+}
+
+var<uniform> params: Params;
+var primitive: texture_2d<u32>;
+var position: texture_2d<f32>;
+var shadow_map: texture_depth_2d;
+
+struct Answer {
+    @location(0) visibility: u32,
+    @location(1) status: u32,
+}
+
+@fragment
+fn fragment(@builtin(position) centre: vec4<f32>) -> Answer {
+    let status = compare(vec2<u32>(centre.xy));
+    return Answer(shown(status), status);
+}
+
+fn compare(pixel: vec2<u32>) -> u32 {
+    if textureLoad(primitive, pixel, 0).x == NO_PRIMITIVE {
+        return STATUS_BACKGROUND;
+    }
+    let receiver = textureLoad(position, pixel, 0);
+    if receiver.w <= 0.0 {
+        return STATUS_FACING_AWAY;
+    }
+    return select(STATUS_SHADOW, STATUS_LIGHT, is_lit(receiver.xyz, receiver.w));
+}
+
+fn is_lit(receiver: vec3<f32>, n_dot_l: f32) -> bool {
+    let clip = light_clip(receiver);
+    let size = textureDimensions(shadow_map);
+    // Clip y is up, texel rows go down.
+    let place = (vec2(clip.x, -clip.y) * 0.5 + 0.5) * vec2<f32>(size);
+    if any(place < vec2(0.0)) || any(place >= vec2<f32>(size)) {
+        return true;
+    }
+    let stored = textureLoad(shadow_map, vec2<u32>(place), 0);
+    // 1 is what the map was cleared to: no caster, however far.
+    return stored >= 1.0 || clip.z <= stored + depth_bias(vec2<f32>(size), n_dot_l);
+}
+
+// The plane of the receiver rises by tan(angle to the light) per unit across; slope_bias counts in texels of that rise.
+fn depth_bias(size: vec2<f32>, n_dot_l: f32) -> f32 {
+    let texel = 2.0 * light.extent.xy / size;
+    let slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0)) / n_dot_l;
+    return params.bias + params.slope_bias * slope * max(texel.x, texel.y) / light.extent.z;
+}

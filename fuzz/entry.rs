@@ -1,0 +1,242 @@
+//! What the fuzz targets and their stable twin (`tests/hostile.rs`) run: bytes in, an answer out, and no panic on the way.
+
+use skiagraph_graph::{
+    Graph, NoProvider, Plan, PlanRequest, Provided, Provider, ProviderError, Registry, Sources,
+};
+use skiagraph_scene::{Adjacency, Bvh, ObjOptions, QuadDiagonal, SceneFile, obj::parse_obj};
+use std::{path::Path, sync::Arc};
+
+/// The bytes as a document, loaded and planned beside a few shaders and sub-graphs. Returns what its author reads; empty if
+/// nothing is wrong.
+pub fn document(bytes: &[u8]) -> String {
+    let files = Files {
+        path: "graph.ron",
+        bytes,
+    };
+    match Graph::load("graph.ron", &Registry::standard(), &files) {
+        Err(errors) => errors.to_string(),
+        Ok(graph) => match graph.plan(&PlanRequest::new([33, 17], &SmallScene)) {
+            Err(errors) => errors.to_string(),
+            Ok(plan) => use_up(&plan),
+        },
+    }
+}
+
+/// The bytes as the shader of all three kinds of programs in a fixed graph. Returns as [`document`] does.
+pub fn wgsl(bytes: &[u8]) -> String {
+    let files = Files {
+        path: "shaders/fuzzed.wgsl",
+        bytes,
+    };
+    let request = PlanRequest::new([33, 17], &SmallScene);
+    match Graph::check(
+        "pipelines/fixed.ron",
+        &Registry::standard(),
+        &files,
+        &request,
+    ) {
+        Err(errors) => errors.to_string(),
+        Ok((_, plan)) => use_up(&plan),
+    }
+}
+
+/// The bytes as an OBJ file, and as a scene file. Returns what is wrong with them as either.
+pub fn scene(bytes: &[u8]) -> String {
+    let mut answer = String::new();
+    for quads in [QuadDiagonal::FirstThird, QuadDiagonal::SecondFourth] {
+        let options = ObjOptions {
+            leave_out: Vec::new(),
+            quads,
+        };
+        match parse_obj(bytes, Path::new("house.obj"), &options) {
+            Err(error) => answer = error.to_string(),
+            Ok((mesh, report)) => {
+                let _ = report.to_string();
+                assert!(!mesh.triangles.is_empty() && mesh.bounds().is_some());
+                assert_eq!(mesh.triangles.len(), mesh.normal_indices.len());
+                assert!(mesh.positions.iter().all(|position| position.is_finite()));
+                assert!(mesh.normals.iter().all(|normal| normal.is_normalized()));
+                let within = |indices: &[[u32; 3]], count| {
+                    indices
+                        .iter()
+                        .flatten()
+                        .all(|&index| (index as usize) < count)
+                };
+                assert!(within(&mesh.triangles, mesh.positions.len()));
+                assert!(within(&mesh.normal_indices, mesh.normals.len()));
+                let bvh = Bvh::build(&mesh);
+                assert_eq!(bvh.primitives.len(), mesh.triangles.len());
+                assert_eq!(
+                    Adjacency::new(&mesh).opposite.len(),
+                    3 * mesh.triangles.len()
+                );
+            }
+        }
+    }
+    match std::str::from_utf8(bytes).map(|text| SceneFile::parse(text, "house.ron")) {
+        Err(_) => {}
+        Ok(Err(error)) => answer.push_str(&format!("\n{error}")),
+        Ok(Ok(scene)) => {
+            for view in &scene.views {
+                let camera = view.camera([640, 480]);
+                let frame = [camera.right, camera.up, camera.forward];
+                assert!(frame.iter().all(|axis| axis.is_normalized()), "{view:?}");
+                assert!(camera.view_projection().as_mat4().is_finite(), "{view:?}");
+            }
+            assert!(scene.light.towards().is_normalized());
+        }
+    }
+    answer
+}
+
+/// Everything that a plan tells without a GPU.
+fn use_up(plan: &Plan) -> String {
+    assert!(plan.memory_bytes() >= plan.saved_bytes());
+    let _ = (plan.passes(), plan.culled(), plan.outputs(), plan.memory());
+    let _ = plan.drawing().to_svg();
+    String::new()
+}
+
+/// Files in memory: those of [`SHELF`], and the bytes under their path.
+struct Files<'a> {
+    path: &'static str,
+    bytes: &'a [u8],
+}
+
+impl Sources for Files<'_> {
+    fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
+        if path == self.path {
+            let text = std::str::from_utf8(self.bytes);
+            return match text {
+                Ok(text) => Ok(Some(text.into())),
+                Err(_) => Err("it is no text in UTF-8".to_owned()),
+            };
+        }
+        let known = SHELF.iter().find(|(known, _)| *known == path);
+        Ok(known.map(|(_, text)| (*text).into()))
+    }
+
+    fn list(&self, folder: &str) -> Vec<String> {
+        let inside = |path: &str| {
+            let (of, name) = path.rsplit_once('/').unwrap_or(("", path));
+            (of == folder).then(|| name.to_owned())
+        };
+        let paths = SHELF.iter().map(|(path, _)| *path).chain([self.path]);
+        paths.filter_map(inside).collect()
+    }
+}
+
+/// What documents and shaders find beside them.
+const SHELF: &[(&str, &str)] = &[
+    (
+        "pipelines/fixed.ron",
+        r#"(
+    format: 1,
+    params: [
+        (name: "edge", type: U32, default: 16, min: 1, max: 64),
+        (name: "bias", type: F32, default: 0.5),
+        (name: "sun", type: Vec3, default: (0, 1, 0)),
+        (name: "cull", type: Choice(["none", "front", "back"]), default: "front"),
+    ],
+    materials: [
+        Texture(name: "image", format: Rgba32Float, size: Viewport),
+        Texture(name: "number", format: R32Uint, size: Viewport),
+        Texture(name: "depth", format: Depth32Float, size: Square(Param("edge"))),
+        Texture(name: "layers", format: R32Float, size: Square(8), layers: 6, mips: 2),
+        Buffer(name: "items", count: 64),
+        Buffer(name: "total"),
+        Sampler(name: "nearest"),
+        Sampler(name: "compared", compare: Less),
+    ],
+    passes: [
+        Clear(name: "reset", target: "total"),
+        Clear(name: "blank", target: "layers"),
+        Compute(name: "compute", shader: "fuzzed", dispatch: Over("number")),
+        Raster(name: "raster", shader: "fuzzed", draw: CountOf("scene.indices"), depth: (target: "depth", load: Clear(1.0), compare: Less), cull: Param("cull")),
+        Fullscreen(name: "fullscreen", shader: "fuzzed", color: [(target: "image")]),
+    ],
+    outputs: [(name: "image"), (name: "number"), (name: "depth"), (name: "items"), (name: "total")],
+)"#,
+    ),
+    (
+        "pipelines/shared/half.ron",
+        r#"(
+    format: 1,
+    params: [(name: "factor", type: F32, default: 0.5)],
+    materials: [Texture(name: "half", format: Rgba32Float, size: ViewportTimes(Param("factor")))],
+    passes: [Fullscreen(name: "halve", shader: "fill", color: [(target: "half")])],
+    outputs: [(name: "half")],
+)"#,
+    ),
+    (
+        "pipelines/shared/twice.ron",
+        r#"(
+    format: 1,
+    passes: [
+        Include(graph: "shared/half.ron", prefix: "left"),
+        Include(graph: "shared/half.ron", prefix: "right", params: {"factor": 0.25}),
+    ],
+    outputs: [(name: "left.half"), (name: "right.half")],
+)"#,
+    ),
+    (
+        "shaders/fill.wgsl",
+        "@fragment fn fragment(@builtin(position) place: vec4<f32>) -> @location(0) vec4<f32> { return place; }\n",
+    ),
+    (
+        "shaders/index.wgsl",
+        "var<storage, read_write> items: array<u32>;\n\
+         @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3<u32>) { items[id.x] = id.x; }\n",
+    ),
+    (
+        "shaders/draw.wgsl",
+        "#import \"shared/scene.wgsl\"\n\
+         @vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> { return camera * corner(index); }\n",
+    ),
+    (
+        "shaders/blur.wgsl",
+        "struct Params { factor: f32 }\nvar<uniform> params: Params;\nvar image: texture_2d<f32>;\nvar nearest: sampler;\n\
+         @fragment fn fragment(@builtin(position) place: vec4<f32>) -> @location(0) vec4<f32> {\n    \
+         return params.factor * textureSampleLevel(image, nearest, place.xy, 0.0);\n}\n",
+    ),
+    (
+        "shaders/shared/scene.wgsl",
+        "var<storage, read> scene_positions: array<vec4<f32>>;\nvar<storage, read> scene_indices: array<u32>;\n\
+         var<uniform> camera: mat4x4<f32>;\n\
+         fn corner(index: u32) -> vec4<f32> { return scene_positions[scene_indices[index]]; }\n",
+    ),
+];
+
+/// Describes a scene of one triangle.
+struct SmallScene;
+
+impl Provider for SmallScene {
+    fn names(&self) -> Vec<String> {
+        ["scene.positions", "scene.indices", "camera"]
+            .map(str::to_owned)
+            .to_vec()
+    }
+
+    fn describe(&self, name: &str) -> Option<Provided> {
+        let (stride, uniform) = match name {
+            "scene.positions" => (16, false),
+            "scene.indices" => (4, false),
+            "camera" => (64, true),
+            _ => return None,
+        };
+        Some(Provided {
+            items: Some(if uniform { 1 } else { 3 }),
+            stride,
+            uniform,
+        })
+    }
+
+    fn build(
+        &mut self,
+        name: &str,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<wgpu::Buffer, ProviderError> {
+        NoProvider.build(name, device, queue)
+    }
+}

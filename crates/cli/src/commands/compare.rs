@@ -43,7 +43,6 @@ pub fn compare(args: &CompareArgs, asked: &GpuArgs) -> Result<(), CliError> {
         args.presets.clone()
     };
     let presets = load(&names, &sources)?;
-    check_folder(&args.out)?;
     let methods = methods(&presets, args)?;
     let primary = Primary::load(&sources)?;
     let wanted = presets.iter().map(|preset| preset.graph.features());
@@ -84,6 +83,7 @@ pub fn compare(args: &CompareArgs, asked: &GpuArgs) -> Result<(), CliError> {
         fingerprint: primary.fingerprint.with_scene(&scene.mesh, &scene.light),
     };
     let mut comparison = Comparison::new(args, subject, provider, published, results)?;
+    check_folder(&args.out)?;
     interrupt::install()?;
     let outcome = comparison.run();
     comparison.finish(outcome)

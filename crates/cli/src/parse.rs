@@ -241,6 +241,21 @@ mod tests {
     use super::*;
 
     #[test]
+    fn bytes_have_units() {
+        for (text, number) in [
+            ("7", 7),
+            ("1.5 KiB", 1536),
+            ("2GiB", 2 << 30),
+            ("3mb", 3_000_000),
+        ] {
+            assert_eq!(bytes(text), Ok(number), "{text}");
+        }
+        for text in ["", "GiB", "-1", "nan", "1e", "2 gigs", "inf"] {
+            assert!(bytes(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
     fn sizes_are_two_numbers_of_pixels() {
         assert_eq!("1920x1080".parse(), Ok(Size([1920, 1080])));
         for wrong in ["1024", "0x4", "x", "-4x4", "4x4x4", "4,4", "99999999999x1"] {

@@ -435,6 +435,33 @@ pub fn chain(error: &dyn Error) -> String {
 mod tests {
     use super::*;
 
+    /// As a driver's reset does it, but on demand.
+    #[test]
+    fn a_lost_device_is_an_error_of_its_own_exit_code() {
+        let asked = GpuArgs {
+            adapter: None,
+            memory_limit: None,
+            timeout: 300,
+        };
+        let gpu = open(&asked, wgpu::Features::empty()).unwrap_or_else(|error| panic!("{error}"));
+        let registry = skiagraph_passes::registry();
+        let sources = crate::preset::sources();
+        let graph = skiagraph_graph::Graph::load("pipelines/nsm.ron", &registry, &sources).unwrap();
+        let mut provider = crate::commands::check::provider([16, 16]);
+        let mut request = PlanRequest::new([16, 16], &provider);
+        abilities(&gpu).ask(&mut request);
+        let plan = graph.plan(&request).unwrap();
+        let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider).unwrap();
+        frame(&gpu, &mut executor, &Frame::default()).unwrap();
+        gpu.device.destroy();
+        let Err(lost) = frame(&gpu, &mut executor, &Frame::default()) else {
+            panic!("a destroyed device ran a frame");
+        };
+        assert!(is_fatal(&lost), "{lost}");
+        assert!(explain(&lost).starts_with("the device was lost"), "{lost}");
+        assert_eq!(failed("nsm", lost).exit_code(), 3);
+    }
+
     #[test]
     fn out_of_memory_comes_with_advice_and_nothing_else_does() {
         let full = ExecuteError::OutOfMemory {

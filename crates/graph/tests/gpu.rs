@@ -800,9 +800,14 @@ fn more_memory_than_there_is() {
         "(name: \"image\")",
     );
     match executor(&files, &[]).expect_err("no device has as much") {
-        ExecuteError::OutOfMemory { name, .. } | ExecuteError::Resource { name, .. } => {
-            assert_eq!(name, "image")
+        ExecuteError::OutOfMemory { name, table } => {
+            assert_eq!(name, "image");
+            assert!(
+                table.starts_with("image ") && table.contains("all together"),
+                "{table}"
+            );
         }
+        ExecuteError::Resource { name, .. } => assert_eq!(name, "image"),
         other => panic!("{other}"),
     }
 }

@@ -9,6 +9,7 @@ use crate::{
     args::{GpuArgs, StressArgs, StressFormat},
     contract,
     error::{CliError, print},
+    files::check_folder,
     interrupt, markdown, measure,
     measure::{Method, check_stems, reference_stem},
     parse::unique,
@@ -22,7 +23,7 @@ use report::{Column, Report, Verdict};
 use skiagraph_graph::{gpu::Gpu, timing::Trust};
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::hard::{self, Casters, HardCase};
-use std::{fs, path::Path, sync::Arc};
+use std::{path::Path, sync::Arc};
 use trial::{Contender, Trial};
 
 /// Checks everything, then runs the matrix.
@@ -62,10 +63,10 @@ pub fn stress(args: &StressArgs, asked: &GpuArgs) -> Result<(), CliError> {
     check_abilities(&contenders, &gpu)?;
     if let Some(folder) = &args.save {
         check_pictures(&contenders, &cases, args)?;
-        create(folder)?;
+        check_folder(folder)?;
     }
     if let Some(folder) = &args.out {
-        create(folder)?;
+        check_folder(folder)?;
     }
     let trial = Trial {
         gpu: &gpu,
@@ -240,10 +241,6 @@ fn check_exact(exact: &[String], names: &[String]) -> Result<(), CliError> {
             )))
         }
     }
-}
-
-fn create(folder: &Path) -> Result<(), CliError> {
-    fs::create_dir_all(folder).map_err(|error| CliError::write(folder, error))
 }
 
 /// Refuses cells that would overwrite each other's pictures, before anything runs.

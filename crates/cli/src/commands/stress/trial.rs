@@ -12,7 +12,7 @@ use crate::{
     reference::{self, Primary},
     render,
 };
-use skiagraph_graph::{ExecuteError, Executor, gpu::Gpu};
+use skiagraph_graph::{Executor, gpu::Gpu};
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Class, Oracle, OracleMode, PixelCounts, Reference, Statistics};
 use skiagraph_scene::{
@@ -223,10 +223,7 @@ impl Trial<'_> {
             let mut executor = Executor::new(&self.gpu.device, &self.gpu.queue, plan, provider)?;
             render::read(self.gpu, &mut executor, &Outputs::names(preset))
         };
-        let contents = read().map_err(|error| CliError::Gpu {
-            graph: preset.name.clone(),
-            source: Box::new(error),
-        })?;
+        let contents = read().map_err(|error| render::failed(&preset.name, error))?;
         let (outputs, whole) = judged(preset, Outputs::decode(&contents), reference)?;
         let settled = settled(&outputs.visibility, reference);
         let outside = Statistics::judged(&settled, &outputs.status, reference)
@@ -252,10 +249,7 @@ fn settled(visibility: &[u32], reference: &Reference) -> Vec<u32> {
 fn ends_all(error: &CliError) -> bool {
     match error {
         CliError::Interrupted { .. } => true,
-        CliError::Gpu { source, .. } => matches!(
-            source.downcast_ref::<ExecuteError>(),
-            Some(ExecuteError::DeviceLost { .. })
-        ),
+        CliError::Gpu { source, .. } => render::is_fatal(source.as_ref()),
         _ => false,
     }
 }

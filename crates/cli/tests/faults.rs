@@ -1,0 +1,290 @@
+//! What goes wrong while the program runs: docs/faults.md has a row for each of these.
+#![cfg(unix)]
+
+use serde_json::Value;
+use std::{
+    fs,
+    io::{BufRead, BufReader, Read},
+    path::Path,
+    process::{Command, Output, Stdio},
+};
+use tempfile::TempDir;
+
+/// A shadow method of one compute pass and its shader's body.
+fn method(folder: &Path, name: &str, groups: &str, body: &str) {
+    let graph = format!(
+        r#"(
+    format: 1,
+    materials: [
+        Texture(name: "visibility", format: R32Uint, size: Viewport),
+        Texture(name: "status", format: R8Uint, size: Viewport),
+    ],
+    passes: [
+        Compute(name: "{name}", dispatch: {groups}),
+        Clear(name: "certain", target: "status", value: (2, 0, 0, 0)),
+    ],
+    outputs: [(name: "visibility"), (name: "status")],
+)"#
+    );
+    let shader = format!(
+        "var visibility: texture_storage_2d<r32uint, write>;\n@compute @workgroup_size(8, 8)\n\
+         fn main(@builtin(global_invocation_id) id: vec3u) {{\n{body}}}\n"
+    );
+    fs::write(folder.join(format!("{name}.ron")), graph).unwrap();
+    fs::write(folder.join(format!("{name}.wgsl")), shader).unwrap();
+}
+
+const LIGHT: &str = "    textureStore(visibility, id.xy, vec4u(1u));\n";
+
+/// Ends for no invocation by itself. A driver that breaks long loops off (lavapipe, after 65,535 rounds) has so many invocations
+/// to do it for that hours go by.
+fn endless(folder: &Path) {
+    let body = "    var state = id.x | 1u;\n    while state != 0u {\n        state = state * 1664525u | 1u;\n    }\n    \
+                textureStore(visibility, id.xy, vec4u(state));\n";
+    method(folder, "endless", "Groups(65535, 4096, 1)", body);
+}
+
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    method(folder.path(), "light", "Over(\"visibility\")", LIGHT);
+    folder
+}
+
+fn command(folder: &Path, line: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_skiagraph"));
+    command
+        .args(line.split_whitespace())
+        .current_dir(folder)
+        .env("NO_COLOR", "1");
+    command
+}
+
+/// Exit code, standard output and standard error.
+fn run(folder: &Path, line: &str) -> (i32, String, String) {
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = command(folder, line).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    let code = status
+        .code()
+        .unwrap_or_else(|| panic!("{line}: ended by a signal: {status}"));
+    (code, text(stdout), text(stderr))
+}
+
+/// Sends Ctrl-C when a line of standard error begins with `at`; returns the exit code and all of standard error.
+fn interrupted(folder: &Path, line: &str, at: &str) -> (i32, String) {
+    let mut child = command(folder, line)
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stderr = BufReader::new(child.stderr.take().unwrap());
+    let mut told = String::new();
+    loop {
+        let begin = told.len();
+        let read = stderr.read_line(&mut told).unwrap();
+        assert!(read > 0, "{line} ended before it said `{at}`:\n{told}");
+        if told[begin..].starts_with(at) {
+            break;
+        }
+    }
+    let signal = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(signal.unwrap().success());
+    stderr.read_to_string(&mut told).unwrap();
+    let status = child.wait().unwrap();
+    (status.code().unwrap_or(-1), told)
+}
+
+fn runs(folder: &Path) -> Vec<Value> {
+    let text = fs::read_to_string(folder.join("results.json")).unwrap();
+    let results: Value = serde_json::from_str(&text).unwrap();
+    results["runs"].as_array().unwrap().clone()
+}
+
+/// Devices of this program never have experimental features.
+#[test]
+fn a_feature_that_the_adapter_lacks_is_one_diagnostic_before_anything_runs() {
+    let folder = folder();
+    let light = fs::read_to_string(folder.path().join("light.ron")).unwrap();
+    let needs = "format: 1,\n    requires: [(feature: \"EXPERIMENTAL_RAY_QUERY\")],";
+    fs::write(
+        folder.path().join("light.ron"),
+        light.replace("format: 1,", needs),
+    )
+    .unwrap();
+    for verb in ["run", "profile", "compare"] {
+        let (code, stdout, stderr) = run(folder.path(), &format!("{verb} light.ron --size 16x16"));
+        assert_eq!((code, &*stdout), (1, ""), "{verb}: {stderr}");
+        let begin =
+            "feature\n\n  × `light.ron` cannot run without the feature `EXPERIMENTAL_RAY_QUERY`";
+        assert!(stderr.starts_with(begin), "{verb}: {stderr}");
+        assert!(stderr.ends_with("1 error in 1 graph\n"), "{verb}: {stderr}");
+    }
+}
+
+#[test]
+fn a_graph_that_does_not_fit_is_refused_with_a_memory_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let entries = |entry: &dyn Fn(usize) -> String| (0..40).map(entry).collect::<String>();
+    let textures = entries(&|n| {
+        format!(
+            "Texture(name: \"image_{n}\", format: Rgba32Float, size: Square(4096), layers: 4),\n"
+        )
+    });
+    let passes = entries(&|n| format!("Clear(name: \"clear_{n}\", target: \"image_{n}\"),"));
+    let outputs = entries(&|n| format!("(name: \"image_{n}\"),"));
+    let graph =
+        format!("(format: 1, materials: [{textures}], passes: [{passes}], outputs: [{outputs}])");
+    fs::write(folder.path().join("huge.ron"), graph).unwrap();
+    for verb in ["run", "profile"] {
+        let line = format!("{verb} huge.ron --size 16x16 --memory-limit 8GiB");
+        let (code, stdout, stderr) = run(folder.path(), &line);
+        assert_eq!((code, &*stdout), (1, ""), "{verb}: {stderr}");
+        let words = stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        for part in [
+            "the materials of `huge.ron` take 40.00 GiB, but there are only 8.00 GiB of memory for them",
+            "image_11 4096×4096, 4 layers Rgba32Float 1.00 GiB",
+            "28 more 28.00 GiB",
+            "all together 40.00 GiB",
+        ] {
+            assert!(words.contains(part), "{verb}: no `{part}` in {stderr}");
+        }
+    }
+}
+
+#[test]
+fn compare_measures_what_fits_and_says_why_the_rest_does_not() {
+    let folder = folder();
+    let line = "compare light.ron nsm --size 16x16 --frames 1 --memory-limit 1MiB --images none";
+    let (code, stdout, stderr) = run(folder.path(), line);
+    assert_eq!(code, 0, "{stderr}");
+    let why = "nsm is unavailable: the materials of `pipelines/nsm.ron` take 4.0 MiB, but there are only 1.0 MiB";
+    assert!(stdout.contains(why), "{stdout}");
+    let (code, stdout, stderr) = run(folder.path(), &line.replace("light.ron ", ""));
+    assert_eq!((code, &*stdout), (1, ""), "nothing is left to measure");
+    assert!(stderr.contains("shadow_map"), "{stderr}");
+}
+
+#[test]
+fn a_shader_that_never_ends_is_given_up_and_finished_runs_are_kept() {
+    let folder = folder();
+    endless(folder.path());
+    let line = "compare light.ron endless.ron rt --size 16x16 --frames 1 --images none --timeout 1 --out o";
+    let (code, _, stderr) = run(folder.path(), line);
+    assert_eq!(code, 3, "{stderr}");
+    assert!(
+        stderr.contains("error: `endless.ron` cannot run\n"),
+        "{stderr}"
+    );
+    // A GPU whose driver resets it first is lost instead.
+    let hangs = "in it ran endless, certain\n";
+    assert!(
+        stderr.contains(hangs) || stderr.contains("the device was lost"),
+        "{stderr}"
+    );
+    assert!(stderr.contains("1 of 3 runs are kept"), "{stderr}");
+    let kept = runs(&folder.path().join("o"));
+    assert_eq!(kept.len(), 1);
+    assert_eq!(kept[0]["preset"], "light.ron");
+    for verb in ["run", "profile"] {
+        let line = format!("{verb} endless.ron --size 16x16 --timeout 1");
+        let (code, _, stderr) = run(folder.path(), &line);
+        assert_eq!(code, 3, "{verb}: {stderr}");
+    }
+}
+
+#[test]
+fn ctrl_c_in_a_frame_that_never_ends_keeps_finished_runs_and_resume_goes_on() {
+    let folder = folder();
+    endless(folder.path());
+    let out = folder.path().join("o");
+    let line = "compare light.ron endless.ron --size 16x16 --frames 1 --timeout 0 --out o";
+    let (code, stderr) = interrupted(folder.path(), line, "starting endless.ron");
+    assert_eq!(code, 130, "{stderr}");
+    assert!(
+        stderr.contains("stopped by Ctrl-C; 1 of 2 runs are kept in o/results.json"),
+        "{stderr}"
+    );
+    let kept = runs(&out);
+    assert_eq!(kept.len(), 1);
+    assert!(out.join("results.csv").is_file());
+    // The author mends the shader; only that method has to be measured.
+    method(folder.path(), "endless", "Over(\"visibility\")", LIGHT);
+    let (code, _, stderr) = run(folder.path(), &format!("{line} --resume"));
+    assert_eq!(code, 0, "{stderr}");
+    assert!(!stderr.contains("starting light.ron"), "{stderr}");
+    let all = runs(&out);
+    assert_eq!((all.len(), &all[0]), (2, &kept[0]));
+    assert_eq!(all[1]["preset"], "endless.ron");
+}
+
+#[test]
+fn ctrl_c_in_the_reference_ends_with_nothing_half_done() {
+    let folder = folder();
+    let line = "compare light.ron --size 2048x2048 --frames 1 --out o";
+    let (code, stderr) = interrupted(folder.path(), line, "starting reference");
+    assert_eq!(code, 130, "{stderr}");
+    assert!(
+        stderr.contains("stopped by Ctrl-C; no run was finished"),
+        "{stderr}"
+    );
+    assert!(!folder.path().join("o/results.json").exists());
+}
+
+#[test]
+fn an_out_that_takes_no_files_is_found_before_anything_is_measured() {
+    let folder = folder();
+    for out in ["light.ron/o", "light.ron", "/dev/null/o"] {
+        let line = format!("compare light.ron --size 16x16 --out {out}");
+        let (code, stdout, stderr) = run(folder.path(), &line);
+        assert_eq!((code, &*stdout), (1, ""), "{out}: {stderr}");
+        assert!(
+            stderr.starts_with(&format!("error: cannot write {out}\n")),
+            "{stderr}"
+        );
+        assert!(stderr.contains("name another one"), "{stderr}");
+        assert!(!stderr.contains("starting"), "{stderr}");
+    }
+    let (code, stdout, stderr) = run(folder.path(), "profile light.ron --size 16x16 --csv .");
+    assert_eq!((code, &*stdout), (1, ""));
+    assert!(
+        stderr.contains("--csv: cannot write .: it is a folder"),
+        "{stderr}"
+    );
+}
+
+/// Devices are written into, never replaced: this one is always full.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_named_with_the_way_out() {
+    let folder = folder();
+    let full = folder.path().join("full.bin");
+    std::os::unix::fs::symlink("/dev/full", &full).unwrap();
+    let (code, _, stderr) = run(
+        folder.path(),
+        "run light.ron --size 16x16 --save visibility=full.bin",
+    );
+    assert_eq!(code, 1, "{stderr}");
+    assert!(
+        stderr.starts_with("error: cannot write full.bin\n"),
+        "{stderr}"
+    );
+    assert!(stderr.contains("make room on the disk"), "{stderr}");
+    assert!(fs::symlink_metadata(&full).unwrap().is_symlink());
+    let files = [
+        ("--csv", "profile"),
+        ("--json", "profile"),
+        ("--trace", "profile"),
+        ("--out", "graph"),
+    ];
+    for (option, verb) in files {
+        let line = format!("{verb} light.ron --size 16x16 {option} full.bin");
+        let (code, _, stderr) = run(folder.path(), &line);
+        assert_eq!(code, 1, "{verb} {option}: {stderr}");
+        assert!(stderr.contains("make room on the disk"), "{stderr}");
+    }
+}

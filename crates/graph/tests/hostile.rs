@@ -347,7 +347,7 @@ fn shaders_that_nest_without_end() {
         format!("items[0] = items[1]{};", r(" + items[2]", 240)),
         format!(
             "if items[0] == 0u {{}} {}",
-            r("else if items[0] == 1u {}", 120)
+            r("else if items[0] == 1u {}", 95)
         ),
         format!("items[0] = {}1u{};", r("(1u+", 150), r(")", 150)),
         format!("{}{}", r("if items[0] == 1u {", 120), r("}", 120)),

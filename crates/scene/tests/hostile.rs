@@ -169,10 +169,10 @@ fn two_hundred_thousand_groups() {
     assert_eq!((mesh.triangles.len(), report.faces_left_out), (1, 199_999));
 }
 
-/// The largest and the smallest numbers there are make a mesh with a hierarchy.
+/// The largest numbers that a model may have and the smallest that there are make a mesh with a hierarchy.
 #[test]
 fn numbers_at_their_ends() {
-    let text = "v 3.4e38 0 0\nv -3.4e38 3.4e38 0\nv 0 -3.4e38 3.4e38\nv 1e-45 0 0\nv 0 1e-45 0\nv 0 0 1e-45\n\
+    let text = "v 3e11 0 0\nv -3e11 3e11 0\nv 0 -3e11 3e11\nv 1e-45 0 0\nv 0 1e-45 0\nv 0 0 1e-45\n\
         f 1 2 3\nf 4 5 6\nf 1 5 6\n";
     let (mesh, _) = parse(text).unwrap();
     assert!(mesh.normals.iter().all(|normal| normal.is_normalized()));

@@ -23,7 +23,7 @@ fn twin(method: Method, map_size: u32) -> Twin {
         method,
         map_size,
         cull: Cull::Front,
-        n: 1.0,
+        n: 0.51,
         depth: Depth::Conservative,
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Bound, Depth, LOWEST, SLACK};
 use glam::{DVec2, DVec3};
+use std::f64::consts::SQRT_2;
 
 /// Half an ulp of 1 in f32.
 const F32_ROUNDING: f64 = 1.0 / (1u32 << 24) as f64;
@@ -126,7 +127,8 @@ impl TexelTriangle {
     }
 
     /// Whether the triangle that shrinks at all edges but the `kept` ones, and is cut at corners between two of those, covers
-    /// the texel around `centre`. Other than its neighbours, a triangle that meets such a corner alone is unknown, hence the cut.
+    /// the texel around `centre`. Other than its neighbours, a triangle that meets such a corner alone is unknown, hence the cut,
+    /// of a texel's diagonal at least: a corner in the texel may be half of one from either edge's line.
     /// This is no proof: see docs/methods.md.
     pub fn adjacent_covers(&self, centre: DVec2, cell: f64, kept: [bool; 3], leeway: f64) -> bool {
         self.has_inside(leeway)
@@ -142,11 +144,12 @@ impl TexelTriangle {
         kept: [bool; 3],
         leeway: f64,
     ) -> bool {
+        let corner = cell.max(SQRT_2);
         self.holds(centre, leeway, |inward| {
             (0..3).all(|i| {
                 let last = (i + 2) % 3;
                 (kept[i] || inward[i] >= cell)
-                    && !(kept[last] && kept[i] && inward[last] + inward[i] < cell)
+                    && !(kept[last] && kept[i] && inward[last] + inward[i] < corner)
             })
         })
     }

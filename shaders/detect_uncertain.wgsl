@@ -32,9 +32,9 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
 fn compare(receiver: vec3<f32>) -> u32 {
     let size = textureDimensions(big);
     let place = light_texel(receiver, f32(size.x));
-    let error = rounding(receiver);
-    // Half of the slack is the corners'.
-    if any(place.xy < vec2(0.0)) || any(place.xy >= vec2<f32>(size)) || error.x * f32(size.x) > 0.5 * SLACK {
+    let error = light_rounding(receiver);
+    // What may lie in another texel than it seems, even one grown by the slack, is not compared.
+    if any(place.xy < vec2(0.0)) || any(place.xy >= vec2<f32>(size)) || error.x * f32(size.x) > SLACK {
         return STATUS_UNCERTAIN;
     }
     let texel = vec2<u32>(place.xy);
@@ -44,13 +44,4 @@ fn compare(receiver: vec3<f32>) -> u32 {
     let lit = (in_big >= 1.0 || place.z + error.y <= in_big) && (in_small >= 1.0 || place.z + error.y <= in_small);
     let shadowed = in_big < 1.0 && place.z - error.y > in_big && in_small < 1.0 && place.z - error.y > in_small;
     return select(select(STATUS_UNCERTAIN, STATUS_SHADOW, shadowed), STATUS_LIGHT, lit);
-}
-
-// What rounding may move a point by in light space, in shares of the map's edge and of its depth: 4 ulp of all that is summed up.
-fn rounding(position: vec3<f32>) -> vec2<f32> {
-    let matrix = transpose(light.clip_from_relative);
-    let size = abs(position) + abs(light.centre.xyz);
-    let across = max(dot(abs(matrix[0].xyz), size), dot(abs(matrix[1].xyz), size));
-    let along = dot(abs(matrix[2].xyz), size);
-    return 2.3841858e-7 * vec2(across + 1.0, along + 1.0);
 }

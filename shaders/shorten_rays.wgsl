@@ -16,7 +16,9 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     }
     let size = textureDimensions(nearest);
     let place = light_texel(rays[slot].origin, f32(size.x));
-    if any(place.xy < vec2(0.0)) || any(place.xy >= vec2<f32>(size)) {
+    let error = light_rounding(rays[slot].origin);
+    // What may lie in another texel than it seems is not cut short.
+    if any(place.xy < vec2(0.0)) || any(place.xy >= vec2<f32>(size)) || error.x * f32(size.x) > SLACK {
         return;
     }
     let stored = textureLoad(nearest, vec2<u32>(place.xy), 0);
@@ -24,7 +26,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     if stored <= 0.0 {
         return;
     }
-    // Units of the scene; a thousandth of the depth range is room for all rounding. An empty texel holds 1, behind the receiver.
-    let way = (place.z - stored + 0.001) * light.extent.z;
+    // Units of the scene, with room for the rounding of depths and for that of the distance at which the tracer meets a triangle: 8 half
+    // ulps of the longest way there is. An empty texel holds 1, behind the receiver.
+    let way = (place.z - stored + error.y) * light.extent.z + 8.0 * HALF_ULP * light.reach;
     rays[slot].t_max = min(rays[slot].t_max, way);
 }

@@ -3,7 +3,7 @@
 
 #import "shared/light_triangle.wgsl"
 #import "shared/ray_slots.wgsl"
-#import "shared/ray.wgsl"
+#import "shared/ray_triangle.wgsl"
 #import "shared/ids.wgsl"
 
 var big_primitive: texture_2d<u32>;
@@ -25,26 +25,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         candidate = textureLoad(big_primitive, vec2<u32>(place.xy), 0).x;
     }
     var hit = Hit(ray.t_max, NO_PRIMITIVE, 0.0, 0.0);
-    if candidate != NO_PRIMITIVE && candidate != ray_primitives[slot] && blocks(ray, candidate) {
-        hit.primitive = candidate;
+    if candidate != NO_PRIMITIVE && candidate != ray_primitives[slot] {
+        intersect(sheared(ray), candidate, ray.t_min, &hit);
     }
     hits[slot] = hit;
-}
-
-// Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", JGT 2(1), 1997; two-sided.
-fn blocks(ray: Ray, primitive: u32) -> bool {
-    let a = corner_position(3u * primitive);
-    let ab = corner_position(3u * primitive + 1u) - a;
-    let ac = corner_position(3u * primitive + 2u) - a;
-    let p = cross(ray.direction, ac);
-    let determinant = dot(ab, p);
-    if determinant == 0.0 {
-        return false;
-    }
-    let to_origin = ray.origin - a;
-    let q = cross(to_origin, ab);
-    let u = dot(to_origin, p) / determinant;
-    let v = dot(ray.direction, q) / determinant;
-    let t = dot(ac, q) / determinant;
-    return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > ray.t_min && t <= ray.t_max;
 }

@@ -1,11 +1,9 @@
 // Stage to trace rays through the scene's binary hierarchy; one thread per ray, workgroups folded to two dimensions.
-// Triangles, and the padding of boxes that keeps traversal as watertight as they are: Woop, Benthin, Wald, "Watertight
-// Ray/Triangle Intersection", JCGT 2(1), 2013. Slabs after Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013.
+// Boxes are padded, which keeps traversal as watertight as the triangles' test: Woop, Benthin, Wald, "Watertight Ray/Triangle
+// Intersection", JCGT 2(1), 2013. Slabs after Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013.
 
-#import "shared/geometry.wgsl"
-#import "shared/ray.wgsl"
+#import "shared/ray_triangle.wgsl"
 #import "shared/ids.wgsl"
-#import "shared/predicates.wgsl"
 
 struct Node {
     low: vec3<f32>,
@@ -76,26 +74,19 @@ fn ray_total() -> u32 {
     return min(count, min(arrayLength(&rays), arrayLength(&hits)));
 }
 
-// What a ray's tests share: the axis permutation and shear that turn it into the z axis, and the padded slabs' terms.
+// What a ray's tests share: with triangles, and the padded slabs' terms.
 struct Prepared {
-    origin: vec3<f32>,
+    sheared: Sheared,
     inverse: vec3<f32>,
     pad: f32,
-    // The direction's longest component.
-    longest: u32,
-    shear: vec3<f32>,
 }
 
 fn prepare(ray: Ray) -> Prepared {
     var prepared: Prepared;
-    prepared.origin = ray.origin;
+    prepared.sheared = sheared(ray);
 
     let size = abs(ray.direction);
     let largest = max(size.x, max(size.y, size.z));
-    prepared.longest = select(select(2u, 1u, size.y == largest), 0u, size.x == largest);
-    let d = permute(ray.direction, prepared.longest);
-    prepared.shear = vec3(d.xy, 1.0) / d.z;
-
     let steep = size * STEEPEST <= vec3(largest);
     prepared.inverse = vec3(1.0) / select(ray.direction, vec3(largest / STEEPEST), steep);
     let root = scene_bvh_nodes[0];
@@ -109,8 +100,8 @@ const MISSED: f32 = 3.0e38;
 
 fn enter(ray: Prepared, box: Node, t_min: f32, t_max: f32) -> f32 {
     // Padding the difference, not the box: a pad below one ulp of a far-off box's coordinates would be lost.
-    let to_low = ((box.low - ray.origin) - ray.pad) * ray.inverse;
-    let to_high = ((box.high - ray.origin) + ray.pad) * ray.inverse;
+    let to_low = ((box.low - ray.sheared.origin) - ray.pad) * ray.inverse;
+    let to_high = ((box.high - ray.sheared.origin) + ray.pad) * ray.inverse;
     let near = min(to_low, to_high);
     let far = max(to_low, to_high);
     let entry = max(max(near.x, near.y), max(near.z, t_min));
@@ -159,7 +150,7 @@ fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
         }
         for (var slot = node.first; slot < node.first + node.primitives; slot++) {
             let primitive = scene_bvh_primitives[slot];
-            if primitive != skipped && intersect(prepared, primitive, ray.t_min, &hit) && first_found {
+            if primitive != skipped && intersect(prepared.sheared, primitive, ray.t_min, &hit) && first_found {
                 return hit;
             }
         }
@@ -170,43 +161,4 @@ fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
         node = scene_bvh_nodes[stack[height]];
     }
     return hit;
-}
-
-// Tests one triangle, two-sided, edges and corners included; shortens `hit` to it.
-fn intersect(ray: Prepared, primitive: u32, t_min: f32, hit: ptr<function, Hit>) -> bool {
-    let a = shear(ray, corner_position(3u * primitive));
-    let b = shear(ray, corner_position(3u * primitive + 1u));
-    let c = shear(ray, corner_position(3u * primitive + 2u));
-    let weights = vec3(edge_area(b.xy, c.xy), edge_area(c.xy, a.xy), edge_area(a.xy, b.xy));
-    if any(weights < vec3(0.0)) && any(weights > vec3(0.0)) {
-        return false;
-    }
-    // On the line of an edge, but beyond its end: all corners on one line with the ray, whose rounding would pass for an area.
-    if any(weights == vec3(0.0)) && !surrounds(a.xy, b.xy, c.xy) {
-        return false;
-    }
-    // Zero for triangles without area and for those that the ray meets edge-on: a neighbour is hit instead.
-    let sum = weights.x + weights.y + weights.z;
-    if sum == 0.0 {
-        return false;
-    }
-    // Divided first: the product of a small area and a small distance would underflow.
-    let barycentric = weights / sum;
-    let t = dot(barycentric, vec3(a.z, b.z, c.z));
-    if !(t > t_min && t <= (*hit).t) {
-        return false;
-    }
-    *hit = Hit(t, primitive, barycentric.y, barycentric.z);
-    return true;
-}
-
-// A corner in the space where the ray is the z axis, z in units of its direction.
-fn shear(ray: Prepared, corner: vec3<f32>) -> vec3<f32> {
-    let p = permute(corner - ray.origin, ray.longest);
-    return vec3(p.xy - ray.shear.xy * p.z, ray.shear.z * p.z);
-}
-
-// The axes in cyclic order, `last` last. Selects, because a vector that is indexed at run time lives in memory.
-fn permute(v: vec3<f32>, last: u32) -> vec3<f32> {
-    return select(select(v, v.zxy, last == 1u), v.yzx, last == 0u);
 }

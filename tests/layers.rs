@@ -403,6 +403,41 @@ fn what_crosses_the_near_plane_still_casts() {
     }
 }
 
+/// The map over the middle of the scene only, then beside it: what lies outside is left to rays, and `nsm`, which has none, calls it lit.
+#[test]
+fn receivers_outside_the_map_are_uncertain() {
+    let mesh = one_above_floor([[-2.0, 2.0, -2.0], [2.0, 2.0, -2.0], [0.0, 2.0, 2.0]]);
+    let scene = scene(mesh, STRAIGHT_DOWN);
+    let judge_under = |preset: &str, zoom: f32, aside: f32| {
+        let mut light = LightUniform::new(&scene);
+        let zoomed = glam::Mat4::from_scale(Vec3::new(zoom, zoom, 1.0));
+        let moved = glam::Mat4::from_translation(Vec3::new(aside, 0.0, 0.0));
+        light.clip_from_relative = moved * zoomed * light.clip_from_relative;
+        light.corner_across *= zoom;
+        let inner = provider(&scene, &scene.views[0], VIEWPORT);
+        let params = [("map_size", ParamValue::U32(MAP)), ("cull", choice("none"))];
+        judge(preset, &scene, &mut OtherLight(inner, light), &params)
+    };
+    for preset in ["hybrid_pcf", "crsm", "crsm_depth", "crsma", "crsma_full"] {
+        let [middle, beside] =
+            [(4.0, 0.0), (1.0, 3.0)].map(|(zoom, aside)| judge_under(preset, zoom, aside));
+        let facing = middle.pixels.facing_light;
+        assert!(
+            (facing / 2..facing).contains(&middle.uncertain) && middle.certain.shadow > 100,
+            "{preset}: {middle:?}"
+        );
+        assert_eq!(beside.uncertain, facing, "{preset}");
+        for counts in [middle, beside] {
+            assert_eq!(
+                counts.wrong.total, counts.wrong.in_band,
+                "{preset}: {counts:?}"
+            );
+        }
+    }
+    let lit = judge_under("nsm", 1.0, 3.0);
+    assert_eq!((lit.wrong.lit, lit.wrong.shadow), (lit.pixels.shadow, 0));
+}
+
 /// Why `crsma` proves nothing: a kept edge promises that the surface goes on, but not how far. Here the neighbour is thinner than what
 /// the texel hangs over, and its outer edge is free.
 #[test]

@@ -8,7 +8,7 @@ use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{
     Progress,
     statistics::status,
-    twin::{Cull, Depth, Method, Twin},
+    twin::{Cull, Depth, LightSpace, Method, SLACK, Twin},
 };
 use skiagraph_scene::{Adjacency, DirectionalLight, Scene, SceneLibrary, SceneRequest, View};
 use std::sync::Arc;
@@ -160,14 +160,18 @@ fn twins(map_size: u32, cull: Cull, n: f64) -> Vec<Twin> {
         .collect()
 }
 
-#[test]
-fn the_statuses_on_park_are_their_twins() {
+fn park() -> Arc<Scene> {
     let request = SceneRequest {
         argument: "park".into(),
         obj: None,
     };
     let (scene, _) = SceneLibrary::from_environment().load(&request).unwrap();
-    let scene = Arc::new(scene);
+    Arc::new(scene)
+}
+
+#[test]
+fn the_statuses_on_park_are_their_twins() {
+    let scene = park();
     let mut bench = Bench::new(&scene, [128, 96]);
     for (map_size, n) in [(200, 1.0), (512, 0.51)] {
         for twin in twins(map_size, Cull::Front, n) {
@@ -241,4 +245,26 @@ fn the_statuses_on_a_hard_mesh_are_their_twins() {
             bench.judge(twin).check(&twin);
         }
     }
+}
+
+/// Beyond that the twin's `allowance`, and the shader's, leaves every pixel uncertain.
+#[test]
+fn the_presets_maps_end_where_f32_places_no_receiver() {
+    let scene = park();
+    let graph = skiagraph_graph::Graph::load(
+        "pipelines/crsm.ron",
+        &skiagraph_passes::registry(),
+        &skiagraph_passes::EmbeddedSources,
+    )
+    .unwrap();
+    let places = |size: u32| {
+        let space = LightSpace::new(&scene.mesh, &scene.light, size);
+        let corners = scene.mesh.corner_positions();
+        corners
+            .filter(|corner| space.allowance(corner.as_dvec3()).0 <= SLACK)
+            .count()
+    };
+    let all = scene.mesh.corner_positions().count();
+    assert!(graph.parse_param("map_size", "8192").is_ok() && places(8192) == all);
+    assert!(graph.parse_param("map_size", "8193").is_err() && places(16384) == 0);
 }

@@ -7,9 +7,10 @@ struct Light {
     towards: vec3<f32>,
     // A length beyond which nothing of the scene is met from any point in it.
     reach: f32,
-    // Centre of the scene's box (w unused): subtracted before the matrix, so that far-off scenes keep their precision.
+    // Centre of the scene's box: subtracted before the matrix, so that far-off scenes keep their precision. w: the most that is summed
+    // up, sizes alone, for clip x or y of a point in the box.
     centre: vec4<f32>,
-    // World units per unit of clip x, y, z (w unused).
+    // World units per unit of clip x, y, z. w: as of `centre`, for z.
     extent: vec4<f32>,
 }
 
@@ -17,4 +18,14 @@ var<uniform> light: Light;
 
 fn light_clip(position: vec3<f32>) -> vec3<f32> {
     return (light.clip_from_relative * vec4(position - light.centre.xyz, 1.0)).xyz;
+}
+
+// What rounding may move a receiver and the corners of its casters by, together, in shares of a square map's edge and of its depth: 4 half
+// ulps each of all that is summed up for clip space, which is two edges wide, and on the way from there. Valid if products are fused.
+fn light_rounding(receiver: vec3<f32>) -> vec2<f32> {
+    let matrix = transpose(light.clip_from_relative);
+    let size = abs(receiver) + abs(light.centre.xyz);
+    let across = max(dot(abs(matrix[0].xyz), size), dot(abs(matrix[1].xyz), size)) + light.centre.w;
+    let along = dot(abs(matrix[2].xyz), size) + light.extent.w;
+    return 2.3841858e-7 * vec2(0.5 * across + 1.0, along + 2.0);
 }

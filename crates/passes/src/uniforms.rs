@@ -1,7 +1,7 @@
 //! What shaders know of the camera and the light. The WGSL twins are `shaders/shared/camera.wgsl` and `light.wgsl`; a
 //! test compares both layouts with what naga makes of them.
 
-use glam::{DVec3, Mat4, Vec3};
+use glam::{DVec3, Mat3, Mat4, Vec3};
 use skiagraph_scene::{Camera, Scene};
 
 /// Twin of WGSL's `Camera`: a perspective camera, 80 bytes.
@@ -60,12 +60,12 @@ pub struct LightUniform {
     pub reach: f32,
     /// Centre of the scene's box, world space: a matrix on absolute positions would lose the detail of a far-off scene.
     pub centre: Vec3,
-    /// Nothing; WGSL's `vec4`.
-    pub unused_centre: f32,
+    /// The most that is summed up, sizes alone, for clip x or y of a point in the scene's box: what their rounding is a share of.
+    pub corner_across: f32,
     /// World units per unit of light-space clip x, y and z.
     pub extent: Vec3,
-    /// Nothing; WGSL's `vec4`.
-    pub unused_extent: f32,
+    /// The same for clip z.
+    pub corner_along: f32,
 }
 
 impl LightUniform {
@@ -76,14 +76,22 @@ impl LightUniform {
         let (min, max) = (min.as_dvec3(), max.as_dvec3());
         let centre = ((min + max) * 0.5).as_vec3();
         let to_relative = glam::DMat4::from_translation(centre.as_dvec3());
+        let clip_from_relative = (fit.view_projection * to_relative).as_mat4();
+        let matrix = Mat3::from_mat4(clip_from_relative);
+        let half = ((max - min) * 0.5).as_vec3();
+        let summed = Mat3::from_cols(
+            matrix.x_axis.abs(),
+            matrix.y_axis.abs(),
+            matrix.z_axis.abs(),
+        ) * half;
         Self {
-            clip_from_relative: (fit.view_projection * to_relative).as_mat4(),
+            clip_from_relative,
             towards: scene.light.towards().as_vec3(),
             reach: reach(min, max),
             centre,
-            unused_centre: 0.0,
+            corner_across: summed.x.max(summed.y),
             extent: fit.extent.as_vec3(),
-            unused_extent: 0.0,
+            corner_along: summed.z,
         }
     }
 }

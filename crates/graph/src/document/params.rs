@@ -280,17 +280,30 @@ impl Param {
             }
             _ => return Err(format!("the value must be of type {}", self.ty)),
         };
+        // Bounds as values are stored: 0.51 is no f32, and yet within 0.51 and up.
+        let whole = matches!(self.ty, ParamType::I32 | ParamType::U32);
+        let stored = |bound: f64| {
+            if whole {
+                bound
+            } else {
+                f64::from(bound as f32)
+            }
+        };
         for number in numbers {
             if !number.is_finite() {
                 return Err("the value must be finite".to_owned());
             }
-            if self.min.is_some_and(|min| number < min) || self.max.is_some_and(|max| number > max)
-            {
+            let below = self.min.is_some_and(|min| number < stored(min));
+            if below || self.max.is_some_and(|max| number > stored(max)) {
+                let shown = match whole {
+                    true => number.to_string(),
+                    false => (number as f32).to_string(),
+                };
                 return Err(match (self.min, self.max) {
-                    (Some(min), Some(max)) => format!("must lie in {min}..{max}, not {number}"),
-                    (Some(min), None) => format!("must be at least {min}, not {number}"),
+                    (Some(min), Some(max)) => format!("must lie in {min}..{max}, not {shown}"),
+                    (Some(min), None) => format!("must be at least {min}, not {shown}"),
                     (None, max) => format!(
-                        "must be at most {}, not {number}",
+                        "must be at most {}, not {shown}",
                         max.unwrap_or(f64::INFINITY)
                     ),
                 });
@@ -311,5 +324,35 @@ impl Param {
                 .and_then(|index| u32::try_from(index).ok()),
             _ => None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::SourceFile;
+
+    #[test]
+    fn bounds_are_rounded_as_values_are() {
+        let param = Param {
+            name: Located::new("n".to_owned(), SourceFile::new("graph.ron", "").span(0..0)),
+            ty: ParamType::F32,
+            default: ParamValue::F32(0.51),
+            min: Some(0.51),
+            max: Some(0.7),
+            description: String::new(),
+        };
+        for (text, inside) in [
+            ("0.51", true),
+            ("0.7", true),
+            ("0.5099999", false),
+            ("0.7000001", false),
+        ] {
+            assert_eq!(param.parse(text).is_ok(), inside, "{text}");
+        }
+        assert_eq!(
+            param.parse("0.3").unwrap_err(),
+            "must lie in 0.51..0.7, not 0.3"
+        );
     }
 }

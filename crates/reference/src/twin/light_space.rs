@@ -90,11 +90,15 @@ impl LightSpace {
         self.across_error() + SNAP
     }
 
-    /// What the status's own comparison takes a receiver to be off by, in shares of the map's edge and as depth: 4 ulp of all that
-    /// is summed up. Twin of `rounding` in shaders/detect_uncertain.wgsl.
+    /// What the status's own comparison takes a receiver and its casters' corners to be off by together, in texels and as depth. Twin of
+    /// `light_rounding` in shaders/shared/light.wgsl.
     pub fn allowance(&self, position: DVec3) -> (f64, f64) {
         let clip = self.summands(position.abs() + self.centre.abs());
-        let ulps = ROUNDINGS * F32_ROUNDING;
-        (ulps * (clip.x.max(clip.y) + 1.0), ulps * (clip.z + 1.0))
+        let across = ROUNDINGS * F32_ROUNDING * (clip.truncate().max_element() + 1.0);
+        let along = ROUNDINGS * F32_ROUNDING * (clip.z + 1.0);
+        (
+            across * 0.5 * self.size + self.across_error(),
+            along + self.depth_error(),
+        )
     }
 }

@@ -200,7 +200,7 @@ impl Maps<'_> {
         let size = self.space.size();
         let (across, along) = place.allowance;
         // The shader refuses what may lie in another texel; the allowance itself is rounded.
-        let refusal = across * size - 0.5 * SLACK;
+        let refusal = across - SLACK;
         let refused = refusal > 1e-3 * SLACK;
         let mut possible = Possible {
             uncertain: refusal > -1e-3 * SLACK,

@@ -13,7 +13,7 @@ pub type Look<'a> = &'a dyn Fn(&Column, &str, Option<&str>) -> String;
 pub fn render(report: &Report, look: Look) -> String {
     let [width, height] = report.viewport;
     let mut text = format!(
-        "{}\n{width}x{height}{} · pixels outside the band: wrongly lit + wrongly in shadow · ✗ fails · PFL: pixels that face the light\n{}\n",
+        "{}\n{width}x{height}{} · pixels outside the band: wrongly lit + wrongly in shadow · ✗ fails · * all left to rays · PFL: pixels that face the light\n{}\n",
         report.adapter,
         one_map(report).map_or(String::new(), |size| format!(", maps of {size}x{size}")),
         table(report),
@@ -67,7 +67,7 @@ fn table(report: &Report) -> String {
             let cells = able.iter().map(|column| {
                 let mut cells = case.cells.iter();
                 match cells.find(|cell| cell.is_of(column) && cell.set.as_deref() == set) {
-                    Some(cell) => shown(cell),
+                    Some(cell) => shown(case, cell),
                     None if set.is_some() => String::new(),
                     None => "–".into(),
                 }
@@ -112,15 +112,18 @@ fn heads(case: &Case, set: Option<&str>) -> [String; 3] {
     ]
 }
 
-fn shown(cell: &Cell) -> String {
+fn shown(case: &Case, cell: &Cell) -> String {
     let Some(counts) = &cell.counts else {
         return "✗ error".into();
     };
     let Outside { lit, shadow, .. } = counts.outside_band;
-    let figures = match lit + shadow {
+    let mut figures = match lit + shadow {
         0 => "0".to_owned(),
         _ => format!("{lit}+{shadow}"),
     };
+    if case.is_left_to_rays(cell) {
+        figures.push('*');
+    }
     match cell.verdict {
         Verdict::Fail => format!("✗ {figures}"),
         Verdict::Open if lit + shadow > 0 => format!("{figures} open"),
@@ -133,7 +136,10 @@ fn summary(report: &Report) -> String {
         [Verdict::Pass, Verdict::Fail, Verdict::Open].map(|verdict| report.count(verdict));
     let mut text = match passed + failed {
         0 => "no cell is judged: these methods promise nothing (--exact NAME judges one all the same)".into(),
-        judged => format!("{passed} of {judged} judged cells are as promised"),
+        judged => format!(
+            "{passed} of {judged} judged cells are as promised, {} of them by rays alone",
+            report.left_to_rays()
+        ),
     };
     text.push_str(&format!(
         "; {} of {} bands are within their caps",

@@ -112,7 +112,7 @@ pub enum Verdict {
     Fail,
     /// Not judged: what the method promises of closed casters does not hold for this case's open ones.
     Open,
-    /// Not judged: the method promises nothing.
+    /// Not judged: the method promises nothing, or only of certain pixels where it calls none certain.
     Unjudged,
 }
 
@@ -153,11 +153,18 @@ impl Outside {
 }
 
 impl Verdict {
-    /// Of a cell that ran. `culls`: not all faces cast shadows, so that nothing is promised of open casters.
-    pub fn of(promise: Option<Promise>, culls: bool, casters: Casters, outside: &Outside) -> Self {
+    /// Of a cell that ran. `culls`: not all faces cast shadows, so that nothing is promised of open casters; `certain`: pixels called so.
+    pub fn of(
+        promise: Option<Promise>,
+        culls: bool,
+        casters: Casters,
+        certain: u64,
+        outside: &Outside,
+    ) -> Self {
         match promise {
             None => Self::Unjudged,
             Some(_) if culls && casters == Casters::Open => Self::Open,
+            Some(Promise::Certain) if certain == 0 => Self::Unjudged,
             Some(promise) if outside.breaks(promise) => Self::Fail,
             Some(_) => Self::Pass,
         }
@@ -199,6 +206,13 @@ impl Case {
     pub fn exceeds_cap(&self) -> bool {
         self.band as f64 > self.band_cap * self.pixels.facing_light as f64
     }
+
+    /// Whether a method with a map called nothing certain, so that a right answer says nothing of the map.
+    pub fn is_left_to_rays(&self, cell: &Cell) -> bool {
+        let all = self.pixels.facing_light;
+        let of_all = |counts: &Counts| all > 0 && counts.uncertain == all;
+        cell.map_size.is_some() && cell.counts.as_ref().is_some_and(of_all)
+    }
 }
 
 impl Report {
@@ -206,6 +220,18 @@ impl Report {
     pub fn count(&self, verdict: Verdict) -> usize {
         let cells = self.cases.iter().flat_map(|case| &case.cells);
         cells.filter(|cell| cell.verdict == verdict).count()
+    }
+
+    /// How many cells passed without calling anything certain.
+    pub fn left_to_rays(&self) -> usize {
+        let of = |case: &Case| {
+            let passed = case
+                .cells
+                .iter()
+                .filter(|cell| cell.verdict == Verdict::Pass);
+            passed.filter(|cell| case.is_left_to_rays(cell)).count()
+        };
+        self.cases.iter().map(of).sum()
     }
 
     /// How many cases have too large a band, or no reference.
@@ -300,6 +326,13 @@ pub(crate) mod tests {
             unavailable: (preset == "crsm_hw").then(|| "needs what is not here".into()),
         };
         let exact = Some(Promise::Exact);
+        let mut uncertain = Cell {
+            set: Some("cull=none".into()),
+            ..cell("crsm", Verdict::Pass, [0; 3])
+        };
+        if let Some(counts) = &mut uncertain.counts {
+            (counts.uncertain, counts.uncertain_share) = (1000, 1.0);
+        }
         let unreferenced = Case {
             verdict: Verdict::Fail,
             failed: Some("the light is nowhere".into()),
@@ -346,10 +379,7 @@ pub(crate) mod tests {
                         cell("rt", Verdict::Pass, [0; 3]),
                         cell("nsm", Verdict::Unjudged, [0; 3]),
                         cell("crsm", Verdict::Open, [40, 0, 40]),
-                        Cell {
-                            set: Some("cull=none".into()),
-                            ..cell("crsm", Verdict::Pass, [0; 3])
-                        },
+                        uncertain,
                     ],
                 ),
                 unreferenced,
@@ -394,11 +424,15 @@ pub(crate) mod tests {
             (only_certain, false, Casters::Open, certain, Fail),
             (only_certain, true, Casters::Open, certain, Open),
         ] {
-            let found = Verdict::of(promise, culls, casters, &outside);
+            let found = Verdict::of(promise, culls, casters, 7, &outside);
             assert_eq!(
                 found, verdict,
                 "{promise:?} {culls} {casters:?} {outside:?}"
             );
+        }
+        for (promise, verdict) in [(exact, Pass), (only_certain, Unjudged)] {
+            let found = Verdict::of(promise, true, Casters::Closed, 0, &right);
+            assert_eq!(found, verdict, "nothing is certain, {promise:?}");
         }
     }
 

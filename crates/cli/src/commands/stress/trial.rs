@@ -163,8 +163,9 @@ impl Trial<'_> {
                 match self.cell(method, &mut provider, &reference) {
                     Ok((outputs, whole, counts)) => {
                         let promise = contender.promise.map(|(promise, _)| promise);
-                        cell.verdict =
-                            Verdict::of(promise, culls, case.casters, &counts.outside_band);
+                        let certain = case.pixels.facing_light.saturating_sub(counts.uncertain);
+                        let outside = &counts.outside_band;
+                        cell.verdict = Verdict::of(promise, culls, case.casters, certain, outside);
                         cell.counts = Some(counts);
                         if let Some(folder) = self.pictures {
                             let stem = picture_stem(method, hard, set, self.viewport);

@@ -1,5 +1,7 @@
 //! Twins of `shaders/shared/predicates.wgsl` in f32, under every arithmetic that WGSL allows a compiler: what the bounds stated there are
-//! tested with. Points are (x, y); names are the shader's.
+//! tested with. Points are (x, y); names are the shader's. `own_rounding` is tested where receivers are found: receiver.rs.
+
+use glam::Vec3;
 
 /// How a·b − c·d is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,6 +105,11 @@ impl Arithmetic {
         }
         self.cross(edge, [point[0] - p[0], point[1] - p[1]]) / length_squared.sqrt()
     }
+}
+
+/// `own_rounding`: what rounding may have moved a receiver out of its plane, so that its shadow ray meets its own surface beyond an edge.
+pub fn own_rounding(receiver: Vec3, eye: Vec3) -> f32 {
+    HALF_ULP * (receiver.length() + 2.0 * (receiver - eye).length())
 }
 
 /// `surrounds`: whether the box around three points has the origin in it.
@@ -290,6 +297,7 @@ mod tests {
             format!("const HALF_ULP: f32 = {HALF_ULP:e};"),
             "const EDGE_ERROR: f32 = 4.0 * HALF_ULP;".into(),
             format!("const SLACK: f32 = {SLACK};"),
+            "return HALF_ULP * (length(receiver) + 2.0 * length(receiver - eye));".into(),
         ] {
             assert!(shader.contains(&line), "no {line:?}");
         }

@@ -170,7 +170,7 @@ mod tests {
             low + (high - low) * (state >> 11) as f64 / (1u64 << 53) as f64
         };
         let (mut farthest, mut most_turned, mut judged) = (0f64, 0f64, 0);
-        let (mut off_plane, mut passed_over, mut small) = (0f64, 0f64, 0);
+        let (mut off_ball, mut off_plane, mut passed_over, mut small) = (0f64, 0f64, 0f64, 0);
         for _ in 0..200_000 {
             let mut vector = |size: f64| {
                 DVec3::new(
@@ -192,12 +192,14 @@ mod tests {
             let light = vector(1.0).normalize();
             let (shape, dice) = ([vector(1.0), vector(1.0), vector(1.0)], vector(1.0));
             let normals = [vector(1.0), vector(1.0), vector(1.0)];
+            // All over the triangle, along its edges and at its corners.
+            let share = vector(1.0).map(|c| c.abs().powi(3) + 1e-6);
             let pixel = [dice.x, dice.y].map(|die| (die.abs() * 479.0) as u32);
             let ray = camera.pixel_direction(pixel[0], pixel[1]);
             // Distances of 1 to 1000, sizes of a hundredth of the distance to ten times it, around the pixel's ray.
             let distance = 10f64.powf(1.5 + 1.5 * dice.z);
             let size = distance * 10f64.powf(-0.5 + 1.5 * shape[0].x);
-            let mean = (shape[0] + shape[1] + shape[2]) / 3.0;
+            let mean = weighted(share.to_array(), shape) / share.element_sum();
             let place = |corner| view.eye + ray * distance + (corner - mean) * size;
             let mesh = Mesh {
                 positions: shape.map(|corner| place(corner).as_vec3()).to_vec(),
@@ -221,20 +223,22 @@ mod tests {
             let own = f64::from(own_rounding(position, view.eye.as_vec3()));
             passed_over = passed_over.max(own / uncertainty.radius);
             let [a, b, c] = mesh.corners(0);
+            let normal = (b - a).cross(c - a).normalize();
+            let off = normal.dot(position.as_dvec3() - a).abs();
+            // The segments lie in the plane.
+            off_ball = off_ball.max(off / uncertainty.radius);
             let reach = (position.as_dvec3() - view.eye).length();
-            if [a, b, c]
-                .iter()
-                .all(|&corner| (corner - exact.position).length() <= reach)
-            {
-                let normal = (b - a).cross(c - a).normalize();
-                off_plane = off_plane.max(normal.dot(position.as_dvec3() - a).abs() / own);
+            let corners = [a, b, c].map(|corner| (corner - exact.position).length());
+            if corners.iter().all(|&away| away <= reach) {
+                off_plane = off_plane.max(off / own);
                 small += 1;
             }
         }
         println!(
-            "{small} off their planes by at most {off_plane:.3} of their own rounding, which is at most {passed_over:.3} of the bound"
+            "off their planes by at most {off_ball:.3} of the bound; {small} of small triangles by {off_plane:.3} of their own rounding, which is {passed_over:.3} of the bound"
         );
         assert!(small > 50_000);
+        assert!(off_ball < 1.0 && off_ball > 0.1, "{off_ball}");
         assert!(off_plane < 1.0 && off_plane > 0.1, "{off_plane}");
         assert!(passed_over <= 1.0, "{passed_over}");
         println!("{judged} receivers, at most {farthest:.3} and {most_turned:.3} of the bounds");

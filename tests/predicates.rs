@@ -113,6 +113,10 @@ fn questions(count: u32) -> Vec<Question> {
             let step = [0.5, 1.0, 1.0 / 256.0, 1.0 / 4096.0][i as usize % 4];
             let size = [8.0, 64.0, 4096.0][i as usize / 4 % 3];
             let (p, mut q) = (place(size, step), place(size, step));
+            if i % 7 == 0 {
+                // All but in line with the origin.
+                q = p.map(|c| c * 1.3);
+            }
             if q == p {
                 q[0] += 1.0;
             }

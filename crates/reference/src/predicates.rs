@@ -180,7 +180,7 @@ mod tests {
 
     /// n diagonals, as the shaders multiply them out.
     fn cell() -> f32 {
-        0.51 * 1.414_213_6
+        0.51 * std::f32::consts::SQRT_2
     }
 
     /// Exactly, the distance of a point to the left of an edge's line, and to the edge's beginning.

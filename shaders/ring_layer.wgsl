@@ -75,7 +75,7 @@ fn patch_depth(vertex: Vertex) -> f32 {
             if !meets(p, q, centre) {
                 continue;
             }
-            let beyond = across(triangle, 3u * primitive + side, p, q, params.cull, map_size);
+            let beyond = across(3u * primitive + side, p, q, corners[(side + 2u) % 3u], params.cull, map_size);
             if beyond == NO_NEIGHBOUR {
                 return NOT_COVERED;
             }
@@ -116,12 +116,4 @@ fn contains(primitive: u32, triangle: LightTriangle, point: vec2<f32>) -> bool {
     let c = scene_indices[3u * primitive + 2u];
     let left = left_of(a, b, triangle.a.xy, triangle.b.xy, point);
     return left == left_of(b, c, triangle.b.xy, triangle.c.xy, point) && left == left_of(c, a, triangle.c.xy, triangle.a.xy, point);
-}
-
-// Evaluated from the lower index to the higher one, so that both triangles of an edge see the same sign.
-fn left_of(tail: u32, head: u32, p: vec2<f32>, q: vec2<f32>, point: vec2<f32>) -> bool {
-    let swap = head < tail;
-    let low = select(p, q, swap);
-    let high = select(q, p, swap);
-    return (cross_2d(high - low, point - low) >= 0.0) != swap;
 }

@@ -42,8 +42,10 @@ fn with_neighbours(thread: Thread) {
     let triangle = gather(corner, thread.lane);
     var kept = false;
     if corner < arrayLength(&scene_indices) && casts(triangle, params.cull) {
-        let next = thread.lane - thread.lane % 3u + (thread.lane + 1u) % 3u;
-        kept = across(triangle, corner, texels[thread.lane].xy, texels[next].xy, params.cull, f32(params.map_size)) != NO_NEIGHBOUR;
+        let first = thread.lane - thread.lane % 3u;
+        let next = texels[first + (thread.lane + 1u) % 3u].xy;
+        let own = texels[first + (thread.lane + 2u) % 3u].xy;
+        kept = across(corner, texels[thread.lane].xy, next, own, params.cull, f32(params.map_size)) != NO_NEIGHBOUR;
     }
     place(corner, thread.lane, triangle, kept);
 }

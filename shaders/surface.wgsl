@@ -44,8 +44,15 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
         weights = edges / sum;
     }
 
-    // From the first corner along the edges, so that the point stays in the primitive's plane whatever the weights' error.
-    let receiver = world + (weights.y * (b - a) + weights.z * (c - a));
+    // From a corner along the edges, so that the point stays in the primitive's plane whatever the weights' error; from the one that weighs most,
+    // so that one that is far off adds no more of its rounding than its weight.
+    let most = max(weights.x, max(weights.y, weights.z));
+    var receiver = world + (weights.y * (b - a) + weights.z * (c - a));
+    if weights.y == most {
+        receiver = corner_position(3u * id + 1u) + (weights.z * (c - b) + weights.x * (a - b));
+    } else if weights.z == most {
+        receiver = corner_position(3u * id + 2u) + (weights.x * (a - c) + weights.y * (b - c));
+    }
     let normal = weights.x * corner_normal(3u * id)
         + weights.y * corner_normal(3u * id + 1u)
         + weights.z * corner_normal(3u * id + 2u);

@@ -3,12 +3,10 @@
 mod support;
 
 use glam::Vec3;
-use skiagraph_graph::{Capture, ParamValue, gpu::Gpu};
-use skiagraph_passes::SceneProvider;
-use skiagraph_reference::{Oracle, OracleMode, Progress, Statistics};
-use skiagraph_scene::{Scene, SceneLibrary, SceneRequest, View};
+use skiagraph_graph::ParamValue;
+use skiagraph_scene::{Scene, SceneLibrary, SceneRequest};
 use std::sync::Arc;
-use support::graphs::{open, plan, provider, run_on, values};
+use support::bench::Bench;
 
 fn load(name: &str) -> Arc<Scene> {
     let request = SceneRequest {
@@ -19,98 +17,6 @@ fn load(name: &str) -> Arc<Scene> {
         .load(&request)
         .unwrap_or_else(|error| panic!("{error}"));
     Arc::new(scene)
-}
-
-/// A scene under a view, its oracle, and what runs graphs on it.
-struct Bench<'a> {
-    scene: &'a Scene,
-    view: &'a View,
-    viewport: [u32; 2],
-    gpu: Gpu,
-    provider: SceneProvider,
-    oracle: Oracle<'a>,
-}
-
-impl<'a> Bench<'a> {
-    fn new(scene: &'a Arc<Scene>, viewport: [u32; 2]) -> Self {
-        let view = &scene.views[0];
-        let provider = provider(scene, view, viewport);
-        Self {
-            scene,
-            view,
-            viewport,
-            gpu: open(),
-            provider,
-            oracle: Oracle::new(&scene.mesh),
-        }
-    }
-
-    fn look(&mut self, view: &'a View) {
-        self.view = view;
-        self.provider.set_view(view, self.viewport);
-    }
-
-    /// What the oracle says of a preset's outputs, for the primitives that the preset saw itself.
-    fn judge(&mut self, preset: &str, params: &[(&str, ParamValue)]) -> Statistics {
-        let plan = plan(
-            &format!("pipelines/{preset}.ron"),
-            &self.provider,
-            self.viewport,
-            |request| {
-                request.captures.push(Capture {
-                    material: "primitive".into(),
-                    after: None,
-                });
-                request.params.extend(
-                    params
-                        .iter()
-                        .map(|(name, value)| ((*name).to_owned(), value.clone())),
-                );
-            },
-        );
-        let report = run_on(
-            &self.gpu,
-            plan,
-            &mut self.provider,
-            &["visibility", "status", "primitive"],
-        );
-        let primitives = values(&report, "primitive");
-        let camera = self.view.camera(self.viewport);
-        let light = &self.scene.light;
-        let reference = self
-            .oracle
-            .shade(
-                &camera,
-                light,
-                &primitives,
-                OracleMode::Exact,
-                Progress::default(),
-            )
-            .unwrap();
-        let (visibility, status) = (values(&report, "visibility"), values(&report, "status"));
-        let counts = Statistics::judged(&visibility, &status, &reference).unwrap();
-        println!(
-            "{preset} {} {} {:?} {params:?}: {counts:?}",
-            self.scene.name, self.view.name, self.viewport
-        );
-        counts
-    }
-
-    fn rt_is_exact(&mut self) {
-        let counts = self.judge("rt", &[]);
-        assert!(
-            counts.pixels.lit > 0 && counts.pixels.shadow > 0,
-            "{counts:?}"
-        );
-        assert_eq!(
-            counts.wrong.total - counts.wrong.in_band,
-            0,
-            "{}: {counts:?}",
-            self.view.name
-        );
-        // A band that swallows a case proves nothing.
-        assert!(counts.band_share() < 3e-3, "{}: {counts:?}", self.view.name);
-    }
 }
 
 #[test]

@@ -5,21 +5,16 @@
 var<storage, read> scene_adjacency: array<u32>;
 
 const NO_NEIGHBOUR: u32 = 0xffffffffu;
-// Corners nearer to an edge's line than this, in texels, are on no side of it.
-const CLEAR_OF_EDGE: f32 = 0.001953125;
 
-// The primitive beyond the edge from `p` to `q`, which is number `entry` in the corner table: the edge's only other triangle, in the
-// map, and on its other side as the light sees it. The sides decide, not the windings; NO_NEIGHBOUR if there is none such.
-fn across(triangle: LightTriangle, entry: u32, p: vec2<f32>, q: vec2<f32>, cull: u32, map_size: f32) -> u32 {
+// The primitive beyond the edge from `p` to `q`, which is number `entry` in the corner table, of a triangle whose third corner is `own`: the edge's only
+// other triangle, in the map, and on its other side as the light sees it. The sides decide, not the windings; NO_NEIGHBOUR if there is none such.
+fn across(entry: u32, p: vec2<f32>, q: vec2<f32>, own: vec2<f32>, cull: u32, map_size: f32) -> u32 {
     let corner = scene_adjacency[entry];
     if corner == NO_NEIGHBOUR {
         return NO_NEIGHBOUR;
     }
-    let edge = q - p;
-    let margin = CLEAR_OF_EDGE * length(edge);
     let opposite = light_texel(corner_position(corner), map_size).xy;
-    let beyond = cross_2d(edge, opposite - p) * select(-1.0, 1.0, triangle.area < 0.0);
-    if !(abs(triangle.area) > margin && beyond > margin) {
+    if side_of_edge(p, q, own) * side_of_edge(p, q, opposite) >= 0.0 {
         return NO_NEIGHBOUR;
     }
     // On opposite sides, and wound alike: it faces as this one does, which is in the map.

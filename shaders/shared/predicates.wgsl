@@ -31,10 +31,12 @@ fn surrounds(a: vec2<f32>, b: vec2<f32>, c: vec2<f32>) -> bool {
     return all(min(a, min(b, c)) <= vec2(0.0)) && all(max(a, max(b, c)) >= vec2(0.0));
 }
 
-// What rounding may have moved a receiver by, half an ulp of its distance to the origin and to the eye: a surface that its shadow ray meets
-// sooner is the receiver's own, beyond an edge.
+// What rounding may have moved a receiver out of its plane: half an ulp of its distance to the origin, of the sum that it is, and an ulp of its
+// distance to the eye, of corners relative to the eye. A surface that its shadow ray meets sooner is the receiver's own, beyond an edge. Holds
+// for random receivers of surface.wgsl whose corners are no farther from them than the eye; a triangle ten times as large may put its receivers ten
+// times as far off. At most 3/5 of what the oracle takes a receiver to be off by, so that what a ray passes over is in its band.
 fn own_rounding(receiver: vec3<f32>, eye: vec3<f32>) -> f32 {
-    return HALF_ULP * (length(receiver) + length(receiver - eye));
+    return HALF_ULP * (length(receiver) + 2.0 * length(receiver - eye));
 }
 
 // --- A square map: texels are closed unit squares around their centres ---
@@ -54,9 +56,15 @@ fn meets(p: vec2<f32>, q: vec2<f32>, centre: vec2<f32>) -> bool {
     return abs(cross_2d(edge, centre - p)) <= half * (abs(edge.x) + abs(edge.y));
 }
 
+// Edge and point relative to p, the cross product is that of the exact edge and of a point that is off by no more than 3 half ulps of its distance to
+// p: in each product one of the edge's component, one of the point's, one of their product, of which a fused one lacks the last. That is 0.0042 texels
+// across a map of 16,384. The difference of the products errs by another half ulp of itself.
+
 // Inward distance of a point from the line of an edge of a triangle of that area, in texels; an edge without length constrains nothing.
-// It errs by 8 half ulps of the point's distance to p, 0.008 in a map of 16,384 texels: a triangle that must hold a texel, whose corners are
-// 0.7072 from its centre, and may itself be off by SLACK, is sure to at a distance of 0.51 diagonals, 0.7212.
+// It errs by 3 half ulps of the point's distance to p and by 8 of itself: the difference (1), the length squared (4 halves), inverseSqrt (2 ulps), the
+// product (1). A triangle that must hold a texel holds its centre at a distance of 0.7182, half the diagonal of a texel that is larger by SLACK on every
+// side, which is what receivers and corners may be off by together. So 0.51 diagonals, 0.7212, do in maps of up to 12,000 texels (0.7182 + 0.0031),
+// and in one of 16,384 it takes 0.511.
 fn inward_distance(p: vec2<f32>, q: vec2<f32>, point: vec2<f32>, area: f32) -> f32 {
     let edge = q - p;
     let length_squared = dot(edge, edge);
@@ -64,4 +72,24 @@ fn inward_distance(p: vec2<f32>, q: vec2<f32>, point: vec2<f32>, area: f32) -> f
         return 3e38;
     }
     return select(1.0, -1.0, area < 0.0) * cross_2d(edge, point - p) * inverseSqrt(length_squared);
+}
+
+// Points nearer to an edge's line than this, in texels, are on no side of it: what a cross product may be off by in a map of 16,384.
+const CLEAR_OF_EDGE: f32 = 0.004166667;
+
+// Which side of the line from p to q a point is on: 1 to the left where y is up, -1 to the right, 0 if it could be either. Never the wrong one.
+fn side_of_edge(p: vec2<f32>, q: vec2<f32>, point: vec2<f32>) -> f32 {
+    let edge = q - p;
+    let across = cross_2d(edge, point - p);
+    return select(0.0, sign(across), abs(across) > CLEAR_OF_EDGE * length(edge));
+}
+
+// Whether a point is to the left of the edge from p, number `tail`, to q, number `head`; on the line, whether the way to the higher number has it to the
+// left. Evaluated from the lower number to the higher one, so that of two triangles on opposite sides of an edge one has the point, to the bit;
+// which one may be wrong within 3 half ulps of the point's distance to that end.
+fn left_of(tail: u32, head: u32, p: vec2<f32>, q: vec2<f32>, point: vec2<f32>) -> bool {
+    let swap = head < tail;
+    let low = select(p, q, swap);
+    let high = select(q, p, swap);
+    return (cross_2d(high - low, point - low) >= 0.0) != swap;
 }

@@ -70,12 +70,13 @@ impl Provider for Extended {
     }
 }
 
-/// One document that is on no disk.
-struct Document(String);
+/// Files that are on no disk, by their paths.
+struct Files(Vec<(String, String)>);
 
-impl Sources for Document {
+impl Sources for Files {
     fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
-        Ok((path == "test.ron").then(|| self.0.as_str().into()))
+        let file = self.0.iter().find(|(name, _)| name == path);
+        Ok(file.map(|(_, text)| text.as_str().into()))
     }
 
     fn list(&self, _: &str) -> Vec<String> {
@@ -85,8 +86,16 @@ impl Sources for Document {
 
 /// Runs a document given as text once, and returns one output's bytes.
 pub fn run_text(document: &str, provider: &mut dyn Provider, output: &str) -> Vec<u8> {
+    run_files(&[("test.ron", document)], provider, output)
+}
+
+/// The same with shaders that are given as text: paths and texts, the document's path is `test.ron`.
+pub fn run_files(files: &[(&str, &str)], provider: &mut dyn Provider, output: &str) -> Vec<u8> {
+    let files = files
+        .iter()
+        .map(|&(path, text)| (path.to_owned(), text.to_owned()));
     let sources = LayeredSources(vec![
-        Box::new(Document(document.to_owned())),
+        Box::new(Files(files.collect())),
         Box::new(EmbeddedSources),
     ]);
     let graph =

@@ -1,6 +1,7 @@
 //! What the tests share.
 #![allow(dead_code)]
 
+pub mod bench;
 pub mod brute;
 pub mod graphs;
 pub mod meshes;

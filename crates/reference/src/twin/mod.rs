@@ -27,7 +27,7 @@ pub use status::{Classification, Maps};
 pub const SLACK: f64 = crate::predicates::SLACK as f64;
 
 /// Corners nearer to an edge's line than this, in texels, are on no side of it.
-pub const CLEAR_OF_EDGE: f64 = 1.0 / 512.0;
+pub const CLEAR_OF_EDGE: f64 = crate::predicates::CLEAR_OF_EDGE as f64;
 
 /// Triangles lower than this, in texels, have no plane to speak of.
 pub const LOWEST: f64 = 0.125;

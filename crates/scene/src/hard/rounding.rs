@@ -127,7 +127,7 @@ pub(super) const CASES: &[HardCase] = &[
         lit: Some(|p| lid_lit(p, 0.05, 1e-6)),
         ..HardCase::new(
             "lid_gap_1e_6",
-            "the same in a scene of a tenth: the gap counts in extents",
+            "the same in a scene of a twentieth: the gap counts in extents",
             Casters::Open,
         )
     },

@@ -69,7 +69,8 @@ const CLAIMS: [Claim; 5] = [
     },
 ];
 
-/// The layers bound all of a texel: it lies within √2/2 of its centre, half a diagonal, and a hair for rounding.
+/// The layers bound all of a texel: it lies within √2/2 of its centre, half a diagonal, and a hair for rounding (docs/precision.md: in maps
+/// of up to 12,000 texels, more than the presets allow).
 fn bounds(params: &BTreeMap<String, Value>) -> bool {
     let n = params.get("n").and_then(Value::as_f64);
     params

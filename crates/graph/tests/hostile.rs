@@ -99,6 +99,87 @@ fn lists_without_end() {
     assert_said(&said_of, "graph.ron:2002", &["nothing is called `m2000`"]);
 }
 
+/// For each name that nothing has, all names are searched for what was meant: not for as many as there may be of both.
+#[test]
+fn as_many_misspelt_names_as_names() {
+    let long =
+        |word: &str, index: usize| format!("\"{word}_{}_{index}\"", "of_the_shadow_map".repeat(3));
+    let params = many(4000, |index| {
+        format!("(name: {}, type: U32, default: 1)", long("edge", index))
+    });
+    let sized = many(4000, |index| {
+        format!(
+            "Buffer(name: \"b{index}\", count: Param({}))",
+            long("egde", index)
+        )
+    });
+    let buffers = many(4000, |index| {
+        format!("Buffer(name: {}, count: 4)", long("buffer", index))
+    });
+    let clears = many(4000, |index| {
+        format!(
+            "Clear(name: \"p{index}\", target: {})",
+            long("bufer", index)
+        )
+    });
+    let bound = |count| {
+        let entries = many(count, |index| format!("{}: \"items\"", long("egde", index)));
+        document("", "", "").replace(
+            "Over(\"items\")",
+            &format!("Over(\"items\"), bind: {{{entries}}}"),
+        )
+    };
+    let given = |word: &str, count: usize, value: &dyn Fn(usize) -> String| {
+        let entries = many(count, |index| {
+            format!("{}: {}", long(word, index), value(index))
+        });
+        let include = format!("Include(graph: \"inner.ron\", params: {{{entries}}})");
+        document(&params, "", &include)
+    };
+    let unknown = |index| format!("Param({})", long("egde", index));
+    let endless = |letter: &str| format!("\"{}\"", letter.repeat(1 << 20));
+    let inner = format!(
+        "(format: 1, params: [{params}], materials: [Buffer(name: \"inside\", count: 4)],
+        passes: [Clear(name: \"c\", target: \"inside\")], outputs: [(name: \"inside\")])"
+    );
+    let shader = "var<storage, read_write> items: array<u32>;
+        @compute @workgroup_size(1) fn main() { items[0] = 1u; }";
+    for (document, part) in [
+        (document(&params, &sized, ""), "no param is called `egde_of"),
+        (
+            document("", &buffers, &clears),
+            "nothing is called `bufer_of",
+        ),
+        (bound(4000), "`index.wgsl` has no global `egde_of"),
+        (bound(40_000), "the map has 40000 entries, 4096 is the most"),
+        (
+            given("egde", 4000, &|_| "1".to_owned()),
+            "`inner.ron` has no param `egde_of",
+        ),
+        (
+            given("egde", 40_000, &|_| "1".to_owned()),
+            "the map has 40000 entries",
+        ),
+        (given("edge", 4000, &unknown), "no param is called `egde_of"),
+        (
+            document(
+                &format!("(name: {}, type: U32, default: 1)", endless("ab")),
+                &format!("Buffer(name: \"b\", count: Param({}))", endless("ba")),
+                "",
+            ),
+            "`baba",
+        ),
+    ] {
+        let files = [
+            ("graph.ron", &*document),
+            ("index.wgsl", shader),
+            ("inner.ron", &inner),
+        ];
+        let said_of = answer(&Files::new(files)).expect_err("nothing is called so");
+        assert_said(&said_of.to_string(), "graph.ron:", &[part]);
+    }
+}
+
 /// A million passes in one file are refused by its length, before any of them is read.
 #[test]
 fn a_million_passes() {

@@ -77,7 +77,8 @@ pub fn read(files: &[Beside]) -> Result<Vec<Row>, CliError> {
     let (mut rows, mut faults) = (Vec::new(), Vec::new());
     for Beside { label, file } in files {
         let name = file.display().to_string();
-        let text = CSV_FILE.read_text(file)
+        let text = CSV_FILE
+            .read_text(file)
             .map_err(|error| CliError::Input(format!("--beside {name}: {error}")))?;
         let (read, mut found) = parse(label, &SourceFile::new(name, text));
         rows.extend(read);

@@ -310,7 +310,7 @@ mod tests {
         ];
         let refused = |text: String| {
             let folder = tempfile::tempdir().unwrap();
-            fs::write(folder.path().join("results.json"), text).unwrap();
+            std::fs::write(folder.path().join("results.json"), text).unwrap();
             let error = resume(folder.path(), &sample(), &identities(&sample())).unwrap_err();
             assert_eq!(error.exit_code(), 1);
             let path = folder.path().join("results.json").display().to_string();

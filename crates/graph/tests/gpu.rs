@@ -803,7 +803,7 @@ fn more_memory_than_there_is() {
         ExecuteError::OutOfMemory { name, table } => {
             assert_eq!(name, "image");
             let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
-            let gib = u64::from(edge).pow(2) * u64::from(layers) * 16 >> 30;
+            let gib = (u64::from(edge).pow(2) * u64::from(layers) * 16) >> 30;
             let rows = [
                 format!("image {edge}×{edge}, {layers} layers Rgba32Float {gib}.00 GiB"),
                 format!("all together {gib}.00 GiB"),

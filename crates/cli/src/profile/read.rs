@@ -23,7 +23,8 @@ const PROFILE: Limit = Limit {
 /// # Errors
 /// A file that cannot be read, or that is no profile; with the place.
 pub fn read(path: &Path) -> Result<Profile, CliError> {
-    let text = PROFILE.read_text(path)
+    let text = PROFILE
+        .read_text(path)
         .map_err(|error| CliError::Input(format!("--baseline {}: {error}", path.display())))?;
     let file = SourceFile::new(path.display().to_string(), text);
     parse(&file).map_err(|fault| shown(fault, &file))

@@ -137,7 +137,7 @@ fn as_many_misspelt_names_as_names() {
         document(&params, "", &include)
     };
     let unknown = |index| format!("Param({})", long("egde", index));
-    let endless = |letter: &str| format!("\"{}\"", letter.repeat(1 << 20));
+    let endless = |letter: &str| format!("\"{}\"", letter.repeat(1 << 17));
     let inner = format!(
         "(format: 1, params: [{params}], materials: [Buffer(name: \"inside\", count: 4)],
         passes: [Clear(name: \"c\", target: \"inside\")], outputs: [(name: \"inside\")])"

@@ -1,9 +1,12 @@
 //! Whatever stands in a file: an answer, never a panic, and soon. The stable twin of the fuzz targets in `fuzz`: the same entry
 //! functions on the same corpora, on every former finding, and on what becomes of them by chance.
 
+#[path = "support/bounds.rs"]
+mod bounds;
 #[path = "../fuzz/entry.rs"]
 mod entry;
 
+use bounds::bounded;
 use proptest::{prelude::*, test_runner::TestRunner};
 use std::path::Path;
 
@@ -35,7 +38,7 @@ fn replay(target: &str, run: fn(&[u8]) -> String) {
     for folder in ["corpus", "regressions"] {
         for (name, bytes) in files(folder, target) {
             println!("{folder}/{target}/{name}"); // shown where the next line panics
-            run(&bytes);
+            bounded(&format!("{folder}/{target}/{name}"), || run(&bytes));
         }
     }
 }
@@ -129,7 +132,7 @@ fn mutate(target: &str, cases: u32, run: fn(&[u8]) -> String) {
             for of in changes {
                 change(&mut bytes, &seeds, of);
             }
-            run(&bytes);
+            bounded(&String::from_utf8_lossy(&bytes), || run(&bytes));
             Ok(())
         });
     outcome.unwrap_or_else(|failure| panic!("{failure}"));

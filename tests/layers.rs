@@ -464,7 +464,7 @@ fn a_thin_neighbour_deceives_crsma_and_not_the_ring() {
 }
 
 #[test]
-fn no_uncertain_pixel_is_no_ray() {
+fn no_uncertain_pixel_is_no_ray_and_no_workgroup() {
     // A floor alone, its underside left out: nothing is uncertain.
     let scene = scene(above_floor(vec![], vec![]), STRAIGHT_DOWN);
     for preset in [
@@ -475,15 +475,30 @@ fn no_uncertain_pixel_is_no_ray() {
         "crsma",
         "crsma_full",
     ] {
+        // What fix_pixels and trace_rays are dispatched by; the latter's own where it is no plain compute pass.
+        let dispatches: &[&str] = match preset {
+            "crsm_single" => &["ray_groups"],
+            _ => &["ray_groups", "trace_rays.groups"],
+        };
         let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
         let plan = plan(
             &format!("pipelines/{preset}.ron"),
             &provider,
             VIEWPORT,
-            |_| (),
+            |request| {
+                let dispatches = dispatches.iter();
+                request.captures.extend(dispatches.map(|material| Capture {
+                    material: (*material).into(),
+                    after: None,
+                }));
+            },
         );
-        let report = run(plan, &mut provider, &["ray_count", "status"]);
+        let read = [&["ray_count", "status"], dispatches].concat();
+        let report = run(plan, &mut provider, &read);
         assert_eq!(values(&report, "ray_count"), [0], "{preset}");
+        for material in dispatches {
+            assert_eq!(values(&report, material), [0, 0, 1], "{preset}: {material}");
+        }
         assert!(values(&report, "status").contains(&2), "{preset}");
     }
 }

@@ -7,7 +7,15 @@ use crate::{
 };
 use csv::{ReaderBuilder, StringRecord};
 use skiagraph_graph::{Code, Diagnostic, SourceFile, Span, diagnostics};
-use std::{fs, str::FromStr};
+use skiagraph_scene::Limit;
+use std::str::FromStr;
+
+/// A hundred times what was published in ours.
+const CSV_FILE: Limit = Limit {
+    of: "a file of published figures",
+    mib: 16,
+    way_out: "split it, and give --beside for each part",
+};
 
 /// Figures of the reference: they hold for every preset and map.
 const OF_REFERENCE: [&str; 4] = ["facing_light", "facing_away", "lit", "shadow"];
@@ -69,7 +77,8 @@ pub fn read(files: &[Beside]) -> Result<Vec<Row>, CliError> {
     let (mut rows, mut faults) = (Vec::new(), Vec::new());
     for Beside { label, file } in files {
         let name = file.display().to_string();
-        let text = fs::read_to_string(file)
+        let text = CSV_FILE
+            .read_text(file)
             .map_err(|error| CliError::Input(format!("--beside {name}: {error}")))?;
         let (read, mut found) = parse(label, &SourceFile::new(name, text));
         rows.extend(read);

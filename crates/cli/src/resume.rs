@@ -8,11 +8,19 @@ use crate::{
 use serde::Deserialize;
 use serde_json::Value;
 use skiagraph_graph::SourceFile;
-use std::{collections::BTreeMap, fs, io::ErrorKind, path::Path};
+use skiagraph_scene::Limit;
+use std::{collections::BTreeMap, io::ErrorKind, path::Path};
 
 /// How to get on without the earlier results.
 const WAY_OUT: &str =
     "give another --out, or leave out --resume, which measures everything and overwrites the file";
+
+/// Some twenty thousand runs.
+const RESULTS: Limit = Limit {
+    of: "a results.json",
+    mib: 64,
+    way_out: WAY_OUT,
+};
 
 /// What tells a run from every other.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,7 +64,7 @@ pub fn resume(
 ) -> Result<Vec<Option<Run>>, CliError> {
     let path = folder.join("results.json");
     let name = path.display().to_string();
-    let text = match fs::read_to_string(&path) {
+    let text = match RESULTS.read_text(&path) {
         Ok(text) => text,
         Err(error) if error.kind() == ErrorKind::NotFound => {
             note(&format!(
@@ -302,7 +310,7 @@ mod tests {
         ];
         let refused = |text: String| {
             let folder = tempfile::tempdir().unwrap();
-            fs::write(folder.path().join("results.json"), text).unwrap();
+            std::fs::write(folder.path().join("results.json"), text).unwrap();
             let error = resume(folder.path(), &sample(), &identities(&sample())).unwrap_err();
             assert_eq!(error.exit_code(), 1);
             let path = folder.path().join("results.json").display().to_string();

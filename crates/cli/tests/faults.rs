@@ -156,6 +156,26 @@ fn a_graph_that_does_not_fit_is_refused_with_a_memory_table() {
     }
 }
 
+/// The limit is lifted above what the driver has: its own refusal tells as much as the planner's.
+#[test]
+fn a_driver_without_memory_names_the_material_with_the_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let graph = "(format: 1, materials: [Texture(name: \"image\", format: Rgba32Float, size: Square(8192), layers: 256)], \
+                 passes: [Clear(name: \"clear\", target: \"image\")], outputs: [(name: \"image\")])";
+    fs::write(folder.path().join("huge.ron"), graph).unwrap();
+    let line = "run huge.ron --size 16x16 --memory-limit 1000000GiB";
+    let (code, _, stderr) = run(folder.path(), line);
+    assert_eq!(code, 1, "{stderr}");
+    let words = stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+    for part in [
+        "because: the device has not enough memory for `image`",
+        "image 8192×8192, 256 layers Rgba32Float 256.00 GiB",
+        "all together 256.00 GiB",
+    ] {
+        assert!(words.contains(part), "no `{part}` in {stderr}");
+    }
+}
+
 #[test]
 fn compare_measures_what_fits_and_says_why_the_rest_does_not() {
     let folder = folder();

@@ -199,6 +199,22 @@ impl Diagnostic {
         }
     }
 
+    /// As [`Self::suggest`] for the first mistakes of many, by how many were `found` before: a document holds as many misspelt names
+    /// as names, and to compare all with all takes minutes.
+    #[must_use]
+    pub(crate) fn suggest_to<'a, I: IntoIterator<Item = &'a str>>(
+        self,
+        found: usize,
+        word: &str,
+        known: impl FnOnce() -> I,
+    ) -> Self {
+        if found < HINTED {
+            self.suggest(word, known())
+        } else {
+            self
+        }
+    }
+
     fn key(&self) -> (Severity, &str, usize) {
         let first = self.labels.first();
         (
@@ -214,17 +230,29 @@ pub fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> O
     /// Names that a misspelt one is compared with: a document may hold thousands, and as many mistakes.
     const COMPARED: usize = 1024;
     let known: Vec<&str> = known.into_iter().collect();
-    let best = known
-        .iter()
-        .take(COMPARED)
-        .map(|name| (strsim::jaro_winkler(word, name), *name))
-        .max_by(|a, b| a.0.total_cmp(&b.0))?;
-    // Below 0.8 two short names share little more than a letter or two; a list helps more than a wild guess.
-    if best.0 >= 0.8 {
-        return Some(format!("did you mean `{}`?", best.1));
+    /// Bytes of a name that can be compared, which takes time by the square, and that is worth a place in a list.
+    const LONGEST: usize = 80;
+    let count = known.len();
+    let known: Vec<&str> = known
+        .into_iter()
+        .filter(|name| name.len() <= LONGEST)
+        .collect();
+    if word.len() <= LONGEST {
+        let best = known
+            .iter()
+            .take(COMPARED)
+            .map(|name| (strsim::jaro_winkler(word, name), *name))
+            .max_by(|a, b| a.0.total_cmp(&b.0));
+        // Below 0.8 two short names share little more than a letter or two; a list helps more than a wild guess.
+        if let Some((_, name)) = best.filter(|(likeness, _)| *likeness >= 0.8) {
+            return Some(format!("did you mean `{name}`?"));
+        }
+    }
+    if known.is_empty() {
+        return None;
     }
     const SHOWN: usize = 16;
-    let rest = known.len().saturating_sub(SHOWN);
+    let rest = count - known.len().min(SHOWN);
     let mut list = known
         .iter()
         .take(SHOWN)
@@ -239,6 +267,9 @@ pub fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> O
 
 /// More diagnostics than anybody reads; each is printed with a piece of its file.
 const MOST_SHOWN: usize = 200;
+
+/// Mistakes for which a document's names are searched.
+pub(crate) const HINTED: usize = 50;
 
 /// Longest line of which a piece is printed, in bytes: there is no pointing at a word in one that fills a screen, and miette
 /// cannot count beyond 65,535 columns.

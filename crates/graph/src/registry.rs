@@ -142,14 +142,12 @@ impl Params {
             Value::Param(name) => name,
         };
         let Some((param, value)) = self.get(name) else {
-            diagnostics.push(
-                Diagnostic::error(
-                    Code::UnknownParam,
-                    format!("no param is called `{}`", name.value),
-                )
-                .at(name.span.clone(), "")
-                .suggest(name, self.names()),
+            let error = Diagnostic::error(
+                Code::UnknownParam,
+                format!("no param is called `{}`", name.value),
             );
+            let error = error.at(name.span.clone(), "");
+            diagnostics.push(error.suggest_to(diagnostics.len(), name, || self.names()));
             return None;
         };
         let converted = T::from_param(param, value);

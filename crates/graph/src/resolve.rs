@@ -7,7 +7,7 @@ mod sizes;
 pub(crate) use previous::{previous, previous_of};
 
 use crate::{
-    diagnostics::{Code, Diagnostic},
+    diagnostics::{Code, Diagnostic, HINTED},
     document::{
         located::Located,
         materials::{Count, Material, SamplerEntry},
@@ -383,7 +383,12 @@ impl Resources<'_> {
             }
             diagnostics.push(error);
         } else {
-            let known = self.known();
+            let found = diagnostics.len();
+            let known = if found < HINTED {
+                self.known()
+            } else {
+                Vec::new()
+            };
             let error = Diagnostic::error(
                 Code::UnknownResource,
                 format!("nothing is called `{}`", name.value),
@@ -395,7 +400,7 @@ impl Resources<'_> {
             diagnostics.push(if name.contains("[index]") {
                 error.help("`index` is that of a repeat, and there is none around this: write a number, or `repeat: …`")
             } else {
-                error.suggest(name, known.iter().map(String::as_str))
+                error.suggest_to(found, name, || known.iter().map(String::as_str))
             });
         }
         None

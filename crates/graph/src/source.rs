@@ -2,6 +2,7 @@
 
 use std::{
     fmt,
+    io::Read,
     ops::Range,
     path::{Path, PathBuf},
     sync::Arc,
@@ -22,7 +23,7 @@ pub trait Sources: Send + Sync {
 }
 
 /// Longest document or shader file, in bytes; far above any that was written by hand, far below what memory holds.
-pub(crate) const LONGEST_FILE: usize = 8 << 20;
+const LONGEST_FILE: u64 = 8 << 20;
 
 /// Reads a text from a store.
 ///
@@ -30,15 +31,16 @@ pub(crate) const LONGEST_FILE: usize = 8 << 20;
 /// Why it cannot be read; it may be too long.
 pub(crate) fn read(sources: &dyn Sources, path: &str) -> Result<Option<Arc<str>>, String> {
     match sources.read(path)? {
-        Some(text) if text.len() > LONGEST_FILE => Err(too_long(text.len() as u64)),
+        Some(text) if text.len() as u64 > LONGEST_FILE => {
+            Err(too_long(&format!("{} MiB", text.len().div_ceil(1 << 20))))
+        }
         text => Ok(text),
     }
 }
 
-fn too_long(bytes: u64) -> String {
+fn too_long(length: &str) -> String {
     format!(
-        "it has {} MiB, a document or shader {} at most: split it into several (`Include`, `#import`), or let `repeat` say what is alike",
-        bytes.div_ceil(1 << 20),
+        "it has {length}, a document or shader {} at most: split it into several (`Include`, `#import`), or let `repeat` say what is alike",
         LONGEST_FILE >> 20
     )
 }
@@ -53,22 +55,31 @@ pub struct FolderSources {
 impl Sources for FolderSources {
     fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
         let path = self.root.join(path);
-        if !path.is_file() {
-            return Ok(None);
-        }
-        // Looked at first: a file of many gigabytes is not read to find that out.
+        // Looked at before it is opened, which a pipe can block; a file of many gigabytes is not read to find that out.
         match std::fs::metadata(&path) {
-            Ok(metadata) if metadata.len() > LONGEST_FILE as u64 => {
-                return Err(too_long(metadata.len()));
+            Ok(found) if found.is_file() => match found.len() {
+                0..=LONGEST_FILE => {}
+                length => return Err(too_long(&format!("{} MiB", length.div_ceil(1 << 20)))),
+            },
+            Ok(found) if !found.is_dir() => {
+                return Err(
+                    "it is a device, a pipe or a socket: copy what it gives into a file".to_owned(),
+                );
             }
-            _ => {}
+            _ => return Ok(None),
         }
-        std::fs::read_to_string(&path)
-            .map(|text| Some(text.into()))
-            .map_err(|error| match error.kind() {
-                std::io::ErrorKind::InvalidData => "it is no text in UTF-8".to_owned(),
-                _ => error.to_string(),
-            })
+        // Files of the kernel's have length 0 whatever they hold.
+        let mut bytes = Vec::new();
+        std::fs::File::open(&path)
+            .and_then(|file| file.take(LONGEST_FILE + 1).read_to_end(&mut bytes))
+            .map_err(|error| error.to_string())?;
+        if bytes.len() as u64 > LONGEST_FILE {
+            return Err(too_long(&format!("more than {} MiB", LONGEST_FILE >> 20)));
+        }
+        match String::from_utf8(bytes) {
+            Ok(text) => Ok(Some(text.into())),
+            Err(_) => Err("it is no text in UTF-8".to_owned()),
+        }
     }
 
     fn list(&self, folder: &str) -> Vec<String> {

@@ -1,7 +1,10 @@
 //! Files made to break us: each gives a located answer, in bounded time, stack and memory.
 
+#[path = "../../../tests/support/bounds.rs"]
+mod bounds;
 mod support;
 
+use bounds::bounded;
 use skiagraph_graph::{Diagnostics, FolderSources, Graph, PlanRequest, Registry};
 use support::{Files, Triangle};
 
@@ -9,12 +12,18 @@ use support::{Files, Triangle};
 const COMPUTE: &str = "(format: 1, materials: [Buffer(name: \"items\", count: 4)],
     passes: [Compute(name: \"index\", dispatch: Over(\"items\"))], outputs: [(name: \"items\")])";
 
+/// What is said about `graph.ron`, within the bounds; the longest of the files is the hostile one.
+#[track_caller]
 fn answer(files: &Files) -> Result<(), Diagnostics> {
     let request = PlanRequest::new([64, 48], &Triangle);
-    Graph::check("graph.ron", &Registry::standard(), files, &request).map(drop)
+    let hostile = files.0.values().max_by_key(|text| text.len());
+    bounded(hostile.expect("there are files"), || {
+        Graph::check("graph.ron", &Registry::standard(), files, &request).map(drop)
+    })
 }
 
 /// What is said about a document, beside a shader `index`.
+#[track_caller]
 fn said(document: &str) -> String {
     let shader = "var<storage, read_write> items: array<u32>;
         @compute @workgroup_size(1) fn main() { items[0] = 1u; }";
@@ -25,6 +34,7 @@ fn said(document: &str) -> String {
 }
 
 /// What is said about a shader: declarations, and the body of its function, which has an array `items` of u32.
+#[track_caller]
 fn of_shader(declarations: &str, body: &str) -> String {
     let shader = format!(
         "var<storage, read_write> items: array<u32>;\n{declarations}\n\
@@ -75,7 +85,10 @@ fn lists_without_end() {
     let param = |index: usize| format!("(name: \"p{index}\", type: U32, default: 1)");
     let said_of = said(&document(&many(5000, param), "", ""));
     assert_said(&said_of, "graph.ron:4098:1", &["the list has 5000 entries"]);
-    // As many as there may be, each as slow to look at as it can be.
+    // As many as there may be.
+    let said_of = said(&document(&many(4096, param), "", ""));
+    assert!(!said_of.contains("entries"), "{said_of}");
+    // Each as slow to look at as it can be.
     let buffer = |index: usize| {
         format!(
             "Buffer(name: \"m{index}\", count: CountOf(\"m{}\"))",
@@ -84,6 +97,87 @@ fn lists_without_end() {
     };
     let said_of = said(&document("", &many(2000, buffer), ""));
     assert_said(&said_of, "graph.ron:2002", &["nothing is called `m2000`"]);
+}
+
+/// For each name that nothing has, all names are searched for what was meant: not for as many as there may be of both.
+#[test]
+fn as_many_misspelt_names_as_names() {
+    let long =
+        |word: &str, index: usize| format!("\"{word}_{}_{index}\"", "of_the_shadow_map".repeat(3));
+    let params = many(4000, |index| {
+        format!("(name: {}, type: U32, default: 1)", long("edge", index))
+    });
+    let sized = many(4000, |index| {
+        format!(
+            "Buffer(name: \"b{index}\", count: Param({}))",
+            long("egde", index)
+        )
+    });
+    let buffers = many(4000, |index| {
+        format!("Buffer(name: {}, count: 4)", long("buffer", index))
+    });
+    let clears = many(4000, |index| {
+        format!(
+            "Clear(name: \"p{index}\", target: {})",
+            long("bufer", index)
+        )
+    });
+    let bound = |count| {
+        let entries = many(count, |index| format!("{}: \"items\"", long("egde", index)));
+        document("", "", "").replace(
+            "Over(\"items\")",
+            &format!("Over(\"items\"), bind: {{{entries}}}"),
+        )
+    };
+    let given = |word: &str, count: usize, value: &dyn Fn(usize) -> String| {
+        let entries = many(count, |index| {
+            format!("{}: {}", long(word, index), value(index))
+        });
+        let include = format!("Include(graph: \"inner.ron\", params: {{{entries}}})");
+        document(&params, "", &include)
+    };
+    let unknown = |index| format!("Param({})", long("egde", index));
+    let endless = |letter: &str| format!("\"{}\"", letter.repeat(1 << 17));
+    let inner = format!(
+        "(format: 1, params: [{params}], materials: [Buffer(name: \"inside\", count: 4)],
+        passes: [Clear(name: \"c\", target: \"inside\")], outputs: [(name: \"inside\")])"
+    );
+    let shader = "var<storage, read_write> items: array<u32>;
+        @compute @workgroup_size(1) fn main() { items[0] = 1u; }";
+    for (document, part) in [
+        (document(&params, &sized, ""), "no param is called `egde_of"),
+        (
+            document("", &buffers, &clears),
+            "nothing is called `bufer_of",
+        ),
+        (bound(4000), "`index.wgsl` has no global `egde_of"),
+        (bound(40_000), "the map has 40000 entries, 4096 is the most"),
+        (
+            given("egde", 4000, &|_| "1".to_owned()),
+            "`inner.ron` has no param `egde_of",
+        ),
+        (
+            given("egde", 40_000, &|_| "1".to_owned()),
+            "the map has 40000 entries",
+        ),
+        (given("edge", 4000, &unknown), "no param is called `egde_of"),
+        (
+            document(
+                &format!("(name: {}, type: U32, default: 1)", endless("ab")),
+                &format!("Buffer(name: \"b\", count: Param({}))", endless("ba")),
+                "",
+            ),
+            "`baba",
+        ),
+    ] {
+        let files = [
+            ("graph.ron", &*document),
+            ("index.wgsl", shader),
+            ("inner.ron", &inner),
+        ];
+        let said_of = answer(&Files::new(files)).expect_err("nothing is called so");
+        assert_said(&said_of.to_string(), "graph.ron:", &[part]);
+    }
 }
 
 /// A million passes in one file are refused by its length, before any of them is read.
@@ -488,10 +582,11 @@ fn files_on_disk() {
     let sources = FolderSources {
         root: folder.path().to_owned(),
     };
-    let load = |path: &str| match Graph::load(path, &Registry::standard(), &sources) {
-        Ok(_) => "nothing".to_owned(),
-        Err(errors) => errors.to_string(),
-    };
+    let load =
+        |path: &str| match bounded(path, || Graph::load(path, &Registry::standard(), &sources)) {
+            Ok(_) => "nothing".to_owned(),
+            Err(errors) => errors.to_string(),
+        };
     write("graph.ron", COMPUTE.as_bytes());
     // 4 GiB that take no room: never read.
     let huge = std::fs::File::create(folder.path().join("index.wgsl")).expect("it can be made");

@@ -34,6 +34,33 @@ fn a_folder() {
     );
 }
 
+/// A device has length 0 and gives bytes for ever; to open a pipe into which nobody writes takes for ever.
+#[test]
+#[cfg(unix)]
+fn files_without_end() {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let file = |name: &str| folder.path().join(name);
+    let sources = FolderSources {
+        root: folder.path().to_owned(),
+    };
+    std::os::unix::fs::symlink("/dev/zero", file("zero.ron")).expect("it can be made");
+    let made = std::process::Command::new("mkfifo")
+        .arg(file("pipe.ron"))
+        .status();
+    assert!(made.expect("there is mkfifo").success());
+    for name in ["zero.ron", "pipe.ron"] {
+        assert_eq!(
+            sources.read(name),
+            Err("it is a device, a pipe or a socket: copy what it gives into a file".to_owned())
+        );
+    }
+    let long = std::fs::File::create(file("long.ron")).expect("it can be made");
+    for (length, taken) in [(8 << 20, true), ((8 << 20) + 1, false), (4 << 30, false)] {
+        long.set_len(length).expect("a file may have holes");
+        assert_eq!(sources.read("long.ron").is_ok(), taken, "{length} bytes");
+    }
+}
+
 #[test]
 fn the_first_layer_that_has_a_file_wins() {
     struct Unreadable;

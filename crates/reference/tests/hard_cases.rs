@@ -115,7 +115,7 @@ fn many_cases_have_an_answer_of_their_own() {
     let all = cases();
     let analytic = all.iter().filter(|case| case.is_analytic()).count();
     assert!(
-        all.len() >= 42 && analytic >= 20,
+        all.len() >= 57 && analytic >= 48,
         "{analytic} of {}",
         all.len()
     );

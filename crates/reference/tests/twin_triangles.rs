@@ -151,12 +151,14 @@ proptest! {
     }
 
     #[test]
-    fn adjacent_is_shrunk_without_kept_edges_and_grows_with_each(triangle in triangles(), n in 0.5..2.0f64, kept in any::<[bool; 3]>(), more in 0..3usize) {
+    fn adjacent_is_shrunk_without_kept_edges_and_grows_with_each(triangle in triangles(), n in prop_oneof![Just(0.5), Just(0.51), 0.5..2.0f64], kept in any::<[bool; 3]>(), more in 0..3usize) {
         let mut most = kept;
         most[more] = true;
         for centre in texels(&triangle) {
             let covers = |kept| triangle.adjacent_covers(centre, n * SQRT_2, kept, 0.0);
             prop_assert_eq!(covers([false; 3]), triangle.shrunk_covers(centre, n * SQRT_2, 0.0));
+            // Two distances of half a diagonal each are the diagonal at which a corner is cut.
+            prop_assert!(!covers([false; 3]) || covers(kept), "{}", centre);
             // Below a diagonal, the corner that a further kept edge makes is cut deeper than the edge shrank.
             prop_assert!(n < 1.0 || !covers(kept) || covers(most), "{}", centre);
             prop_assert!(!covers(kept) || triangle.contains(centre, 0.0), "{}", centre);
@@ -257,7 +259,7 @@ fn separating_axes_and_clipping_know_the_plain_cases() {
     );
 }
 
-/// A triangle of 200 texels' legs: each layer has about as many texels as it should.
+/// A triangle of 200 texels' legs: each layer has exactly the texels that it should.
 #[test]
 fn layers_of_a_large_triangle_have_their_size() {
     let large = triangle([[0, 0], [51200, 0], [0, 51200]], [0.0; 3]);
@@ -265,22 +267,31 @@ fn layers_of_a_large_triangle_have_their_size() {
         let centres = (-3..204).flat_map(|y| {
             (-3..204).map(move |x| DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5))
         });
-        centres.filter(|&centre| covers(centre)).count() as f64
+        centres.filter(|&centre| covers(centre)).count()
     };
+    // Rows of 200, 199, … 1 centres.
     let whole = count(&|centre| large.contains(centre, 0.0));
-    let perimeter = 400.0 + 200.0 * SQRT_2;
-    let grown = count(&|centre| large.grown_covers(centre, SQRT_2, 0.0));
-    let shrunk = count(&|centre| large.shrunk_covers(centre, SQRT_2, 0.0));
+    assert_eq!(whole, 200 * 201 / 2);
+    for n in [0.51, 1.0, 2.0] {
+        let cell = n * SQRT_2 + ROUNDING;
+        // The slanted edge moves by n diagonals, which are 2n along either axis.
+        let slanted = |by: f64| move |centre: DVec2| centre.x + centre.y <= 200.0 + 2.0 * by + 1e-6;
+        // The box cuts what grows beyond the legs to half a texel: centres in the next row count.
+        let in_box = |centre: DVec2| centre.min_element() >= -0.5 && centre.max_element() <= 200.5;
+        let grown = count(&|centre| large.grown_covers(centre, cell, 0.0));
+        assert_eq!(grown, count(&|c| in_box(c) && slanted(n)(c)), "{n}");
+        assert!(grown >= whole + 600, "{grown} of {whole}");
+        let shrunk = count(&|centre| large.shrunk_covers(centre, cell, 0.0));
+        let inside = |centre: DVec2| centre.min_element() >= cell;
+        // Not on the line itself, which rounding shrinks past.
+        assert_eq!(
+            shrunk,
+            count(&|c| inside(c) && slanted(-n - 1e-5)(c)),
+            "{n}"
+        );
+        assert!(shrunk + 400 <= whole, "{shrunk} of {whole}");
+    }
     let kept = count(&|centre| large.adjacent_covers(centre, SQRT_2, [true; 3], 0.0));
-    // The box cuts what grows beyond the legs to half a texel: centres in the next row count.
-    assert!(
-        (grown - whole - 200.0 * SQRT_2 * SQRT_2).abs() < 0.01 * whole + 405.0,
-        "{grown} of {whole}"
-    );
-    assert!(
-        (whole - shrunk - perimeter * SQRT_2).abs() < 0.02 * whole,
-        "{shrunk} of {whole}"
-    );
     // Three corners lose a handful of texels.
-    assert!(whole > kept && whole - kept < 12.0, "{kept} of {whole}");
+    assert!(whole > kept && whole - kept < 12, "{kept} of {whole}");
 }

@@ -14,12 +14,12 @@ pub(crate) const EXTENTS: std::ops::RangeInclusive<f64> = 1e-12..=1e12;
 #[non_exhaustive]
 pub enum SceneError {
     /// A file that exists could not be read.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {reason}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
-        /// What the operating system said.
-        source: io::Error,
+        /// What the operating system said, or which bound it exceeds.
+        reason: io::Error,
     },
     /// A line of an OBJ file could not be understood.
     #[error("{}:{line}: {reason}", path.display())]

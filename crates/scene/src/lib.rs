@@ -16,6 +16,7 @@ pub mod obj;
 pub mod report;
 pub mod scene_file;
 mod weld;
+pub mod whole;
 
 pub use adjacency::{Adjacency, NO_NEIGHBOUR};
 pub use bvh::{Bvh, BvhNode};
@@ -27,6 +28,7 @@ pub use mesh::{Group, Mesh};
 pub use obj::{ObjOptions, QuadDiagonal, load_obj};
 pub use report::ImportReport;
 pub use scene_file::{MeshSource, SceneFile};
+pub use whole::Limit;
 
 /// A mesh with the views and the light under which it is drawn.
 #[derive(Clone, Debug)]

@@ -1,16 +1,20 @@
 //! Finds scenes by name or path, and the meshes that they name.
 
 use crate::{
-    DirectionalLight, ImportReport, MeshSource, ObjOptions, QuadDiagonal, Scene, SceneError,
+    DirectionalLight, ImportReport, Limit, MeshSource, ObjOptions, QuadDiagonal, Scene, SceneError,
     SceneFile, View, generate, load_obj,
 };
-use std::{
-    io,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 /// The environment variable that lists folders of meshes, separated as in `PATH`.
 pub const ASSETS_VARIABLE: &str = "SKIAGRAPH_ASSETS";
+
+/// Room for thousands of views.
+const SCENE_FILE: Limit = Limit {
+    of: "a scene file",
+    mib: 1,
+    way_out: "a mesh belongs into an .obj file of its own",
+};
 
 /// Scene files that are part of the program: name and text.
 const BUILT_IN: [(&str, &str); 2] = [
@@ -165,10 +169,12 @@ impl SceneLibrary {
             None
         };
         if let Some(file) = file {
-            let text = read_scene_file(file).map_err(|source| SceneError::Read {
-                path: file.to_owned(),
-                source,
-            })?;
+            let text = SCENE_FILE
+                .read_text(file)
+                .map_err(|reason| SceneError::Read {
+                    path: file.to_owned(),
+                    reason,
+                })?;
             return Ok((Some(file.to_owned()), text));
         }
         match BUILT_IN.iter().find(|(name, _)| *name == argument) {
@@ -210,7 +216,13 @@ impl SceneLibrary {
                 source,
             } => {
                 let places = self.mesh_places(mesh, file);
-                let Some(place) = places.iter().find(|place| place.is_file()) else {
+                // What is neither file nor folder is there as well; reading it says what is wrong with it.
+                let place = places.iter().find(|place| place.is_file()).or_else(|| {
+                    places
+                        .iter()
+                        .find(|place| place.exists() && !place.is_dir())
+                });
+                let Some(place) = place else {
                     if let Some(folder) = places.iter().find(|place| place.is_dir()) {
                         return Err(SceneError::MeshIsFolder {
                             scene: scene.name,
@@ -243,21 +255,6 @@ impl SceneLibrary {
             report,
         ))
     }
-}
-
-/// The text of a scene file. One of many gigabytes is not read to find out that it is none.
-fn read_scene_file(file: &Path) -> io::Result<String> {
-    /// Bytes; room for thousands of views.
-    const LONGEST: u64 = 1 << 20;
-    let length = std::fs::metadata(file)?.len();
-    if length > LONGEST {
-        return Err(io::Error::other(format!(
-            "it has {} KiB, a scene file {} at most; a mesh belongs into an .obj file of its own",
-            length >> 10,
-            LONGEST >> 10
-        )));
-    }
-    std::fs::read_to_string(file)
 }
 
 fn load_bare_obj(

@@ -1,17 +1,31 @@
 //! OBJ and scene files made to break us: each gives a located answer, or is rightly accepted, in bounded time and memory.
 
+#[path = "../../../tests/support/bounds.rs"]
+mod bounds;
+
+use bounds::bounded;
 use skiagraph_scene::{
-    Bvh, ImportReport, Mesh, ObjOptions, SceneError, SceneFile, SceneLibrary, SceneRequest,
-    obj::parse_obj,
+    Bvh, ImportReport, Limit, Mesh, ObjOptions, ObjSetup, QuadDiagonal, SceneError, SceneFile,
+    SceneLibrary, SceneRequest, obj::parse_obj,
 };
 use std::path::Path;
 
+#[track_caller]
 fn parse(text: impl AsRef<[u8]>) -> Result<(Mesh, ImportReport), SceneError> {
-    parse_obj(
-        text.as_ref(),
-        Path::new("house.obj"),
-        &ObjOptions::default(),
-    )
+    parse_with(text.as_ref(), &ObjOptions::default())
+}
+
+#[track_caller]
+fn parse_with(text: &[u8], options: &ObjOptions) -> Result<(Mesh, ImportReport), SceneError> {
+    let path = Path::new("house.obj");
+    bounded(&String::from_utf8_lossy(text), || {
+        parse_obj(text, path, options)
+    })
+}
+
+#[track_caller]
+fn parse_scene(text: &str) -> Result<SceneFile, SceneError> {
+    bounded(text, || SceneFile::parse(text, "garden.ron"))
 }
 
 /// Asserts that the error begins with `place` and holds `part`.
@@ -165,7 +179,7 @@ fn two_hundred_thousand_groups() {
         ..ObjOptions::default()
     };
     let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{groups}");
-    let (mesh, report) = parse_obj(text.as_bytes(), Path::new("house.obj"), &options).unwrap();
+    let (mesh, report) = parse_with(text.as_bytes(), &options).unwrap();
     assert_eq!((mesh.triangles.len(), report.faces_left_out), (1, 199_999));
 }
 
@@ -255,7 +269,7 @@ fn views_that_make_no_camera() {
         ),
     ] {
         assert!(SCENE.contains(from));
-        let error = SceneFile::parse(&SCENE.replace(from, to), "garden.ron")
+        let error = parse_scene(&SCENE.replace(from, to))
             .unwrap_err()
             .to_string();
         let line = if from == "direction: (0, -1, 0)" {
@@ -272,11 +286,7 @@ fn views_that_make_no_camera() {
 
 #[test]
 fn scene_files_of_nothing_and_without_end() {
-    let error = |text: &str| {
-        SceneFile::parse(text, "garden.ron")
-            .unwrap_err()
-            .to_string()
-    };
+    let error = |text: &str| parse_scene(text).unwrap_err().to_string();
     for text in ["", " \n ", "\u{feff}", "\0", "(", &SCENE[..SCENE.len() - 1]] {
         assert!(
             error(text).starts_with("garden.ron:"),
@@ -298,37 +308,108 @@ fn scene_files_of_nothing_and_without_end() {
     };
     let views: String = (0..50_000).map(view).collect();
     let many = SCENE.replace("views: [", &format!("views: [{views}"));
-    assert_eq!(
-        SceneFile::parse(&many, "garden.ron").unwrap().views.len(),
-        50_001
-    );
+    assert_eq!(parse_scene(&many).unwrap().views.len(), 50_001);
     assert!(error(&many.replace("\"a\"", "\"7\"")).contains("two views are called \"7\""));
 }
 
-#[test]
-fn scene_files_on_disk() {
-    let folder = tempfile::tempdir().unwrap();
-    let load = |name: &str| {
-        let request = SceneRequest {
-            argument: folder.path().join(name).display().to_string(),
-            ..SceneRequest::default()
-        };
-        SceneLibrary::default()
-            .load(&request)
-            .unwrap_err()
-            .to_string()
+/// What is said about a scene file or a bare mesh on disk.
+#[track_caller]
+fn said_of_file(path: &Path) -> String {
+    let argument = path.display().to_string();
+    let camera = parse_scene(SCENE).unwrap();
+    let request = SceneRequest {
+        obj: argument.ends_with(".obj").then(|| ObjSetup {
+            view: camera.views[0].clone(),
+            light: camera.light,
+            quads: QuadDiagonal::default(),
+        }),
+        argument,
     };
-    std::fs::write(folder.path().join("binary.ron"), b"(name: \"\xc3\x28\")").unwrap();
-    assert!(
-        load("binary.ron").contains("binary.ron: stream did not contain valid UTF-8"),
-        "{}",
-        load("binary.ron")
+    let load = || SceneLibrary::default().load(&request).unwrap_err();
+    bounded(&request.argument, load).to_string()
+}
+
+#[test]
+fn files_that_are_no_text_or_too_long() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    std::fs::write(file("binary.ron"), b"(name: \"\xc3\x28\")").unwrap();
+    let sparse = |name: &str| {
+        let huge = std::fs::File::create(file(name)).unwrap();
+        huge.set_len(4 << 30).unwrap();
+    };
+    sparse("huge.ron");
+    sparse("huge.obj");
+    std::fs::create_dir(file("folder.obj")).unwrap();
+    for (name, said) in [
+        ("binary.ron", "it is no text in UTF-8"),
+        (
+            "huge.ron",
+            "it has 4096 MiB, a scene file 1 at most: a mesh belongs into an .obj file of its own",
+        ),
+        (
+            "huge.obj",
+            "it has 4096 MiB, an .obj file 2048 at most: split it, or leave groups out of it",
+        ),
+        ("folder.obj", "it is a folder, expected a file"),
+    ] {
+        let begin = format!("cannot read {}: ", file(name).display());
+        assert_eq!(said_of_file(&file(name)), format!("{begin}{said}"));
+    }
+}
+
+/// A device has length 0 and gives bytes for ever; to open a pipe into which nobody writes takes for ever.
+#[test]
+#[cfg(unix)]
+fn devices_and_pipes() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    for name in ["zero.ron", "zero.obj"] {
+        std::os::unix::fs::symlink("/dev/zero", file(name)).unwrap();
+    }
+    for name in ["pipe.ron", "pipe.obj"] {
+        let made = std::process::Command::new("mkfifo")
+            .arg(file(name))
+            .status();
+        assert!(made.unwrap().success());
+    }
+    std::fs::write(
+        file("garden.ron"),
+        SCENE.replace("Generated(\"park\")", "Obj(file: \"zero.obj\")"),
+    )
+    .unwrap();
+    for (name, read) in [
+        ("zero.ron", "zero.ron"),
+        ("zero.obj", "zero.obj"),
+        ("pipe.ron", "pipe.ron"),
+        ("pipe.obj", "pipe.obj"),
+        ("garden.ron", "zero.obj"),
+    ] {
+        assert_eq!(
+            said_of_file(&file(name)),
+            format!(
+                "cannot read {}: it is a device, a pipe or a socket, whose length nobody knows: copy what it gives into a file, and name that",
+                file(read).display()
+            )
+        );
+    }
+}
+
+/// The kernel's files say that they are regular and of no length, whatever they hold: what is read counts.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_file_that_is_longer_than_it_says() {
+    let path = Path::new("/proc/self/status");
+    assert_eq!(std::fs::metadata(path).unwrap().len(), 0);
+    let limit = |mib| Limit {
+        of: "a list",
+        mib,
+        way_out: "shorten it",
+    };
+    let error = limit(0).read(path).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "it has more than 0 MiB, a list 0 at most: shorten it"
     );
-    let huge = std::fs::File::create(folder.path().join("huge.ron")).unwrap();
-    huge.set_len(4 << 30).unwrap();
-    assert!(
-        load("huge.ron").contains("huge.ron: it has 4194304 KiB, a scene file 1024 at most"),
-        "{}",
-        load("huge.ron")
-    );
+    assert!(!limit(1024).read(path).unwrap().is_empty());
 }

@@ -8,14 +8,23 @@ use crate::{
 use serde::Deserialize;
 use serde_json::Value;
 use skiagraph_graph::SourceFile;
-use std::{fs, path::Path};
+use skiagraph_scene::Limit;
+use std::path::Path;
+
+/// The most frames that can be asked for, of fifty passes.
+const PROFILE: Limit = Limit {
+    of: "a profile",
+    mib: 256,
+    way_out: "name one that `skiagraph profile --json FILE` wrote, of fewer --frames",
+};
 
 /// Reads an older profile.
 ///
 /// # Errors
 /// A file that cannot be read, or that is no profile; with the place.
 pub fn read(path: &Path) -> Result<Profile, CliError> {
-    let text = fs::read_to_string(path)
+    let text = PROFILE
+        .read_text(path)
         .map_err(|error| CliError::Input(format!("--baseline {}: {error}", path.display())))?;
     let file = SourceFile::new(path.display().to_string(), text);
     parse(&file).map_err(|fault| shown(fault, &file))

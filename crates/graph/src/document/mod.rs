@@ -22,7 +22,7 @@ use serde::Deserialize;
 use std::collections::HashMap;
 
 /// Most entries of a list as it is written; each may name all others, so time may grow with the square.
-const MOST_ENTRIES: usize = 4096;
+pub(crate) const MOST_ENTRIES: usize = 4096;
 
 /// The only document format there is.
 const FORMAT: u32 = 1;

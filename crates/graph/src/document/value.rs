@@ -1,6 +1,9 @@
 //! Values that several entries share: a literal or a param, comparison functions, named pairs.
 
-use super::located::{self, Located};
+use super::{
+    MOST_ENTRIES,
+    located::{self, Located},
+};
 use crate::{
     diagnostics::{Code, Diagnostic},
     resolve::previous,
@@ -106,8 +109,17 @@ impl<V> Default for Map<V> {
 }
 
 impl<V> Map<V> {
-    /// The entries, or the first key that is there twice.
+    /// The entries, or the first key that is there twice or beyond the most entries.
     pub(crate) fn unique(self, what: &str) -> Result<Vec<(Located<String>, V)>, Diagnostic> {
+        if let Some((key, _)) = self.0.get(MOST_ENTRIES) {
+            let count = self.0.len();
+            return Err(Diagnostic::error(
+                Code::Size,
+                format!("the map has {count} entries, {MOST_ENTRIES} is the most"),
+            )
+            .at(key.span.clone(), "this one is too many")
+            .help("split what it is for, and `Include` its parts"));
+        }
         let mut seen = HashSet::new();
         match self.0.iter().find(|(key, _)| !seen.insert(key.as_str())) {
             Some((key, _)) => Err(Diagnostic::error(

@@ -51,17 +51,15 @@ impl Builder<'_, '_> {
         let outer = Arc::clone(&self.scopes.get(scope).params);
         for (name, _) in &include.params {
             if document.params.iter().all(|param| *param.name != **name) {
-                self.diagnostics.push(
-                    Diagnostic::error(
-                        Code::UnknownParam,
-                        format!("`{}` has no param `{}`", document.file.name, **name),
-                    )
-                    .at(name.span.clone(), "")
-                    .suggest(
-                        name,
-                        document.params.iter().map(|param| param.name.as_str()),
-                    ),
+                let error = Diagnostic::error(
+                    Code::UnknownParam,
+                    format!("`{}` has no param `{}`", document.file.name, **name),
                 );
+                let error = error.at(name.span.clone(), "");
+                let found = self.diagnostics.len();
+                self.diagnostics.push(error.suggest_to(found, name, || {
+                    document.params.iter().map(|param| param.name.as_str())
+                }));
             }
         }
         let mut list = Vec::new();
@@ -77,7 +75,7 @@ impl Builder<'_, '_> {
                 .iter()
                 .find(|(name, _)| **name == *param.name.value);
             if let Some((_, given)) = given
-                && let Err(error) = give(&mut bound, given, &outer)
+                && let Err(error) = give(&mut bound, given, &outer, self.diagnostics.len())
             {
                 self.diagnostics.push(error);
             }
@@ -160,6 +158,7 @@ fn give(
     bound: &mut BoundParam,
     given: &Located<Value<crate::document::params::Written>>,
     outer: &Params,
+    found: usize,
 ) -> Result<(), Diagnostic> {
     let param = &bound.param;
     let does_not_fit = |why: String| {
@@ -185,7 +184,7 @@ fn give(
                     format!("no param is called `{}`", **name),
                 )
                 .at(name.span.clone(), "")
-                .suggest(name, outer.names()));
+                .suggest_to(found, name, || outer.names()));
             };
             if !agree(&param.ty, &source.param.ty) {
                 let ty = &source.param.ty;

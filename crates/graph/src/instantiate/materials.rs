@@ -137,16 +137,17 @@ impl Builder<'_, '_> {
         let known = self.scopes.get(scope);
         for (name, _) in &include.materials {
             if !known.knows(name) && !self.is_full {
-                let mut names: Vec<&str> = known.names().collect();
-                names.sort_unstable();
-                self.diagnostics.push(
-                    Diagnostic::error(
-                        Code::UnknownResource,
-                        format!("`{}` has no material `{}`", document.file.name, **name),
-                    )
-                    .at(name.span.clone(), "")
-                    .suggest(name, names),
+                let error = Diagnostic::error(
+                    Code::UnknownResource,
+                    format!("`{}` has no material `{}`", document.file.name, **name),
                 );
+                let error = error.at(name.span.clone(), "");
+                let found = self.diagnostics.len();
+                self.diagnostics.push(error.suggest_to(found, name, || {
+                    let mut names: Vec<&str> = known.names().collect();
+                    names.sort_unstable();
+                    names
+                }));
             }
         }
     }

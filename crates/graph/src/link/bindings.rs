@@ -2,7 +2,7 @@
 
 use super::{Access, LinkedPass, Linker, Usage};
 use crate::{
-    diagnostics::{Code, Diagnostic, suggestion},
+    diagnostics::{Code, Diagnostic},
     document::materials::Filter,
     resolve::{Part, ResourceId, ResourceKind, Target},
     step::Program,
@@ -96,7 +96,7 @@ impl Linker<'_, '_> {
                     name.span != pass.name.span || name.value == *own
                 })
             {
-                let names: Vec<&str> = globals.iter().map(|global| global.name.as_str()).collect();
+                let names = || globals.iter().map(|global| global.name.as_str());
                 self.report(
                     Diagnostic::error(
                         Code::Binding,
@@ -106,7 +106,7 @@ impl Linker<'_, '_> {
                         ),
                     )
                     .at(bound.span.clone(), "")
-                    .suggest(bound, names),
+                    .suggest_to(self.diagnostics.len(), bound, names),
                 );
             }
         }
@@ -432,7 +432,10 @@ impl Linker<'_, '_> {
             "no material or provided resource has this name",
         )
         .at(pass.name.span.clone(), "bound by this pass");
-        let hint = suggestion(&global.name, known.iter().map(String::as_str)).unwrap_or_default();
+        error = error.suggest_to(self.diagnostics.len(), &global.name, || {
+            known.iter().map(String::as_str)
+        });
+        let hint = error.help.take().unwrap_or_default();
         error = error.help(
             format!("{hint}\nor bind it: `bind: {{\"{}\": \"…\"}}`", global.name)
                 .trim()

@@ -2,7 +2,7 @@
 
 use super::Linker;
 use crate::{
-    diagnostics::{Code, Diagnostic, suggestion},
+    diagnostics::{Code, Diagnostic},
     document::params::{ParamType, ParamValue},
     step::Program,
     wgsl::{Global, Member, ScalarClass, Shader},
@@ -52,25 +52,19 @@ impl Linker<'_, '_> {
         let mut complete = true;
         for member in members {
             let Some((param, value)) = self.params.get(&member.name) else {
-                self.report(
-                    Diagnostic::error(
-                        Code::UnknownParam,
-                        format!(
-                            "no param is called `{}`, which the shader's `params` holds",
-                            member.name
-                        ),
-                    )
-                    .at(global.span.clone(), "")
-                    .help(
-                        match suggestion(&member.name, self.params.names()) {
-                            Some(hint) => hint,
-                            None => format!(
-                                "declare it: `params: [(name: \"{}\", type: …, default: …)]`",
-                                member.name
-                            ),
-                        },
+                let error = Diagnostic::error(
+                    Code::UnknownParam,
+                    format!(
+                        "no param is called `{}`, which the shader's `params` holds",
+                        member.name
                     ),
                 );
+                let error = error.at(global.span.clone(), "").help(format!(
+                    "declare it: `params: [(name: \"{}\", type: …, default: …)]`",
+                    member.name
+                ));
+                let found = self.diagnostics.len();
+                self.report(error.suggest_to(found, &member.name, || self.params.names()));
                 complete = false;
                 continue;
             };

@@ -112,21 +112,22 @@ impl<'a> Sizes<'a> {
                 }
                 Some(texture) => last = texture,
                 None => {
-                    let mut known: Vec<&str> = self
-                        .textures
-                        .keys()
-                        .copied()
-                        .filter(|name| *name != last.name.as_str())
-                        .collect();
-                    known.sort_unstable();
-                    diagnostics.push(
-                        Diagnostic::error(
-                            Code::UnknownResource,
-                            format!("no texture is called `{}`", other.value),
-                        )
-                        .at(other.span.clone(), "")
-                        .suggest(other, known),
+                    let error = Diagnostic::error(
+                        Code::UnknownResource,
+                        format!("no texture is called `{}`", other.value),
                     );
+                    let error = error.at(other.span.clone(), "");
+                    let known = || {
+                        let mut known: Vec<&str> = self
+                            .textures
+                            .keys()
+                            .copied()
+                            .filter(|name| *name != last.name.as_str())
+                            .collect();
+                        known.sort_unstable();
+                        known
+                    };
+                    diagnostics.push(error.suggest_to(diagnostics.len(), other, known));
                     break None;
                 }
             }

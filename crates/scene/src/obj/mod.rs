@@ -9,13 +9,20 @@ mod guard;
 
 use crate::weld::Welder;
 use crate::{
-    Group, ImportReport, Mesh, SceneError,
+    Group, ImportReport, Limit, Mesh, SceneError,
     error::{EXTENTS, FACES_SHOWN, FaceFault, FaceProblem},
 };
 use glam::{DVec3, Vec3};
 use guard::{FaceRecord, Guard};
 use serde::Deserialize;
 use std::{collections::HashSet, path::Path};
+
+/// Some twenty million faces. The mesh takes several times as much.
+const OBJ_FILE: Limit = Limit {
+    of: "an .obj file",
+    mib: 2048,
+    way_out: "split it, or leave groups out of it",
+};
 
 /// Which diagonal splits a quad, corners counted from the first; larger polygons are fanned from the same corner.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -52,9 +59,9 @@ pub struct ObjOptions {
 /// [`SceneError`] with file, line, group and face number: unreadable or damaged files, faces that name missing or
 /// non-finite vertices, a group to be left out that does not exist, a file without triangles.
 pub fn load_obj(path: &Path, options: &ObjOptions) -> Result<(Mesh, ImportReport), SceneError> {
-    let bytes = std::fs::read(path).map_err(|source| SceneError::Read {
+    let bytes = OBJ_FILE.read(path).map_err(|reason| SceneError::Read {
         path: path.to_owned(),
-        source,
+        reason,
     })?;
     parse_obj(&bytes, path, options)
 }

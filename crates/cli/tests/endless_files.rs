@@ -1,0 +1,140 @@
+//! Files without end, and of more bytes than a machine has memory, wherever the command line takes a file: refused at once.
+#![cfg(target_os = "linux")]
+
+use std::{fs, os::unix::fs::symlink, process::Command};
+
+const LIT: &str = r#"(
+    format: 1,
+    materials: [
+        Texture(name: "visibility", format: R8Uint, size: Viewport),
+        Texture(name: "status", format: R8Uint, size: Viewport),
+    ],
+    passes: [
+        Clear(name: "light", target: "visibility", value: (1, 0, 0, 0)),
+        Clear(name: "certain", target: "status", value: (2, 0, 0, 0)),
+    ],
+    outputs: [(name: "visibility"), (name: "status")],
+)"#;
+
+/// The commands, and the kind of file that stands where `FILE` does, with the most MiB that it may have and the way out.
+const COMMANDS: [(&str, &str, &str, [&str; 3]); 6] = [
+    (
+        "compare lit.ron --size 16x16 --beside P:FILE",
+        "published.csv",
+        "--beside published.csv: ",
+        [
+            "a file of published figures",
+            "16",
+            "split it, and give --beside for each part",
+        ],
+    ),
+    (
+        "profile lit.ron --size 16x16 --baseline FILE",
+        "old.json",
+        "--baseline old.json: ",
+        [
+            "a profile",
+            "256",
+            "name one that `skiagraph profile --json FILE` wrote, of fewer --frames",
+        ],
+    ),
+    (
+        "compare lit.ron --size 16x16 --frames 1 --warmup 0 --out . --resume",
+        "results.json",
+        "--resume ./results.json: ",
+        [
+            "a results.json",
+            "64",
+            "give another --out, or leave out --resume, which measures everything and overwrites the file",
+        ],
+    ),
+    (
+        "run lit.ron --size 16x16 --scene FILE",
+        "garden.ron",
+        "cannot read garden.ron: ",
+        [
+            "a scene file",
+            "1",
+            "a mesh belongs into an .obj file of its own",
+        ],
+    ),
+    (
+        "run lit.ron --size 16x16 --scene FILE --eye 0,2,8 --look 0,0,-1 --light 0.3,-1,-0.2",
+        "house.obj",
+        "cannot read house.obj: ",
+        [
+            "an .obj file",
+            "2048",
+            "split it, or leave groups out of it",
+        ],
+    ),
+    (
+        "check FILE",
+        "graph.ron",
+        "cannot read `graph.ron`: ",
+        [
+            "a document or shader",
+            "8",
+            "split it into several (`Include`, `#import`), or let `repeat` say what is alike",
+        ],
+    ),
+];
+
+/// What each command says when its file was made by `make`.
+fn said(make: impl Fn(&std::path::Path)) -> Vec<String> {
+    let answer = |(line, file, begin, _): &(&str, &str, &str, [&str; 3])| {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("lit.ron"), LIT).unwrap();
+        make(&folder.path().join(file));
+        let line = line.replace("FILE", file);
+        // A pipe that is opened blocks for ever, and a device is read until no memory is left.
+        let limited = format!("ulimit -v 4000000; exec timeout 20 \"$0\" {line}");
+        let output = Command::new("bash")
+            .args(["-c", &limited, env!("CARGO_BIN_EXE_skiagraph")])
+            .current_dir(&folder)
+            .env("NO_COLOR", "1")
+            .output()
+            .unwrap();
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{line}: {text}");
+        let at = text
+            .find(begin)
+            .unwrap_or_else(|| panic!("no {begin} in {text}"));
+        text[at + begin.len()..].trim_end().to_owned()
+    };
+    COMMANDS.iter().map(answer).collect()
+}
+
+#[test]
+fn a_file_of_four_gibibytes_is_refused_unread() {
+    let said = said(|file| fs::File::create(file).unwrap().set_len(4 << 30).unwrap());
+    for (said, (line, _, _, [of, mib, way_out])) in said.iter().zip(&COMMANDS) {
+        assert_eq!(
+            *said,
+            format!("it has 4096 MiB, {of} {mib} at most: {way_out}"),
+            "{line}"
+        );
+    }
+}
+
+#[test]
+fn a_device_is_refused_unopened() {
+    for said in said(|file| symlink("/dev/zero", file).unwrap()) {
+        assert!(
+            said.starts_with("it is a device, a pipe or a socket")
+                && said.contains("copy what it gives into a file"),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn a_pipe_is_refused_unopened() {
+    for said in said(|file| assert!(Command::new("mkfifo").arg(file).status().unwrap().success())) {
+        assert!(
+            said.starts_with("it is a device, a pipe or a socket")
+                && said.contains("copy what it gives into a file"),
+            "{said}"
+        );
+    }
+}

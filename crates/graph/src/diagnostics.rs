@@ -229,9 +229,11 @@ impl Diagnostic {
 pub fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
     /// Names that a misspelt one is compared with: a document may hold thousands, and as many mistakes.
     const COMPARED: usize = 1024;
-    let known: Vec<&str> = known.into_iter().collect();
     /// Bytes of a name that can be compared, which takes time by the square, and that is worth a place in a list.
     const LONGEST: usize = 80;
+    /// Names in a list.
+    const SHOWN: usize = 16;
+    let known: Vec<&str> = known.into_iter().collect();
     let count = known.len();
     let known: Vec<&str> = known
         .into_iter()
@@ -251,7 +253,6 @@ pub fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> O
     if known.is_empty() {
         return None;
     }
-    const SHOWN: usize = 16;
     let rest = count - known.len().min(SHOWN);
     let mut list = known
         .iter()

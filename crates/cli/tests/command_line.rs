@@ -44,19 +44,7 @@ fn assert_exit(output: &Output, code: i32) {
 }
 
 /// A graph that clears two textures and calls them a shadow method.
-const CLEARED: &str = r#"(
-    format: 1,
-    description: "everything is lit",
-    materials: [
-        Texture(name: "visibility", format: R8Uint, size: Viewport),
-        Texture(name: "status", format: R8Uint, size: Viewport),
-    ],
-    passes: [
-        Clear(name: "light", target: "visibility", value: (1, 0, 0, 0)),
-        Clear(name: "certain", target: "status", value: (2, 0, 0, 0)),
-    ],
-    outputs: [(name: "visibility"), (name: "status")],
-)"#;
+const CLEARED: &str = include_str!("support/lit.ron");
 
 #[test]
 fn check_needs_no_gpu_and_shows_the_faults_of_all_files() {

@@ -3,18 +3,8 @@
 
 use std::{fs, os::unix::fs::symlink, process::Command};
 
-const LIT: &str = r#"(
-    format: 1,
-    materials: [
-        Texture(name: "visibility", format: R8Uint, size: Viewport),
-        Texture(name: "status", format: R8Uint, size: Viewport),
-    ],
-    passes: [
-        Clear(name: "light", target: "visibility", value: (1, 0, 0, 0)),
-        Clear(name: "certain", target: "status", value: (2, 0, 0, 0)),
-    ],
-    outputs: [(name: "visibility"), (name: "status")],
-)"#;
+/// A graph that lights everything and is sure of it.
+const LIT: &str = include_str!("support/lit.ron");
 
 /// The commands, and the kind of file that stands where `FILE` does, with the most MiB that it may have and the way out.
 const COMMANDS: [(&str, &str, &str, [&str; 3]); 6] = [

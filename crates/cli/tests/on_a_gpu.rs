@@ -8,19 +8,7 @@ use std::{
 };
 
 /// A graph that clears two textures and calls them a shadow method.
-const LIT: &str = r#"(
-    format: 1,
-    description: "everything is lit",
-    materials: [
-        Texture(name: "visibility", format: R8Uint, size: Viewport),
-        Texture(name: "status", format: R8Uint, size: Viewport),
-    ],
-    passes: [
-        Clear(name: "light", target: "visibility", value: (1, 0, 0, 0)),
-        Clear(name: "certain", target: "status", value: (2, 0, 0, 0)),
-    ],
-    outputs: [(name: "visibility"), (name: "status")],
-)"#;
+const LIT: &str = include_str!("support/lit.ron");
 
 #[track_caller]
 fn skiagraph(folder: &Path, line: &str) -> Output {

@@ -10,19 +10,7 @@ use std::{
 };
 
 /// A graph that lights everything and is sure of it.
-const LIT: &str = r#"(
-    format: 1,
-    description: "everything is lit",
-    materials: [
-        Texture(name: "visibility", format: R8Uint, size: Viewport),
-        Texture(name: "status", format: R8Uint, size: Viewport),
-    ],
-    passes: [
-        Clear(name: "light", target: "visibility", value: (1, 0, 0, 0)),
-        Clear(name: "certain", target: "status", value: (2, 0, 0, 0)),
-    ],
-    outputs: [(name: "visibility"), (name: "status")],
-)"#;
+const LIT: &str = include_str!("support/lit.ron");
 
 fn stress(folder: &Path, line: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_skiagraph"));

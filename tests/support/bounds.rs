@@ -1,9 +1,17 @@
 //! What a hostile input may cost: used by the tests of several crates.
 
-use std::time::{Duration, Instant};
+use std::{
+    io::Write as _,
+    sync::mpsc::{RecvTimeoutError, channel},
+    thread,
+    time::{Duration, Instant},
+};
 
 /// Ten times the slowest input in a debug build, and half of what 4000 misspelt names took that were each compared with as many.
 const LONGEST: Duration = Duration::from_secs(10);
+
+/// What runs longer than this is taken for endless: the process ends with the input's name.
+const ENDLESS: Duration = Duration::from_secs(120);
 
 /// Peak of the whole process, whatever else its tests hold meanwhile: less than 0.2 GiB.
 const MOST_MIB: u64 = 2048;
@@ -14,10 +22,10 @@ const MOST_MIB: u64 = 2048;
 /// Names the input by its beginning, if that took too long, or if the process needed more memory than ever before and than it may.
 #[track_caller]
 pub fn bounded<T>(input: &str, work: impl FnOnce() -> T) -> T {
-    let (before, begin) = (peak_mib(), Instant::now());
-    let answer = work();
-    let (took, after) = (begin.elapsed(), peak_mib());
     let name: String = input.chars().take(240).collect();
+    let (before, begin) = (peak_mib(), Instant::now());
+    let answer = watched(&name, work);
+    let (took, after) = (begin.elapsed(), peak_mib());
     assert!(
         took <= LONGEST,
         "it took {took:.1?}, {LONGEST:?} at most, for {} bytes: {name}",
@@ -28,6 +36,23 @@ pub fn bounded<T>(input: &str, work: impl FnOnce() -> T) -> T {
         "the peak of memory rose from {before} to {after} MiB, {MOST_MIB} at most, over {} bytes: {name}",
         input.len()
     );
+    answer
+}
+
+/// Runs `work`, and ends the process if it does not end: a loop on this thread cannot be left in any other way.
+fn watched<T>(name: &str, work: impl FnOnce() -> T) -> T {
+    let (done, waiting) = channel::<()>();
+    let name = name.to_owned();
+    thread::spawn(move || {
+        // Done, or panicked: either drops the sender.
+        if waiting.recv_timeout(ENDLESS) == Err(RecvTimeoutError::Timeout) {
+            // Not `eprintln!`, whose lines a test keeps until it ends.
+            let _ = writeln!(std::io::stderr(), "still running after {ENDLESS:?}: {name}");
+            std::process::abort();
+        }
+    });
+    let answer = work();
+    drop(done);
     answer
 }
 

@@ -18,7 +18,7 @@ use crate::{
     diagnostics::{Code, Diagnostic, Diagnostics, Severity},
     document::params::ParamValue,
     graph::Graph,
-    instantiate::{Fallback, Purpose, instantiate},
+    instantiate::{Fallback, Instance, Purpose, instantiate},
     lifetime::{Lifetime, lifetimes},
     link::{Access, BindTarget, LinkedPass, LinkedStep, Linker},
     order::{Order, order, order_of_live},
@@ -98,7 +98,6 @@ impl Graph {
             provider: request.provider,
             imports: &request.imports,
         };
-        let lowered = &instance.passes;
         let mut resources = resolve(
             &instance.materials,
             &instance.unread,
@@ -107,24 +106,103 @@ impl Graph {
             &mut diagnostics,
         );
         resources.hide(&instance.hidden);
-        for (name, bytes) in lowered.iter().flat_map(|pass| &pass.scratch) {
+        for (name, bytes) in instance.passes.iter().flat_map(|pass| &pass.scratch) {
             let kind = ResourceKind::Buffer(Buffer {
                 count: Some(bytes / 4),
                 bytes: 0,
             });
             resources.add(name.clone(), None, kind);
         }
+        let (passes, sound) = self.link(request, &instance, &mut resources, &mut diagnostics);
+        readable::check_captures(request, &instance.passes, &mut diagnostics);
+        let complete = sound.is_none() && instance.first_broken.is_none();
+        let judged = sound.unwrap_or(passes.len());
+        let order = order(&passes, judged, &resources, &mut diagnostics);
+        if complete {
+            never_written(&passes, &resources, &order, &mut diagnostics);
+        }
+        let written = |target: &Target| !complete || !order.final_writers(target).is_empty();
+        let readable = self.readable(request, &mut resources, written, &mut diagnostics);
+        if !complete || has_errors(&diagnostics) {
+            return (None, diagnostics);
+        }
+        let live = live(&passes, &resources, &readable, &order);
+        let schedule = schedule(&order_of_live(&passes, &resources, &live), &live);
+        let mut lifetimes = lifetimes(&passes, &schedule);
+        unsized_buffers(&lifetimes, &resources, &mut diagnostics);
+        // Whether conditions agree must not depend on which outputs are asked for.
+        let all: Vec<usize> = (0..passes.len()).collect();
+        conditions(&passes, &all, &resources.list, &mut diagnostics);
+        let conditions = conditions(&passes, &schedule, &resources.list, &mut Vec::new());
+        let histories = histories(&lifetimes, &resources);
+        further_uses(&mut lifetimes, &readable, &histories, request, &resources);
+        imports::check(
+            &passes,
+            &schedule,
+            &resources.list,
+            request,
+            &mut diagnostics,
+        );
+        if has_errors(&diagnostics) {
+            return (None, diagnostics);
+        }
+        let kept: BTreeSet<ResourceId> = conditions
+            .kept
+            .iter()
+            .copied()
+            .chain(readable.iter().map(|(_, target)| target.id))
+            .chain(histories.values().copied())
+            .collect();
+        let slots = slots(&passes, &schedule, &resources.list, &lifetimes, &kept);
+        let culled = passes
+            .iter()
+            .zip(&live)
+            .filter(|(_, live)| !**live)
+            .map(|(pass, _)| CulledPass {
+                name: pass.name.value.clone(),
+                reason: reason(pass, &resources.list),
+            })
+            .collect();
+        let plan = Plan {
+            resources: resources.list,
+            passes,
+            schedule,
+            lifetimes,
+            readable,
+            conditions,
+            slots,
+            histories: histories.into_values().collect(),
+            graph: self.clone(),
+            request: Request::of(request),
+            culled,
+            fallbacks: instance.fallbacks,
+            warnings: diagnostics,
+        };
+        match plan.check_memory(request.memory_limit) {
+            Some(too_much) => (None, vec![too_much]),
+            None => (Some(plan), Vec::new()),
+        }
+    }
+
+    /// All passes with their captures, and how many of them stand above the first one with a mistake, if one has.
+    fn link(
+        &self,
+        request: &PlanRequest<'_>,
+        instance: &Instance,
+        resources: &mut Resources<'_>,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> (Vec<LinkedPass>, Option<usize>) {
         let mut linker = Linker::new(
-            &mut resources,
+            resources,
             &self.shaders,
             &instance.params,
             (&request.limits, request.features),
-            &mut diagnostics,
+            diagnostics,
         );
         let mut passes = Vec::new();
         // How many passes stand above the first one with a mistake: what that one writes is not known.
         let mut sound: Option<usize> = None;
-        for (index, pass) in lowered.iter().enumerate() {
+        for (index, pass) in instance.passes.iter().enumerate() {
             // For each mistake all names are searched for what was meant.
             if linker.diagnostics.len() > ENOUGH {
                 sound.get_or_insert(passes.len());
@@ -153,127 +231,8 @@ impl Graph {
         }
         linker.resources.nearby = None;
         let layouts = std::mem::take(&mut linker.layouts);
-        layouts.settle(&mut resources, &request.limits, &mut diagnostics);
-        readable::check_captures(request, lowered, &mut diagnostics);
-        let complete = sound.is_none() && instance.first_broken.is_none();
-        let judged = sound.unwrap_or(passes.len());
-        let order = order(&passes, judged, &resources, &mut diagnostics);
-        if complete {
-            never_written(&passes, &resources, &order, &mut diagnostics);
-        }
-        let written = |target: &Target| !complete || !order.final_writers(target).is_empty();
-        let readable = self.readable(request, &mut resources, written, &mut diagnostics);
-        if !complete || has_errors(&diagnostics) {
-            return (None, diagnostics);
-        }
-        // What the host imports is written for the host.
-        let imports = passes.iter().enumerate().filter(|(_, pass)| {
-            let is_import = |access: &Access| {
-                access.writes && resources.get(access.resource).origin == Origin::Host
-            };
-            pass.accesses.iter().any(is_import)
-        });
-        let roots: BTreeSet<usize> = readable
-            .iter()
-            .flat_map(|(_, target)| order.final_writers(target))
-            .chain(imports.map(|(index, _)| index))
-            .collect();
-        let live = cull::live(&order, roots, |pass| {
-            let of = |access: &Access| match resources.get(access.resource).origin {
-                Origin::Previous(id) => order.final_writers(&Target {
-                    id,
-                    part: access.part.clone(),
-                }),
-                _ => BTreeSet::new(),
-            };
-            passes[pass]
-                .accesses
-                .iter()
-                .flat_map(of)
-                .collect::<Vec<_>>()
-        });
-        let schedule = schedule(&order_of_live(&passes, &resources, &live), &live);
-        let mut lifetimes = lifetimes(&passes, &schedule);
-        unsized_buffers(&lifetimes, &resources, &mut diagnostics);
-        // Whether conditions agree must not depend on which outputs are asked for.
-        let all: Vec<usize> = (0..passes.len()).collect();
-        conditions(&passes, &all, &resources.list, &mut diagnostics);
-        let conditions = conditions(&passes, &schedule, &resources.list, &mut Vec::new());
-        for (_, target) in &readable {
-            let Some(lifetime) = lifetimes.get_mut(&target.id) else {
-                continue;
-            };
-            lifetime.textures |=
-                wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
-            lifetime.buffers |= wgpu::BufferUsages::COPY_SRC;
-        }
-        if request.poison.is_some() {
-            for (id, lifetime) in &mut lifetimes {
-                poisonable(&resources.get(*id).kind, lifetime);
-            }
-        }
-        // Two versions of one resource are made alike, and a version can be read although nobody asks for the other.
-        let previous: Vec<(ResourceId, ResourceId)> = lifetimes
-            .keys()
-            .filter_map(|id| match resources.get(*id).origin {
-                Origin::Previous(base) => Some((*id, base)),
-                _ => None,
-            })
-            .collect();
-        for (id, base) in &previous {
-            let (textures, buffers) = (lifetimes[id].textures, lifetimes[id].buffers);
-            let Some(of_base) = lifetimes.get_mut(base) else {
-                continue;
-            };
-            of_base.textures |= textures;
-            of_base.buffers |= buffers;
-        }
-        imports::check(
-            &passes,
-            &schedule,
-            &resources.list,
-            request,
-            &mut diagnostics,
-        );
-        if has_errors(&diagnostics) {
-            return (None, diagnostics);
-        }
-        let kept: BTreeSet<ResourceId> = conditions
-            .kept
-            .iter()
-            .copied()
-            .chain(readable.iter().map(|(_, target)| target.id))
-            .chain(previous.iter().map(|(_, base)| *base))
-            .collect();
-        let slots = slots(&passes, &schedule, &resources.list, &lifetimes, &kept);
-        let culled = passes
-            .iter()
-            .zip(&live)
-            .filter(|(_, live)| !**live)
-            .map(|(pass, _)| CulledPass {
-                name: pass.name.value.clone(),
-                reason: reason(pass, &resources.list),
-            })
-            .collect();
-        let plan = Plan {
-            resources: resources.list,
-            passes,
-            schedule,
-            lifetimes,
-            readable,
-            conditions,
-            slots,
-            histories: previous.iter().map(|(_, base)| *base).collect(),
-            graph: self.clone(),
-            request: Request::of(request),
-            culled,
-            fallbacks: instance.fallbacks,
-            warnings: diagnostics,
-        };
-        match plan.check_memory(request.memory_limit) {
-            Some(too_much) => (None, vec![too_much]),
-            None => (Some(plan), Vec::new()),
-        }
+        layouts.settle(resources, &request.limits, diagnostics);
+        (passes, sound)
     }
 
     fn check_params(
@@ -298,6 +257,84 @@ fn has_errors(diagnostics: &[Diagnostic]) -> bool {
     diagnostics
         .iter()
         .any(|diagnostic| diagnostic.severity == Severity::Error)
+}
+
+/// Whether each pass is needed, by an output or by the host.
+fn live(
+    passes: &[LinkedPass],
+    resources: &Resources<'_>,
+    readable: &[(String, Target)],
+    order: &Order,
+) -> Vec<bool> {
+    // What the host imports is written for the host.
+    let imports = passes.iter().enumerate().filter(|(_, pass)| {
+        let is_import = |access: &Access| {
+            access.writes && resources.get(access.resource).origin == Origin::Host
+        };
+        pass.accesses.iter().any(is_import)
+    });
+    let roots: BTreeSet<usize> = readable
+        .iter()
+        .flat_map(|(_, target)| order.final_writers(target))
+        .chain(imports.map(|(index, _)| index))
+        .collect();
+    cull::live(order, roots, |pass| {
+        let of = |access: &Access| match resources.get(access.resource).origin {
+            Origin::Previous(id) => order.final_writers(&Target {
+                id,
+                part: access.part.clone(),
+            }),
+            _ => BTreeSet::new(),
+        };
+        passes[pass]
+            .accesses
+            .iter()
+            .flat_map(of)
+            .collect::<Vec<_>>()
+    })
+}
+
+/// The resources that are last frame's version of another one, with that one.
+fn histories(
+    lifetimes: &BTreeMap<ResourceId, Lifetime>,
+    resources: &Resources<'_>,
+) -> BTreeMap<ResourceId, ResourceId> {
+    let of = |id: &ResourceId| match resources.get(*id).origin {
+        Origin::Previous(base) => Some((*id, base)),
+        _ => None,
+    };
+    lifetimes.keys().filter_map(of).collect()
+}
+
+/// Adds what is done to resources besides the passes' work: reading back, filling with a pattern, two versions taking turns.
+fn further_uses(
+    lifetimes: &mut BTreeMap<ResourceId, Lifetime>,
+    readable: &[(String, Target)],
+    histories: &BTreeMap<ResourceId, ResourceId>,
+    request: &PlanRequest<'_>,
+    resources: &Resources<'_>,
+) {
+    for (_, target) in readable {
+        let Some(lifetime) = lifetimes.get_mut(&target.id) else {
+            continue;
+        };
+        lifetime.textures |= wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
+        lifetime.buffers |= wgpu::BufferUsages::COPY_SRC;
+    }
+    if request.poison.is_some() {
+        for (id, lifetime) in lifetimes.iter_mut() {
+            poisonable(&resources.get(*id).kind, lifetime);
+        }
+    }
+    // Two versions of one resource are made alike, and a version can be read although nobody asks for the other.
+    for (id, base) in histories {
+        let (textures, buffers) = (lifetimes[id].textures, lifetimes[id].buffers);
+        let Some(of_base) = lifetimes.get_mut(base) else {
+            continue;
+        };
+        of_base.textures |= textures;
+        of_base.buffers |= buffers;
+    }
 }
 
 /// A buffer that is only cleared or copied has no size: no shader says what its items are.

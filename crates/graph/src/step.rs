@@ -29,6 +29,58 @@ pub enum Step {
     },
 }
 
+impl Step {
+    /// Calls `each` with every resource name that the step holds.
+    pub(crate) fn names(&mut self, each: &mut dyn FnMut(&mut Located<String>)) {
+        match self {
+            Self::Draw(draw) => {
+                for color in &mut draw.colors {
+                    each(&mut color.target);
+                }
+                if let Some(depth) = &mut draw.depth {
+                    each(&mut depth.target);
+                }
+                match &mut draw.call {
+                    DrawCall::Direct { count, instances } => {
+                        count.names(each);
+                        instances.names(each);
+                    }
+                    DrawCall::Indirect(name) => each(name),
+                }
+            }
+            Self::Dispatch(dispatch) => match &mut dispatch.groups {
+                Groups::Over(name) | Groups::Indirect(name) => each(name),
+                Groups::Fixed(_) => {}
+            },
+            Self::Copy { from, to } => {
+                each(from);
+                each(to);
+            }
+            Self::Clear { target, .. } => each(target),
+        }
+        if let Some(program) = self.program_mut() {
+            program.bind.iter_mut().for_each(|(_, name)| each(name));
+        }
+    }
+
+    /// What the step runs.
+    pub(crate) fn program(&self) -> Option<&Program> {
+        match self {
+            Self::Draw(draw) => Some(&draw.program),
+            Self::Dispatch(dispatch) => Some(&dispatch.program),
+            Self::Copy { .. } | Self::Clear { .. } => None,
+        }
+    }
+
+    fn program_mut(&mut self) -> Option<&mut Program> {
+        match self {
+            Self::Draw(draw) => Some(&mut draw.program),
+            Self::Dispatch(dispatch) => Some(&mut dispatch.program),
+            Self::Copy { .. } | Self::Clear { .. } => None,
+        }
+    }
+}
+
 /// A shader and how it is bound.
 #[derive(Clone, Debug, Default)]
 pub struct Program {

@@ -17,7 +17,7 @@ use crate::{
     },
     registry::{Lowering, Params},
     source::{Span, folder_of},
-    step::{Program, Step},
+    step::Step,
 };
 use scope::{Scope, indexed};
 pub(crate) use scope::{ScopeId, Scopes, split_layer};
@@ -455,58 +455,5 @@ fn lower(
             folder: Arc::clone(&scope.folder),
             own_name: entry.name.value.clone(),
         },
-    }
-}
-
-impl Step {
-    /// Calls `each` with every resource name that the step holds.
-    pub(crate) fn names(&mut self, each: &mut dyn FnMut(&mut Located<String>)) {
-        use crate::step::{DrawCall, Groups};
-        match self {
-            Step::Draw(draw) => {
-                for color in &mut draw.colors {
-                    each(&mut color.target);
-                }
-                if let Some(depth) = &mut draw.depth {
-                    each(&mut depth.target);
-                }
-                match &mut draw.call {
-                    DrawCall::Direct { count, instances } => {
-                        count.names(each);
-                        instances.names(each);
-                    }
-                    DrawCall::Indirect(name) => each(name),
-                }
-            }
-            Step::Dispatch(dispatch) => match &mut dispatch.groups {
-                Groups::Over(name) | Groups::Indirect(name) => each(name),
-                Groups::Fixed(_) => {}
-            },
-            Step::Copy { from, to } => {
-                each(from);
-                each(to);
-            }
-            Step::Clear { target, .. } => each(target),
-        }
-        if let Some(program) = self.program_mut() {
-            program.bind.iter_mut().for_each(|(_, name)| each(name));
-        }
-    }
-
-    /// What the step runs.
-    pub(crate) fn program(&self) -> Option<&Program> {
-        match self {
-            Step::Draw(draw) => Some(&draw.program),
-            Step::Dispatch(dispatch) => Some(&dispatch.program),
-            Step::Copy { .. } | Step::Clear { .. } => None,
-        }
-    }
-
-    fn program_mut(&mut self) -> Option<&mut Program> {
-        match self {
-            Step::Draw(draw) => Some(&mut draw.program),
-            Step::Dispatch(dispatch) => Some(&mut dispatch.program),
-            Step::Copy { .. } | Step::Clear { .. } => None,
-        }
     }
 }

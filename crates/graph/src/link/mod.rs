@@ -2,6 +2,7 @@
 //! each pass reads and writes is written down.
 
 mod attachments;
+mod bind;
 mod bindings;
 mod dispatch;
 mod layouts;

@@ -2,15 +2,13 @@
 // certain. Otherwise, and outside the map: uncertain. Beister, Ernst, Stamminger, "A Hybrid GPU-CPU Renderer", 2005.
 
 #import "shared/light_triangle.wgsl"
-#import "shared/ids.wgsl"
+#import "shared/receiver.wgsl"
 
 struct Params {
     bias: f32,
 }
 
 var<uniform> params: Params;
-var primitive: texture_2d<u32>;
-var position: texture_2d<f32>;
 var shadow_map: texture_depth_2d;
 var visibility: texture_storage_2d<r32uint, write>;
 var status: texture_storage_2d<r32uint, write>;
@@ -21,13 +19,10 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
     if any(pixel >= textureDimensions(primitive)) {
         return;
     }
-    var pixel_status = STATUS_BACKGROUND;
-    if textureLoad(primitive, pixel, 0).x != NO_PRIMITIVE {
-        let receiver = textureLoad(position, pixel, 0);
-        pixel_status = STATUS_FACING_AWAY;
-        if receiver.w > 0.0 {
-            pixel_status = compare(receiver.xyz);
-        }
+    let receiver = textureLoad(position, pixel, 0);
+    var pixel_status = status_unasked(pixel, receiver);
+    if pixel_status == STATUS_UNCERTAIN {
+        pixel_status = compare(receiver.xyz);
     }
     textureStore(status, pixel, vec4(pixel_status));
     textureStore(visibility, pixel, vec4(shown(pixel_status)));

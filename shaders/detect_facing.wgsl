@@ -1,9 +1,7 @@
 // Stage to leave every pixel that faces the light to the tracer, and to settle all others; one thread per pixel.
 
-#import "shared/ids.wgsl"
+#import "shared/receiver.wgsl"
 
-var primitive: texture_2d<u32>;
-var position: texture_2d<f32>;
 var visibility: texture_storage_2d<r32uint, write>;
 var status: texture_storage_2d<r32uint, write>;
 
@@ -13,10 +11,7 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
     if any(pixel >= textureDimensions(primitive)) {
         return;
     }
-    var pixel_status = STATUS_BACKGROUND;
-    if textureLoad(primitive, pixel, 0).x != NO_PRIMITIVE {
-        pixel_status = select(STATUS_FACING_AWAY, STATUS_UNCERTAIN, textureLoad(position, pixel, 0).w > 0.0);
-    }
+    let pixel_status = status_unasked(pixel, textureLoad(position, pixel, 0));
     textureStore(status, pixel, vec4(pixel_status));
     textureStore(visibility, pixel, vec4(shown(pixel_status)));
 }

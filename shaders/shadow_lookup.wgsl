@@ -2,7 +2,7 @@
 // Williams, "Casting Curved Shadows on Curved Surfaces", SIGGRAPH 1978.
 
 #import "shared/light.wgsl"
-#import "shared/ids.wgsl"
+#import "shared/receiver.wgsl"
 
 struct Params {
     bias: f32,
@@ -10,8 +10,6 @@ struct Params {
 }
 
 var<uniform> params: Params;
-var primitive: texture_2d<u32>;
-var position: texture_2d<f32>;
 var shadow_map: texture_depth_2d;
 
 struct Answer {
@@ -26,12 +24,10 @@ fn fragment(@builtin(position) centre: vec4<f32>) -> Answer {
 }
 
 fn compare(pixel: vec2<u32>) -> u32 {
-    if textureLoad(primitive, pixel, 0).x == NO_PRIMITIVE {
-        return STATUS_BACKGROUND;
-    }
     let receiver = textureLoad(position, pixel, 0);
-    if receiver.w <= 0.0 {
-        return STATUS_FACING_AWAY;
+    let unasked = status_unasked(pixel, receiver);
+    if unasked != STATUS_UNCERTAIN {
+        return unasked;
     }
     return select(STATUS_SHADOW, STATUS_LIGHT, is_lit(receiver.xyz, receiver.w));
 }

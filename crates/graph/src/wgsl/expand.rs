@@ -142,11 +142,13 @@ impl<'a> ShaderFiles<'a> {
                 continue;
             };
             let range = start..start + line.trim_end().len();
-            let path = rest
-                .trim()
-                .strip_prefix('"')
-                .and_then(|rest| rest.strip_suffix('"'));
-            let Some(path) = path.filter(|path| !path.is_empty()) else {
+            let quoted = rest.trim().strip_prefix('"');
+            let path = quoted.and_then(|rest| {
+                let (path, after) = rest.split_once('"')?;
+                let ends = after.is_empty() || after.trim_start().starts_with("//");
+                (ends && !path.is_empty()).then_some(path)
+            });
+            let Some(path) = path else {
                 return Err(
                     Diagnostic::error(Code::Shader, "an import names a file in quotes")
                         .at(file.span(range), "")

@@ -7,6 +7,8 @@ use std::{
     io::{BufRead, BufReader, Read},
     path::Path,
     process::{Command, Output, Stdio},
+    thread,
+    time::Duration,
 };
 use tempfile::TempDir;
 
@@ -73,8 +75,8 @@ fn run(folder: &Path, line: &str) -> (i32, String, String) {
     (code, text(stdout), text(stderr))
 }
 
-/// Sends Ctrl-C when a line of standard error begins with `at`; returns the exit code and all of standard error.
-fn interrupted(folder: &Path, line: &str, at: &str) -> (i32, String) {
+/// Sends Ctrl-C some time `after` a line of standard error that begins with `at`; returns the exit code and all of standard error.
+fn interrupted(folder: &Path, line: &str, at: &str, after: Duration) -> (i32, String) {
     let mut child = command(folder, line)
         .stdout(Stdio::null())
         .stderr(Stdio::piped())
@@ -90,6 +92,7 @@ fn interrupted(folder: &Path, line: &str, at: &str) -> (i32, String) {
             break;
         }
     }
+    thread::sleep(after);
     let signal = Command::new("kill")
         .args(["-INT", &child.id().to_string()])
         .status();
@@ -193,7 +196,7 @@ fn compare_measures_what_fits_and_says_why_the_rest_does_not() {
 fn a_shader_that_never_ends_is_given_up_and_finished_runs_are_kept() {
     let folder = folder();
     endless(folder.path());
-    let line = "compare light.ron endless.ron rt --size 16x16 --frames 1 --images none --timeout 1 --out o";
+    let line = "compare light.ron endless.ron rt --size 16x16 --frames 1 --images none --timeout 3 --out o";
     let (code, _, stderr) = run(folder.path(), line);
     assert_eq!(code, 3, "{stderr}");
     assert!(
@@ -223,7 +226,7 @@ fn ctrl_c_in_a_frame_that_never_ends_keeps_finished_runs_and_resume_goes_on() {
     endless(folder.path());
     let out = folder.path().join("o");
     let line = "compare light.ron endless.ron --size 16x16 --frames 1 --timeout 0 --out o";
-    let (code, stderr) = interrupted(folder.path(), line, "starting endless.ron");
+    let (code, stderr) = interrupted(folder.path(), line, "starting endless.ron", Duration::ZERO);
     assert_eq!(code, 130, "{stderr}");
     assert!(
         stderr.contains("stopped by Ctrl-C; 1 of 2 runs are kept in o/results.json"),
@@ -243,10 +246,26 @@ fn ctrl_c_in_a_frame_that_never_ends_keeps_finished_runs_and_resume_goes_on() {
 }
 
 #[test]
+fn ctrl_c_between_frames_keeps_no_run_that_lacks_some() {
+    let folder = folder();
+    for frames in [
+        "--frames 100000 --cached-frames 0",
+        "--frames 1 --cached-frames 100000",
+    ] {
+        let line = format!("compare nsm --size 16x16 --map-size 16 --warmup 0 {frames} --out o");
+        let after = Duration::from_millis(500);
+        let (code, stderr) = interrupted(folder.path(), &line, "starting nsm", after);
+        assert_eq!(code, 130, "{frames}: {stderr}");
+        assert!(stderr.contains("no run was finished"), "{frames}: {stderr}");
+        assert!(!folder.path().join("o/results.json").exists(), "{frames}");
+    }
+}
+
+#[test]
 fn ctrl_c_in_the_reference_ends_with_nothing_half_done() {
     let folder = folder();
     let line = "compare light.ron --size 2048x2048 --frames 1 --out o";
-    let (code, stderr) = interrupted(folder.path(), line, "starting reference");
+    let (code, stderr) = interrupted(folder.path(), line, "starting reference", Duration::ZERO);
     assert_eq!(code, 130, "{stderr}");
     assert!(
         stderr.contains("stopped by Ctrl-C; no run was finished"),

@@ -97,7 +97,7 @@ impl Content {
 
 /// After the device was polled the mapping is done, but where several threads poll one device another one may still be about to
 /// say so.
-const CALLBACK: Duration = Duration::from_secs(10);
+pub(crate) const CALLBACK: Duration = Duration::from_secs(10);
 
 /// What is read back.
 enum Source {

@@ -19,7 +19,7 @@ const MOST_MIB: u64 = 2048;
 /// Runs `work` on an input.
 ///
 /// # Panics
-/// Names the input by its beginning, if that took too long, or if the process needed more memory than ever before and than it may.
+/// Names the input by its beginning, if that took too long (the whole process ends if it does not end at all), or if the process needed more memory than ever before and than it may.
 #[track_caller]
 pub fn bounded<T>(input: &str, work: impl FnOnce() -> T) -> T {
     let name: String = input.chars().take(240).collect();

@@ -51,7 +51,7 @@ impl FrameTiming {
     }
 }
 
-/// Most frames that a host can submit before it asks for times.
+/// Submitted frames whose times are kept until the host asks for them.
 const MOST_PENDING: usize = 3;
 
 /// Writes and reads the timestamps of frames.
@@ -61,19 +61,16 @@ pub(crate) struct Timer {
     /// pass only when the dispatch is over, unless the pass itself begins with a timestamp.
     spare: Option<wgpu::QuerySet>,
     period: f32,
+    /// Whether a frame was encoded that was not submitted yet.
+    is_open: bool,
     /// Frames that were submitted and not taken.
     pending: usize,
+    /// How long it is waited for their times.
+    patience: Duration,
 }
 
 impl Timer {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, ExecuteError> {
-        let settings = GpuProfilerSettings {
-            enable_debug_groups: false,
-            max_num_pending_frames: MOST_PENDING,
-            ..GpuProfilerSettings::default()
-        };
-        let profiler = GpuProfiler::new(device, settings)
-            .map_err(|error| ExecuteError::Timing(error.to_string()))?;
         let inside = device
             .features()
             .contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
@@ -85,11 +82,23 @@ impl Timer {
             })
         });
         Ok(Self {
-            profiler,
+            profiler: profiler(device)?,
             spare,
             period: queue.get_timestamp_period(),
+            is_open: false,
             pending: 0,
+            patience: CALLBACK,
         })
+    }
+
+    /// To be called before a timed frame is encoded.
+    pub fn open(&mut self, device: &wgpu::Device) -> Result<(), ExecuteError> {
+        if std::mem::replace(&mut self.is_open, true) {
+            // The host never submitted the last one, whose queries would be taken for this one's.
+            self.profiler = profiler(device)?;
+            self.pending = 0;
+        }
+        Ok(())
     }
 
     pub fn profiler(&self) -> &GpuProfiler {
@@ -108,6 +117,9 @@ impl Timer {
     }
 
     pub fn submitted(&mut self) -> Result<(), ExecuteError> {
+        if !std::mem::take(&mut self.is_open) {
+            return Ok(());
+        }
         self.profiler
             .end_frame()
             .map_err(|error| ExecuteError::Timing(error.to_string()))?;
@@ -124,9 +136,13 @@ impl Timer {
             if let Some(frame) = self.profiler.process_finished_frame(self.period) {
                 results = frame;
                 self.pending -= 1;
-            } else if began.elapsed() < CALLBACK {
+            } else if began.elapsed() < self.patience {
+                // Another thread that polls the device may be about to say that they are there.
                 std::thread::yield_now();
             } else {
+                // The profiler never gives up a frame that cannot be mapped, and hands out none after it.
+                self.patience = Duration::ZERO;
+                results.clear();
                 break;
             }
         }
@@ -151,6 +167,15 @@ impl Timer {
             passes: passes.iter().map(of_pass).collect(),
         }
     }
+}
+
+fn profiler(device: &wgpu::Device) -> Result<GpuProfiler, ExecuteError> {
+    let settings = GpuProfilerSettings {
+        enable_debug_groups: false,
+        max_num_pending_frames: MOST_PENDING,
+        ..GpuProfilerSettings::default()
+    };
+    GpuProfiler::new(device, settings).map_err(|error| ExecuteError::Timing(error.to_string()))
 }
 
 /// From the first begin to the last end of some queries, seconds of the GPU's clock.
@@ -213,7 +238,7 @@ pub fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, Execut
     let internal = |_| ExecuteError::Internal("the timestamp check's own graph is broken");
     let graph = Graph::load("check.ron", &Registry::standard(), &CheckSources).map_err(internal)?;
     let mut rounds = 64u32;
-    let mut is_again = false;
+    let mut was_long = false;
     loop {
         let mut request = PlanRequest::new([64, 64], &NoProvider);
         request.params = BTreeMap::from([("rounds".to_owned(), ParamValue::U32(rounds))]);
@@ -251,11 +276,11 @@ pub fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, Execut
             .unwrap_or_default();
         let is_long = shortest >= LONG || rounds >= 1 << 30;
         let trust = judge(&frames[1..]);
-        // Other load may have been most of the wall time, of which a longer dispatch takes the greater share.
-        if is_long && (is_again || trust == Trust::Trusted) {
+        if is_long && (was_long || trust == Trust::Trusted) {
             return Ok(trust);
         }
-        is_again = is_long;
+        // Once more, four times as long: other load may have been most of the wall time.
+        was_long = is_long;
         rounds = rounds.saturating_mul(4);
     }
 }

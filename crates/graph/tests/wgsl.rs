@@ -110,6 +110,17 @@ fn an_import_is_there_once() {
         .with("a.wgsl", once)
         .with("b.wgsl", "#import \"a.wgsl\"\n#import \"main.wgsl\"\nfn two() -> f32 { return 2.0 * one(); }");
     load(&files).unwrap_or_else(|errors| panic!("{errors}"));
+    // A comment ends at any of WGSL's line breaks, and code behind it would be lost.
+    for after in [
+        " one",
+        ";",
+        " // one()\r fn f() {}",
+        " // \u{2028} fn f() {}",
+    ] {
+        let files = one_pass(&format!("#import \"a.wgsl\"{after}\n")).with("a.wgsl", once);
+        let text = load(&files).expect_err(after).to_string();
+        assert!(text.contains("an import names a file in quotes"), "{text}");
+    }
 }
 
 /// Shaders stand beside the document, beside its folder in `shaders/`, or in the store's `shaders/`; imports likewise.

@@ -292,7 +292,7 @@ mod tests {
             }
         }
 
-        /// 8 of itself, and 1 because the inverse is rounded here before it errs by 2 ulps. The worst of these comes to half of the bound.
+        /// By what predicates.wgsl says, and 1 of itself more: the inverse is rounded here before it errs by 2 ulps.
         #[test]
         fn a_distance_errs_by_less_than_it_may((edge, point) in beside_an_edge()) {
             let (exact, away) = distance(edge, point);

@@ -277,6 +277,9 @@ impl Executor {
             pending.push(made);
         }
         self.timed = frame.timing;
+        if self.timed {
+            self.timer.open(&self.device)?;
+        }
         self.cpu.clear();
         self.skipped.clear();
         for (at, pass) in self.passes.iter().enumerate() {

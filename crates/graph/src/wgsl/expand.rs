@@ -145,14 +145,21 @@ impl<'a> ShaderFiles<'a> {
             let quoted = rest.trim().strip_prefix('"');
             let path = quoted.and_then(|rest| {
                 let (path, after) = rest.split_once('"')?;
-                let ends = after.is_empty() || after.trim_start().starts_with("//");
+                let (after, breaks) = (
+                    after.trim(),
+                    ['\r', '\u{b}', '\u{c}', '\u{85}', '\u{2028}', '\u{2029}'],
+                );
+                // WGSL knows more line breaks than `\n`: behind one of them the comment is over.
+                let ends = after.is_empty() || after.starts_with("//") && !after.contains(breaks);
                 (ends && !path.is_empty()).then_some(path)
             });
             let Some(path) = path else {
                 return Err(
                     Diagnostic::error(Code::Shader, "an import names a file in quotes")
                         .at(file.span(range), "")
-                        .help("write #import \"shared/camera.wgsl\""),
+                        .help(
+                            "write #import \"shared/camera.wgsl\"; only a `//` comment may follow",
+                        ),
                 );
             };
             if escapes(path) {

@@ -1,5 +1,6 @@
 #![no_main]
 
+#[allow(dead_code, reason = "each target runs one of the entries")]
 #[path = "../entry.rs"]
 mod entry;
 

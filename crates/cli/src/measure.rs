@@ -5,7 +5,6 @@ use crate::{
     date,
     error::CliError,
     fingerprint::Fingerprint,
-    interrupt,
     parse::{Assignment, unique},
     picture,
     preset::{self, Preset},
@@ -212,9 +211,9 @@ impl Setting<'_> {
         )?;
         let Some(times) = times else { return Ok(None) };
         let cached = render::cached(self.gpu, &mut executor, self.cached_frames)?;
-        if cached.is_none() && interrupt::raised() {
+        let Some(cached) = cached else {
             return Ok(None);
-        }
+        };
         // Only now: a readback would be timed, too.
         let contents = render::read(self.gpu, &mut executor, &Outputs::names(method.preset))?;
         Ok(Some(Executed {

@@ -265,6 +265,18 @@ pub struct Times {
     pub frame: FrameTimes,
 }
 
+/// [`sample`], but all `frames` of them: `None` if Ctrl-C came first.
+fn sample_all(
+    gpu: &Gpu,
+    executor: &mut Executor,
+    work: Work,
+    [warmup, frames]: [u32; 2],
+    done: impl Fn(u64),
+) -> Result<Option<Vec<TimedFrame>>, ExecuteError> {
+    let timed = sample(gpu, executor, work, warmup, frames, done)?;
+    Ok((timed.len() == frames as usize).then_some(timed))
+}
+
 /// [`sample`] in short; `None` if Ctrl-C came first.
 ///
 /// # Panics
@@ -279,11 +291,11 @@ pub fn time(
     frames: u32,
     done: impl Fn(u64),
 ) -> Result<Option<Times>, ExecuteError> {
-    let timed = sample(gpu, executor, Work::All, warmup, frames, done)?;
-    Ok((timed.len() == frames as usize).then(|| Samples::of(&timed).times()))
+    let timed = sample_all(gpu, executor, Work::All, [warmup, frames], done)?;
+    Ok(timed.map(|timed| Samples::of(&timed).times()))
 }
 
-/// The times of frames in which only the camera moves; `None` if every pass runs then too, or Ctrl-C came first.
+/// The times of frames in which only the camera moves: `None` if Ctrl-C came first, `Some(None)` if every pass runs then too.
 ///
 /// # Errors
 /// Those of the executor.
@@ -291,20 +303,24 @@ pub fn cached(
     gpu: &Gpu,
     executor: &mut Executor,
     frames: u32,
-) -> Result<Option<Cached>, ExecuteError> {
+) -> Result<Option<Option<Cached>>, ExecuteError> {
     if frames == 0 {
-        return Ok(None);
+        return Ok(Some(None));
     }
-    let first = sample(gpu, executor, Work::CameraMoves, 0, 1, |_| {})?;
+    let Some(first) = sample_all(gpu, executor, Work::CameraMoves, [0, 1], |_| {})? else {
+        return Ok(None);
+    };
     let Some(TimedFrame { skipped, .. }) =
         first.into_iter().find(|frame| !frame.skipped.is_empty())
     else {
-        return Ok(None);
+        return Ok(Some(None));
     };
-    let timed = sample(gpu, executor, Work::CameraMoves, 0, frames, |_| {})?;
-    Ok((timed.len() == frames as usize).then(|| Cached {
-        frame: Samples::of(&timed).times().frame,
-        skipped,
+    let timed = sample_all(gpu, executor, Work::CameraMoves, [0, frames], |_| {})?;
+    Ok(timed.map(|timed| {
+        Some(Cached {
+            frame: Samples::of(&timed).times().frame,
+            skipped,
+        })
     }))
 }
 

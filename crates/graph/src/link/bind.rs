@@ -227,27 +227,23 @@ impl Linker<'_, '_> {
         least: u64,
         read_only: bool,
     ) -> Option<Binding> {
-        let Found {
-            global,
-            target,
-            resource,
-        } = *found;
-        if matches!(resource.kind, ResourceKind::Provided(_)) && !read_only {
+        let (global, id) = (found.global, found.target.id);
+        if matches!(found.resource.kind, ResourceKind::Provided(_)) && !read_only {
             self.report(
                 Diagnostic::error(
                     Code::ResourceKind,
                     format!(
                         "`{}` belongs to the host and cannot be written",
-                        resource.name
+                        found.resource.name
                     ),
                 )
                 .at(global.span.clone(), "declare it `var<storage, read>`"),
             );
             return None;
         }
-        self.layouts.see(self.resources.base(target.id), global);
+        self.layouts.see(self.resources.base(id), global);
         Some((
-            BindTarget::Buffer(target.id),
+            BindTarget::Buffer(id),
             wgpu::BindingType::Buffer {
                 ty: wgpu::BufferBindingType::Storage { read_only },
                 has_dynamic_offset: false,

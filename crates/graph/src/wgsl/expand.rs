@@ -11,6 +11,9 @@ use std::{collections::HashMap, fmt::Write as _, ops::Range, sync::Arc};
 /// Deepest chain of imports; far above any sensible house, far below the stack.
 const DEEPEST_IMPORT: usize = 64;
 
+/// WGSL's line breaks besides `\n`: a comment ends at any of them.
+const BREAKS: [char; 6] = ['\r', '\u{b}', '\u{c}', '\u{85}', '\u{2028}', '\u{2029}'];
+
 /// A shader with its imports in place.
 #[derive(Clone, Debug)]
 pub(crate) struct Expanded {
@@ -145,12 +148,8 @@ impl<'a> ShaderFiles<'a> {
             let quoted = rest.trim().strip_prefix('"');
             let path = quoted.and_then(|rest| {
                 let (path, after) = rest.split_once('"')?;
-                let (after, breaks) = (
-                    after.trim(),
-                    ['\r', '\u{b}', '\u{c}', '\u{85}', '\u{2028}', '\u{2029}'],
-                );
-                // WGSL knows more line breaks than `\n`: behind one of them the comment is over.
-                let ends = after.is_empty() || after.starts_with("//") && !after.contains(breaks);
+                let after = after.trim();
+                let ends = after.is_empty() || after.starts_with("//") && !after.contains(BREAKS);
                 (ends && !path.is_empty()).then_some(path)
             });
             let Some(path) = path else {

@@ -1,11 +1,10 @@
-//! Chains of passes of one kind, as a graph and by hand in plain wgpu. Both hand the texture `source` on through `ping` and
-//! `pong` and back, pass by pass; every pass has a pipeline, a layout and a bind group of its own, as the passes of a frame do,
-//! and its name as label.
+//! Chains of passes of one kind, as a graph and by hand in plain wgpu. Both hand the texture
+//! `source` on through `ping` and `pong` and back, pass by pass; every pass has a pipeline, a
+//! layout and a bind group of its own, as the passes of a frame do, and its name as label.
 
 use crate::Generated;
-use skiagraph_graph::{
-    ExecuteError, Executor, Graph, Import, NoProvider, Plan, PlanRequest, Registry, gpu::Gpu,
-};
+use skiagraph_gpu::{ExecuteError, Executor, device::Gpu};
+use skiagraph_graph::{Graph, Import, NoProvider, Plan, PlanRequest, Registry};
 
 /// Width and height of the textures: encoding does not depend on it.
 const EDGE: u32 = 16;
@@ -92,10 +91,13 @@ fn document(kind: Kind, passes: usize) -> Generated {
         let name = label(kind, at);
         match kind {
             Kind::Dispatch => format!(
-                "        Compute(name: \"{name}\", shader: \"store\", dispatch: Over(\"{to}\"), bind: {{\"a\": \"{from}\", \"made\": \"{to}\"}}, overwrites: [\"{to}\"]),\n"
+                "        Compute(name: \"{name}\", shader: \"store\", dispatch: \
+                 Over(\"{to}.size\"), \
+                 bind: {{\"a\": \"{from}\", \"made\": \"{to}\"}}, overwrites: [\"{to}\"]),\n"
             ),
             Kind::Draw => format!(
-                "        Fullscreen(name: \"{name}\", shader: \"half\", bind: {{\"a\": \"{from}\"}}, color: [(target: \"{to}\")]),\n"
+                "        Fullscreen(name: \"{name}\", shader: \"half\", bind: {{\"a\": \
+                 \"{from}\"}}, color: [\"{to}\"]),\n"
             ),
             Kind::Copy => {
                 format!("        Copy(name: \"{name}\", from: \"{from}\", to: \"{to}\"),\n")
@@ -106,13 +108,13 @@ fn document(kind: Kind, passes: usize) -> Generated {
     // A chain of one pass has no use for the second texture.
     let materials: String = names[1..=passes.min(2)]
         .iter()
-        .map(|name| {
-            format!("        Texture(name: \"{name}\", format: Rgba16Float, size: Viewport),\n")
-        })
+        .map(|name| format!("        Texture(name: \"{name}\", format: Rgba16Float),\n"))
         .collect();
     let last = names[ends(passes - 1)[1]];
     let document = format!(
-        "(\n    format: 1,\n    materials: [\n{materials}    ],\n    passes: [\n{body}    ],\n    outputs: [(name: \"{last}\")],\n)\n"
+        "(\n    format: 2,\n    inputs: [Texture(name: \"source\", format: Rgba16Float)],\n    \
+         materials: [\n{materials}    ],\n    passes: [\n{body}    ],\n    \
+         outputs: [\"{last}\"],\n)\n"
     );
     let files = [
         ("graph.ron", document.as_str()),
@@ -156,12 +158,14 @@ pub fn plan(kind: Kind, passes: usize) -> Plan {
         size: [EDGE, EDGE],
         mips: 1,
         layers: 1,
+        is_3d: false,
+        samples: 1,
         usage: USAGE,
     };
     request.imports.insert("source".to_owned(), source);
     Graph::load("graph.ron", &Registry::standard(), &document(kind, passes))
         .and_then(|graph| graph.plan(&request))
-        .unwrap_or_else(|faults| panic!("{}", faults.render(false)))
+        .unwrap_or_else(|faults| panic!("{faults}"))
 }
 
 /// The chain as an executor.

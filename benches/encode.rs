@@ -1,5 +1,6 @@
-//! What the executor costs over the same frame written by hand in plain wgpu, and what making and changing one costs.
-//! Encoding and finishing the encoder is measured, submission is not: no frame is submitted.
+//! What the executor costs over the same frame written by hand in plain wgpu, and what making and
+//! changing one costs. Encoding and finishing the encoder is measured, submission is not: no frame
+//! is submitted.
 
 use criterion::{BenchmarkId, Criterion};
 use skiagraph_benches::{
@@ -7,16 +8,17 @@ use skiagraph_benches::{
     chain::{ByHand, Kind, executor},
     graph,
 };
-use skiagraph_graph::{
-    Executor, Frame, Graph, NoProvider, ParamValue, Plan, PlanRequest, Registry,
-    gpu::{self, Gpu},
+use skiagraph_gpu::{
+    Executor, Frame,
+    device::{self, Gpu},
 };
+use skiagraph_graph::{Graph, NoProvider, ParamValue, Plan, PlanRequest, Registry};
 use std::time::{Duration, Instant};
 
 const SIZES: [usize; 3] = [10, 100, 1000];
 
 fn main() {
-    let gpu = match gpu::open(None) {
+    let gpu = match device::open(None) {
         Ok(gpu) => gpu,
         Err(error) => {
             println!("NOTHING WAS MEASURED: {error}");
@@ -28,8 +30,8 @@ fn main() {
         "adapter: {} ({:?}, {} {})",
         info.name, info.backend, info.driver, info.driver_info
     );
-    // `cargo bench` says `--bench`; without it the benchmarks are only tried. First, because wgpu is slower on a device that has
-    // seen many resources.
+    // `cargo bench` says `--bench`; without it the benchmarks are only tried. First, because wgpu
+    // is slower on a device that has seen many resources.
     if std::env::args().any(|argument| argument == "--bench") {
         compare(&gpu);
     }
@@ -57,12 +59,14 @@ fn frame(gpu: &Gpu, encode: impl FnOnce(&mut wgpu::CommandEncoder)) -> Duration 
     time
 }
 
-/// Prints the times of chains by hand and through the executor. The ways take turns frame by frame, so that what else the
-/// machine does meets all of them; differences and ratios are those within one turn.
+/// Prints the times of chains by hand and through the executor. The ways take turns frame by frame,
+/// so that what else the machine does meets all of them; differences and ratios are those within
+/// one turn.
 fn compare(gpu: &Gpu) {
     println!("\nencode and finish, µs per pass: medians over turns (a frame of each)");
     println!(
-        "kind     | passes | turns | by hand | executor | over by hand | ratio | over by hand with debug groups | ratio"
+        "kind     | passes | turns | by hand | executor | over by hand | ratio | over by hand \
+         with debug groups | ratio"
     );
     for kind in Kind::ALL {
         for passes in SIZES {
@@ -97,7 +101,8 @@ fn compare(gpu: &Gpu) {
                 [0, 1].map(|way| median(times.iter().map(|times| times[way])));
             let [[over, ratio], [over_grouped, ratio_grouped]] = [over(1), over(2)];
             println!(
-                "{:8} | {passes:6} | {turns:5} | {by_hand:7.3} | {executor:8.3} | {over:+12.3} | {ratio:5.3} | {over_grouped:+30.3} | {ratio_grouped:5.3}",
+                "{:8} | {passes:6} | {turns:5} | {by_hand:7.3} | {executor:8.3} | {over:+12.3} | \
+                 {ratio:5.3} | {over_grouped:+30.3} | {ratio_grouped:5.3}",
                 kind.name(),
             );
         }
@@ -114,10 +119,11 @@ fn planned(passes: usize) -> Plan {
     let generated = graph(passes, Shaders::Few, 1);
     Graph::load("graph.ron", &Registry::standard(), &generated)
         .and_then(|graph| graph.plan(&PlanRequest::new(VIEWPORT, &NoProvider)))
-        .unwrap_or_else(|faults| panic!("{}", faults.render(false)))
+        .unwrap_or_else(|faults| panic!("{faults}"))
 }
 
-/// Frames of generated graphs, and what an executor's making, another size and another value of a param cost.
+/// Frames of generated graphs, and what an executor's making, another size and another value of a
+/// param cost.
 fn changes(criterion: &mut Criterion, gpu: &Gpu) {
     let make = |plan| {
         Executor::new(&gpu.device, &gpu.queue, plan, &mut NoProvider)

@@ -12,11 +12,11 @@ const SIZES: [usize; 8] = [1, 2, 3, 5, 10, 37, 100, 1000];
 
 fn plan(generated: &Generated) -> Plan {
     let graph = Graph::load("graph.ron", &Registry::standard(), generated)
-        .unwrap_or_else(|faults| panic!("{}", faults.render(false)));
+        .unwrap_or_else(|faults| panic!("{faults}"));
     assert!(graph.warnings().is_empty());
     graph
         .plan(&PlanRequest::new(VIEWPORT, &NoProvider))
-        .unwrap_or_else(|faults| panic!("{}", faults.render(false)))
+        .unwrap_or_else(|faults| panic!("{faults}"))
 }
 
 fn every_graph() -> impl Iterator<Item = (usize, Shaders, u64)> {

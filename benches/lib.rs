@@ -1,4 +1,5 @@
-//! Generated graphs of any number of passes, every one of which the output needs: what the benchmarks plan and encode.
+//! Generated graphs of any number of passes, every one of which the output needs: what the
+//! benchmarks plan and encode.
 
 pub mod chain;
 
@@ -77,10 +78,11 @@ var made: texture_storage_2d<rgba16float, write>;
 /// chain    Fullscreen | Compute | Raster with depth | Copy: open ─▶ new
 /// join     Fullscreen open, open ─▶ new
 /// over     Clear new, then Raster open ─▶ new, what was cleared is kept
-/// turns    Fullscreen ping ─▶ pong ─▶ ping …; Copy ─▶ new          (two textures, written again and again)
+/// turns    Fullscreen ping ─▶ pong ─▶ ping …; Copy ─▶ new     (written again and again)
 /// mips     Fullscreen open ─▶ mip 0 ─▶ mip 1 ─▶ mip 2; Fullscreen all mips ─▶ new
 /// ```
-/// where `open` is a texture that no pass has read yet. The chain's full-screen passes have a param, `strength`. What is left open in the end is joined, so that no pass is culled.
+/// where `open` is a texture that no pass has read yet. The chain's full-screen passes have a
+/// param, `strength`. What is left open in the end is joined, so that no pass is culled.
 pub fn graph(passes: usize, shaders: Shaders, seed: u64) -> Generated {
     let mut writer = Writer::new(shaders);
     let mut random = Random(seed);
@@ -125,8 +127,8 @@ pub fn graph(passes: usize, shaders: Shaders, seed: u64) -> Generated {
     writer.document(&open)
 }
 
-/// `splitmix64` (Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014): a sequence that stays the same
-/// whatever happens to libraries.
+/// `splitmix64` (Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014): a
+/// sequence that stays the same whatever happens to libraries.
 struct Random(u64);
 
 impl Random {
@@ -148,6 +150,7 @@ struct Writer {
     body: String,
     passes: usize,
     has_turns: bool,
+    has_param: bool,
 }
 
 impl Writer {
@@ -160,11 +163,12 @@ impl Writer {
             body: String::new(),
             passes: 0,
             has_turns: false,
+            has_param: false,
         }
     }
 
     fn material(&mut self, name: &str, format: &str) {
-        let line = format!("        Texture(name: \"{name}\", format: {format}, size: Viewport),");
+        let line = format!("        Texture(name: \"{name}\", format: {format}),");
         self.materials.push_str(&line);
         self.materials.push('\n');
     }
@@ -211,6 +215,7 @@ impl Writer {
     }
 
     fn fullscreen_onto(&mut self, from: &str, to: &str) {
+        self.has_param = true;
         let shader = self.shader("one", ONE);
         let fields = format!("{shader}, bind: {{\"a\": \"{from}\"}}, {}", color(to));
         self.pass("Fullscreen", &fields);
@@ -230,7 +235,8 @@ impl Writer {
         self.material(&depth, "Depth32Float");
         let shader = self.shader("draw", DRAW);
         let fields = format!(
-            "{shader}, draw: 3, bind: {{\"a\": \"{from}\"}}, {}, depth: (target: \"{depth}\", load: Clear(1.0), compare: Less)",
+            "{shader}, draw: 3, bind: {{\"a\": \"{from}\"}}, {}, depth: (target: \"{depth}\", \
+             load: Clear(1.0), compare: Less)",
             color(&made)
         );
         self.pass("Raster", &fields);
@@ -241,7 +247,8 @@ impl Writer {
         let made = self.new_texture();
         let shader = self.shader("store", STORE);
         let fields = format!(
-            "{shader}, dispatch: Over(\"{made}\"), bind: {{\"a\": \"{from}\", \"made\": \"{made}\"}}, overwrites: [\"{made}\"]"
+            "{shader}, dispatch: Over(\"{made}.size\"), bind: {{\"a\": \"{from}\", \"made\": \
+             \"{made}\"}}, overwrites: [\"{made}\"]"
         );
         self.pass("Compute", &fields);
         made
@@ -258,7 +265,8 @@ impl Writer {
         self.pass("Clear", &format!("target: \"{made}\""));
         let shader = self.shader("draw", DRAW);
         let fields = format!(
-            "{shader}, draw: 3, bind: {{\"a\": \"{from}\"}}, color: [(target: \"{made}\", load: Load)]"
+            "{shader}, draw: 3, bind: {{\"a\": \"{from}\"}}, color: [(target: \"{made}\", load: \
+             Load)]"
         );
         self.pass("Raster", &fields);
         made
@@ -280,14 +288,10 @@ impl Writer {
 
     fn mips(&mut self, from: &str) -> String {
         let chain = format!("chain_{}", self.passes);
-        let level = |mip: usize| format!("{chain}_mip_{mip}");
-        let views: Vec<String> = (0..3)
-            .map(|mip| format!("(name: \"{}\", mip: {mip}, mips: 1)", level(mip)))
-            .collect();
+        let level = |mip: usize| format!("{chain}.mip[{mip}]");
         let _ = writeln!(
             self.materials,
-            "        Texture(name: \"{chain}\", format: Rgba16Float, size: Viewport, mips: 3, views: [{}]),",
-            views.join(", ")
+            "        Texture(name: \"{chain}\", format: Rgba16Float, mips: 3),",
         );
         self.fullscreen_onto(from, &level(0));
         self.fullscreen_onto(&level(0), &level(1));
@@ -300,8 +304,13 @@ impl Writer {
             .zip(open)
             .map(|(index, name)| format!("(name: \"output_{index}\", material: \"{name}\")"))
             .collect();
+        let params = match self.has_param {
+            true => "F32(name: \"strength\", default: 0.5)",
+            false => "",
+        };
         let text = format!(
-            "(\n    format: 1,\n    params: [(name: \"strength\", type: F32, default: 0.5)],\n    materials: [\n{}    ],\n    passes: [\n{}    ],\n    outputs: [{}],\n)\n",
+            "(\n    format: 2,\n    params: [{params}],\n    \
+             materials: [\n{}    ],\n    passes: [\n{}    ],\n    outputs: [{}],\n)\n",
             self.materials,
             self.body,
             outputs.join(", ")
@@ -315,5 +324,5 @@ impl Writer {
 }
 
 fn color(target: &str) -> String {
-    format!("color: [(target: \"{target}\")]")
+    format!("color: [\"{target}\"]")
 }

@@ -1,8 +1,9 @@
-//! How long a graph takes from its text to a plan, without a GPU: the presets, and generated graphs of 10, 100 and 1,000 passes.
+//! How long a graph takes from its text to a plan, without a GPU: the presets, and generated graphs
+//! of 10, 100 and 1,000 passes.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use skiagraph_benches::{Generated, Shaders, VIEWPORT, graph};
-use skiagraph_graph::{Graph, NoProvider, PlanRequest, Provider, Registry, Sources};
+use skiagraph_graph::{Describe, Graph, NoProvider, PlanRequest, Registry, Sources};
 use skiagraph_passes::{EmbeddedSources, SceneProvider, presets, registry};
 use skiagraph_scene::{SceneLibrary, SceneRequest};
 use std::{hint::black_box, sync::Arc, time::Duration};
@@ -40,8 +41,12 @@ fn of_presets(criterion: &mut Criterion) {
         ..SceneRequest::default()
     });
     let (scene, _) = scene.expect("park is built in");
-    let provider: &dyn Provider = &SceneProvider::new(Arc::new(scene));
-    let request = PlanRequest::new([1920, 1080], provider);
+    let provider: &dyn Describe = &SceneProvider::new(Arc::new(scene));
+    // Some presets need what few adapters have; planning asks no adapter.
+    let request = PlanRequest {
+        features: wgpu::Features::all(),
+        ..PlanRequest::new([1920, 1080], provider)
+    };
     let registry = registry();
     for preset in presets() {
         let document = (preset.path.as_str(), &registry, &EmbeddedSources as _);

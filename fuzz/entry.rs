@@ -1,28 +1,36 @@
-//! What the fuzz targets and their stable twin (`tests/hostile.rs`) run: bytes in, an answer out, and no panic on the way.
+//! What the fuzz targets and their stable twin (`tests/hostile.rs`) run: bytes in, an answer out,
+//! and no panic on the way.
 
+use skiagraph_draw::Drawing;
 use skiagraph_graph::{
-    Graph, NoProvider, Plan, PlanRequest, Provided, Provider, ProviderError, Registry, Sources,
+    Describe, Graph, Plan, PlanRequest, Provided, ProvidedBinding, Registry, Sources,
 };
 use skiagraph_scene::{Adjacency, Bvh, ObjOptions, QuadDiagonal, SceneFile, obj::parse_obj};
 use std::{path::Path, sync::Arc};
 
-/// The bytes as a document, loaded and planned beside a few shaders and sub-graphs. Returns what its author reads; empty if
-/// nothing is wrong.
+/// The bytes as a document, loaded, checked, written out and planned beside a few shaders and
+/// sub-graphs. Returns what its author reads; empty if nothing is wrong.
 pub fn document(bytes: &[u8]) -> String {
     let files = Files {
         path: "graph.ron",
         bytes,
     };
-    match Graph::load("graph.ron", &Registry::standard(), &files) {
+    let flat = Graph::flat("graph.ron", &files);
+    let request = PlanRequest::new([33, 17], &SmallScene);
+    match Graph::check("graph.ron", &Registry::standard(), &files, &request) {
         Err(errors) => errors.to_string(),
-        Ok(graph) => match graph.plan(&PlanRequest::new([33, 17], &SmallScene)) {
-            Err(errors) => errors.to_string(),
-            Ok(plan) => use_up(&plan),
-        },
+        Ok((_, plan)) => {
+            assert!(
+                flat.is_ok(),
+                "a document that can be planned can be written out"
+            );
+            use_up(&plan)
+        }
     }
 }
 
-/// The bytes as the shader of all three kinds of programs in a fixed graph. Returns as [`document`] does.
+/// The bytes as the shader of all three kinds of programs in a fixed graph. Returns as [`document`]
+/// does.
 pub fn wgsl(bytes: &[u8]) -> String {
     let files = Files {
         path: "shaders/fuzzed.wgsl",
@@ -83,7 +91,7 @@ pub fn scene(bytes: &[u8]) -> String {
                 assert!(frame.iter().all(|axis| axis.is_normalized()), "{view:?}");
                 assert!(camera.view_projection().as_mat4().is_finite(), "{view:?}");
             }
-            assert!(scene.light.towards().is_normalized());
+            assert!(scene.light.to_light().is_normalized());
         }
     }
     answer
@@ -93,7 +101,7 @@ pub fn scene(bytes: &[u8]) -> String {
 fn use_up(plan: &Plan) -> String {
     assert!(plan.memory_bytes() >= plan.saved_bytes());
     let _ = (plan.passes(), plan.culled(), plan.outputs(), plan.memory());
-    let _ = plan.drawing().to_svg();
+    let _ = Drawing::of(plan).to_svg();
     String::new()
 }
 
@@ -131,18 +139,18 @@ const SHELF: &[(&str, &str)] = &[
     (
         "pipelines/fixed.ron",
         r#"(
-    format: 1,
+    format: 2,
     params: [
-        (name: "edge", type: U32, default: 16, min: 1, max: 64),
-        (name: "bias", type: F32, default: 0.5),
-        (name: "sun", type: Vec3, default: (0, 1, 0)),
-        (name: "cull", type: Choice(["none", "front", "back"]), default: "front"),
+        U32(name: "edge", default: 16, min: 1, max: 64),
+        F32(name: "bias", default: 0.5),
+        Vec3(name: "sun", default: (0, 1, 0)),
+        Choice(name: "cull", words: [none, front, back], default: front),
     ],
     materials: [
-        Texture(name: "image", format: Rgba32Float, size: Viewport),
-        Texture(name: "number", format: R32Uint, size: Viewport),
-        Texture(name: "depth", format: Depth32Float, size: Square(Param("edge"))),
-        Texture(name: "layers", format: R32Float, size: Square(8), layers: 6, mips: 2),
+        Texture(name: "image", format: Rgba32Float),
+        Texture(name: "number", format: R32Uint),
+        Texture(name: "depth", format: Depth32Float, size: "edge"),
+        Texture(name: "layers", format: R32Float, size: 8, layers: 6, mips: 2),
         Buffer(name: "items", count: 64),
         Buffer(name: "total"),
         Sampler(name: "nearest"),
@@ -151,57 +159,67 @@ const SHELF: &[(&str, &str)] = &[
     passes: [
         Clear(name: "reset", target: "total"),
         Clear(name: "blank", target: "layers"),
-        Compute(name: "compute", shader: "fuzzed", dispatch: Over("number")),
-        Raster(name: "raster", shader: "fuzzed", draw: CountOf("scene.indices"), depth: (target: "depth", load: Clear(1.0), compare: Less), cull: Param("cull")),
-        Fullscreen(name: "fullscreen", shader: "fuzzed", color: [(target: "image")]),
+        Compute(name: "compute", shader: "fuzzed", dispatch: Over("number.size")),
+        Raster(
+            name: "raster", shader: "fuzzed", draw: "scene.indices.count", cull: "cull",
+            depth: (target: "depth", load: Clear(1.0), compare: Less),
+        ),
+        Fullscreen(name: "fullscreen", shader: "fuzzed", color: ["image"]),
     ],
-    outputs: [(name: "image"), (name: "number"), (name: "depth"), (name: "items"), (name: "total")],
+    outputs: ["image", "number", "depth", "items", "total"],
 )"#,
     ),
     (
         "pipelines/shared/half.ron",
         r#"(
-    format: 1,
-    params: [(name: "factor", type: F32, default: 0.5)],
-    materials: [Texture(name: "half", format: Rgba32Float, size: ViewportTimes(Param("factor")))],
-    passes: [Fullscreen(name: "halve", shader: "fill", color: [(target: "half")])],
-    outputs: [(name: "half")],
+    format: 2,
+    params: [U32(name: "factor", default: 2, min: 1)],
+    materials: [
+        Texture(name: "half", format: Rgba32Float, size: "ceil_div(viewport.size, factor)"),
+    ],
+    passes: [Fullscreen(name: "halve", shader: "fill", color: ["half"])],
+    outputs: ["half"],
 )"#,
     ),
     (
         "pipelines/shared/twice.ron",
         r#"(
-    format: 1,
+    format: 2,
     passes: [
-        Include(graph: "shared/half.ron", prefix: "left"),
-        Include(graph: "shared/half.ron", prefix: "right", params: {"factor": 0.25}),
+        Include(graph: "shared/half.ron", name: "left"),
+        Include(graph: "shared/half.ron", name: "right", set: {"factor": 4}),
     ],
-    outputs: [(name: "left.half"), (name: "right.half")],
+    outputs: [(name: "first", material: "left.half"), (name: "second", material: "right.half")],
 )"#,
     ),
     (
         "shaders/fill.wgsl",
-        "@fragment fn fragment(@builtin(position) place: vec4<f32>) -> @location(0) vec4<f32> { return place; }\n",
+        "@fragment fn fragment(@builtin(position) place: vec4<f32>) -> @location(0) vec4<f32> { \
+         return place; }\n",
     ),
     (
         "shaders/index.wgsl",
         "var<storage, read_write> items: array<u32>;\n\
-         @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3<u32>) { items[id.x] = id.x; }\n",
+         @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3<u32>) {\n    \
+         items[id.x] = id.x;\n}\n",
     ),
     (
         "shaders/draw.wgsl",
         "#import \"shared/scene.wgsl\"\n\
-         @vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> { return camera * corner(index); }\n",
+         @vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {\n    \
+         return camera * corner(index);\n}\n",
     ),
     (
         "shaders/blur.wgsl",
-        "struct Params { factor: f32 }\nvar<uniform> params: Params;\nvar image: texture_2d<f32>;\nvar nearest: sampler;\n\
-         @fragment fn fragment(@builtin(position) place: vec4<f32>) -> @location(0) vec4<f32> {\n    \
-         return params.factor * textureSampleLevel(image, nearest, place.xy, 0.0);\n}\n",
+        "struct Params { factor: f32 }\nvar<uniform> params: Params;\nvar image: \
+         texture_2d<f32>;\nvar nearest: sampler;\n\
+         @fragment fn fragment(@builtin(position) place: vec4<f32>) -> @location(0) vec4<f32> \
+         {\n    return params.factor * textureSampleLevel(image, nearest, place.xy, 0.0);\n}\n",
     ),
     (
         "shaders/shared/scene.wgsl",
-        "var<storage, read> scene_positions: array<vec4<f32>>;\nvar<storage, read> scene_indices: array<u32>;\n\
+        "var<storage, read> scene_positions: array<vec4<f32>>;\nvar<storage, read> scene_indices: \
+         array<u32>;\n\
          var<uniform> camera: mat4x4<f32>;\n\
          fn corner(index: u32) -> vec4<f32> { return scene_positions[scene_indices[index]]; }\n",
     ),
@@ -210,7 +228,7 @@ const SHELF: &[(&str, &str)] = &[
 /// Describes a scene of one triangle.
 struct SmallScene;
 
-impl Provider for SmallScene {
+impl Describe for SmallScene {
     fn names(&self) -> Vec<String> {
         ["scene.positions", "scene.indices", "camera"]
             .map(str::to_owned)
@@ -218,25 +236,16 @@ impl Provider for SmallScene {
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {
-        let (stride, uniform) = match name {
-            "scene.positions" => (16, false),
-            "scene.indices" => (4, false),
-            "camera" => (64, true),
+        let (items, stride, binding) = match name {
+            "scene.positions" => (3, 16, ProvidedBinding::Storage),
+            "scene.indices" => (3, 4, ProvidedBinding::Storage),
+            "camera" => (1, 64, ProvidedBinding::Uniform),
             _ => return None,
         };
         Some(Provided {
-            items: Some(if uniform { 1 } else { 3 }),
+            items: Some(items),
             stride,
-            uniform,
+            binding,
         })
-    }
-
-    fn build(
-        &mut self,
-        name: &str,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-    ) -> Result<wgpu::Buffer, ProviderError> {
-        NoProvider.build(name, device, queue)
     }
 }

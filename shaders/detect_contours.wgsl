@@ -20,12 +20,12 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
         return;
     }
     let receiver = textureLoad(position, pixel, 0);
-    var pixel_status = status_unasked(pixel, receiver);
+    var pixel_status = initial_status(pixel, receiver);
     if pixel_status == STATUS_UNCERTAIN {
         pixel_status = compare(receiver.xyz);
     }
     textureStore(status, pixel, vec4(pixel_status));
-    textureStore(visibility, pixel, vec4(shown(pixel_status)));
+    textureStore(visibility, pixel, vec4(initial_visibility(pixel_status)));
 }
 
 fn compare(receiver: vec3<f32>) -> u32 {

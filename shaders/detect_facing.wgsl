@@ -1,4 +1,4 @@
-// Stage to leave every pixel that faces the light to the tracer, and to settle all others; one thread per pixel.
+// Stage to leave every pixel that faces the light to the tracer, and to decide all others; one thread per pixel.
 
 #import "shared/receiver.wgsl"
 
@@ -11,7 +11,7 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
     if any(pixel >= textureDimensions(primitive)) {
         return;
     }
-    let pixel_status = status_unasked(pixel, textureLoad(position, pixel, 0));
+    let pixel_status = initial_status(pixel, textureLoad(position, pixel, 0));
     textureStore(status, pixel, vec4(pixel_status));
-    textureStore(visibility, pixel, vec4(shown(pixel_status)));
+    textureStore(visibility, pixel, vec4(initial_visibility(pixel_status)));
 }

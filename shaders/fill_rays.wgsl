@@ -21,7 +21,7 @@ var<storage, read_write> ray_primitives: array<u32>;
 var<storage, read_write> ray_pixels: array<u32>;
 
 // One bit per thread that has a ray, and the place of the group's first ray.
-var<workgroup> asking: array<atomic<u32>, 2>;
+var<workgroup> with_ray: array<atomic<u32>, 2>;
 var<workgroup> group_first: u32;
 
 @compute @workgroup_size(8, 8)
@@ -29,16 +29,16 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>, @builtin(local_invocat
     let pixel = thread.xy;
     let viewport = textureDimensions(status);
     let inside = all(pixel < viewport);
-    let asks = inside && textureLoad(status, pixel, 0).x == STATUS_UNCERTAIN;
-    let traced = asks || (inside && params.per_pixel != 0u);
+    let uncertain = inside && textureLoad(status, pixel, 0).x == STATUS_UNCERTAIN;
+    let traced = uncertain || (inside && params.per_pixel != 0u);
     let word = lane / 32u;
     let bit = 1u << (lane % 32u);
     if traced {
-        atomicOr(&asking[word], bit);
+        atomicOr(&with_ray[word], bit);
     }
     workgroupBarrier();
-    let low = atomicLoad(&asking[0]);
-    let high = atomicLoad(&asking[1]);
+    let low = atomicLoad(&with_ray[0]);
+    let high = atomicLoad(&with_ray[1]);
     if lane == 0u && (low | high) != 0u {
         group_first = atomicAdd(&ray_count, countOneBits(low) + countOneBits(high));
     }
@@ -52,9 +52,9 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>, @builtin(local_invocat
     let id = textureLoad(primitive, pixel, 0).x;
     let receiver = textureLoad(position, pixel, 0).xyz;
     // The background has no receiver: its ray is empty.
-    let reach = select(light.reach, -1.0, id == NO_PRIMITIVE);
-    rays[slot] = Ray(receiver, own_rounding(receiver, camera.eye), light.towards, reach);
+    let max_distance = select(light.max_distance, -1.0, id == NO_PRIMITIVE);
+    rays[slot] = Ray(receiver, receiver_error_bound(receiver, camera.eye), light.to_light, max_distance);
     ray_primitives[slot] = id;
-    // Rays of pixels that ask nothing cost their time and change no pixel.
-    ray_pixels[slot] = select(NO_PIXEL, pixel.y * viewport.x + pixel.x, asks);
+    // Rays of certain pixels cost their time and change no pixel.
+    ray_pixels[slot] = select(NO_PIXEL, pixel.y * viewport.x + pixel.x, uncertain);
 }

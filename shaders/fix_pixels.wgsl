@@ -1,4 +1,4 @@
-// Stage to carry the tracer's answers back to the pixels that asked; one thread per ray.
+// Stage to carry the tracer's answers back to the uncertain pixels; one thread per ray.
 
 #import "shared/ray_slots.wgsl"
 #import "shared/ray.wgsl"

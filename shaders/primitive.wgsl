@@ -3,6 +3,7 @@
 
 #import "shared/camera.wgsl"
 #import "shared/geometry.wgsl"
+#import "shared/ids.wgsl"
 
 struct Vertex {
     @builtin(position) clip: vec4<f32>,

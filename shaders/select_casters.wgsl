@@ -28,7 +28,7 @@ struct Thread {
     @builtin(local_invocation_index) lane: u32,
 }
 
-// For layers that ask nothing of their neighbours.
+// For layers that need no adjacency.
 @compute @workgroup_size(CORNERS)
 fn alone(thread: Thread) {
     let corner = corner_of(thread);
@@ -45,7 +45,7 @@ fn with_neighbours(thread: Thread) {
         let first = thread.lane - thread.lane % 3u;
         let next = texels[first + (thread.lane + 1u) % 3u].xy;
         let own = texels[first + (thread.lane + 2u) % 3u].xy;
-        kept = across(corner, texels[thread.lane].xy, next, own, params.cull, f32(params.map_size)) != NO_NEIGHBOUR;
+        kept = adjacent_triangle(corner, texels[thread.lane].xy, next, own, params.cull, f32(params.map_size)) != NO_NEIGHBOUR;
     }
     place(corner, thread.lane, triangle, kept);
 }

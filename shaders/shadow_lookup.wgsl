@@ -20,14 +20,14 @@ struct Answer {
 @fragment
 fn fragment(@builtin(position) centre: vec4<f32>) -> Answer {
     let status = compare(vec2<u32>(centre.xy));
-    return Answer(shown(status), status);
+    return Answer(initial_visibility(status), status);
 }
 
 fn compare(pixel: vec2<u32>) -> u32 {
     let receiver = textureLoad(position, pixel, 0);
-    let unasked = status_unasked(pixel, receiver);
-    if unasked != STATUS_UNCERTAIN {
-        return unasked;
+    let status = initial_status(pixel, receiver);
+    if status != STATUS_UNCERTAIN {
+        return status;
     }
     return select(STATUS_SHADOW, STATUS_LIGHT, is_lit(receiver.xyz, receiver.w));
 }

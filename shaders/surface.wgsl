@@ -59,7 +59,7 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
     let length_squared = dot(normal, normal);
     var n_dot_l = 0.0;
     if length_squared > 0.0 {
-        n_dot_l = dot(normal, light.towards) * inverseSqrt(length_squared);
+        n_dot_l = dot(normal, light.to_light) * inverseSqrt(length_squared);
     }
     textureStore(position, pixel, vec4(receiver, n_dot_l));
 }

@@ -1,4 +1,4 @@
-// Stage to test each ray against one triangle, the one that the grown layer holds for its texel: a miss is taken for light. One thread per
+// Stage to test each ray against one triangle, the one that the outer depth comes from in its texel: a miss is taken for light. One thread per
 // ray. What Hertel, Hormann, Westermann 2009 do first; the dissertation's section 5.4.1 leaves it out because of its errors.
 
 #import "shared/light_triangle.wgsl"
@@ -6,7 +6,7 @@
 #import "shared/ray_triangle.wgsl"
 #import "shared/ids.wgsl"
 
-var big_primitive: texture_2d<u32>;
+var outer_primitive: texture_2d<u32>;
 var<storage, read> rays: array<Ray>;
 var<storage, read> ray_primitives: array<u32>;
 var<storage, read_write> hits: array<Hit>;
@@ -18,11 +18,11 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         return;
     }
     let ray = rays[slot];
-    let size = textureDimensions(big_primitive);
+    let size = textureDimensions(outer_primitive);
     let place = light_texel(ray.origin, f32(size.x));
     var candidate = NO_PRIMITIVE;
     if all(place.xy >= vec2(0.0)) && all(place.xy < vec2<f32>(size)) {
-        candidate = textureLoad(big_primitive, vec2<u32>(place.xy), 0).x;
+        candidate = textureLoad(outer_primitive, vec2<u32>(place.xy), 0).x;
     }
     var hit = Hit(ray.t_max, NO_PRIMITIVE, 0.0, 0.0);
     if candidate != NO_PRIMITIVE && candidate != ray_primitives[slot] {

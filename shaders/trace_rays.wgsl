@@ -1,4 +1,4 @@
-// Stage to trace rays through the scene's binary hierarchy; one thread per ray, workgroups folded to two dimensions.
+// Stage to trace rays through the scene's binary hierarchy; one thread per ray, workgroups spread over two dimensions.
 // Boxes are padded, which keeps traversal as watertight as the triangles' test: Woop, Benthin, Wald, "Watertight Ray/Triangle
 // Intersection", JCGT 2(1), 2013. Slabs after Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013.
 
@@ -21,10 +21,10 @@ var<storage, read> rays: array<Ray>;
 var<storage, read> skip: array<u32>;
 var<storage, read_write> hits: array<Hit>;
 
-// Both as in trace_fold.wgsl.
+// Both as in dispatch_arguments.wgsl.
 const GROUP_SIZE: u32 = 64u;
 const GROUPS_PER_ROW: u32 = 65535u;
-// As `MAX_DEPTH` in crates/scene/src/bvh.rs, which builds no deeper hierarchy: a level adds one entry at most.
+// As `MAX_DEPTH` in crates/scene/src/bvh/tree.rs, which builds no deeper hierarchy: a level adds one entry at most.
 const STACK_SIZE: u32 = 64u;
 
 // Boxes are padded by this share of the distance to the scene's farthest side: 16 ulp, where Woop et al. prove 5 enough for
@@ -98,7 +98,7 @@ fn prepare(ray: Ray) -> Prepared {
 // Where the ray enters the padded box, or MISSED.
 const MISSED: f32 = 3.0e38;
 
-fn enter(ray: Prepared, box: Node, t_min: f32, t_max: f32) -> f32 {
+fn slab_test(ray: Prepared, box: Node, t_min: f32, t_max: f32) -> f32 {
     // Padding the difference, not the box: a pad below one ulp of a far-off box's coordinates would be lost.
     let to_low = ((box.low - ray.sheared.origin) - ray.pad) * ray.inverse;
     let to_high = ((box.high - ray.sheared.origin) + ray.pad) * ray.inverse;
@@ -119,7 +119,7 @@ fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
     var stack: array<u32, STACK_SIZE>;
     var height = 0u;
     var node = scene_bvh_nodes[0];
-    if enter(prepared, node, ray.t_min, hit.t) == MISSED {
+    if slab_test(prepared, node, ray.t_min, hit.t) == MISSED {
         return hit;
     }
     loop {
@@ -128,8 +128,8 @@ fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
             let first = node.first;
             let left = scene_bvh_nodes[first];
             let right = scene_bvh_nodes[first + 1u];
-            let to_left = enter(prepared, left, ray.t_min, hit.t);
-            let to_right = enter(prepared, right, ray.t_min, hit.t);
+            let to_left = slab_test(prepared, left, ray.t_min, hit.t);
+            let to_right = slab_test(prepared, right, ray.t_min, hit.t);
             if min(to_left, to_right) != MISSED {
                 let swap = to_right < to_left;
                 if max(to_left, to_right) != MISSED {

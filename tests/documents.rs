@@ -101,13 +101,13 @@ fn the_steps_of_a_frame_are_passes() {
         "detect_facing",
         "fill_rays.clear",
         "fill_rays.compact",
-        "fill_rays.fold",
+        "fill_rays.dispatch_arguments",
         "trace_rays",
         "fix_pixels",
     ];
     assert_eq!(live(&plan("pipelines/rt.ron", None)), rt);
     let nsm = [
-        "create_shadow_map",
+        "create_shadow_map.draw",
         "gbuffer.primitive",
         "gbuffer.surface",
         "shadow_lookup",
@@ -115,19 +115,19 @@ fn the_steps_of_a_frame_are_passes() {
     assert_eq!(live(&plan("pipelines/nsm.ron", None)), nsm);
     assert_eq!(
         live(&plan("pipelines/shared/gbuffer.ron", Some(&["primitive"]))),
-        ["gbuffer.primitive"]
+        ["primitive"]
     );
     let crsma = [
         "create_shadow_map.reset",
         "create_shadow_map.select",
-        "create_shadow_map.big",
-        "create_shadow_map.small",
+        "create_shadow_map.outer",
+        "create_shadow_map.inner",
         "gbuffer.primitive",
         "gbuffer.surface",
         "detect_uncertain",
         "fill_rays.clear",
         "fill_rays.compact",
-        "fill_rays.fold",
+        "fill_rays.dispatch_arguments",
         "trace_rays",
         "fix_pixels",
     ];
@@ -196,7 +196,10 @@ fn what_no_output_needs_is_culled() {
         ]
     );
     let culled: Vec<String> = plan.culled().iter().map(|pass| pass.name.clone()).collect();
-    assert_eq!(culled, ["fill_rays.fold", "trace_rays", "fix_pixels"]);
+    assert_eq!(
+        culled,
+        ["fill_rays.dispatch_arguments", "trace_rays", "fix_pixels"]
+    );
 }
 
 #[test]
@@ -208,7 +211,7 @@ fn more_rays_than_a_device_binds_are_refused_by_name() {
         .err();
     let errors = errors.expect("a plan of 265 MB in one binding").to_string();
     assert!(
-        errors.contains("rays") && errors.contains("pipelines/rt.ron"),
+        errors.contains("rays") && errors.contains("pipelines/shared/fill_rays.ron"),
         "{errors}"
     );
 }

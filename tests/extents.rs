@@ -1,4 +1,5 @@
-//! What f32 can still tell apart: surfaces from themselves, and one scene however large, far off or coarse.
+//! What f32 can still tell apart: surfaces from themselves, and one scene however large, far off or
+//! coarse.
 //!
 //! The sweep behind the table of docs/precision.md is a suite of its own, which CI runs:
 //! `cargo test -p skiagraph-tests --test extents -- --ignored --nocapture`
@@ -28,7 +29,8 @@ fn scene(mesh: Mesh, eye: DVec3, target: DVec3, far: f64, direction: DVec3) -> A
     })
 }
 
-/// A plane sheet, askew, of `cells` by `cells` squares of two triangles, `size` across, its middle at `at`.
+/// A plane sheet, askew, of `cells` by `cells` squares of two triangles, `size` across, its middle
+/// at `at`.
 fn sheet(cells: u16, size: f32, at: Vec3) -> Mesh {
     let (u, v) = (Vec3::new(0.81, 0.37, -0.29), Vec3::new(0.23, 0.31, 0.93));
     let line = u32::from(cells) + 1;
@@ -41,8 +43,9 @@ fn sheet(cells: u16, size: f32, at: Vec3) -> Mesh {
     meshes::mesh(positions.collect(), triangles.collect())
 }
 
-/// All its triangles face the light, and nothing else is there. The oracle finds some pixels in shadow, of corners that rounding has put an ulp in
-/// front of their neighbours'; those aside a receiver that was found below the sheet must not meet it.
+/// All its triangles face the light, and nothing else is there. The oracle finds some pixels in
+/// shadow, of corners that rounding has put an ulp in front of their neighbours'; those aside a
+/// receiver that was found below the sheet must not meet it.
 #[test]
 fn a_sheet_does_not_shade_itself() {
     for (size, at) in [
@@ -60,7 +63,8 @@ fn a_sheet_does_not_shade_itself() {
     }
 }
 
-/// Two boulders over a square floor of two triangles, `half` to every side; what the camera sees is four units across.
+/// Two boulders over a square floor of two triangles, `half` to every side; what the camera sees is
+/// four units across.
 fn boulders(half: f32) -> Mesh {
     let mut positions = vec![
         Vec3::new(-half, 0.0, half),
@@ -83,7 +87,8 @@ fn boulders(half: f32) -> Mesh {
     meshes::mesh(positions.into_iter().map(tilt).collect(), triangles)
 }
 
-/// The boulders, as large as that, as far off, on a floor that large; what the oracle says of them, traced.
+/// The boulders, as large as that, as far off, on a floor that large; what the oracle says of them,
+/// traced.
 fn measured(scale: f64, offset: f64, half: f32) -> Statistics {
     let mut mesh = boulders(half);
     for position in &mut mesh.positions {
@@ -107,19 +112,19 @@ const EXTENT: f64 = 4.0;
 fn what_holds_at_any_scale_distance_and_coarseness() {
     let mut failed = Vec::new();
     println!(
-        "{:24}{:>8}{:>8}{:>14}{:>10}",
-        "", "shadow", "wrong", "out of band", "band"
+        "{:24}{:>8}{:>8}{:>19}{:>15}",
+        "", "shadow", "wrong", "wrong determinate", "indeterminate"
     );
     let mut row = |what: String, counts: Statistics, most: Option<f64>| {
-        let outside = counts.wrong.total - counts.wrong.in_band;
-        let band = counts.band_share();
+        let determinate = counts.wrong.total - counts.wrong.in_band;
+        let share = counts.indeterminate_share();
         println!(
-            "{what:24}{:>8}{:>8}{outside:>14}{:>9.2}%",
+            "{what:24}{:>8}{:>8}{determinate:>19}{:>14.2}%",
             counts.pixels.shadow,
             counts.wrong.total,
-            100.0 * band
+            100.0 * share
         );
-        if most.is_some_and(|most| outside > 0 || band > most || counts.pixels.shadow == 0) {
+        if most.is_some_and(|most| determinate > 0 || share > most || counts.pixels.shadow == 0) {
             failed.push(what);
         }
     };

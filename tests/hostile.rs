@@ -1,5 +1,6 @@
-//! Whatever stands in a file: an answer, never a panic, and soon. The stable twin of the fuzz targets in `fuzz`: the same entry
-//! functions on the same corpora, on every former finding, and on what becomes of them by chance.
+//! Whatever stands in a file: an answer, never a panic, and soon. The stable counterpart of the
+//! fuzz targets in `fuzz`: the same entry functions on the same corpora, on every former finding,
+//! and on what becomes of them by chance.
 
 #[path = "support/bounds.rs"]
 mod bounds;

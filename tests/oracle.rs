@@ -30,7 +30,8 @@ fn rt_on_park_is_exact() {
     }
 }
 
-/// The real Sponza is too large to come with the sources: the folder above `sponza/sponza.obj` is taken from the environment.
+/// The real Sponza is too large to come with the sources: the folder above `sponza/sponza.obj` is
+/// taken from the environment.
 fn sponza() -> Option<Arc<Scene>> {
     if std::env::var_os("SKIAGRAPH_ASSETS").is_none() {
         println!("SKIAGRAPH_ASSETS is not set, so there is no Sponza to test with");
@@ -45,7 +46,8 @@ fn rt_on_sponza_is_exact() {
     Bench::new(&scene, [256, 256]).rt_is_exact();
 }
 
-/// The dissertation's table 12 has 7.9, 5.3, 3.8, 3.1 % wrong at maps of 512, 1024, 2048, 4096 texels' edge.
+/// The dissertation's table 12 has 7.9, 5.3, 3.8, 3.1 % wrong at maps of 512, 1024, 2048, 4096
+/// texels' edge.
 #[test]
 fn nsm_on_sponza_is_as_wrong_as_the_dissertation_says_and_less_so_on_a_finer_map() {
     let Some(scene) = sponza() else { return };
@@ -62,7 +64,8 @@ fn nsm_on_sponza_is_as_wrong_as_the_dissertation_says_and_less_so_on_a_finer_map
     assert!((0.03..0.08).contains(&shares[1]), "{shares:?}");
 }
 
-/// No length in the shaders is a constant: a model in tenths of millimetres, in thousands of kilometres, or far from the origin.
+/// No length in the shaders is a constant: a model in tenths of millimetres, in thousands of
+/// kilometres, or far from the origin.
 #[test]
 fn rt_is_exact_at_any_scale_and_far_from_the_origin() {
     let park = load("park");

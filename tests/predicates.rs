@@ -1,18 +1,21 @@
-//! The predicates on the GPU against their twins: every answer is one that some arithmetic yields which WGSL allows, so neither can change alone.
+//! The predicates on the GPU against their CPU reference: every answer is one that some arithmetic
+//! yields which WGSL allows, so neither can change alone.
 
 mod support;
 
 use glam::{DVec3, Vec3};
 use skiagraph_passes::SceneProvider;
-use skiagraph_reference::predicates::{Arithmetic, HALF_ULP, own_rounding, surrounds};
 use skiagraph_scene::{DirectionalLight, Mesh, Scene};
+use skiagraph_tests::cpu_reference::predicates::{
+    Arithmetic, HALF_ULP, bbox_contains, receiver_error_bound,
+};
 use std::sync::Arc;
 use support::{
     graphs::{Extended, run_files},
     random::Random,
 };
 
-/// Twin of the shader's below.
+/// Laid out as the shader's below.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 struct Question {
@@ -21,17 +24,17 @@ struct Question {
     numbers: [u32; 2],
 }
 
-/// Twin of the shader's below.
+/// Laid out as the shader's below.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 struct Answer {
     edge_area: f32,
     inward_distance: f32,
     side: f32,
-    own_rounding: f32,
-    meets: u32,
+    receiver_error_bound: f32,
+    overlaps: u32,
     left: u32,
-    surrounds: u32,
+    contains: u32,
     padding: u32,
 }
 
@@ -49,10 +52,10 @@ struct Answer {
     edge_area: f32,
     inward_distance: f32,
     side: f32,
-    own_rounding: f32,
-    meets: u32,
+    receiver_error_bound: f32,
+    overlaps: u32,
     left: u32,
-    surrounds: u32,
+    contains: u32,
     padding: u32,
 }
 
@@ -71,21 +74,21 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
         edge_area(p, q),
         inward_distance(p, q, asked.point, f32(asked.numbers.x) - f32(asked.numbers.y)),
         side_of_edge(p, q, asked.point),
-        own_rounding(vec3(p, q.x), vec3(asked.point, q.y)),
-        u32(meets(p, q, asked.point)),
+        receiver_error_bound(vec3(p, q.x), vec3(asked.point, q.y)),
+        u32(edge_overlaps_texel(p, q, asked.point)),
         u32(left_of(asked.numbers.x, asked.numbers.y, p, q, asked.point)),
-        u32(surrounds(p - asked.point, q - asked.point, q - p)),
+        u32(bbox_contains(p - asked.point, q - asked.point, q - p)),
         0u,
     );
 }
 "#;
 
 const DOCUMENT: &str = r#"(
-    format: 1,
+    format: 2,
     description: "questions in, answers out",
-    materials: [Buffer(name: "answers", count: CountOf("test.questions"))],
-    passes: [Compute(name: "judge", dispatch: Over("test.questions"))],
-    outputs: [(name: "answers")],
+    materials: [Buffer(name: "answers", count: "test.questions.count")],
+    passes: [Compute(name: "judge", dispatch: Over("test.questions.count"))],
+    outputs: ["answers"],
 )"#;
 
 fn asked(questions: &[Question]) -> Vec<Answer> {
@@ -158,7 +161,7 @@ fn the_gpu_answers_as_some_allowed_arithmetic_does() {
         let said = format!("{question:?}: {answer:?}");
         assert!(some(&|a| a.edge_area(p, q) == answer.edge_area), "{said}");
         assert!(
-            some(&|a| a.meets(p, q, point) == (answer.meets == 1)),
+            some(&|a| a.edge_overlaps_texel(p, q, point) == (answer.overlaps == 1)),
             "{said}"
         );
         assert!(
@@ -173,25 +176,28 @@ fn the_gpu_answers_as_some_allowed_arithmetic_does() {
         // What either may err by, as the shader says.
         let away = (point[0] - p[0]).hypot(point[1] - p[1]);
         let near = |a: Arithmetic| {
-            let twin = a.inward_distance([p, q], point, area, 0);
-            let bound = 2.0 * HALF_ULP * (3.0 * away + 8.0 * twin.abs());
-            (twin - answer.inward_distance).abs() <= bound
+            let expected = a.inward_distance([p, q], point, area, 0);
+            let bound = 2.0 * HALF_ULP * (3.0 * away + 8.0 * expected.abs());
+            (expected - answer.inward_distance).abs() <= bound
         };
         assert!(some(&near), "{said}");
-        let own = own_rounding(
+        let own = receiver_error_bound(
             Vec3::new(p[0], p[1], q[0]),
             Vec3::new(point[0], point[1], q[1]),
         );
-        assert!((own - answer.own_rounding).abs() <= 1e-5 * own, "{said}");
+        assert!(
+            (own - answer.receiver_error_bound).abs() <= 1e-5 * own,
+            "{said}"
+        );
         let around = [
             [p[0] - point[0], p[1] - point[1]],
             [q[0] - point[0], q[1] - point[1]],
             [q[0] - p[0], q[1] - p[1]],
         ];
-        assert_eq!(surrounds(around), answer.surrounds == 1, "{said}");
+        assert_eq!(bbox_contains(around), answer.contains == 1, "{said}");
         sides[(answer.side + 1.0) as usize] += 1;
         lefts[answer.left as usize] += 1;
-        met[answer.meets as usize] += 1;
+        met[answer.overlaps as usize] += 1;
     }
     let least = sides.iter().chain(&lefts).chain(&met).min();
     assert!(least > Some(&3000), "{sides:?} {lefts:?} {met:?}");

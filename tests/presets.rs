@@ -1,9 +1,11 @@
-//! The presets on a small scene against rays traced by hand in f64, and what they make the provider build.
+//! The presets on a small scene against rays traced by hand in f64, and what they make the provider
+//! build.
 
 mod support;
 
 use glam::{DVec3, Vec3};
-use skiagraph_graph::{Executor, ParamValue};
+use skiagraph_gpu::Executor;
+use skiagraph_graph::ParamValue;
 use skiagraph_passes::presets;
 use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
 use std::sync::Arc;
@@ -76,7 +78,7 @@ impl Truth {
 /// How near a border a ray must pass, as a share of the triangle, to count as unsure.
 fn truth(scene: &Scene, border: f64) -> Vec<Truth> {
     let camera = scene.views[0].camera(VIEWPORT);
-    let towards = scene.light.towards();
+    let to_light = scene.light.to_light();
     let answer = |ray: &Ray, skip| {
         let outer = brute::hits(&scene.mesh, ray, skip, -border);
         let inner = brute::hits(&scene.mesh, ray, skip, border);
@@ -97,14 +99,14 @@ fn truth(scene: &Scene, border: f64) -> Vec<Truth> {
         let Some(seen) = seen else {
             return Truth::Background;
         };
-        if scene.mesh.corner_normals(seen.primitive)[0].dot(towards) <= 0.0 {
+        if scene.mesh.corner_normals(seen.primitive)[0].dot(to_light) <= 0.0 {
             return Truth::FacingAway;
         }
         let position = camera.eye + direction * seen.t;
         let ray = Ray {
             origin: position.as_vec3(),
             t_min: 0.0,
-            direction: towards.as_vec3(),
+            direction: to_light.as_vec3(),
             t_max: 50.0,
         };
         match answer(&ray, seen.primitive) {

@@ -3,8 +3,9 @@
 mod support;
 
 use glam::DVec3;
+use skiagraph_gpu::{Executor, Provider, device::Gpu};
 use skiagraph_graph::{
-    Executor, Graph, LayeredSources, ParamValue, PlanRequest, Provider, Sources, gpu::Gpu,
+    Describe, Graph, LayeredSources, ParamValue, PlanRequest, ProvidedBinding, Sources,
 };
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
 use skiagraph_scene::{DirectionalLight, Mesh, Scene, SceneLibrary, SceneRequest};
@@ -43,7 +44,8 @@ fn buffers_are_as_large_as_described() {
             Some(items) => assert_eq!(size, items * described.stride, "{name}"),
             None => assert_eq!(size % described.stride, 0, "{name}"),
         }
-        assert_eq!(described.uniform, !name.starts_with("scene."), "{name}");
+        let is_uniform = described.binding == ProvidedBinding::Uniform;
+        assert_eq!(is_uniform, !name.starts_with("scene."), "{name}");
     }
 }
 
@@ -85,7 +87,8 @@ impl Sources for Cached {
             ["primitive", "surface", "shadow_lookup"]
                 .iter()
                 .fold(text.to_string(), |text, name| {
-                    // Materials have no run condition: only a pass is named before anything but a format.
+                    // Materials have no run condition: only a pass is named before anything but a
+                    // format.
                     let named = format!("name: \"{name}\",");
                     let material = format!("{named} format");
                     text.replace(&material, "MATERIAL")
@@ -130,7 +133,7 @@ fn a_new_camera_renews_what_depends_on_the_camera() {
     let first = next(&mut executor);
     assert_eq!(first.skipped, [""; 0]);
     let everything = [
-        "create_shadow_map",
+        "create_shadow_map.draw",
         "gbuffer.primitive",
         "gbuffer.surface",
         "shadow_lookup",
@@ -142,7 +145,7 @@ fn a_new_camera_renews_what_depends_on_the_camera() {
     provider.set_view(&scene.views[3], viewport);
     executor.refresh(&mut provider).unwrap();
     let moved = next(&mut executor);
-    assert_eq!(moved.skipped, ["create_shadow_map"]);
+    assert_eq!(moved.skipped, ["create_shadow_map.draw"]);
     let anew = next(&mut start(&mut graphs::provider(
         &scene,
         &scene.views[3],
@@ -161,7 +164,11 @@ fn a_new_camera_renews_what_depends_on_the_camera() {
         (
             "slope_bias",
             ParamValue::F32(2.0),
-            &["create_shadow_map", "gbuffer.primitive", "gbuffer.surface"],
+            &[
+                "create_shadow_map.draw",
+                "gbuffer.primitive",
+                "gbuffer.surface",
+            ],
         ),
         (
             "map_size",

@@ -1,4 +1,5 @@
-//! The tracer on the GPU against the f64 oracle on random rays through random and degenerate meshes: outside the oracle's band they agree.
+//! The tracer on the GPU against the f64 oracle on random rays through random and degenerate
+//! meshes: they agree but on rays that the oracle calls indeterminate.
 //!
 //! The ten million rays are a suite of their own, which CI runs:
 //! `cargo test -p skiagraph-tests --test rays -- --ignored --nocapture`
@@ -15,7 +16,8 @@ use support::{
     random::Random,
 };
 
-/// Triangles of which each has something wrong with it: no area, two equal corners, a twin wound the other way, a hair's width.
+/// Triangles of which each has something wrong with it: no area, two equal corners, a copy wound
+/// the other way, a hair's width.
 fn degenerate(count: u32, seed: u64) -> Mesh {
     let mut random = Random(seed);
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
@@ -39,7 +41,8 @@ fn degenerate(count: u32, seed: u64) -> Mesh {
     meshes::mesh(positions, triangles)
 }
 
-/// A soup whose corners lie on a coarse grid: rays between grid points meet corners and edges exactly, and lie in planes.
+/// A soup whose corners lie on a coarse grid: rays between grid points meet corners and edges
+/// exactly, and lie in planes.
 fn on_a_grid(count: usize, seed: u64) -> Mesh {
     let mut mesh = meshes::soup(count, 0.5, seed);
     mesh.positions.iter_mut().for_each(|p| *p = snapped(*p));
@@ -50,7 +53,7 @@ fn snapped(p: Vec3) -> Vec3 {
     (p * 8.0).round() / 8.0
 }
 
-/// A mesh, how it is placed in the world, and the greatest share of rays that may be in its band.
+/// A mesh, how it is placed in the world, and the greatest share of rays that may be indeterminate.
 struct Subject {
     name: &'static str,
     mesh: Mesh,
@@ -139,14 +142,14 @@ fn agree(count: usize, seed: u64) -> usize {
         let exact = Oracle::new(&mesh).occlusion(&exact);
         let hits = trace_all(&mesh, &rays, "Any");
         let wrong: Vec<_> = (0..count)
-            .filter(|&i| !exact[i].in_band && exact[i].blocked != (hits[i].primitive != MISS))
+            .filter(|&i| !exact[i].indeterminate && exact[i].blocked != (hits[i].primitive != MISS))
             .collect();
-        let band = exact.iter().filter(|exact| exact.in_band).count() as f64 / count as f64;
+        let share = exact.iter().filter(|exact| exact.indeterminate).count() as f64 / count as f64;
         let blocked = exact.iter().filter(|exact| exact.blocked).count() as f64 / count as f64;
         println!(
-            "{name}: {count} rays, {:.1} % blocked, band {:.4} %, {} wrong",
+            "{name}: {count} rays, {:.1} % blocked, indeterminate {:.4} %, {} wrong",
             100.0 * blocked,
-            100.0 * band,
+            100.0 * share,
             wrong.len()
         );
         if let Some(&first) = wrong.first() {
@@ -160,7 +163,10 @@ fn agree(count: usize, seed: u64) -> usize {
                 triangle.map(|t| t.map(|corner| mesh.positions[corner as usize]))
             );
         }
-        assert!(band <= cap, "{name}: {band} of the rays are in the band");
+        assert!(
+            share <= cap,
+            "{name}: {share} of the rays are indeterminate"
+        );
         assert!(
             (0.02..0.999).contains(&blocked),
             "{name}: {blocked} of the rays are blocked"

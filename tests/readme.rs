@@ -1,34 +1,35 @@
 //! What the README tells its readers to type works as it stands there.
 
-use skiagraph_graph::{Executor, FolderSources, Frame, Graph, LayeredSources, PlanRequest, gpu};
+use skiagraph_gpu::{Executor, Frame, device};
+use skiagraph_graph::{FolderSources, Graph, LayeredSources, PlanRequest};
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
 use skiagraph_scene::{SceneLibrary, SceneRequest};
-use std::{fs, path::Path, sync::Arc};
+use std::{collections::VecDeque, fs, path::Path, sync::Arc};
 
 fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
 }
 
-/// The only code block of that language.
-fn block(language: &str) -> String {
+/// The code blocks of that language.
+fn blocks<const COUNT: usize>(language: &str) -> [String; COUNT] {
     let readme = fs::read_to_string(root().join("README.md")).unwrap();
     let opening = format!("```{language}\n");
-    let mut blocks = readme.split(&opening).skip(1);
-    let block = blocks
-        .next()
-        .unwrap_or_else(|| panic!("no {language} block in the README"));
-    assert!(
-        blocks.next().is_none(),
-        "two {language} blocks in the README"
-    );
-    block.split("```").next().unwrap().to_owned()
+    let blocks = readme.split(&opening).skip(1);
+    let blocks = blocks.map(|block| block.split("```").next().unwrap().to_owned());
+    let blocks: Vec<String> = blocks.collect();
+    blocks
+        .try_into()
+        .unwrap_or_else(|blocks| panic!("blocks of {language}: {blocks:?}"))
 }
 
 #[test]
 fn the_method_of_the_readme_is_complete_and_runs() {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("facing.ron"), block("ron")).unwrap();
-    fs::write(folder.path().join("facing.wgsl"), block("wgsl")).unwrap();
+    let [facing, variant] = blocks("ron");
+    let [shader] = blocks("wgsl");
+    fs::write(folder.path().join("facing.ron"), facing).unwrap();
+    fs::write(folder.path().join("facing.wgsl"), shader).unwrap();
+    fs::write(folder.path().join("soft_crsm.ron"), variant).unwrap();
     let own = FolderSources {
         root: folder.path().to_owned(),
     };
@@ -36,6 +37,10 @@ fn the_method_of_the_readme_is_complete_and_runs() {
     let graph =
         Graph::load("facing.ron", &registry(), &sources).unwrap_or_else(|error| panic!("{error}"));
     assert!(graph.warnings().is_empty(), "{:?}", graph.warnings());
+
+    let variant = Graph::load("soft_crsm.ron", &registry(), &sources);
+    let variant = variant.unwrap_or_else(|error| panic!("{error}"));
+    assert!(variant.warnings().is_empty(), "{:?}", variant.warnings());
 
     let request = SceneRequest {
         argument: "park".to_owned(),
@@ -54,7 +59,7 @@ fn the_method_of_the_readme_is_complete_and_runs() {
         "nothing here traces rays"
     );
 
-    let gpu = gpu::open(None).unwrap_or_else(|error| panic!("{error}"));
+    let gpu = device::open(None).unwrap_or_else(|error| panic!("{error}"));
     let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     executor
@@ -68,7 +73,7 @@ fn the_method_of_the_readme_is_complete_and_runs() {
         )
         .unwrap();
     gpu.queue.submit([encoder.finish()]);
-    executor.submitted(&gpu.queue).unwrap();
+    executor.submitted().unwrap();
     let report = executor.finish().unwrap();
     let values = |index: usize| report.readbacks[index].content.as_u32().unwrap();
     for (visibility, status) in values(0).into_iter().zip(values(1)) {
@@ -81,7 +86,8 @@ fn the_method_of_the_readme_is_complete_and_runs() {
     assert!(values(1).contains(&1) && values(1).contains(&2));
 }
 
-/// What is shown as Rust stands word for word, in one piece, in code that the tests or `.ci/run` run.
+/// What is shown as Rust stands word for word, in one piece, in code that the tests or `.ci/run`
+/// run.
 #[test]
 fn the_rust_of_the_documents_is_code_that_runs() {
     let read = |path: &str| fs::read_to_string(root().join(path)).unwrap();
@@ -91,9 +97,9 @@ fn the_rust_of_the_documents_is_code_that_runs() {
         lines.map(str::to_owned).collect()
     };
     let running = [
-        "crates/graph/examples/embed.rs",
-        "crates/graph/examples/custom_pass.rs",
-        "crates/graph/tests/embedding.rs",
+        "crates/gpu/examples/embed.rs",
+        "crates/gpu/examples/custom_pass.rs",
+        "crates/gpu/tests/embedding.rs",
     ]
     .map(|path| bare(&read(path)));
     for (document, least) in [("README.md", 2), ("docs/embedding.md", 15)] {
@@ -112,44 +118,47 @@ fn the_rust_of_the_documents_is_code_that_runs() {
     }
 }
 
-/// Every document of the authoring guide, as a file beside the shaders that it speaks of.
+/// The documents of the authoring guide in their order, as it calls them, with their passes.
+const DOCUMENTS: [(&str, usize); 7] = [
+    ("depth.ron", 2),
+    ("blur.ron", 2),
+    ("cascades.ron", 5),
+    ("softer.ron", 21),
+    ("extended.ron", 4),
+    ("history.ron", 1),
+    ("claims.ron", 4),
+];
+
+/// Every document of the authoring guide, as a file beside the shaders that it shows.
 #[test]
 fn the_documents_of_the_authoring_guide_are_right() {
-    const LEVEL: &str = "struct Params { value: f32 } var<uniform> params: Params;
-        @fragment fn fragment() -> @location(0) f32 { return params.value; }";
-    const FACING: &str = "var position: texture_2d<f32>;
-        var visibility: texture_storage_2d<r32uint, write>;
-        var status: texture_storage_2d<r32uint, write>;
-        @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-            let lit = u32(textureLoad(position, id.xy, 0).w > 0.0);
-            textureStore(visibility, id.xy, vec4(lit));
-            textureStore(status, id.xy, vec4(1u + lit));
-        }";
     let guide = fs::read_to_string(root().join("docs/authoring.md")).unwrap();
-    let blocks: Vec<&str> = guide
-        .split("```ron\n")
-        .skip(1)
-        .filter_map(|rest| rest.split("```").next())
-        // Others are parts of documents.
-        .filter(|block| block.starts_with("(\n    format: 1,"))
-        .collect();
-    let level = blocks
-        .iter()
-        .find(|block| block.contains("name: \"image\")],\n)") && !block.contains("requires"))
-        .expect("the guide shows level.ron");
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("level.ron"), level).unwrap();
-    fs::write(folder.path().join("level.wgsl"), LEVEL).unwrap();
-    fs::write(folder.path().join("facing.wgsl"), FACING).unwrap();
-    let blend = guide
-        .split("```wgsl\n")
-        .nth(1)
-        .and_then(|rest| rest.split("```").next());
-    fs::write(
-        folder.path().join("blend.wgsl"),
-        blend.expect("the guide shows blend.wgsl"),
-    )
-    .unwrap();
+    // A block of WGSL is the file that the prose before it names.
+    let (mut names, mut documents) = (VecDeque::new(), Vec::new());
+    for (at, part) in guide.split("```").enumerate() {
+        if at % 2 == 0 {
+            let shown = part
+                .lines()
+                .filter(|line| ["with `", "and `"].iter().any(|w| line.starts_with(w)));
+            names.extend(
+                shown
+                    .flat_map(|line| line.split('`'))
+                    .filter(|word| word.ends_with(".wgsl")),
+            );
+        } else if let Some(text) = part.strip_prefix("wgsl\n") {
+            let name = names.pop_front().expect("the guide names its shaders");
+            fs::write(folder.path().join(name), text).unwrap();
+        } else if let Some(text) = part.strip_prefix("ron\n") {
+            assert!(text.starts_with("(\n    format: 2,"), "{text}");
+            documents.push(text);
+        }
+    }
+    assert!(names.is_empty(), "named and not shown: {names:?}");
+    assert_eq!(documents.len(), DOCUMENTS.len());
+    for ((name, _), text) in DOCUMENTS.iter().zip(documents) {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
     let own = FolderSources {
         root: folder.path().to_owned(),
     };
@@ -160,18 +169,13 @@ fn the_documents_of_the_authoring_guide_are_right() {
     };
     let (scene, _) = SceneLibrary::default().load(&request).unwrap();
     let provider = SceneProvider::new(Arc::new(scene));
-    let mut passes = Vec::new();
-    for (number, block) in blocks.iter().enumerate() {
-        let path = format!("block{number}.ron");
-        fs::write(folder.path().join(&path), block).unwrap();
+    for (name, passes) in DOCUMENTS {
         let request = PlanRequest::new([64, 64], &provider);
-        let (graph, plan) = Graph::check(&path, &registry(), &sources, &request)
+        let (graph, plan) = Graph::check(name, &registry(), &sources, &request)
             .unwrap_or_else(|errors| panic!("{errors}"));
-        assert!(graph.warnings().is_empty(), "{:?}", graph.warnings());
-        let lacking = usize::from(!graph.features().is_empty());
-        assert_eq!(plan.fallbacks().len(), lacking);
-        assert_eq!(plan.warnings().len(), lacking, "{:?}", plan.warnings());
-        passes.push(plan.passes().len() + plan.culled().len());
+        let warnings: Vec<_> = graph.warnings().iter().chain(plan.warnings()).collect();
+        assert!(warnings.is_empty(), "{name}: {warnings:?}");
+        let planned = plan.passes().len() + plan.culled().len();
+        assert_eq!(planned, passes, "{name}");
     }
-    assert_eq!(passes, [1, 3, 3, 1, 8, 1]);
 }

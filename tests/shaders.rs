@@ -63,7 +63,10 @@ fn layout(path: &str, name: &str) -> (Vec<(String, u32)>, u32) {
 
 macro_rules! rust_layout {
     ($ty:ty { $($field:ident),* }) => {
-        (vec![$((stringify!($field).to_owned(), offset_of!($ty, $field) as u32)),*], size_of::<$ty>() as u32)
+        (
+            vec![$((stringify!($field).to_owned(), offset_of!($ty, $field) as u32)),*],
+            size_of::<$ty>() as u32,
+        )
     };
 }
 
@@ -89,8 +92,8 @@ fn light_is_laid_out_as_in_rust() {
     // `centre` and `extent` are vec4 in WGSL: their w is a field of its own in Rust.
     let rust = rust_layout!(LightUniform {
         clip_from_relative,
-        towards,
-        reach,
+        to_light,
+        max_distance,
         centre,
         extent
     });
@@ -124,7 +127,7 @@ fn constants_that_two_files_share_are_equal() {
     };
     for name in ["GROUP_SIZE", "GROUPS_PER_ROW"] {
         assert_eq!(
-            constant("trace_fold.wgsl", name),
+            constant("dispatch_arguments.wgsl", name),
             constant("trace_rays.wgsl", name)
         );
     }

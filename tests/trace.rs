@@ -269,7 +269,8 @@ fn the_interval_of_a_ray_is_open_below_and_closed_above() {
 
 #[test]
 fn a_ray_in_the_plane_of_a_triangle_beside_it_misses() {
-    // All corners on one line as the ray sees them, two of three edge functions 0, and the third off by rounding.
+    // All corners on one line as the ray sees them, two of three edge functions 0, and the third
+    // off by rounding.
     let corners = [
         [-0.75, -0.75, 1.375],
         [-0.625, -0.625, 0.875],
@@ -337,13 +338,19 @@ fn the_dispatch_is_folded_to_two_dimensions() {
             light,
         };
         let mut provider = Extended::new(SceneProvider::new(Arc::new(scene)));
-        provider.add("test.count", &[count]);
+        provider.add("test.number", &[count]);
         let document = r#"(
-            format: 1,
+            format: 2,
             description: "the size of a dispatch",
-            materials: [Buffer(name: "groups", count: 1)],
-            passes: [Compute(name: "trace_fold", dispatch: Groups(1, 1, 1), bind: {"count": "test.count"})],
-            outputs: [(name: "groups")],
+            materials: [Buffer(name: "groups")],
+            passes: [
+                Compute(
+                    name: "dispatch_arguments",
+                    dispatch: Groups(1, 1, 1),
+                    bind: {"count": "test.number"},
+                ),
+            ],
+            outputs: ["groups"],
         )"#;
         let groups: Vec<u32> =
             bytemuck::pod_collect_to_vec(&run_text(document, &mut provider, "groups"));

@@ -1,4 +1,5 @@
-//! Rebuilds the crate when a preset or shader is added or changed: `include_dir!` cannot ask for that itself.
+//! Rebuilds the crate when a preset or shader is added or changed: `include_dir!` cannot ask for
+//! that itself.
 
 fn main() {
     for folder in ["../../pipelines", "../../shaders"] {

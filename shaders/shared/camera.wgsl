@@ -1,4 +1,4 @@
-// The perspective camera of the view. Twin of `CameraUniform` in crates/passes/src/uniforms.rs.
+// The perspective camera of the view. Laid out as `CameraUniform` in crates/passes/src/uniforms.rs.
 
 struct Camera {
     eye: vec3<f32>,

@@ -8,7 +8,7 @@ const NO_NEIGHBOUR: u32 = 0xffffffffu;
 
 // The primitive beyond the edge from `p` to `q`, which is number `entry` in the corner table, of a triangle whose third corner is `own`: the edge's only
 // other triangle, in the map, and on its other side as the light sees it. The sides decide, not the windings; NO_NEIGHBOUR if there is none such.
-fn across(entry: u32, p: vec2<f32>, q: vec2<f32>, own: vec2<f32>, cull: u32, map_size: f32) -> u32 {
+fn adjacent_triangle(entry: u32, p: vec2<f32>, q: vec2<f32>, own: vec2<f32>, cull: u32, map_size: f32) -> u32 {
     let corner = scene_adjacency[entry];
     if corner == NO_NEIGHBOUR {
         return NO_NEIGHBOUR;

@@ -57,12 +57,12 @@ fn inward_distances(triangle: LightTriangle, point: vec2<f32>) -> vec3<f32> {
 const LOWEST: f32 = 0.125;
 
 // Depth of the triangle in the texel around `centre`: of its plane at the centre (`depth: plane`), or a bound on its nearest
-// (`towards` = NEAREST) or farthest point in the texel: z_c -+ (|dz/dx| + |dz/dy|) / 2, within the depths of its corners.
-fn texel_depth(triangle: LightTriangle, centre: vec2<f32>, depth: u32, towards: f32) -> f32 {
+// (`end` = NEAREST) or farthest point in the texel: z_c -+ (|dz/dx| + |dz/dy|) / 2, within the depths of its corners.
+fn texel_depth(triangle: LightTriangle, centre: vec2<f32>, depth: u32, end: f32) -> f32 {
     let depths = vec3(triangle.a.z, triangle.b.z, triangle.c.z);
     let least = min(depths.x, min(depths.y, depths.z));
     let greatest = max(depths.x, max(depths.y, depths.z));
-    let extreme = select(least, greatest, towards > 0.0);
+    let extreme = select(least, greatest, end > 0.0);
     let p = triangle.b - triangle.a;
     let q = triangle.c - triangle.a;
     if triangle.area == 0.0 {
@@ -82,7 +82,7 @@ fn texel_depth(triangle: LightTriangle, centre: vec2<f32>, depth: u32, towards: 
     }
     // Corners that are off by the slack tilt the plane, the more so the lower the triangle; and the area of a long one is a small
     // difference of large products, 4 ulp of the longest edge's square.
-    let reach = 0.5 + SLACK * (1.0 + 2.0 / height) + 2.3841858e-7 * longest * longest / height;
-    let bound = plane + towards * reach * (abs(slope.x) + abs(slope.y));
+    let half_width = 0.5 + SLACK * (1.0 + 2.0 / height) + 2.3841858e-7 * longest * longest / height;
+    let bound = plane + end * half_width * (abs(slope.x) + abs(slope.y));
     return saturate(clamp(bound, least, greatest));
 }

@@ -1,5 +1,5 @@
-// The tests on which all answers hang, of f32 coordinates as they are given. Bounds hold whether or not a compiler fuses a product with the
-// sum that it goes into, and with subnormal numbers flushed to zero. Twins and tests at the bounds: crates/reference/src/predicates.rs.
+// The predicates that decide visibility, on f32 coordinates as they are given. Bounds hold whether or not a compiler fuses a product with the
+// sum that it goes into, and with subnormal numbers flushed to zero. CPU references and tests at the bounds: tests/src/cpu_reference/predicates.rs.
 
 // Half an ulp of 1: what one rounding errs by, relative to its result.
 const HALF_ULP: f32 = 5.9604645e-8;
@@ -27,15 +27,15 @@ fn edge_area(p: vec2<f32>, q: vec2<f32>) -> f32 {
 }
 
 // Whether the box around three points has the origin in it: exact, and true of every triangle that has.
-fn surrounds(a: vec2<f32>, b: vec2<f32>, c: vec2<f32>) -> bool {
+fn bbox_contains(a: vec2<f32>, b: vec2<f32>, c: vec2<f32>) -> bool {
     return all(min(a, min(b, c)) <= vec2(0.0)) && all(max(a, max(b, c)) >= vec2(0.0));
 }
 
 // What rounding may have moved a receiver out of its plane: half an ulp of its distance to the origin, of the sum that it is, and an ulp of its
 // distance to the eye, of corners relative to the eye. A surface that its shadow ray meets sooner is the receiver's own, beyond an edge. Holds
 // for random receivers of surface.wgsl whose corners are no farther from them than the eye; a triangle ten times as large may put its receivers ten
-// times as far off. At most 3/5 of what the oracle takes a receiver to be off by, so that what a ray passes over is in its band.
-fn own_rounding(receiver: vec3<f32>, eye: vec3<f32>) -> f32 {
+// times as far off. At most 3/5 of what the oracle takes a receiver to be off by, so that a pixel whose ray skips a surface by it is indeterminate.
+fn receiver_error_bound(receiver: vec3<f32>, eye: vec3<f32>) -> f32 {
     return HALF_ULP * (length(receiver) + 2.0 * length(receiver - eye));
 }
 
@@ -45,9 +45,9 @@ fn own_rounding(receiver: vec3<f32>, eye: vec3<f32>) -> f32 {
 // texel is taken this much larger than it is.
 const SLACK: f32 = 0.0078125;
 
-// Whether an edge meets the texel around a centre; errs towards yes, also by SLACK. Separating axes of a segment and a square. In a map of
+// Whether an edge overlaps the texel around a centre; errs towards yes, also by SLACK. Separating axes of a segment and a square. In a map of
 // 16,384 texels the cross product errs by 6 half ulps of the edge's |x| |y|, less than half of what SLACK adds.
-fn meets(p: vec2<f32>, q: vec2<f32>, centre: vec2<f32>) -> bool {
+fn edge_overlaps_texel(p: vec2<f32>, q: vec2<f32>, centre: vec2<f32>) -> bool {
     let half = 0.5 + SLACK;
     if any(min(p, q) > centre + half) || any(max(p, q) < centre - half) {
         return false;

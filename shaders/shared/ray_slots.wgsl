@@ -1,4 +1,4 @@
-// The ray of a thread in a dispatch over `ray_groups`, whose workgroups are folded to two dimensions. Group sizes as in trace_fold.wgsl.
+// The ray of a thread in a dispatch over `ray_groups`, whose workgroups are spread over two dimensions. Group sizes as in dispatch_arguments.wgsl.
 
 const RAYS_PER_GROUP: u32 = 64u;
 const GROUPS_PER_ROW: u32 = 65535u;

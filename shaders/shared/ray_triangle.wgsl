@@ -30,7 +30,7 @@ fn intersect(ray: Sheared, primitive: u32, t_min: f32, hit: ptr<function, Hit>) 
         return false;
     }
     // On the line of an edge, but beyond its end: all corners on one line with the ray, whose rounding would pass for an area.
-    if any(weights == vec3(0.0)) && !surrounds(a.xy, b.xy, c.xy) {
+    if any(weights == vec3(0.0)) && !bbox_contains(a.xy, b.xy, c.xy) {
         return false;
     }
     // Zero for triangles without area and for those that the ray meets edge-on: a neighbour is hit instead.

@@ -7,7 +7,8 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Ten times the slowest input in a debug build, and half of what 4000 misspelt names took that were each compared with as many.
+/// Ten times the slowest input in a debug build, and half of what 4000 misspelt names took that
+/// were each compared with as many.
 const LONGEST: Duration = Duration::from_secs(10);
 
 /// What runs longer than this is taken for endless: the process ends with the input's name.
@@ -19,7 +20,8 @@ const MOST_MIB: u64 = 2048;
 /// Runs `work` on an input.
 ///
 /// # Panics
-/// Names the input by its beginning, if that took too long (the whole process ends if it does not end at all), or if the process needed more memory than ever before and than it may.
+/// Names the input by its beginning, if that took too long (the whole process ends if it does not
+/// end at all), or if the process needed more memory than ever before and than it may.
 #[track_caller]
 pub fn bounded<T>(input: &str, work: impl FnOnce() -> T) -> T {
     let name: String = input.chars().take(240).collect();
@@ -33,13 +35,15 @@ pub fn bounded<T>(input: &str, work: impl FnOnce() -> T) -> T {
     );
     assert!(
         after <= MOST_MIB || after == before,
-        "the peak of memory rose from {before} to {after} MiB, {MOST_MIB} at most, over {} bytes: {name}",
+        "the peak of memory rose from {before} to {after} MiB, {MOST_MIB} at most, over {} bytes: \
+         {name}",
         input.len()
     );
     answer
 }
 
-/// Runs `work`, and ends the process if it does not end: a loop on this thread cannot be left in any other way.
+/// Runs `work`, and ends the process if it does not end: a loop on this thread cannot be left in
+/// any other way.
 fn watched<T>(name: &str, work: impl FnOnce() -> T) -> T {
     let (done, waiting) = channel::<()>();
     let name = name.to_owned();

@@ -25,7 +25,8 @@ pub struct Hit {
 
 pub const MISS: u32 = u32::MAX;
 
-/// A hit in f64, with how near the ray comes to the triangle's border (smallest barycentric weight).
+/// A hit in f64, with how near the ray comes to the triangle's border (smallest barycentric
+/// weight).
 #[derive(Clone, Copy, Debug)]
 pub struct Exact {
     pub t: f64,
@@ -33,7 +34,8 @@ pub struct Exact {
     pub weights: DVec3,
 }
 
-/// Where the ray meets the plane of a triangle, whatever the weights; Möller and Trumbore's determinants.
+/// Where the ray meets the plane of a triangle, whatever the weights; Möller and Trumbore's
+/// determinants.
 pub fn plane_hit(mesh: &Mesh, primitive: u32, ray: &Ray) -> Option<Exact> {
     let [a, b, c] = mesh.corners(primitive);
     let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());

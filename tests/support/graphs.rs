@@ -1,9 +1,12 @@
 //! Runs graphs for tests.
 
 use super::brute::{Hit, Ray};
+use skiagraph_gpu::{
+    Content, Executor, Frame, FrameReport, Provider, ProviderError,
+    device::{self, Gpu},
+};
 use skiagraph_graph::{
-    Content, Executor, Frame, FrameReport, Graph, LayeredSources, Plan, PlanRequest, Provided,
-    Provider, ProviderError, Sources, gpu,
+    Describe, Graph, LayeredSources, Plan, PlanRequest, Provided, ProvidedBinding, Sources,
 };
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
 use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
@@ -31,7 +34,7 @@ impl Extended {
     }
 }
 
-impl Provider for Extended {
+impl Describe for Extended {
     fn names(&self) -> Vec<String> {
         self.scene
             .names()
@@ -47,10 +50,12 @@ impl Provider for Extended {
         Some(Provided {
             items: Some(content.len() as u64 / stride),
             stride: *stride,
-            uniform: false,
+            binding: ProvidedBinding::Storage,
         })
     }
+}
 
+impl Provider for Extended {
     fn build(
         &mut self,
         name: &str,
@@ -89,7 +94,8 @@ pub fn run_text(document: &str, provider: &mut dyn Provider, output: &str) -> Ve
     run_files(&[("test.ron", document)], provider, output)
 }
 
-/// The same with shaders that are given as text: paths and texts, the document's path is `test.ron`.
+/// The same with shaders that are given as text: paths and texts, the document's path is
+/// `test.ron`.
 pub fn run_files(files: &[(&str, &str)], provider: &mut dyn Provider, output: &str) -> Vec<u8> {
     let files = files
         .iter()
@@ -109,7 +115,8 @@ pub fn run_files(files: &[(&str, &str)], provider: &mut dyn Provider, output: &s
     }
 }
 
-/// Traces on the GPU through a graph of one `Trace` pass: the first `count` rays, each past its primitive in `skip`.
+/// Traces on the GPU through a graph of one `Trace` pass: the first `count` rays, each past its
+/// primitive in `skip`.
 pub fn trace(mesh: &Mesh, rays: &[Ray], skip: Option<&[u32]>, count: u32, mode: &str) -> Vec<Hit> {
     let light = DirectionalLight {
         direction: glam::DVec3::NEG_Y,
@@ -122,7 +129,7 @@ pub fn trace(mesh: &Mesh, rays: &[Ray], skip: Option<&[u32]>, count: u32, mode: 
     };
     let mut provider = Extended::new(SceneProvider::new(Arc::new(scene)));
     provider.add("test.rays", rays);
-    provider.add("test.count", &[count]);
+    provider.add("test.number", &[count]);
     if let Some(skip) = skip {
         provider.add("test.skip", skip);
     }
@@ -133,11 +140,16 @@ pub fn trace(mesh: &Mesh, rays: &[Ray], skip: Option<&[u32]>, count: u32, mode: 
     };
     let document = format!(
         r#"(
-            format: 1,
+            format: 2,
             description: "rays in, hits out",
-            materials: [Buffer(name: "hits", count: CountOf("test.rays"))],
-            passes: [Trace(name: "trace", rays: "test.rays", hits: "hits", count: "test.count", {skip}mode: {mode})],
-            outputs: [(name: "hits")],
+            materials: [Buffer(name: "hits", count: "test.rays.count")],
+            passes: [
+                Trace(
+                    name: "trace", rays: "test.rays", hits: "hits", count: "test.number",
+                    {skip}mode: {mode},
+                ),
+            ],
+            outputs: ["hits"],
         )"#
     );
     bytemuck::pod_collect_to_vec(&run_text(&document, &mut provider, "hits"))
@@ -177,24 +189,19 @@ pub fn run(plan: Plan, provider: &mut dyn Provider, read: &[&str]) -> FrameRepor
 }
 
 /// A device; a machine without an adapter fails the test with the way out.
-pub fn open() -> gpu::Gpu {
-    gpu::open(None).unwrap_or_else(|error| panic!("{error}"))
+pub fn open() -> Gpu {
+    device::open(None).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Runs one frame of a plan.
-pub fn run_on(
-    gpu: &gpu::Gpu,
-    plan: Plan,
-    provider: &mut dyn Provider,
-    read: &[&str],
-) -> FrameReport {
+pub fn run_on(gpu: &Gpu, plan: Plan, provider: &mut dyn Provider, read: &[&str]) -> FrameReport {
     let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, provider)
         .unwrap_or_else(|error| panic!("{error}"));
     frame(gpu, &mut executor, read)
 }
 
 /// Runs one frame, passes by their run conditions.
-pub fn frame(gpu: &gpu::Gpu, executor: &mut Executor, read: &[&str]) -> FrameReport {
+pub fn frame(gpu: &Gpu, executor: &mut Executor, read: &[&str]) -> FrameReport {
     let mut encoder = gpu
         .device
         .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -204,7 +211,7 @@ pub fn frame(gpu: &gpu::Gpu, executor: &mut Executor, read: &[&str]) -> FrameRep
     };
     executor.encode(&mut encoder, &frame).unwrap();
     gpu.queue.submit([encoder.finish()]);
-    executor.submitted(&gpu.queue).unwrap();
+    executor.submitted().unwrap();
     executor.finish().unwrap()
 }
 

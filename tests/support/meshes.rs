@@ -37,7 +37,8 @@ pub fn soup(count: usize, size: f32, seed: u64) -> Mesh {
     mesh(positions, triangles)
 }
 
-/// A closed surface around the origin: a subdivided octahedron pushed out to a radius that differs from corner to corner.
+/// A closed surface around the origin: a subdivided octahedron pushed out to a radius that differs
+/// from corner to corner.
 pub fn potato(levels: u32, roughness: f32, seed: u64) -> Mesh {
     let mut positions = vec![
         Vec3::X,

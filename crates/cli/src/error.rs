@@ -1,12 +1,10 @@
-//! Everything that can end a command early, with its exit code.
+//! Everything that can end a command early, with its exit code and the way out.
 
-use crate::render;
-use skiagraph_graph::{Diagnostic, ExecuteError, Severity};
+use skiagraph_gpu::ExecuteError;
 use std::{
     error::Error,
-    io::{self, IsTerminal, Write},
+    io,
     path::{Path, PathBuf},
-    process::ExitCode,
 };
 
 /// Why a command ended early.
@@ -80,55 +78,53 @@ impl CliError {
         }
     }
 
+    /// Ctrl-C, where only the caller knows what is kept.
+    pub fn interrupted() -> Self {
+        Self::Interrupted {
+            kept: String::new(),
+        }
+    }
+
     /// The process's exit code.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Usage(_) => 2,
             Self::NoGpu(_) => 3,
-            Self::Gpu { source, .. } if render::is_fatal(source.as_ref()) => 3,
+            Self::Gpu { source, .. } if is_fatal(source.as_ref()) => 3,
             Self::Interrupted { .. } => 130,
             // The reader had enough, for example `skiagraph presets | head -1`.
             Self::Stdout(cause) if cause.kind() == io::ErrorKind::BrokenPipe => 0,
             _ => 1,
         }
     }
+}
 
-    /// Prints the error and its chain of causes on standard error and returns the exit code.
-    pub fn report(&self) -> ExitCode {
-        let code = self.exit_code();
-        if code != 0 {
-            let mut text = match self {
-                Self::Diagnostics { .. } | Self::Interrupted { .. } => self.to_string(),
-                _ => format!("{} {self}", style("error:", "1;31")),
-            };
-            let mut cause = self.source();
-            while let Some(error) = cause {
-                text.push_str(&format!(
-                    "\n  because: {}",
-                    error.to_string().replace('\n', "\n  ")
-                ));
-                if let Some(advice) = error.downcast_ref().and_then(way_out) {
-                    text.push_str(&format!("\n  {advice}"));
-                }
-                cause = error.source();
-            }
-            if let Self::Gpu { source, .. } = self {
-                if let Some(advice) = render::advice(source.as_ref()) {
-                    text.push_str(&format!("\n  {advice}"));
-                }
-                if let Some(ExecuteError::OutOfMemory { table, .. }) = source.downcast_ref() {
-                    text.push_str(&format!("\n  {}", table.replace('\n', "\n  ")));
-                }
-            }
-            // With standard error closed there is nobody left to tell.
-            let _ = writeln!(io::stderr(), "{text}");
-        }
-        ExitCode::from(code)
+/// Whether the device is of no more use after an error, for any graph.
+pub fn is_fatal(error: &(dyn Error + 'static)) -> bool {
+    matches!(
+        error.downcast_ref(),
+        Some(ExecuteError::DeviceLost(_) | ExecuteError::Unfinished { .. })
+    )
+}
+
+/// Which arguments may avert an error.
+pub fn advice(error: &(dyn Error + 'static)) -> Option<&'static str> {
+    match error.downcast_ref() {
+        Some(ExecuteError::OutOfMemory { .. }) => Some("use a smaller --size or --map-size"),
+        Some(ExecuteError::Unfinished { .. }) => Some(
+            "it was given up: a loop of one of its shaders may never end; if it only takes long, \
+             give it a larger --timeout, or --timeout 0 to wait for ever",
+        ),
+        Some(ExecuteError::DeviceLost(_)) => Some(
+            "the driver resets a GPU that does not answer in time: a shader may never end, or \
+             take too long for this GPU",
+        ),
+        _ => None,
     }
 }
 
 /// What to do about a file that cannot be written.
-fn way_out(error: &io::Error) -> Option<&'static str> {
+pub fn io_advice(error: &io::Error) -> Option<&'static str> {
     use io::ErrorKind as Kind;
     Some(match error.kind() {
         Kind::StorageFull | Kind::QuotaExceeded | Kind::FileTooLarge => {
@@ -145,39 +141,24 @@ fn way_out(error: &io::Error) -> Option<&'static str> {
     })
 }
 
-/// Whether standard error takes colour: a terminal, and <https://no-color.org> not asked for.
-pub fn colour() -> bool {
-    io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
-}
-
-/// `text` in an ANSI style where standard error takes it.
-pub fn style(text: &str, code: &str) -> String {
-    if colour() {
-        format!("\u{1b}[{code}m{text}\u{1b}[0m")
-    } else {
-        text.to_string()
+/// An error, its causes and what may avert it in one line.
+pub fn explain(error: &(dyn Error + 'static)) -> String {
+    let text = with_causes(error);
+    match advice(error) {
+        Some(advice) => format!("{text}; {advice}"),
+        None => text,
     }
 }
 
-/// How many of the diagnostics are errors.
-pub fn count_errors<'a>(diagnostics: impl Iterator<Item = &'a Diagnostic>) -> usize {
-    diagnostics
-        .filter(|diagnostic| diagnostic.severity == Severity::Error)
-        .count()
-}
-
-/// A line on standard error that is not an error.
-pub fn note(text: &str) {
-    let _ = writeln!(io::stderr(), "{text}");
-}
-
-/// Prints on standard output.
-pub fn print(text: &str) -> Result<(), CliError> {
-    let mut stdout = io::stdout().lock();
-    stdout
-        .write_all(text.as_bytes())
-        .and_then(|()| stdout.flush())
-        .map_err(CliError::Stdout)
+/// An error and its causes in one line.
+pub fn with_causes(error: &dyn Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        text += &format!(": {error}");
+        cause = error.source();
+    }
+    text
 }
 
 #[cfg(test)]
@@ -188,19 +169,27 @@ mod tests {
     fn exit_codes_are_the_documented_ones() {
         let pipe = CliError::Stdout(io::ErrorKind::BrokenPipe.into());
         let full = CliError::Stdout(io::ErrorKind::StorageFull.into());
-        let interrupted = CliError::Interrupted {
-            kept: "nothing".into(),
-        };
         let codes = [
             (pipe, 0),
             (full, 1),
             (CliError::Input("x".into()), 1),
             (CliError::Usage("x".into()), 2),
             (CliError::NoGpu("x".into()), 3),
-            (interrupted, 130),
+            (CliError::interrupted(), 130),
         ];
         for (error, code) in codes {
             assert_eq!(error.exit_code(), code, "{error:?}");
         }
+    }
+
+    #[test]
+    fn out_of_memory_comes_with_advice_and_nothing_else_does() {
+        let full = ExecuteError::OutOfMemory {
+            name: "map".into(),
+            table: String::new(),
+        };
+        assert!(explain(&full).ends_with("; use a smaller --size or --map-size"));
+        let other = ExecuteError::Readback { name: "map".into() };
+        assert_eq!(explain(&other), with_causes(&other));
     }
 }

@@ -1,36 +1,22 @@
-//! `skiagraph`: runs, times and judges shadow methods that are written as RON graphs and WGSL shaders.
+//! `skiagraph`: runs, times and judges shadow methods that are written as RON graphs and WGSL
+//! shaders.
 //!
-//! The program is the first user of the graph's embedding interface and has no rights of its own: whatever it does, a
-//! host program can do as well.
+//! The program is the first user of the graph's embedding interface and has no rights of its own:
+//! whatever it does, a host program can do as well.
 
 mod args;
-mod check_json;
 mod commands;
-mod contract;
-mod csv_table;
-mod date;
 mod error;
-mod fault;
 mod files;
-mod fingerprint;
-mod interrupt;
-mod items;
-mod markdown;
-mod measure;
-mod parse;
-mod picture;
-mod preset;
-mod profile;
-mod progress;
-mod published;
-mod reference;
-mod render;
-mod results;
-mod resume;
-mod stage;
-mod table;
+mod graphs;
+mod measuring;
+mod pictures;
+mod records;
+mod reporting;
+mod terminal;
+mod wording;
 
-use args::{Cli, Command};
+use args::cli::{Cli, Command};
 use clap::Parser;
 use std::process::ExitCode;
 
@@ -42,14 +28,15 @@ fn main() -> ExitCode {
         Command::Run(args) => commands::run::run(args, gpu),
         Command::Profile(args) => commands::profile::profile(args, gpu),
         Command::Stress(args) => commands::stress::stress(args, gpu),
-        Command::Check(args) => commands::check::check(args),
+        Command::Check(args) => commands::check::check(args, gpu),
         Command::Graph(args) => commands::graph::graph(args),
-        Command::Presets(args) => commands::presets::presets(args),
+        Command::Presets => commands::presets::presets(),
+        Command::Show(args) => commands::show::show(args),
         Command::Scenes => commands::scenes::scenes(),
         Command::Doctor => commands::doctor::doctor(gpu),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) => error.report(),
+        Err(error) => terminal::console::report(&error),
     }
 }

@@ -163,7 +163,10 @@ fn graph_draws_without_a_gpu_and_writes_whole_files() {
         .filter(|pass| !pass["culled"].is_null())
         .filter_map(|pass| pass["name"].as_str())
         .collect();
-    assert_eq!(culled, ["fill_rays.fold", "trace_rays", "fix_pixels"]);
+    assert_eq!(
+        culled,
+        ["fill_rays.dispatch_arguments", "trace_rays", "fix_pixels"]
+    );
 }
 
 #[test]
@@ -199,6 +202,47 @@ fn check_takes_presets_and_all_of_ours_are_fine() {
     assert_exit(&output, 0);
     assert_eq!(stdout(&output).lines().count(), 3);
     assert_eq!(stderr(&output), "", "not even a warning");
+}
+
+#[test]
+fn show_writes_out_what_a_document_extends_with_its_origins() {
+    let folder = tempfile::tempdir().unwrap();
+    let show = |arguments: &[&str], code| {
+        let output = skiagraph(folder.path(), arguments);
+        assert_exit(&output, code);
+        stdout(&output) + &stderr(&output)
+    };
+    let own = show(&["show", "crsma_full"], 0);
+    assert!(own.contains("extends: \"crsma.ron\""), "{own}");
+    let flat = show(&["show", "crsma_full", "--flat"], 0);
+    let inner = flat
+        .lines()
+        .find(|line| line.contains("name: \"inner\", shader:"))
+        .unwrap();
+    for part in [
+        "inner_one_ring",
+        "pipelines/crsm.ron:",
+        "pipelines/crsma_full.ron:",
+    ] {
+        assert!(inner.contains(part), "{inner}");
+    }
+    // It reads as the document does, wherever its files are found.
+    fs::create_dir(folder.path().join("pipelines")).unwrap();
+    fs::write(folder.path().join("pipelines/flat.ron"), flat).unwrap();
+    let passes = |name| show(&["graph", name, "--format", "json"], 0).replace(name, "");
+    let drawn = |name| {
+        let mut drawn: serde_json::Value = serde_json::from_str(&passes(name)).unwrap();
+        for pass in drawn["passes"].as_array_mut().unwrap() {
+            pass["file"] = ().into();
+            pass["line"] = ().into();
+        }
+        drawn
+    };
+    assert_eq!(drawn("flat"), drawn("crsma_full"));
+    let shader = show(&["show", "shared/light.wgsl"], 0);
+    assert!(shader.contains("struct Light"), "{shader}");
+    assert!(show(&["show", "shadow_lookup", "--flat"], 2).contains("is a shader"));
+    assert!(show(&["show", "shadow_lokup"], 1).contains("did you mean `shadow_lookup"));
 }
 
 #[test]
@@ -238,7 +282,7 @@ fn wrong_input_has_exit_code_1_and_says_what_there_is() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(
         folder.path().join("other.ron"),
-        CLEARED.replace("(name: \"visibility\"), ", ""),
+        CLEARED.replace("outputs: [\"visibility\", ", "outputs: ["),
     )
     .unwrap();
     let faults = [

@@ -1,4 +1,5 @@
-//! Files without end, and of more bytes than a machine has memory, wherever the command line takes a file: refused at once.
+//! Files without end, and of more bytes than a machine has memory, wherever the command line takes
+//! a file: refused at once.
 #![cfg(target_os = "linux")]
 
 use std::{fs, os::unix::fs::symlink, process::Command};
@@ -6,7 +7,8 @@ use std::{fs, os::unix::fs::symlink, process::Command};
 /// A graph that lights everything and is sure of it.
 const LIT: &str = include_str!("support/lit.ron");
 
-/// The commands, and the kind of file that stands where `FILE` does, with the most MiB that it may have and the way out.
+/// The commands, and the kind of file that stands where `FILE` does, with the most MiB that it may
+/// have and the way out.
 const COMMANDS: [(&str, &str, &str, [&str; 3]); 6] = [
     (
         "compare lit.ron --size 16x16 --beside P:FILE",
@@ -35,7 +37,8 @@ const COMMANDS: [(&str, &str, &str, [&str; 3]); 6] = [
         [
             "a results.json",
             "64",
-            "give another --out, or leave out --resume, which measures everything and overwrites the file",
+            "give another --out, or leave out --resume, which measures everything and overwrites \
+             the file",
         ],
     ),
     (

@@ -16,16 +16,16 @@ use tempfile::TempDir;
 fn method(folder: &Path, name: &str, groups: &str, body: &str) {
     let graph = format!(
         r#"(
-    format: 1,
+    format: 2,
     materials: [
-        Texture(name: "visibility", format: R32Uint, size: Viewport),
-        Texture(name: "status", format: R8Uint, size: Viewport),
+        Texture(name: "visibility", format: R32Uint),
+        Texture(name: "status", format: R8Uint),
     ],
     passes: [
         Compute(name: "{name}", dispatch: {groups}),
-        Clear(name: "certain", target: "status", value: (2, 0, 0, 0)),
+        Clear(name: "certain", target: "status", value: 2),
     ],
-    outputs: [(name: "visibility"), (name: "status")],
+    outputs: ["visibility", "status"],
 )"#
     );
     let shader = format!(
@@ -38,17 +38,18 @@ fn method(folder: &Path, name: &str, groups: &str, body: &str) {
 
 const LIGHT: &str = "    textureStore(visibility, id.xy, vec4u(1u));\n";
 
-/// Ends for no invocation by itself. A driver that breaks long loops off (lavapipe, after 65,535 rounds) has so many invocations
-/// to do it for that hours go by.
+/// Ends for no invocation by itself. A driver that breaks long loops off (lavapipe, after 65,535
+/// rounds) has so many invocations to do it for that hours go by.
 fn endless(folder: &Path) {
-    let body = "    var state = id.x | 1u;\n    while state != 0u {\n        state = state * 1664525u | 1u;\n    }\n    \
+    let body = "    var state = id.x | 1u;\n    while state != 0u {\n        state = state * \
+        1664525u | 1u;\n    }\n    \
                 textureStore(visibility, id.xy, vec4u(state));\n";
     method(folder, "endless", "Groups(65535, 4096, 1)", body);
 }
 
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    method(folder.path(), "light", "Over(\"visibility\")", LIGHT);
+    method(folder.path(), "light", "Over(\"visibility.size\")", LIGHT);
     folder
 }
 
@@ -75,7 +76,8 @@ fn run(folder: &Path, line: &str) -> (i32, String, String) {
     (code, text(stdout), text(stderr))
 }
 
-/// Sends Ctrl-C some time `after` a line of standard error that begins with `at`; returns the exit code and all of standard error.
+/// Sends Ctrl-C some time `after` a line of standard error that begins with `at`; returns the exit
+/// code and all of standard error.
 fn interrupted(folder: &Path, line: &str, at: &str, after: Duration) -> (i32, String) {
     let mut child = command(folder, line)
         .stdout(Stdio::null())
@@ -108,15 +110,48 @@ fn runs(folder: &Path) -> Vec<Value> {
     results["runs"].as_array().unwrap().clone()
 }
 
+#[test]
+fn check_warns_of_what_not_every_adapter_can_and_asks_one_that_is_named() {
+    let folder = folder();
+    let light = fs::read_to_string(folder.path().join("light.ron")).unwrap();
+    let wide = light.replace("R8Uint)", "R8Uint, size: 8193)");
+    fs::write(folder.path().join("wide.ron"), wide).unwrap();
+    let (code, stdout, stderr) = run(folder.path(), "check wide.ron");
+    assert_eq!(
+        (code, &*stdout),
+        (0, "wide.ron: fine, 2 passes\n"),
+        "{stderr}"
+    );
+    assert!(
+        stderr.contains("8193") && stderr.contains("8192"),
+        "{stderr}"
+    );
+    let needs = light.replace(
+        "format: 2,",
+        "format: 2, requires: [\"EXPERIMENTAL_RAY_QUERY\"],",
+    );
+    fs::write(folder.path().join("needs.ron"), needs).unwrap();
+    let (code, _, stderr) = run(folder.path(), "check needs.ron");
+    assert_eq!((code, &*stderr), (0, ""), "it says so itself");
+    // Any adapter; its device never has experimental features.
+    let (code, _, stderr) = run(folder.path(), "check needs.ron --adapter=");
+    assert_eq!(code, 1, "{stderr}");
+    assert!(stderr.contains("EXPERIMENTAL_RAY_QUERY"), "{stderr}");
+    let (code, ..) = run(folder.path(), "check light.ron --adapter=");
+    assert_eq!(code, 0);
+    let (code, _, stderr) = run(folder.path(), "check light.ron --adapter no_such_adapter");
+    assert_eq!(code, 3, "{stderr}");
+}
+
 /// Devices of this program never have experimental features.
 #[test]
 fn a_feature_that_the_adapter_lacks_is_one_diagnostic_before_anything_runs() {
     let folder = folder();
     let light = fs::read_to_string(folder.path().join("light.ron")).unwrap();
-    let needs = "format: 1,\n    requires: [(feature: \"EXPERIMENTAL_RAY_QUERY\")],";
+    let needs = "format: 2,\n    requires: [\"EXPERIMENTAL_RAY_QUERY\"],";
     fs::write(
         folder.path().join("light.ron"),
-        light.replace("format: 1,", needs),
+        light.replace("format: 2,", needs),
     )
     .unwrap();
     for verb in ["run", "profile", "compare"] {
@@ -134,14 +169,12 @@ fn a_graph_that_does_not_fit_is_refused_with_a_memory_table() {
     let folder = tempfile::tempdir().unwrap();
     let entries = |entry: &dyn Fn(usize) -> String| (0..40).map(entry).collect::<String>();
     let textures = entries(&|n| {
-        format!(
-            "Texture(name: \"image_{n}\", format: Rgba32Float, size: Square(4096), layers: 4),\n"
-        )
+        format!("Texture(name: \"image_{n}\", format: Rgba32Float, size: 4096, layers: 4),\n")
     });
     let passes = entries(&|n| format!("Clear(name: \"clear_{n}\", target: \"image_{n}\"),"));
-    let outputs = entries(&|n| format!("(name: \"image_{n}\"),"));
+    let outputs = entries(&|n| format!("\"image_{n}\","));
     let graph =
-        format!("(format: 1, materials: [{textures}], passes: [{passes}], outputs: [{outputs}])");
+        format!("(format: 2, materials: [{textures}], passes: [{passes}], outputs: [{outputs}])");
     fs::write(folder.path().join("huge.ron"), graph).unwrap();
     for verb in ["run", "profile"] {
         let line = format!("{verb} huge.ron --size 16x16 --memory-limit 8GiB");
@@ -149,7 +182,8 @@ fn a_graph_that_does_not_fit_is_refused_with_a_memory_table() {
         assert_eq!((code, &*stdout), (1, ""), "{verb}: {stderr}");
         let words = stderr.split_whitespace().collect::<Vec<_>>().join(" ");
         for part in [
-            "the materials of `huge.ron` take 40.00 GiB, but there are only 8.00 GiB of memory for them",
+            "the materials of `huge.ron` take 40.00 GiB, but there are only 8.00 GiB of memory \
+             for them",
             "image_11 4096×4096, 4 layers Rgba32Float 1.00 GiB",
             "28 more 28.00 GiB",
             "all together 40.00 GiB",
@@ -163,8 +197,9 @@ fn a_graph_that_does_not_fit_is_refused_with_a_memory_table() {
 #[test]
 fn a_driver_without_memory_names_the_material_with_the_table() {
     let folder = tempfile::tempdir().unwrap();
-    let graph = "(format: 1, materials: [Texture(name: \"image\", format: Rgba32Float, size: Square(8192), layers: 256)], \
-                 passes: [Clear(name: \"clear\", target: \"image\")], outputs: [(name: \"image\")])";
+    let graph = "(format: 2, materials: [Texture(name: \"image\", format: Rgba32Float, size: 8192, \
+                 layers: 256)], \
+                 passes: [Clear(name: \"clear\", target: \"image\")], outputs: [\"image\"])";
     fs::write(folder.path().join("huge.ron"), graph).unwrap();
     let line = "run huge.ron --size 16x16 --memory-limit 1000000GiB";
     let (code, _, stderr) = run(folder.path(), line);
@@ -185,7 +220,8 @@ fn compare_measures_what_fits_and_says_why_the_rest_does_not() {
     let line = "compare light.ron nsm --size 16x16 --frames 1 --memory-limit 1MiB --images none";
     let (code, stdout, stderr) = run(folder.path(), line);
     assert_eq!(code, 0, "{stderr}");
-    let why = "nsm is unavailable: the materials of `pipelines/nsm.ron` take 4.0 MiB, but there are only 1.0 MiB";
+    let why = "nsm is unavailable: the materials of `pipelines/nsm.ron` take 4.0 MiB, but there \
+        are only 1.0 MiB";
     assert!(stdout.contains(why), "{stdout}");
     let (code, stdout, stderr) = run(folder.path(), &line.replace("light.ron ", ""));
     assert_eq!((code, &*stdout), (1, ""), "nothing is left to measure");
@@ -196,7 +232,8 @@ fn compare_measures_what_fits_and_says_why_the_rest_does_not() {
 fn a_shader_that_never_ends_is_given_up_and_finished_runs_are_kept() {
     let folder = folder();
     endless(folder.path());
-    let line = "compare light.ron endless.ron rt --size 16x16 --frames 1 --images none --timeout 3 --out o";
+    let line = "compare light.ron endless.ron rt --size 16x16 --frames 1 --images none --timeout \
+        3 --out o";
     let (code, _, stderr) = run(folder.path(), line);
     assert_eq!(code, 3, "{stderr}");
     assert!(
@@ -236,7 +273,7 @@ fn ctrl_c_in_a_frame_that_never_ends_keeps_finished_runs_and_resume_goes_on() {
     assert_eq!(kept.len(), 1);
     assert!(out.join("results.csv").is_file());
     // The author mends the shader; only that method has to be measured.
-    method(folder.path(), "endless", "Over(\"visibility\")", LIGHT);
+    method(folder.path(), "endless", "Over(\"visibility.size\")", LIGHT);
     let (code, _, stderr) = run(folder.path(), &format!("{line} --resume"));
     assert_eq!(code, 0, "{stderr}");
     assert!(!stderr.contains("starting light.ron"), "{stderr}");
@@ -253,7 +290,8 @@ fn ctrl_c_between_frames_keeps_no_run_that_lacks_some() {
         "--frames 1 --cached-frames 100000",
     ] {
         let line = format!("compare nsm --size 16x16 --map-size 16 --warmup 0 {frames} --out o");
-        // So long that the one frame is over and the cached ones have begun; where they have not, this still holds.
+        // So long that the one frame is over and the cached ones have begun; where they have not,
+        // this still holds.
         let after = Duration::from_secs(1);
         let (code, stderr) = interrupted(folder.path(), &line, "starting nsm", after);
         assert_eq!(code, 130, "{frames}: {stderr}");

@@ -1,4 +1,5 @@
-//! `profile` from outside. What measures needs an adapter; a machine without one fails here with the program's own advice.
+//! `profile` from outside. What measures needs an adapter; a machine without one fails here with
+//! the program's own advice.
 
 use serde_json::Value;
 use std::{
@@ -42,7 +43,7 @@ fn json(path: &Path) -> Value {
 
 const NSM: &str = "profile nsm --size 32x24 --map-size 32 --frames 6 --warmup 1";
 const PASSES: [&str; 4] = [
-    "create_shadow_map",
+    "create_shadow_map.draw",
     "gbuffer.primitive",
     "gbuffer.surface",
     "shadow_lookup",
@@ -121,7 +122,8 @@ fn a_profile_says_under_what_it_was_measured_and_writes_all_its_files() {
     check_trace(&json(&folder.path().join("p.trace.json")), is_trusted);
 }
 
-/// What a viewer needs beside the schema: slices of one track do not overlap, every track has a name.
+/// What a viewer needs beside the schema: slices of one track do not overlap, every track has a
+/// name.
 fn check_trace(trace: &Value, is_trusted: bool) {
     let schema: Value = serde_json::from_str(include_str!("trace.schema.json")).unwrap();
     let validator = jsonschema::validator_for(&schema).unwrap();
@@ -177,8 +179,9 @@ fn a_baseline_stands_beside_and_other_conditions_are_called_out() {
         "WARNING: measured under other conditions",
         "viewport: then 32x24, now 16x16",
         "method: then nsm, now rt",
-        "Only then: create_shadow_map, shadow_lookup",
-        "Only now: detect_facing, fill_rays.clear, fill_rays.compact, fill_rays.fold, trace_rays, fix_pixels",
+        "Only then: create_shadow_map.draw, shadow_lookup",
+        "Only now: detect_facing, fill_rays.clear, fill_rays.compact, \
+         fill_rays.dispatch_arguments, trace_rays, fix_pixels",
     ] {
         assert!(other.contains(part), "no {part:?} in\n{other}");
     }
@@ -256,7 +259,8 @@ fn arguments_that_do_not_go_together_are_refused() {
     }
 }
 
-/// Ctrl-C: what was timed until then is shown and written, and the exit code is the shell's for an interrupt.
+/// Ctrl-C: what was timed until then is shown and written, and the exit code is the shell's for an
+/// interrupt.
 #[cfg(unix)]
 #[test]
 fn an_interrupt_keeps_the_frames_that_were_timed() {

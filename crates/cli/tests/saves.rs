@@ -8,28 +8,33 @@ use std::{
 
 /// Two mips of two layers, each of another grey; odd values; a buffer of items.
 const GRAPH: &str = r#"(
-    format: 1,
+    format: 2,
     materials: [
-        Texture(name: "stack", format: R32Float, size: Square(8), mips: 2, layers: 2, views: [
-            (name: "stack.first", mip: 0, mips: 1, layer: 0, layers: 1),
-            (name: "stack.small", mip: 1, mips: 1, layer: 1, layers: 1),
-        ]),
-        Texture(name: "odd", format: Rg32Float, size: Viewport),
+        Texture(name: "stack", format: R32Float, size: 8, mips: 2, layers: 2),
+        Texture(name: "odd", format: Rg32Float),
         Buffer(name: "pairs", count: 3),
     ],
     passes: [
-        Clear(name: "first", target: "stack.first", value: (1.5, 0, 0, 0)),
-        Clear(name: "small", target: "stack.small", value: (2.5, 0, 0, 0)),
-        Clear(name: "again", target: "stack.first", value: (3.5, 0, 0, 0)),
-        Fullscreen(name: "odd", color: [(target: "odd")]),
+        Clear(name: "all", target: "stack"),
+        Clear(name: "first", target: "stack[0].mip[0]", value: 1.5),
+        Clear(name: "small", target: "stack[1].mip[1]", value: 2.5),
+        Clear(name: "again", target: "stack[0].mip[0]", value: 3.5),
+        Fullscreen(name: "odd", color: ["odd"]),
         Compute(name: "pairs", dispatch: Groups(1, 1, 1)),
     ],
-    outputs: [(name: "stack.first"), (name: "small", material: "stack.small"), (name: "odd"), (name: "pairs")],
+    outputs: [
+        (name: "first", material: "stack[0].mip[0]"),
+        (name: "small", material: "stack[1].mip[1]"),
+        "stack",
+        "odd",
+        "pairs",
+    ],
 )"#;
 
 const ODD: &str = "
     @fragment fn fragment(@builtin(position) place: vec4<f32>) -> @location(0) vec2<f32> {
-        let zero = u32(place.x) / 1000u; // not known to the compiler, which may refuse constants that are no numbers
+        // not known to the compiler, which may refuse constants that are no numbers
+        let zero = u32(place.x) / 1000u;
         if place.x < 1.0 { return vec2(0.0, bitcast<f32>(0x7fc00000u + zero)); }
         if place.x < 2.0 { return vec2(bitcast<f32>(0x7f800000u + zero), 1.0); }
         return vec2(place.x, 2.0);
@@ -75,9 +80,10 @@ fn refused(folder: &Path, arguments: &[&str]) -> String {
 }
 
 #[test]
-fn layers_and_mips_are_saved_by_their_views_at_any_pass() {
+fn layers_and_mips_are_saved_by_themselves_and_together_at_any_pass() {
     let folder = tempfile::tempdir().unwrap();
-    let line = "graph.ron --size 4x2 --save stack.first@first=before.bin --save stack.first=after.bin --save stack.small=small.png";
+    let line = "graph.ron --size 4x2 --save stack[0].mip[0]@first=before.bin --save \
+        first=after.bin --save small=small.png --save stack=all.bin --save stack=all.png";
     let text = saved(folder.path(), &line.split(' ').collect::<Vec<_>>());
     let floats = |name: &str| -> Vec<f32> {
         let bytes = fs::read(folder.path().join(name)).unwrap();
@@ -89,6 +95,10 @@ fn layers_and_mips_are_saved_by_their_views_at_any_pass() {
     assert_eq!(floats("before.bin"), [1.5; 64]);
     assert_eq!(floats("after.bin"), [3.5; 64]);
     assert!(text.contains("small.png: 4x4, 2.5 … 2.5"), "{text}");
+    let all = [&[3.5; 64][..], &[0.0; 64], &[0.0; 16], &[2.5; 16]].concat();
+    assert_eq!(floats("all.bin"), all);
+    let sheet = "all.png: 8x24, 4 mips and layers one below the other, 0 … 3.5";
+    assert!(text.contains(sheet), "{text}");
 }
 
 #[test]
@@ -124,7 +134,8 @@ fn buffers_become_tables_of_their_items() {
 #[test]
 fn a_cameras_depths_are_distances_and_a_lights_are_not() {
     let folder = tempfile::tempdir().unwrap();
-    let line = "nsm --size 32x32 --map-size 32 --save depth=d.png --save shadow_map@create_shadow_map=m.png";
+    let line = "nsm --size 32x32 --map-size 32 --save depth=d.png --save \
+        shadow_map@create_shadow_map.draw=m.png";
     let text = saved(folder.path(), &line.split(' ').collect::<Vec<_>>());
     assert!(
         text.contains("d.png: 32x32, distance along the view, black to white "),
@@ -141,7 +152,7 @@ fn a_cameras_depths_are_distances_and_a_lights_are_not() {
 fn what_cannot_be_saved_says_why_and_what_else_there_is() {
     let folder = tempfile::tempdir().unwrap();
     for (save, part) in [
-        ("stack.frist=x.png", "did you mean `stack.first`?"),
+        ("frist=x.png", "did you mean `first`?"),
         ("odd@od=x.png", "did you mean `odd`?"),
         ("od@odd=x.png", "did you mean `odd`?"),
         ("odd@first=x.png", "first written by `odd`"),

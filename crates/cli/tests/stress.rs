@@ -1,8 +1,8 @@
-//! `skiagraph stress` from outside. All but the first tests need an adapter; a machine without one fails here with the program's own
-//! advice.
+//! `skiagraph stress` from outside. All but the first tests need an adapter; a machine without one
+//! fails here with the program's own advice.
 
 use serde_json::Value;
-use skiagraph_scene::hard;
+use skiagraph_cases::{Casters, HardCase, cases};
 use std::{
     fs,
     path::Path,
@@ -55,7 +55,7 @@ fn without_gpu(mut command: Command) -> Output {
 fn the_list_needs_no_gpu_and_has_every_case() {
     let folder = tempfile::tempdir().unwrap();
     let (text, _) = ends(without_gpu(stress(folder.path(), "--list")), 0);
-    for case in hard::cases() {
+    for case in cases() {
         let mut lines = text.lines();
         let row = lines.find(|line| line.contains(&format!(" {} ", case.name)));
         assert!(
@@ -86,9 +86,10 @@ fn an_unknown_case_or_method_is_named_before_anything_runs() {
 }
 
 #[test]
-fn the_matrix_judges_what_is_promised() {
+fn the_matrix_judges_what_is_guaranteed() {
     let folder = tempfile::tempdir().unwrap();
-    let line = "rt nsm --case box_on_floor --size 32x32 --map-size 16 --out results --save pictures --format json";
+    let line = "rt nsm --case box_on_floor --size 32x32 --map-size 16 --out results --save \
+        pictures --format json";
     let (text, errors) = run(folder.path(), line, 0);
     let progress = errors.contains("starting") || errors.contains("box_on_floor");
     assert!(!progress, "quiet in a pipe: {errors}");
@@ -131,7 +132,7 @@ fn the_matrix_judges_what_is_promised() {
 }
 
 #[test]
-fn a_broken_promise_turns_its_cell_red() {
+fn a_broken_guarantee_turns_its_cell_red() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("all_lit.ron"), LIT).unwrap();
     let line = "rt all_lit.ron --case box_on_floor --size 32x32";
@@ -140,7 +141,8 @@ fn a_broken_promise_turns_its_cell_red() {
     assert_eq!(marks(&text), 1, "only the legend's: {text}");
     let (text, errors) = run(folder.path(), &format!("{line} --exact all_lit.ron"), 1);
     assert!(errors.contains("error: 1 cell failed"), "{errors}");
-    let look = "skiagraph stress all_lit.ron --case box_on_floor --size 32x32 --exact all_lit.ron --save pictures";
+    let look = "skiagraph stress all_lit.ron --case box_on_floor --size 32x32 --exact all_lit.ron \
+        --save pictures";
     assert_eq!(marks(&text), 2, "{text}");
     for part in ["all_lit.ron on box_on_floor: ", look] {
         assert!(text.contains(part), "no {part:?} in\n{text}");
@@ -159,7 +161,7 @@ fn a_broken_promise_turns_its_cell_red() {
 #[test]
 fn outputs_that_break_the_contract_fail_their_cell_and_no_other() {
     let folder = tempfile::tempdir().unwrap();
-    let odd = LIT.replace("value: (2,", "value: (7,");
+    let odd = LIT.replace("value: 2", "value: 7");
     fs::write(folder.path().join("odd.ron"), odd).unwrap();
     let (text, _) = run(
         folder.path(),
@@ -178,10 +180,10 @@ fn what_this_adapter_cannot_run_is_said_once() {
     let folder = tempfile::tempdir().unwrap();
     // One is for Windows, one for Android: no adapter has both.
     let nowhere = LIT.replace(
-        "format: 1,",
-        r#"format: 1, requires: [
-            (feature: "VULKAN_EXTERNAL_MEMORY_WIN32"),
-            (feature: "VULKAN_GOOGLE_DISPLAY_TIMING"),
+        "format: 2,",
+        r#"format: 2, requires: [
+            "VULKAN_EXTERNAL_MEMORY_WIN32",
+            "VULKAN_GOOGLE_DISPLAY_TIMING",
         ],"#,
     );
     fs::write(folder.path().join("nowhere.ron"), nowhere).unwrap();
@@ -201,7 +203,7 @@ fn what_this_adapter_cannot_run_is_said_once() {
 }
 
 #[test]
-fn every_promise_holds_on_every_case() {
+fn every_guarantee_holds_on_every_case() {
     let folder = tempfile::tempdir().unwrap();
     let line = "rt crsm crsm_depth crsm_single crsma_full --size 64x64 --map-size 64";
     run(folder.path(), line, 0);
@@ -210,8 +212,8 @@ fn every_promise_holds_on_every_case() {
 #[test]
 fn open_casters_are_judged_without_culling() {
     let folder = tempfile::tempdir().unwrap();
-    let is_open = |case: &hard::HardCase| case.casters == hard::Casters::Open;
-    let open = hard::cases().into_iter().find(is_open);
+    let is_open = |case: &HardCase| case.casters == Casters::Open;
+    let open = cases().into_iter().find(is_open);
     let name = open.expect("the catalogue has open cases").name;
     let line = format!("crsm nsm --case {name} --size 32x32 --map-size 32 --format json");
     let report: Value = serde_json::from_str(&run(folder.path(), &line, 0).0).unwrap();
@@ -251,7 +253,7 @@ fn an_interrupt_keeps_the_cases_that_are_done() {
         .status();
     assert!(sent.unwrap().success());
     let (_, errors) = ends(child.wait_with_output().unwrap(), 130);
-    let all = hard::cases().len();
+    let all = cases().len();
     assert!(
         errors.contains(&format!("of {all} cases are kept in ./stress.json")),
         "{errors}"

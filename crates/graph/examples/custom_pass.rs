@@ -1,7 +1,9 @@
-//! A pass kind of a host's own crate, used from RON: `cargo run -p skiagraph-graph --example custom_pass`.
+//! A pass kind of a host's own crate, used from RON: `cargo run -p skiagraph-graph --example
+//! custom_pass`.
 //!
-//! `Equalize` spreads the brightness of a picture over the whole range. It becomes three steps: clear a histogram, which is a
-//! buffer of the pass alone, count into it, and map every texel through it. Its shader comes with the kind.
+//! `Equalize` spreads the brightness of a picture over the whole range. It becomes three steps:
+//! clear a histogram, which is a buffer of the pass alone, count into it, and map every texel
+//! through it. Its shader comes with the kind.
 
 use serde::Deserialize;
 use skiagraph_graph::{
@@ -11,7 +13,8 @@ use skiagraph_graph::{
 };
 use std::{error::Error, sync::Arc};
 
-/// The body of an `Equalize` pass: what its RON entry holds beside `name`, `shader`, `bind` and `run`.
+/// The body of an `Equalize` pass: what its RON entry holds beside `name`, `shader`, `bind` and
+/// `run`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Equalize {

@@ -1,8 +1,9 @@
-//! A host program with its own device, G-buffer and shading has its shadows from a graph, in one encoder with all the rest:
-//! `cargo run -p skiagraph-graph --example embed`.
+//! A host program with its own device, G-buffer and shading has its shadows from a graph, in one
+//! encoder with all the rest: `cargo run -p skiagraph-graph --example embed`.
 //!
-//! The scene is a box on a ground, seen from straight above, so that the area of the shadow is known: a box of edge w and height h
-//! under a light that travels along (x, -1, z) shades w·h·(|x| + |z|) of the ground around it.
+//! The scene is a box on a ground, seen from straight above, so that the area of the shadow is
+//! known: a box of edge w and height h under a light that travels along (x, -1, z) shades w·h·(|x|
+//! + |z|) of the ground around it.
 
 use skiagraph_graph::{
     ExecuteError, Executor, FolderSources, Frame, FrameReport, Graph, Import, ParamValue,
@@ -18,7 +19,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut host = Host::new([1.0, 0.5])?;
     let gbuffer = host.gbuffer([64, 32]);
 
-    // No GPU needed: read the document and its shaders, then plan for a viewport, the device's limits and what the host imports.
+    // No GPU needed: read the document and its shaders, then plan for a viewport, the device's
+    // limits and what the host imports.
     let sources = FolderSources {
         root: concat!(env!("CARGO_MANIFEST_DIR"), "/examples/embed").into(),
     };
@@ -83,7 +85,8 @@ fn frame(
     let letters = host.shade(&mut encoder, gbuffer, &visibility);
     host.queue.submit([encoder.finish()]);
     executor.submitted(&host.queue)?;
-    let report = executor.finish()?; // waits; a host that wants neither times nor readbacks need not call it
+    // waits; a host that wants neither times nor readbacks need not call it
+    let report = executor.finish()?;
     judge(host, &letters, gbuffer.position.width())?;
     Ok(report)
 }
@@ -115,7 +118,8 @@ fn expect(what: &str, report: &FrameReport, skipped: &[&str]) -> Result<(), Box<
     }
 }
 
-/// What the graph is given by name, instead of importing it: described for planning, handed out when a live pass binds it.
+/// What the graph is given by name, instead of importing it: described for planning, handed out
+/// when a live pass binds it.
 impl Provider for Scene {
     fn names(&self) -> Vec<String> {
         vec!["scene.vertices".to_owned(), "light".to_owned()]

@@ -1,23 +1,33 @@
 //! [`Graph`]: a document with its shaders, ready to be planned.
 
 use crate::{
-    Plan, PlanRequest,
-    diagnostics::{Code, Diagnostic, Diagnostics, Severity, suggestion},
-    document::{
-        self, Document,
-        located::Located,
-        materials::{Material, Size},
-        params::{Param, ParamValue},
+    compose::reader::{Asked, Reader, label},
+    diagnostics::{
+        diagnostic::{Diagnostic, Severity},
+        list::Diagnostics,
+        reports::{Reported, Reports},
+        suggest::suggestion,
     },
-    include::{self, Includes},
-    instantiate::{Instance, LoweredPass, Purpose, instantiate, split_layer},
-    registry::Registry,
-    source::{self, SourceFile, Sources, Span},
-    step::Step,
-    wgsl::{Shader, ShaderFiles},
+    document::{
+        entries::{Entry, What},
+        flat::flat,
+        materials::{Material, TextureEntry},
+        params::{Param, ParamFault, ParamValue},
+        raw::Broken,
+        typed::Document,
+    },
+    errors::{compose::ComposeError, resource::SizeError},
+    kinds::registry::Registry,
+    language::syntax::Leaf,
+    shader::{constants::ChoiceConstants, expand::ShaderFiles, reflect::Shader},
+    source::{
+        paths::{escapes, folder_of, include_candidates},
+        sources::{Picture, Sources},
+        span::{Located, Span},
+    },
 };
 use std::{
-    collections::{HashMap, HashSet},
+    collections::{BTreeSet, HashMap},
     sync::Arc,
 };
 
@@ -27,21 +37,57 @@ use std::{
 #[derive(Clone, Debug)]
 pub struct Graph {
     pub(crate) document: Arc<Document>,
-    pub(crate) shaders: Shaders,
-    /// Every include, the nested ones too, with the path of what it includes.
-    includes: Vec<(String, Span)>,
-    features: wgpu::Features,
+    pub(crate) shaders: Arc<Shaders>,
+    pub(crate) pictures: Arc<Pictures>,
+    asked: Arc<Vec<Asked>>,
+    /// What the documents require.
+    pub(crate) required: wgt::Features,
+    /// What they ask for by `has`.
+    asked_for: wgt::Features,
     warnings: Vec<Diagnostic>,
 }
 
-/// Shaders by the folder of the document that names them, and their name; `None` for those with a mistake that was reported.
-pub(crate) type Shaders = HashMap<(Arc<str>, String), Option<Arc<Shader>>>;
+/// The shaders of all documents.
+#[derive(Debug, Default)]
+pub(crate) struct Shaders(HashMap<ShaderKey, Result<Arc<Shader>, Reported>>);
+
+/// The path of the document whose `Choice` words a shader sees, the folder that it was first looked
+/// for in, its name.
+type ShaderKey = (Arc<str>, String, String);
+
+impl Shaders {
+    fn key(document: &Document, name: &Located<String>) -> ShaderKey {
+        let folder = folder_of(&name.span.file.name).to_owned();
+        (Arc::clone(&document.file.name), folder, name.value.clone())
+    }
+
+    /// The shader that a pass of a document names; `None` if it was not there when the document was
+    /// read.
+    pub fn get(
+        &self,
+        document: &Document,
+        name: &Located<String>,
+    ) -> Option<&Result<Arc<Shader>, Reported>> {
+        self.0.get(&Self::key(document, name))
+    }
+}
+
+/// The pictures of all documents, by the path of the document and their own.
+#[derive(Debug, Default)]
+pub(crate) struct Pictures(HashMap<(Arc<str>, String), Result<Picture, Reported>>);
+
+impl Pictures {
+    pub fn get(&self, document: &Document, file: &Located<String>) -> Result<Picture, Reported> {
+        let key = (Arc::clone(&document.file.name), file.value.clone());
+        self.0[&key].clone()
+    }
+}
 
 /// Why a param cannot be set.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ParamError {
-    /// The graph declares no such param.
+    /// The graph has no such param.
     #[error("`{graph}` has no param `{name}`{hint}")]
     Unknown {
         /// The graph's path.
@@ -59,128 +105,112 @@ pub enum ParamError {
         /// The name.
         name: String,
         /// What was expected.
-        why: String,
+        why: ParamFault,
     },
 }
 
+/// What a method promises of itself, for whoever judges it: the graph knows no meaning of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Claim {
+    /// The promise, a word that the judge knows.
+    pub name: String,
+    /// The condition as the document writes it; empty without one.
+    pub condition: String,
+    /// Why it holds, as the document says.
+    pub because: String,
+    /// Whether the condition holds for these values of params.
+    pub holds: bool,
+}
+
 impl Graph {
-    /// Reads the document at `path` and every shader it names, from `sources`. Parses and validates all WGSL.
+    /// Reads the document at `path` and every shader it names, from `sources`. Parses and validates
+    /// all WGSL.
     ///
     /// # Errors
-    /// Everything that is wrong with the document and its shaders, as far as it can be said without sizes and a device.
+    /// Everything that is wrong with the document and its shaders, as far as it can be said without
+    /// sizes and a device.
     pub fn load(
         path: &str,
         registry: &Registry,
         sources: &dyn Sources,
     ) -> Result<Self, Diagnostics> {
         let (graph, errors) = Self::read(path, registry, sources)?;
-        if errors.is_empty() {
-            Ok(graph)
-        } else {
-            Err(graph.diagnostics(errors))
+        match errors.is_empty() {
+            true => Ok(graph),
+            false => Err(graph.diagnostics(errors)),
         }
     }
 
-    /// [`Graph::load`] and [`Graph::plan`] in one, for everything that is wrong at once: what could be read of a document is
-    /// planned even where something else in it is wrong.
+    /// The text of the document at `path` with all that it extends written out, each line with its
+    /// origin. It reads as the document does.
     ///
     /// # Errors
-    /// Everything that is wrong. Reads before writes and cycles are looked for above the first pass that has a mistake.
-    pub fn check(
-        path: &str,
-        registry: &Registry,
-        sources: &dyn Sources,
-        request: &PlanRequest<'_>,
-    ) -> Result<(Self, Plan), Diagnostics> {
-        let (graph, mut errors) = Self::read(path, registry, sources)?;
-        // Without its params nothing of the document has a size.
-        let (plan, found) = match graph.document.broken.params {
-            false => graph.plan_all(request),
-            true => (None, Vec::new()),
-        };
-        errors.extend(found);
-        match plan {
-            Some(plan) if errors.is_empty() => Ok((graph, plan)),
-            // What nobody uses may be what a misspelt name was meant to be: warnings wait until the errors are gone.
-            _ => Err(graph.diagnostics(errors)),
+    /// What is wrong with one of the documents, or with an edit.
+    pub fn flat(path: &str, sources: &dyn Sources) -> Result<String, Diagnostics> {
+        let mut reports = Reports::default();
+        let registry = Registry::default();
+        let mut reader = Reader::new(&registry, sources, &mut reports);
+        let document = reader.flat(path);
+        let asked = std::mem::take(&mut reader.asked);
+        match document {
+            Ok(document) if reports.errors() == 0 => Ok(flat(&document)),
+            _ => {
+                let mut list = reports.into_list();
+                label(&mut list, path, &asked);
+                Err(Diagnostics::new(list))
+            }
         }
     }
 
-    /// What is wrong with the graph; in included documents with the place of the include.
+    /// What is wrong with the graph; in other documents with the place where they are asked for.
     pub(crate) fn diagnostics(&self, mut list: Vec<Diagnostic>) -> Diagnostics {
-        include::label(&mut list, self.path(), &self.includes);
+        label(&mut list, self.path(), &self.asked);
         Diagnostics::new(list)
     }
 
     /// What could be read of a document, and what is wrong with it.
-    fn read(
+    pub(crate) fn read(
         path: &str,
         registry: &Registry,
         sources: &dyn Sources,
     ) -> Result<(Self, Vec<Diagnostic>), Diagnostics> {
-        let missing =
-            |message: String| Diagnostics::from(Diagnostic::error(Code::MissingFile, message));
-        let text = match source::read(sources, path) {
-            Ok(Some(text)) => text,
-            Ok(None) => {
-                let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
-                let listed: Vec<String> = sources
-                    .list(folder)
-                    .into_iter()
-                    .filter(|name| name.ends_with(".ron"))
-                    .collect();
-                let hint = suggestion(name, listed.iter().map(String::as_str))
-                    .filter(|hint| hint.starts_with("did"));
-                let error =
-                    Diagnostic::error(Code::MissingFile, format!("there is no document `{path}`"));
-                return Err(match hint {
-                    Some(hint) => error.help(hint),
-                    None => error,
-                }
-                .into());
-            }
-            Err(why) => {
-                return Err(missing(format!(
-                    "the document `{path}` cannot be read: {why}"
-                )));
-            }
+        let mut reports = Reports::default();
+        let mut reader = Reader::new(registry, sources, &mut reports);
+        let root = reader.root(path);
+        let included: Vec<Arc<Document>> = reader.documents().cloned().collect();
+        let asked = std::mem::take(&mut reader.asked);
+        let Ok(root) = root else {
+            let mut list = reports.into_list();
+            label(&mut list, path, &asked);
+            return Err(Diagnostics::new(list));
         };
-        let mut diagnostics = Vec::new();
-        let Some(mut document) =
-            document::parse(SourceFile::new(path, text), registry, &mut diagnostics)
-        else {
-            return Err(Diagnostics::new(diagnostics));
-        };
-        if document.outputs.is_empty() && diagnostics.is_empty() {
-            let end = document.file.text.trim_end().len();
-            diagnostics.push(
-                Diagnostic::error(
-                    Code::Output,
-                    "the document has no outputs, so none of its passes is needed",
-                )
-                .at(document.file.span(end.saturating_sub(1)..end), "")
-                .help("add `outputs: [(name: \"…\")]`"),
-            );
+        if root.outputs.is_empty() && reports.errors() == 0 {
+            let end = root.file.text.trim_end().len();
+            let place = root.file.span(end.saturating_sub(1)..end);
+            reports.report(ComposeError::NoOutputs(place));
         }
-        let mut includes = Includes::new(path, registry, sources);
-        document.include_depth = includes.attach(&mut document.entries, &mut diagnostics);
+        let root = Arc::new(root);
+        let documents: Vec<&Document> = [&*root]
+            .into_iter()
+            .chain(included.iter().map(|d| &**d))
+            .collect();
+        let shaders = load_shaders(&documents, sources, &mut reports);
+        let pictures = load_pictures(&documents, sources, &mut reports);
         let mut graph = Self {
-            features: includes.features() | document.features(),
-            document: Arc::new(document),
-            shaders: HashMap::new(),
-            includes: includes.places,
+            required: required(&documents),
+            asked_for: asked_for(&documents),
+            document: root,
+            shaders: Arc::new(shaders),
+            pictures: Arc::new(pictures),
+            asked: Arc::new(asked),
             warnings: Vec::new(),
         };
-        let mut found = Vec::new();
-        let instance = instantiate(&graph.document, Purpose::Load, &mut found);
-        // What is not known of a param may be in the one that could not be read.
-        found.retain(|found| !graph.document.broken.params || found.code != Code::UnknownParam);
-        diagnostics.append(&mut found);
-        graph.load_shaders(&instance.passes, sources, &mut diagnostics);
-        graph.unused(&instance, &mut diagnostics);
-        let (errors, warnings): (Vec<_>, Vec<_>) = diagnostics
-            .into_iter()
-            .partition(|diagnostic| diagnostic.severity == Severity::Error);
+        // With a shader missing nobody can say what it would have used.
+        if reports.errors() == 0 {
+            graph.unused(&mut reports);
+        }
+        let is_error = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Error;
+        let (errors, warnings) = reports.into_list().into_iter().partition(is_error);
         graph.warnings = warnings;
         Ok((graph, errors))
     }
@@ -195,24 +225,28 @@ impl Graph {
         &self.document.description
     }
 
-    /// The params that the document declares.
+    /// The params that the document declares, and those of included documents that it exposes.
     pub fn params(&self) -> &[Param] {
         &self.document.params
     }
 
-    /// Names of the declared outputs.
+    /// Names of the declared outputs, whatever their conditions.
     pub fn outputs(&self) -> Vec<&str> {
-        self.document
-            .outputs
-            .iter()
-            .map(|output| output.name.as_str())
-            .collect()
+        let outputs = self.document.outputs.iter();
+        outputs.map(|output| output.name.as_str()).collect()
     }
 
-    /// The features that the document and those that it includes require or have a fallback for. A device that has those of
-    /// them that its adapter offers runs the graph as well as it can be run there.
-    pub fn features(&self) -> wgpu::Features {
-        self.features
+    /// Names of what the host must import.
+    pub fn inputs(&self) -> Vec<&str> {
+        let inputs = self.document.inputs.iter();
+        inputs.map(|input| input.name.as_str()).collect()
+    }
+
+    /// The features that the document and those that it includes require or ask for by `has`. A
+    /// device that has those of them that its adapter offers runs the graph as well as it can be run
+    /// there.
+    pub fn features(&self) -> wgt::Features {
+        self.required | self.asked_for
     }
 
     /// What is suspicious in the document.
@@ -235,111 +269,33 @@ impl Graph {
 
     pub(crate) fn param(&self, name: &str) -> Result<&Param, ParamError> {
         let params = self.params();
-        params
-            .iter()
-            .find(|param| param.name.value == name)
-            .ok_or_else(|| {
-                let hint = suggestion(name, params.iter().map(|param| param.name.as_str()));
-                ParamError::Unknown {
-                    graph: self.path().to_owned(),
-                    name: name.to_owned(),
-                    hint: hint.map_or(", it has none".to_owned(), |hint| format!(": {hint}")),
-                }
-            })
+        let known = params.iter().find(|param| param.name.value == name);
+        known.ok_or_else(|| {
+            let hint = suggestion(name, params.iter().map(|param| param.name.as_str()));
+            ParamError::Unknown {
+                graph: self.path().to_owned(),
+                name: name.to_owned(),
+                hint: hint.map_or(", it has none".to_owned(), |hint| format!(": {hint}")),
+            }
+        })
     }
 
-    fn load_shaders(
-        &mut self,
-        passes: &[LoweredPass],
-        sources: &dyn Sources,
-        diagnostics: &mut Vec<Diagnostic>,
-    ) {
-        let mut files = ShaderFiles::new(sources);
-        for pass in passes {
-            let programs = pass.steps.iter().filter_map(Step::program);
-            for name in programs.filter_map(|program| program.shader.as_ref()) {
-                let key = (Arc::clone(&pass.scope.folder), name.value.clone());
-                if self.shaders.contains_key(&key) {
-                    continue;
-                }
-                let expanded = files.expand(&key.0, name, &name.span);
-                let shader = match expanded.and_then(Shader::new) {
-                    Ok(shader) => Some(Arc::new(shader)),
-                    Err(error) => {
-                        diagnostics.push(error);
-                        None
-                    }
-                };
-                self.shaders.insert(key, shader);
-            }
-        }
-    }
-
-    /// Warns of materials of the document that nothing names; those of included documents need not all be of use.
-    fn unused(&self, instance: &Instance, diagnostics: &mut Vec<Diagnostic>) {
-        // With a shader missing nobody can say what it would have used.
-        if !diagnostics.is_empty() {
-            return;
-        }
-        let mut used: HashSet<String> = HashSet::new();
-        let mut see = |name: &str| {
-            used.insert(name.to_owned());
-            // A layer is a part of its texture.
-            used.extend(split_layer(name).map(|(whole, _)| whole.to_owned()));
-        };
-        for pass in &instance.passes {
-            for step in &pass.steps {
-                step.clone().names(&mut |name| see(name));
-                let shader = step.program().and_then(|program| {
-                    let name = program.shader.as_ref()?.value.clone();
-                    let key = (Arc::clone(&pass.scope.folder), name);
-                    self.shaders.get(&key)?.as_ref()
-                });
-                for (_, global) in shader
-                    .iter()
-                    .flat_map(|shader| shader.module.global_variables.iter())
-                {
-                    see(pass
-                        .scope
-                        .global(global.name.as_deref().unwrap_or_default()));
-                }
-            }
-        }
-        for material in &instance.materials {
-            match material {
-                Material::Texture(texture) => {
-                    if let Size::Like(other) = &texture.size.value {
-                        see(other);
-                    }
-                }
-                Material::Buffer(buffer) => {
-                    if let Some(count) = &buffer.count {
-                        count.value.clone().names(&mut |name| see(name));
-                    }
-                }
-                Material::Sampler(_) => {}
-            }
-        }
-        for output in &self.document.outputs {
-            see(output.material.as_ref().unwrap_or(&output.name));
-        }
-        for material in &instance.materials {
+    /// Warns of materials and params of the document that nothing names; those of documents that it
+    /// includes or extends need not all be of use.
+    fn unused(&self, reports: &mut Reports) {
+        let document = &self.document;
+        let is_own = |span: &Span| span.file.name == document.file.name;
+        let used = Used::of(document, &self.shaders);
+        for material in &document.materials {
             let name = material.name();
-            let mut names: Vec<&Located<String>> = vec![name];
-            if let Material::Texture(texture) = material {
-                names.extend(texture.views.iter().map(|view| &view.name));
+            if is_own(&name.span) && !used.materials.contains(name.as_str()) {
+                let name = Located::new(name.value.to_string(), name.span.clone());
+                reports.warn(ComposeError::UnusedMaterial(name));
             }
-            if name.span.file == self.document.file
-                && !names.iter().any(|name| used.contains(name.as_str()))
-            {
-                diagnostics.push(
-                    Diagnostic::warning(
-                        Code::Unused,
-                        format!("no pass uses the material `{}`", name.value),
-                    )
-                    .at(name.span.clone(), "")
-                    .help("remove it, or check the names of the shader globals that should be it"),
-                );
+        }
+        for param in &document.params[..document.declared] {
+            if is_own(&param.name.span) && !used.params.contains(&param.name.value) {
+                reports.warn(ComposeError::UnusedParam(param.name.clone()));
             }
         }
     }
@@ -348,4 +304,170 @@ impl Graph {
     pub(crate) fn place(&self) -> Span {
         self.document.file.span(0..0)
     }
+}
+
+/// What a document names somewhere.
+#[derive(Default)]
+struct Used {
+    materials: BTreeSet<String>,
+    params: BTreeSet<String>,
+}
+
+impl Used {
+    fn of(document: &Document, shaders: &Shaders) -> Self {
+        let mut used = Self::default();
+        document.visit(&mut |leaf| match leaf {
+            Leaf::Param(name) => drop(used.params.insert(name.to_owned())),
+            Leaf::Word(name) => drop(used.params.insert(name.to_string())),
+            Leaf::Material(of) => drop(used.materials.insert(of.segments[0].name.to_string())),
+            Leaf::Constant | Leaf::Has(_) => {}
+        });
+        each_entry(&document.entries, &mut |entry| match &entry.what {
+            What::Pass(pass) => {
+                for name in &pass.shaders {
+                    let Some(Ok(shader)) = shaders.get(document, name) else {
+                        continue;
+                    };
+                    used.params.extend(shader.params().map(str::to_owned));
+                    used.materials
+                        .extend(shader.global_names().map(str::to_owned));
+                    used.choices(document, shader);
+                }
+            }
+            What::Include(include) => {
+                let Some(inner) = include.document() else {
+                    return;
+                };
+                let inputs = inner.inputs.iter().map(|input| input.name.to_string());
+                used.materials.extend(inputs);
+                let asked = inner.params.iter().filter(|param| param.default.is_none());
+                used.params
+                    .extend(asked.map(|param| param.name.value.clone()));
+            }
+            What::Group(_) => {}
+        });
+        used
+    }
+
+    /// Params of whose words the shader has constants.
+    fn choices(&mut self, document: &Document, shader: &Shader) {
+        let constants: BTreeSet<&str> = shader.constants().collect();
+        for param in &document.params {
+            let prefix = format!("{}_", param.name.value.replace('.', "_").to_uppercase());
+            if constants.iter().any(|name| name.starts_with(&prefix)) {
+                self.params.insert(param.name.value.clone());
+            }
+        }
+    }
+}
+
+/// Calls `each` with every entry, those in groups, too.
+pub(crate) fn each_entry<'e>(
+    entries: &'e [Result<Entry, Broken>],
+    each: &mut dyn FnMut(&'e Entry),
+) {
+    for entry in entries.iter().flatten() {
+        each(entry);
+        if let What::Group(inner) = &entry.what {
+            each_entry(inner, each);
+        }
+    }
+}
+
+fn required(documents: &[&Document]) -> wgt::Features {
+    let required = documents.iter().flat_map(|document| &document.requires);
+    required.fold(wgt::Features::empty(), |all, (_, flag)| all | *flag)
+}
+
+fn asked_for(documents: &[&Document]) -> wgt::Features {
+    let mut features = wgt::Features::empty();
+    for document in documents {
+        document.visit(&mut |leaf| {
+            if let Leaf::Has(flag) = leaf {
+                features |= flag;
+            }
+        });
+    }
+    features
+}
+
+fn load_shaders(documents: &[&Document], sources: &dyn Sources, reports: &mut Reports) -> Shaders {
+    let mut files = ShaderFiles::new(sources);
+    let mut shaders = HashMap::new();
+    // A shader that several documents use is one, unless their words make two of it.
+    let mut parsed: HashMap<String, Result<Arc<Shader>, Reported>> = HashMap::new();
+    for document in documents {
+        let (constants, clashes) = ChoiceConstants::of(&document.params);
+        for clash in clashes {
+            reports.report(clash);
+        }
+        each_entry(&document.entries, &mut |entry| {
+            let What::Pass(pass) = &entry.what else {
+                return;
+            };
+            for name in &pass.shaders {
+                let key = Shaders::key(document, name);
+                if shaders.contains_key(&key) {
+                    continue;
+                }
+                let shader = match files.expand(name) {
+                    Err(error) => Err(reports.tell(error)),
+                    Ok(mut source) => {
+                        let declared = constants.append(&mut source);
+                        let text = format!("{}\n{}", source.file.name, source.text);
+                        let shader = parsed.entry(text).or_insert_with(|| {
+                            let shader = Shader::new(source).map(Arc::new);
+                            shader.map_err(|error| reports.report(error))
+                        });
+                        shader.clone().and_then(|shader| {
+                            let clash = constants.disagreement(&shader, &declared);
+                            clash.map_or(Ok(shader), |clash| Err(reports.report(clash)))
+                        })
+                    }
+                };
+                shaders.insert(key, shader);
+            }
+        });
+    }
+    Shaders(shaders)
+}
+
+fn load_pictures(
+    documents: &[&Document],
+    sources: &dyn Sources,
+    reports: &mut Reports,
+) -> Pictures {
+    let mut pictures = HashMap::new();
+    for document in documents {
+        for material in &document.materials {
+            let Material::Texture(TextureEntry {
+                file: Some(file), ..
+            }) = material
+            else {
+                continue;
+            };
+            let key = (Arc::clone(&document.file.name), file.value.clone());
+            pictures.entry(key).or_insert_with(|| {
+                let picture = load_picture(file, sources);
+                picture.map_err(|error| reports.report(error))
+            });
+        }
+    }
+    Pictures(pictures)
+}
+
+/// The picture of that name, beside the file in which it is written or in `pipelines/`.
+fn load_picture(file: &Located<String>, sources: &dyn Sources) -> Result<Picture, SizeError> {
+    let candidates = include_candidates(&file.span.file.name, file);
+    if escapes(file) {
+        return Err(SizeError::NoPicture(file.clone(), candidates));
+    }
+    for path in &candidates {
+        match sources.picture(path) {
+            Ok(Some(picture)) => return Ok(picture),
+            Ok(None) => {}
+            Err(why) => return Err(SizeError::Picture(file.clone(), why)),
+        }
+    }
+    Err(SizeError::NoPicture(file.clone(), candidates))
 }

@@ -1,59 +1,53 @@
-//! A render graph for wgpu, written in RON and WGSL.
+//! A render graph for wgpu, written in RON and WGSL: from documents to a plan, without a GPU.
 //!
-//! A document names *materials* (textures, buffers, samplers) and *passes*; bindings and access come from the shaders by
-//! reflection, order from what passes read and write. The phases are one file each, in this order:
-//! [`document`] (with `include`), `instantiate`, `resolve`, `wgsl` (reflection), `link`, `order`, `cull`, `schedule`, `lifetime`,
-//! `conditions`, `pool`, `allocate`, `execute`.
-//! All before `allocate` are pure functions on plain data and need no GPU.
+//! A document names *materials* (textures, buffers, samplers) and *passes*; bindings and access come
+//! from the shaders by reflection, order from what passes read and write. The phases are a folder
+//! each, in this order: `document` (with `compose`, which reads what it extends and includes),
+//! `shader`, `instantiate`, `link`, `flow`, `plan`. `language` has the two small grammars inside of
+//! strings, `errors` what can be wrong in each phase and how it is told.
 //!
-//! The crate knows no scenes and no shadows: what a graph does not make itself comes from a [`Provider`].
+//! The crate knows no scenes and no shadows: what a graph does not make itself is described by
+//! somebody who does ([`Describe`]), and made on a device by the crate `skiagraph-gpu`.
 
-mod allocate;
-mod conditions;
-mod cull;
+mod compose;
 pub mod diagnostics;
-pub mod document;
-pub mod draw;
-mod execute;
-pub mod gpu;
+mod document;
+mod errors;
+mod flow;
 mod graph;
-mod include;
 mod instantiate;
-mod lifetime;
+mod kinds;
+mod language;
 mod link;
-mod memory;
-mod order;
-#[cfg(test)]
-mod order_tests;
-mod passes;
+mod picture;
 mod plan;
-mod pool;
 mod provider;
-mod readback;
-pub mod registry;
-mod resolve;
-mod schedule;
+mod request;
+mod resource;
+mod shader;
 mod source;
-pub mod step;
-pub mod timing;
-mod wgsl;
 
 pub use diagnostics::{Code, Diagnostic, Diagnostics, Label, Severity};
-pub use document::{
-    located::Located,
-    params::{Param, ParamType, ParamValue},
+pub use document::{Address, Filter, Param, ParamFault, ParamType, ParamValue};
+pub use flow::{
+    Aliases, Allocation, Conditions, Dependences, Hazard, Lifetime, Lifetimes, Schedule, When,
 };
-pub use draw::Drawing;
-pub use execute::{ExecuteError, Executor, Frame, FrameReport, Renewed};
-pub use graph::{Graph, ParamError};
-pub use instantiate::Fallback;
-pub use plan::{
-    Capture, CulledPass, Field, Item, MemoryEntry, OutputSummary, PassSummary, Plan, PlanRequest,
-    Scalar,
+pub use graph::{Claim, Graph, ParamError};
+pub use instantiate::Run;
+pub use kinds::{Lowering, PassKind, Registry, step};
+pub use language::{Expr, Name, Reference, Scalar, Value, Word, wgsl_identifier};
+pub use link::{
+    Access, Attachment, BindTarget, Block, CAPTURE, Ids, LinkedBinding, LinkedPass, LinkedProgram,
+    PassId, Usage,
 };
-pub use provider::{Import, NoProvider, Provided, Provider, ProviderError};
-pub use readback::{Content, Readback};
-pub use registry::{Lowering, PassKind, Registry};
-pub use source::{FolderSources, LayeredSources, SourceFile, Sources, Span};
-pub use step::{Dispatch, Draw, Groups, Program, Step};
-pub use timing::{FrameTiming, PassTiming};
+pub use plan::{CulledPass, MemoryEntry, OutputSummary, PassSummary, Plan, text};
+pub use provider::{Describe, Import, NoProvider, Provided, ProvidedBinding};
+pub use request::{Capture, PlanRequest};
+pub use resource::{
+    Buffer, FRAME_BYTES, Origin, Resource, ResourceId, ResourceKind, Sampler, SubresourceRange,
+    Target, Texture,
+};
+pub use shader::{Field, Item, ItemScalar, Shader};
+pub use source::{
+    FolderSources, LayeredSources, Located, Picture, SourceFile, SourceText, Sources, Span,
+};

@@ -21,7 +21,8 @@ fn params() -> Files {
                     (name: \"gain\", type: U32, default: 1, max: 100),
                     (name: \"offset\", type: U32, default: 0),
                     (name: \"both\", type: U32, default: 0),
-                    (name: \"face\", type: Choice([\"none\", \"front\", \"back\"]), default: \"none\"),
+                    (name: \"face\", type: Choice([\"none\", \"front\", \"back\"]), default: \
+                        \"none\"),
                     (name: \"slope\", type: F32, default: 0),
                     (name: \"far\", type: F32, default: 1, min: 0, max: 1),
                     (name: \"edge\", type: U32, default: 8),
@@ -33,23 +34,29 @@ fn params() -> Files {
                 ],
                 materials: [
                     Texture(name: \"depth\", format: Depth32Float, size: Square(Param(\"edge\"))),
-                    Texture(name: \"stack\", format: R32Uint, size: Texels(4, 4), layers: Param(\"layers\")),
+                    Texture(name: \"stack\", format: R32Uint, size: Texels(4, 4), layers: \
+                        Param(\"layers\")),
                     Buffer(name: \"list\", count: Param(\"items\")),
                     Texture(name: \"sum\", format: R16Float, size: Texels(1, 1)),
                     Buffer(name: \"sometimes\", count: 1),
                     Texture(name: \"image\", format: R32Uint, size: Viewport),
                 ],
                 passes: [
-                    Raster(name: \"draw\", draw: Vertices(Param(\"corners\")), cull: Param(\"face\"),
-                        depth: (target: \"depth\", load: Clear(Param(\"far\")), bias: (slope_scale: Param(\"slope\")))),
+                    Raster(name: \"draw\", draw: Vertices(Param(\"corners\")), cull: \
+                        Param(\"face\"),
+                        depth: (target: \"depth\", load: Clear(Param(\"far\")), bias: \
+                            (slope_scale: Param(\"slope\")))),
                     Compute(name: \"pile\", dispatch: Over(\"stack\")),
                     Compute(name: \"fill\", dispatch: Over(\"list\")),
                     Clear(name: \"zero\", target: \"sum\"),
-                    Fullscreen(name: \"add\", repeat: Param(\"times\"), color: [(target: \"sum\", load: Load, blend: Additive)]),
-                    Compute(name: \"switch\", run: When(\"enabled\"), dispatch: Groups(1, 1, 1), bind: {\"old\": Previous(\"sometimes\")}),
+                    Fullscreen(name: \"add\", repeat: Param(\"times\"), color: [(target: \"sum\", \
+                        load: Load, blend: Additive)]),
+                    Compute(name: \"switch\", run: When(\"enabled\"), dispatch: Groups(1, 1, 1), \
+                        bind: {\"old\": Previous(\"sometimes\")}),
                     Fullscreen(name: \"shade\", color: [(target: \"image\")]),
                 ],
-                outputs: [(name: \"image\"), (name: \"depth\"), (name: \"stack\"), (name: \"list\"), (name: \"sum\"), (name: \"sometimes\")],
+                outputs: [(name: \"image\"), (name: \"depth\"), (name: \"stack\"), (name: \
+                    \"list\"), (name: \"sum\"), (name: \"sometimes\")],
             )",
         ),
         (
@@ -93,7 +100,8 @@ fn params() -> Files {
     ])
 }
 
-/// The table of docs/embedding.md, row by row: what a change of a param comes to, and the image after it.
+/// The table of docs/embedding.md, row by row: what a change of a param comes to, and the image
+/// after it.
 #[test]
 fn a_param_costs_what_follows_from_it() {
     let mut executor = executor(&params(), &request(&NoProvider));
@@ -183,12 +191,18 @@ fn counter(step: &str) -> Files {
     Files::new([
         (
             "graph.ron",
-            "(format: 1, params: [(name: \"most\", type: U32, default: 5, max: 9), (name: \"items\", type: U32, default: 1)],
-              materials: [Buffer(name: \"total\", count: Param(\"items\")), Texture(name: \"image\", format: R32Uint, size: Viewport)],
-              passes: [Compute(name: \"count\", dispatch: Groups(1, 1, 1), bind: {\"old\": Previous(\"total\")}), Fullscreen(name: \"draw\", color: [(target: \"image\")])],
+            "(format: 1, params: [(name: \"most\", type: U32, default: 5, max: 9), (name: \
+             \"items\", type: U32, default: 1)],
+              materials: [Buffer(name: \"total\", count: Param(\"items\")), Texture(name: \
+                  \"image\", format: R32Uint, size: Viewport)],
+              passes: [Compute(name: \"count\", dispatch: Groups(1, 1, 1), bind: {\"old\": \
+                  Previous(\"total\")}), Fullscreen(name: \"draw\", color: [(target: \"image\")])],
               outputs: [(name: \"total\"), (name: \"image\")])",
         ),
-        ("draw.wgsl", "@fragment fn fragment() -> @location(0) u32 { return 1u; }"),
+        (
+            "draw.wgsl",
+            "@fragment fn fragment() -> @location(0) u32 { return 1u; }",
+        ),
     ])
     .with(
         "count.wgsl",

@@ -1,4 +1,5 @@
-//! Documents made of documents: names, params, repeats and features, without a GPU; then on the device.
+//! Documents made of documents: names, params, repeats and features, without a GPU; then on the
+//! device.
 
 mod support;
 
@@ -9,7 +10,8 @@ use skiagraph_graph::{
 use std::{collections::BTreeMap, sync::LazyLock};
 use support::{Files, Triangle, load};
 
-/// Writes `value`, a param, into a texture of `edge`² texels; `smooth` reads the nearest of its scope's `image`.
+/// Writes `value`, a param, into a texture of `edge`² texels; `smooth` reads the nearest of its
+/// scope's `image`.
 const SHADERS: [(&str, &str); 4] = [
     (
         "shaders/fill.wgsl",
@@ -53,7 +55,8 @@ const INNER: &str = r#"(
 
 fn files(materials: &str, passes: &str, outputs: &str) -> Files {
     let document = format!(
-        "(format: 1, params: [(name: \"n\", type: U32, default: 2), (name: \"value\", type: F32, default: 7)], \
+        "(format: 1, params: [(name: \"n\", type: U32, default: 2), (name: \"value\", type: F32, \
+         default: 7)], \
          materials: [{materials}], passes: [{passes}], outputs: [{outputs}])"
     );
     Files::new(SHADERS)
@@ -82,7 +85,8 @@ const TEXTURE: &str = "format: R32Float, size: Viewport";
 /// What an include makes of names: passes in order, and the edge of the output.
 #[test]
 fn names_and_sizes_of_includes() {
-    /// What it shows, materials, passes, outputs; then the live passes and the edge of the first output.
+    /// What it shows, materials, passes, outputs; then the live passes and the edge of the first
+    /// output.
     type Case<'a> = (&'a str, &'a str, &'a str, &'a str, &'a [&'a str], u32);
     let cases: &[Case<'_>] = &[
         (
@@ -282,7 +286,8 @@ fn a_material_is_connected_with_a_provided_resource() {
         passes: [Clear(name: "reset", target: "indices"), Compute(name: "add", dispatch: Groups(1, 1, 1))])"#;
     let outer = |materials: &str| {
         format!(
-            "(format: 1, passes: [Include(graph: \"inner.ron\", prefix: \"it\"{materials})], outputs: [(name: \"sum\", material: \"it.sum\")])"
+            "(format: 1, passes: [Include(graph: \"inner.ron\", prefix: \"it\"{materials})], \
+             outputs: [(name: \"sum\", material: \"it.sum\")])"
         )
     };
     let add = "var<storage, read> indices: array<u32>; var<storage, read_write> sum: array<u32>;
@@ -315,7 +320,8 @@ fn two_documents_have_shaders_of_one_name() {
         passes: [Compute(name: "work", dispatch: Over("items"))])"#;
     let shader = |items: &str| {
         format!(
-            "var<storage, read_write> items: array<{items}>; @compute @workgroup_size(1) fn main() {{ items[0] = {items}(1); }}"
+            "var<storage, read_write> items: array<{items}>; @compute @workgroup_size(1) fn \
+             main() {{ items[0] = {items}(1); }}"
         )
     };
     let files = Files::new([])
@@ -337,7 +343,8 @@ fn two_documents_have_shaders_of_one_name() {
 #[test]
 fn repeats_follow_their_param() {
     let files = files(
-        "Texture(name: \"maps\", format: R32Float, size: Square(4), layers: 4), Texture(name: \"last\", format: R32Float, size: Square(4))",
+        "Texture(name: \"maps\", format: R32Float, size: Square(4), layers: 4), Texture(name: \
+         \"last\", format: R32Float, size: Square(4))",
         r#"Clear(name: "reset", target: "maps"),
            Group(name: "cascade", repeat: Param("n"), passes: [
                Fullscreen(name: "number", color: [(target: "maps[index]")]),

@@ -1,7 +1,9 @@
-//! Every mistake that a document can hold gives one clear, located diagnostic: the rendered texts are pinned.
+//! Every mistake that a document can hold gives one clear, located diagnostic: the rendered texts
+//! are pinned.
 //!
-//! `tests/broken/NAME.ron` is a document with one mistake (or several, where the name says so); the snapshot of that name is
-//! what its author reads. `INSTA_UPDATE=always cargo test` writes them anew; read what changed.
+//! `tests/broken/NAME.ron` is a document with one mistake (or several, where the name says so); the
+//! snapshot of that name is what its author reads. `INSTA_UPDATE=always cargo test` writes them
+//! anew; read what changed.
 
 mod support;
 
@@ -112,8 +114,8 @@ fn every_code_has_a_text() {
     );
 }
 
-/// `docs/diagnostics.md` lists every kind of mistake with its shortest example, and every broken document. `INSTA_UPDATE=always`
-/// writes it anew.
+/// `docs/diagnostics.md` lists every kind of mistake with its shortest example, and every broken
+/// document. `INSTA_UPDATE=always` writes it anew.
 #[test]
 fn the_catalogue_is_current() {
     let sources = folder();
@@ -146,7 +148,8 @@ fn the_catalogue_is_current() {
             .expect("another test says that there is one");
         let document = text(&format!("{example}.ron"));
         catalogue += &format!(
-            "\n## {}\n\n{} **Way out:** {}\n\n```ron\n{document}\n```\n\n```text\n{}\n```\n\n| document | says |\n|---|---|\n",
+            "\n## {}\n\n{} **Way out:** {}\n\n```ron\n{document}\n```\n\n```text\n{}\n```\n\n| \
+             document | says |\n|---|---|\n",
             code.as_str(),
             code.description(),
             code.remedy(),
@@ -235,8 +238,10 @@ fn a_file_that_is_no_text() {
         [0xffu8, 0xfe, 0x00, 0x28, 0x80],
     )
     .expect("it can be written");
-    let document = "(format: 1, materials: [Texture(name: \"image\", format: R32Float, size: Viewport)], \
-        passes: [Fullscreen(name: \"binary\", color: [(target: \"image\")])], outputs: [(name: \"image\")])";
+    let document = "(format: 1, materials: [Texture(name: \"image\", format: R32Float, size: \
+        Viewport)], \
+        passes: [Fullscreen(name: \"binary\", color: [(target: \"image\")])], outputs: [(name: \
+            \"image\")])";
     std::fs::write(folder.path().join("shader.ron"), document).expect("it can be written");
     std::fs::write(folder.path().join("binary.wgsl"), [0xc3u8, 0x28]).expect("it can be written");
     let sources = FolderSources {
@@ -282,13 +287,15 @@ fn values_nested_200_levels_deep() {
     }
 }
 
-/// Below ron's own limit everything is read by itself, piece by piece; that must not overflow the stack either.
+/// Below ron's own limit everything is read by itself, piece by piece; that must not overflow the
+/// stack either.
 #[test]
 fn values_nested_40_levels_deep() {
     let count = format!("{}1{}", "Times(1, ".repeat(40), ")".repeat(40));
     let document = format!(
         "(format: 1, materials: [Buffer(name: \"items\", count: {count})], \
-         passes: [Compute(name: \"index\", dispatch: Over(\"items\"))], outputs: [(name: \"items\")])"
+         passes: [Compute(name: \"index\", dispatch: Over(\"items\"))], outputs: [(name: \
+             \"items\")])"
     );
     let shader = "var<storage, read_write> items: array<u32>;
         @compute @workgroup_size(1) fn main() { items[0] = 7u; }";
@@ -301,7 +308,8 @@ fn values_nested_40_levels_deep() {
 #[test]
 fn shaders_nested_deep() {
     let document = "(format: 1, materials: [Buffer(name: \"items\", count: 1)], \
-         passes: [Compute(name: \"index\", dispatch: Over(\"items\"))], outputs: [(name: \"items\")])";
+         passes: [Compute(name: \"index\", dispatch: Over(\"items\"))], outputs: [(name: \
+             \"items\")])";
     let brackets = format!(
         "fn deep() -> u32 {{ return {}1u{}; }}",
         "(".repeat(5000),
@@ -334,7 +342,10 @@ fn shaders_nested_deep() {
             level - 1
         ));
     }
-    bomb.push_str("var<storage, read_write> items: S23;\n@compute @workgroup_size(1) fn main() { items.a.a.a.b = items.a.a.a.a; }");
+    bomb.push_str(
+        "var<storage, read_write> items: S23;\n@compute @workgroup_size(1) fn main() { \
+        items.a.a.a.b = items.a.a.a.a; }",
+    );
     let graph = load(&Files::new([
         ("graph.ron", document),
         ("index.wgsl", &bomb),
@@ -349,14 +360,14 @@ fn shaders_nested_deep() {
 /// Mistakes of a request rather than of the document.
 #[test]
 fn requests_that_cannot_be_met() {
-    let files = Files::new([
-        (
-            "graph.ron",
-            "(format: 1, params: [(name: \"edge\", type: U32, default: 4, max: 8), (name: \"cull\", type: Choice([\"none\", \"front\"]), default: \"none\")],
-             materials: [Texture(name: \"image\", format: R32Float, size: Square(Param(\"edge\"))), Sampler(name: \"nearest\")],
+    let files = Files::new([(
+        "graph.ron",
+        "(format: 1, params: [(name: \"edge\", type: U32, default: 4, max: 8), (name: \
+             \"cull\", type: Choice([\"none\", \"front\"]), default: \"none\")],
+             materials: [Texture(name: \"image\", format: R32Float, size: \
+                 Square(Param(\"edge\"))), Sampler(name: \"nearest\")],
              passes: [Clear(name: \"reset\", target: \"image\")], outputs: [(name: \"image\")])",
-        ),
-    ]);
+    )]);
     let graph = load(&files).unwrap_or_else(|errors| panic!("{errors}"));
     let capture = |material: &str, after: Option<&str>| skiagraph_graph::Capture {
         material: material.to_owned(),
@@ -450,7 +461,8 @@ fn comments_and_a_byte_order_mark_are_no_mistakes() {
 (
     format: 1, // the only one
     /* materials */ materials: [
-        Texture(name: /* its */ \"image\", format: R32Float /* one channel */, size: Viewport // all of it
+        Texture(name: /* its */ \"image\", format: R32Float /* one channel */, size: Viewport // \
+            all of it
         ), // the only one
     ],
     passes: [

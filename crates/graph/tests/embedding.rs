@@ -1,4 +1,5 @@
-//! What a host program relies on: imports, views of outputs, provided resources, errors before anything is encoded.
+//! What a host program relies on: imports, views of outputs, provided resources, errors before
+//! anything is encoded.
 
 mod support;
 
@@ -106,7 +107,8 @@ fn sums() -> Files {
         (
             "graph.ron",
             "(format: 1, materials: [Texture(name: \"sum\", format: R32Uint, size: Viewport)],
-              passes: [Fullscreen(name: \"add\", color: [(target: \"sum\")])], outputs: [(name: \"sum\")])",
+              passes: [Fullscreen(name: \"add\", color: [(target: \"sum\")])], outputs: [(name: \
+                  \"sum\")])",
         ),
         (
             "add.wgsl",
@@ -248,8 +250,10 @@ fn a_pass_that_writes_for_the_host_runs() {
     let files = Files::new([
         (
             "graph.ron",
-            "(format: 1, materials: [Texture(name: \"image\", format: R32Uint, size: Viewport), Texture(name: \"nobody\", format: R32Uint, size: Viewport)],
-              passes: [Compute(name: \"count\", dispatch: Groups(1, 1, 1)), Fullscreen(name: \"idle\", shader: \"draw\", color: [(target: \"nobody\")]),
+            "(format: 1, materials: [Texture(name: \"image\", format: R32Uint, size: Viewport), \
+             Texture(name: \"nobody\", format: R32Uint, size: Viewport)],
+              passes: [Compute(name: \"count\", dispatch: Groups(1, 1, 1)), Fullscreen(name: \
+                  \"idle\", shader: \"draw\", color: [(target: \"nobody\")]),
                        Fullscreen(name: \"draw\", color: [(target: \"image\")])],
               outputs: [(name: \"image\")])",
         ),
@@ -258,7 +262,10 @@ fn a_pass_that_writes_for_the_host_runs() {
             "var<storage, read_write> host_counter: array<u32>;
              @compute @workgroup_size(1) fn main() { host_counter[0] += 10u; }",
         ),
-        ("draw.wgsl", "@fragment fn fragment() -> @location(0) u32 { return 1u; }"),
+        (
+            "draw.wgsl",
+            "@fragment fn fragment() -> @location(0) u32 { return 1u; }",
+        ),
     ]);
     let counter = buffer(&[5, 6], STORAGE);
     let mut request = request(&NoProvider);
@@ -279,13 +286,15 @@ fn a_pass_that_writes_for_the_host_runs() {
     assert_eq!(content(&counter, encoder()), [25, 6]);
 }
 
-/// An output may be an import. Whether it can be read back is up to the host, and said before anything is encoded.
+/// An output may be an import. Whether it can be read back is up to the host, and said before
+/// anything is encoded.
 #[test]
 fn an_import_is_read_back_if_it_was_made_for_that() {
     let files = Files::new([
         (
             "graph.ron",
-            "(format: 1, passes: [Fullscreen(name: \"draw\", color: [(target: \"host.image\")])], outputs: [(name: \"host.image\")])",
+            "(format: 1, passes: [Fullscreen(name: \"draw\", color: [(target: \"host.image\")])], \
+             outputs: [(name: \"host.image\")])",
         ),
         (
             "draw.wgsl",
@@ -311,7 +320,8 @@ fn an_import_is_read_back_if_it_was_made_for_that() {
             Ok(()) => assert!(is_readable),
             Err(error) => {
                 assert!(!is_readable);
-                let why = "`host.image` cannot be read back: the host must make it with TextureUsages::COPY_SRC";
+                let why = "`host.image` cannot be read back: the host must make it with \
+                    TextureUsages::COPY_SRC";
                 assert_eq!(error.to_string(), why);
                 frame(&mut executor, &[]);
                 continue;
@@ -327,13 +337,16 @@ fn the_host_binds_what_the_graph_made() {
     let files = Files::new([
         (
             "graph.ron",
-            "(format: 1, materials: [Texture(name: \"image\", format: R32Uint, size: Viewport), Buffer(name: \"items\", count: 64)],
-              passes: [Fullscreen(name: \"draw\", color: [(target: \"image\")]), Compute(name: \"fill\", dispatch: Over(\"items\"))],
+            "(format: 1, materials: [Texture(name: \"image\", format: R32Uint, size: Viewport), \
+             Buffer(name: \"items\", count: 64)],
+              passes: [Fullscreen(name: \"draw\", color: [(target: \"image\")]), Compute(name: \
+                  \"fill\", dispatch: Over(\"items\"))],
               outputs: [(name: \"image\"), (name: \"items\")])",
         ),
         (
             "draw.wgsl",
-            "@fragment fn fragment(@builtin(position) at: vec4<f32>) -> @location(0) u32 { return u32(at.x) + 8u * u32(at.y); }",
+            "@fragment fn fragment(@builtin(position) at: vec4<f32>) -> @location(0) u32 { return \
+             u32(at.x) + 8u * u32(at.y); }",
         ),
         (
             "fill.wgsl",
@@ -397,7 +410,8 @@ fn the_host_binds_what_the_graph_made() {
     assert_eq!(content(&sum, encoder), (100..164).collect::<Vec<u32>>());
 }
 
-/// A host's imports follow its viewport, so both change at once, and the imports are handed over again.
+/// A host's imports follow its viewport, so both change at once, and the imports are handed over
+/// again.
 #[test]
 fn another_viewport_with_other_imports() {
     let mut executor = executor(&sums(), &sums_request());
@@ -459,7 +473,8 @@ fn taker() -> Files {
         (
             "graph.ron",
             "(format: 1, materials: [Buffer(name: \"copy\", count: 1)],
-              passes: [Compute(name: \"take\", run: OnChange, dispatch: Groups(1, 1, 1))], outputs: [(name: \"copy\")])",
+              passes: [Compute(name: \"take\", run: OnChange, dispatch: Groups(1, 1, 1))], \
+                  outputs: [(name: \"copy\")])",
         ),
         (
             "take.wgsl",
@@ -549,7 +564,8 @@ fn provided_resources_change_when_the_host_says_so() {
         assert_eq!(
             error.to_string(),
             format!(
-                "neither an import nor a provided resource is called `{name}`; live passes use host.number"
+                "neither an import nor a provided resource is called `{name}`; live passes use \
+                 host.number"
             )
         );
     }

@@ -108,7 +108,10 @@ fn a_sum_over_frames_starts_from_zero() {
     let files = document(
         "",
         &["total"],
-        &["Compute(name: \"count\", dispatch: Groups(1, 1, 1), bind: {\"old\": Previous(\"total\"), \"out\": \"total\"})"],
+        &[
+            "Compute(name: \"count\", dispatch: Groups(1, 1, 1), bind: {\"old\": \
+            Previous(\"total\"), \"out\": \"total\"})",
+        ],
         &["total"],
     )
     .with("count.wgsl", writes(OLD, "old[0] + 1u"));
@@ -127,8 +130,10 @@ fn a_sum_over_frames_starts_from_zero() {
 fn last_frame_is_zero_after_a_resize() {
     let files = Files::new([]).with(
         "graph.ron",
-        "(format: 1, materials: [Texture(name: \"age\", format: R32Uint, size: Viewport), Texture(name: \"was\", format: R32Uint, size: Viewport)],
-          passes: [Copy(name: \"keep\", from: Previous(\"age\"), to: \"was\"), Fullscreen(name: \"grow\", color: [(target: \"age\")])],
+        "(format: 1, materials: [Texture(name: \"age\", format: R32Uint, size: Viewport), \
+         Texture(name: \"was\", format: R32Uint, size: Viewport)],
+          passes: [Copy(name: \"keep\", from: Previous(\"age\"), to: \"was\"), Fullscreen(name: \
+              \"grow\", color: [(target: \"age\")])],
           outputs: [(name: \"age\")])",
     ).with(
         "grow.wgsl",
@@ -156,8 +161,10 @@ fn a_version_that_was_not_written_stays_the_last_one() {
         &format!("{SEED_PARAM}, (name: \"on\", type: Bool, default: true)"),
         &["b", "c"],
         &[
-            "Compute(name: \"make\", dispatch: Groups(1, 1, 1), run: When(\"on\"), bind: {\"out\": \"b\"})",
-            "Compute(name: \"watch\", dispatch: Groups(1, 1, 1), bind: {\"old\": Previous(\"b\"), \"out\": \"c\"})",
+            "Compute(name: \"make\", dispatch: Groups(1, 1, 1), run: When(\"on\"), bind: \
+             {\"out\": \"b\"})",
+            "Compute(name: \"watch\", dispatch: Groups(1, 1, 1), bind: {\"old\": Previous(\"b\"), \
+             \"out\": \"c\"})",
         ],
         &["b", "c"],
     )
@@ -193,17 +200,28 @@ fn what_did_not_change_is_not_made_again() {
         &format!("{SEED_PARAM}, (name: \"other\", type: U32, default: 1)"),
         &["a", "b", "c", "d", "e"],
         &[
-            "Compute(name: \"first\", dispatch: Groups(1, 1, 1), run: Once, bind: {\"out\": \"a\"})",
-            "Compute(name: \"second\", dispatch: Groups(1, 1, 1), run: OnChange, bind: {\"out\": \"b\"})",
-            "Compute(name: \"third\", dispatch: Groups(1, 1, 1), run: OnChange, bind: {\"input\": \"a\", \"more\": \"b\", \"out\": \"c\"})",
-            "Compute(name: \"fourth\", shader: \"pass_on\", dispatch: Groups(1, 1, 1), bind: {\"input\": \"c\", \"out\": \"d\"})",
-            "Compute(name: \"fifth\", shader: \"pass_on\", dispatch: Groups(1, 1, 1), run: OnChange, bind: {\"input\": \"host\", \"out\": \"e\"})",
+            "Compute(name: \"first\", dispatch: Groups(1, 1, 1), run: Once, bind: {\"out\": \
+             \"a\"})",
+            "Compute(name: \"second\", dispatch: Groups(1, 1, 1), run: OnChange, bind: {\"out\": \
+             \"b\"})",
+            "Compute(name: \"third\", dispatch: Groups(1, 1, 1), run: OnChange, bind: {\"input\": \
+             \"a\", \"more\": \"b\", \"out\": \"c\"})",
+            "Compute(name: \"fourth\", shader: \"pass_on\", dispatch: Groups(1, 1, 1), bind: \
+             {\"input\": \"c\", \"out\": \"d\"})",
+            "Compute(name: \"fifth\", shader: \"pass_on\", dispatch: Groups(1, 1, 1), run: \
+             OnChange, bind: {\"input\": \"host\", \"out\": \"e\"})",
         ],
         &["d", "e"],
     )
     .with("first.wgsl", writes(SEED, "params.seed"))
     .with("second.wgsl", writes(SEED, "params.seed * 10u"))
-    .with("third.wgsl", writes(&format!("{INPUT} var<storage, read> more: array<u32>;"), "input[0] + more[0]"))
+    .with(
+        "third.wgsl",
+        writes(
+            &format!("{INPUT} var<storage, read> more: array<u32>;"),
+            "input[0] + more[0]",
+        ),
+    )
     .with("pass_on.wgsl", writes(INPUT, "input[0]"));
     let host = GPU.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
@@ -295,7 +313,8 @@ fn chain(names: &[&str], run: &str, overwrite: bool) -> Files {
     for pair in names.windows(2) {
         let _ = write!(
             passes,
-            "Fullscreen(name: \"to_{0}\", {run} shader: \"step\", color: [(target: \"{0}\", load: {load})], bind: {{\"input\": \"{1}\"}}),",
+            "Fullscreen(name: \"to_{0}\", {run} shader: \"step\", color: [(target: \"{0}\", load: \
+             {load})], bind: {{\"input\": \"{1}\"}}),",
             pair[1], pair[0]
         );
     }
@@ -307,7 +326,8 @@ fn chain(names: &[&str], run: &str, overwrite: bool) -> Files {
     )])
     .with(
         "graph.ron",
-        format!("(format: 1, materials: [{textures}], passes: [{passes}], outputs: [(name: \"{last}\")])"),
+        format!("(format: 1, materials: [{textures}], passes: [{passes}], outputs: [(name: \
+            \"{last}\")])"),
     )
 }
 
@@ -338,17 +358,21 @@ fn memory_is_shared_by_what_is_not_needed_at_once() {
 /// ```text
 /// all ─▶ a ─▶ sum ─▶ m ; half ─▶ b (its first item) ─▶ whole ─▶ e
 /// ```
-/// `b` could have `a`'s memory by its size and lifetime, but nothing proves that all of it is written: it would show what `a` left.
+/// `b` could have `a`'s memory by its size and lifetime, but nothing proves that all of it is
+/// written: it would show what `a` left.
 #[test]
 fn what_may_be_written_in_part_has_its_own_memory() {
     let pair = "Buffer(name: \"a\", count: 2), Buffer(name: \"b\", count: 2),";
     let files = document(
         "",
         &["m", "e"],
-        &["Compute(name: \"all\", overwrites: [\"a\"], dispatch: Groups(1, 1, 1), bind: {\"out\": \"a\"})",
-          "Compute(name: \"sum\", dispatch: Groups(1, 1, 1), bind: {\"input\": \"a\", \"out\": \"m\"})",
+        &["Compute(name: \"all\", overwrites: [\"a\"], dispatch: Groups(1, 1, 1), bind: {\"out\": \
+            \"a\"})",
+          "Compute(name: \"sum\", dispatch: Groups(1, 1, 1), bind: {\"input\": \"a\", \"out\": \
+           \"m\"})",
           "Compute(name: \"half\", dispatch: Groups(1, 1, 1), bind: {\"out\": \"b\"})",
-          "Compute(name: \"whole\", shader: \"sum\", dispatch: Groups(1, 1, 1), bind: {\"input\": \"b\", \"out\": \"e\"})"],
+          "Compute(name: \"whole\", shader: \"sum\", dispatch: Groups(1, 1, 1), bind: {\"input\": \
+           \"b\", \"out\": \"e\"})"],
         &["m", "e"],
     )
     .edited("graph.ron", "materials: [", &format!("materials: [{pair}"))
@@ -370,7 +394,8 @@ fn what_may_be_written_in_part_has_its_own_memory() {
     assert_eq!(number(&mut executor_for(&promised, &request()), "e"), 1);
 }
 
-/// With a pattern in all memory that a frame has not written, outputs are the same if only what was written is read.
+/// With a pattern in all memory that a frame has not written, outputs are the same if only what was
+/// written is read.
 #[test]
 fn poisoned_memory_shows_what_is_read_unwritten() {
     let numbers = |files: &Files| {
@@ -393,7 +418,8 @@ fn poisoned_memory_shows_what_is_read_unwritten() {
         &["e"],
         &[
             "Compute(name: \"some\", dispatch: Groups(1, 1, 1), bind: {\"out\": \"part\"})",
-            "Compute(name: \"whole\", dispatch: Groups(1, 1, 1), bind: {\"input\": \"part\", \"out\": \"e\"})",
+            "Compute(name: \"whole\", dispatch: Groups(1, 1, 1), bind: {\"input\": \"part\", \
+             \"out\": \"e\"})",
         ],
         &["e"],
     );
@@ -456,7 +482,8 @@ const RUNS: [&str; 4] = ["Always", "OnChange", "Once", "When(\"flag\")"];
 type Value = [u32; ITEMS];
 
 impl Program {
-    /// The document: every material is set to zero before it is first used, so that lifetimes are short and memory is shared.
+    /// The document: every material is set to zero before it is first used, so that lifetimes are
+    /// short and memory is shared.
     fn files(&self) -> Files {
         let mut passes = String::new();
         let mut fresh: Vec<usize> = (0..MATERIALS).collect();
@@ -465,7 +492,8 @@ impl Program {
                 let run = RUNS[self.runs[material]];
                 let _ = write!(
                     passes,
-                    "Compute(name: \"zero{material}\", shader: \"zero\", run: {run}, overwrites: [\"m{material}\"], \
+                    "Compute(name: \"zero{material}\", shader: \"zero\", run: {run}, overwrites: \
+                     [\"m{material}\"], \
                      dispatch: Groups(1, 1, 1), bind: {{\"out\": \"m{material}\"}}),"
                 );
             }
@@ -501,7 +529,8 @@ impl Program {
             };
             let _ = write!(
                 passes,
-                "Compute(name: \"p{index}\", run: {run}, {overwrites} dispatch: Groups(1, 1, 1), bind: {{{bind}}}),"
+                "Compute(name: \"p{index}\", run: {run}, {overwrites} dispatch: Groups(1, 1, 1), \
+                 bind: {{{bind}}}),"
             );
             files = files.with(
                 &format!("p{index}.wgsl"),
@@ -530,8 +559,9 @@ impl Program {
         )
     }
 
-    /// The outputs after each frame when every pass is run in file order, those that run `Once` in the first frame only and those that
-    /// run by the flag when it is set. That `OnChange` saves work must not be seen.
+    /// The outputs after each frame when every pass is run in file order, those that run `Once` in
+    /// the first frame only and those that run by the flag when it is set. That `OnChange` saves
+    /// work must not be seen.
     fn interpret(&self) -> Vec<Vec<Value>> {
         let mut now = [[0u32; ITEMS]; MATERIALS];
         let mut before = now;
@@ -642,7 +672,8 @@ fn any_program() -> impl Strategy<Value = Program> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 256, max_global_rejects: 8192, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Culling, order, sharing, two versions, skipped passes, uploads: none of it may be seen in a value.
+    /// Culling, order, sharing, two versions, skipped passes, uploads: none of it may be seen in a
+    /// value.
     #[test]
     fn frames_mean_what_the_file_says(program in any_program()) {
         let files = program.files();
@@ -658,7 +689,8 @@ proptest! {
         let mut request = request();
         request.poison = program.poison;
         request.imports = BTreeMap::from([("host".to_owned(), Import::buffer(&host, None))]);
-        // Writers of several conditions that meet in one group are refused; that is tested elsewhere.
+        // Writers of several conditions that meet in one group are refused; that is tested
+        // elsewhere.
         let plan = match graph.plan(&request) {
             Ok(plan) => plan,
             Err(errors) => {

@@ -122,7 +122,8 @@ fn a_full_screen_pass_writes_every_pixel_once() {
         "(name: \"image\")",
     )
     .with("number.wgsl", NUMBER);
-    // Additive blending on floats shows a pixel that is drawn twice; where the adapter cannot blend them, plain writing.
+    // Additive blending on floats shows a pixel that is drawn twice; where the adapter cannot blend
+    // them, plain writing.
     let blendable = wgpu::TextureFormat::R32Float
         .guaranteed_format_features(GPU.device.features())
         .flags;
@@ -144,10 +145,13 @@ fn a_full_screen_pass_writes_every_pixel_once() {
 #[test]
 fn a_triangle_of_the_provider_with_depth() {
     let files = files(
-        "Texture(name: \"image\", format: R32Uint, size: Viewport), Texture(name: \"depth\", format: Depth32Float, size: Viewport)",
-        "Raster(name: \"draw\", fragment: \"fragment\", draw: CountOf(\"scene.indices\"), color: [(target: \"image\", load: Clear(9, 0, 0, 0))],
+        "Texture(name: \"image\", format: R32Uint, size: Viewport), Texture(name: \"depth\", \
+         format: Depth32Float, size: Viewport)",
+        "Raster(name: \"draw\", fragment: \"fragment\", draw: CountOf(\"scene.indices\"), color: \
+         [(target: \"image\", load: Clear(9, 0, 0, 0))],
             depth: (target: \"depth\", load: Clear(1.0), compare: Less)),
-         Raster(name: \"behind\", shader: \"draw\", fragment: \"other\", draw: CountOf(\"scene.indices\"), color: [(target: \"image\", load: Load)],
+         Raster(name: \"behind\", shader: \"draw\", fragment: \"other\", draw: \
+             CountOf(\"scene.indices\"), color: [(target: \"image\", load: Load)],
             depth: (target: \"depth\", load: Load, compare: Less, write: false))",
         "(name: \"image\"), (name: \"depth\")",
     )
@@ -170,13 +174,16 @@ fn a_triangle_of_the_provider_with_depth() {
     assert_eq!(f32s(&contents[1]), pixels(SIZE, |_, _| 0.25));
 }
 
-/// A pass with neither colour target nor fragment stage; another samples its depth while it is tested against, read only.
+/// A pass with neither colour target nor fragment stage; another samples its depth while it is
+/// tested against, read only.
 #[test]
 fn depth_only_and_depth_read_while_tested() {
     let files = files(
-        "Texture(name: \"depth\", format: Depth32Float, size: Viewport), Texture(name: \"image\", format: R32Float, size: Viewport)",
+        "Texture(name: \"depth\", format: Depth32Float, size: Viewport), Texture(name: \"image\", \
+         format: R32Float, size: Viewport)",
         "Raster(name: \"occlude\", draw: Vertices(3), depth: (target: \"depth\")),
-         Raster(name: \"shade\", draw: Vertices(3), color: [(target: \"image\", load: Clear(5, 0, 0, 0))],
+         Raster(name: \"shade\", draw: Vertices(3), color: [(target: \"image\", load: Clear(5, 0, \
+             0, 0))],
             depth: (target: \"depth\", load: Load, compare: LessEqual, write: false))",
         "(name: \"image\"), (name: \"depth\")",
     )
@@ -205,7 +212,8 @@ fn depth_only_and_depth_read_while_tested() {
     );
 }
 
-/// Of a shader with two fragment stages, a pass without colour targets runs the one without colours; it discards and sets depths.
+/// Of a shader with two fragment stages, a pass without colour targets runs the one without
+/// colours; it discards and sets depths.
 #[test]
 fn a_depth_only_pass_runs_the_fragment_stage_without_colours() {
     let files = files(
@@ -233,7 +241,8 @@ fn a_depth_only_pass_runs_the_fragment_stage_without_colours() {
     assert_eq!(f32s(&run(&files, &["depth"])[0]), expected);
 }
 
-/// Several targets at once, of formats whose rows are padded in different ways when they are read back.
+/// Several targets at once, of formats whose rows are padded in different ways when they are read
+/// back.
 #[test]
 fn several_targets_of_several_formats() {
     let formats = [
@@ -296,7 +305,8 @@ fn several_targets_of_several_formats() {
 fn compute_over_a_texture_that_is_no_multiple_of_the_workgroup() {
     let files = files(
         "Texture(name: \"image\", format: R32Uint, size: Viewport), Buffer(name: \"runs\")",
-        "Clear(name: \"reset\", target: \"runs\"), Compute(name: \"number\", dispatch: Over(\"image\"))",
+        "Clear(name: \"reset\", target: \"runs\"), Compute(name: \"number\", dispatch: \
+         Over(\"image\"))",
         "(name: \"image\"), (name: \"runs\")",
     )
     .with(
@@ -314,13 +324,15 @@ fn compute_over_a_texture_that_is_no_multiple_of_the_workgroup() {
     assert_eq!(u32s(&contents[1]), [SIZE[0] * SIZE[1]]);
 }
 
-/// More workgroups than one dimension holds: they are folded to two, and the item number is found as the document says.
+/// More workgroups than one dimension holds: they are folded to two, and the item number is found
+/// as the document says.
 #[test]
 fn compute_over_more_items_than_one_dimension_has_workgroups() {
     let items = 70_000u32;
     let files = files(
         &format!("Buffer(name: \"items\", count: {items})"),
-        "Clear(name: \"reset\", target: \"items\"), Compute(name: \"number\", dispatch: Over(\"items\"))",
+        "Clear(name: \"reset\", target: \"items\"), Compute(name: \"number\", dispatch: \
+         Over(\"items\"))",
         "(name: \"items\")",
     )
     .with(
@@ -343,7 +355,8 @@ fn indirect_dispatch_and_draw() {
     let files = files(
         "Buffer(name: \"groups\"), Buffer(name: \"vertices\"), Buffer(name: \"items\", count: 8),
          Texture(name: \"image\", format: R32Uint, size: Viewport)",
-        "Compute(name: \"decide\", dispatch: Groups(1, 1, 1)), Clear(name: \"reset\", target: \"items\"),
+        "Compute(name: \"decide\", dispatch: Groups(1, 1, 1)), Clear(name: \"reset\", target: \
+         \"items\"),
          Compute(name: \"work\", dispatch: Indirect(\"groups\")),
          Raster(name: \"draw\", draw: Indirect(\"vertices\"), color: [(target: \"image\")])",
         "(name: \"items\"), (name: \"image\")",
@@ -385,7 +398,8 @@ fn clears_and_copies() {
     ];
     let texture = |format: &&str| {
         format!(
-            "Texture(name: \"a{format}\", format: {format}, size: Viewport), Texture(name: \"b{format}\", format: {format}, size: Viewport)"
+            "Texture(name: \"a{format}\", format: {format}, size: Viewport), Texture(name: \
+             \"b{format}\", format: {format}, size: Viewport)"
         )
     };
     let mut materials: Vec<String> = textures.iter().map(texture).collect();
@@ -449,20 +463,26 @@ fn clears_and_copies() {
     assert_eq!(u32s(&contents[6]), [0; 5]);
 }
 
-/// Mip 0 is drawn, mip 1 made of it, layer by layer; views name the parts. Sampled as an array, read back by view.
+/// Mip 0 is drawn, mip 1 made of it, layer by layer; views name the parts. Sampled as an array,
+/// read back by view.
 #[test]
 fn mips_and_layers_through_views() {
     let files = files(
         "Texture(name: \"pyramid\", format: R32Float, size: Square(4), mips: 2, layers: 2, views: [
-             (name: \"l0m0\", mip: 0, mips: 1, layer: 0, layers: 1), (name: \"l0m1\", mip: 1, mips: 1, layer: 0, layers: 1),
-             (name: \"l1m0\", mip: 0, mips: 1, layer: 1, layers: 1), (name: \"l1m1\", mip: 1, mips: 1, layer: 1, layers: 1)]),
+             (name: \"l0m0\", mip: 0, mips: 1, layer: 0, layers: 1), (name: \"l0m1\", mip: 1, \
+                 mips: 1, layer: 0, layers: 1),
+             (name: \"l1m0\", mip: 0, mips: 1, layer: 1, layers: 1), (name: \"l1m1\", mip: 1, \
+                 mips: 1, layer: 1, layers: 1)]),
          Texture(name: \"sum\", format: R32Float, size: Square(2))",
         "Fullscreen(name: \"number\", color: [(target: \"l0m0\")]),
          Clear(name: \"flat\", target: \"l1m0\", value: (4, 0, 0, 0)),
-         Fullscreen(name: \"reduce0\", shader: \"reduce\", bind: {\"fine\": \"l0m0\"}, color: [(target: \"l0m1\")]),
-         Fullscreen(name: \"reduce1\", shader: \"reduce\", bind: {\"fine\": \"l1m0\"}, color: [(target: \"l1m1\")]),
+         Fullscreen(name: \"reduce0\", shader: \"reduce\", bind: {\"fine\": \"l0m0\"}, color: \
+             [(target: \"l0m1\")]),
+         Fullscreen(name: \"reduce1\", shader: \"reduce\", bind: {\"fine\": \"l1m0\"}, color: \
+             [(target: \"l1m1\")]),
          Fullscreen(name: \"add\", color: [(target: \"sum\")])",
-        "(name: \"sum\"), (name: \"coarse\", material: \"l0m1\"), (name: \"flat\", material: \"l1m1\")",
+        "(name: \"sum\"), (name: \"coarse\", material: \"l0m1\"), (name: \"flat\", material: \
+         \"l1m1\")",
     )
     .with("number.wgsl", NUMBER)
     .with(
@@ -490,17 +510,21 @@ fn mips_and_layers_through_views() {
 #[test]
 fn samplers() {
     let files = files(
-        "Texture(name: \"source\", format: R8Unorm, size: Texels(2, 1)), Texture(name: \"depth\", format: Depth32Float, size: Square(1)),
+        "Texture(name: \"source\", format: R8Unorm, size: Texels(2, 1)), Texture(name: \"depth\", \
+         format: Depth32Float, size: Square(1)),
          Texture(name: \"image\", format: Rgba32Float, size: Square(1)),
-         Sampler(name: \"near\"), Sampler(name: \"linear\", filter: Linear), Sampler(name: \"around\", address: Repeat),
+         Sampler(name: \"near\"), Sampler(name: \"linear\", filter: Linear), Sampler(name: \
+             \"around\", address: Repeat),
          Sampler(name: \"shadow\", filter: Linear, compare: LessEqual)",
-        "Fullscreen(name: \"step\", color: [(target: \"source\")]), Clear(name: \"reset\", target: \"depth\", value: (0.5, 0, 0, 0)),
+        "Fullscreen(name: \"step\", color: [(target: \"source\")]), Clear(name: \"reset\", \
+         target: \"depth\", value: (0.5, 0, 0, 0)),
          Fullscreen(name: \"sample\", color: [(target: \"image\")])",
         "(name: \"image\")",
     )
     .with(
         "step.wgsl",
-        "@fragment fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) f32 { return floor(position.x); }",
+        "@fragment fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) f32 { \
+         return floor(position.x); }",
     )
     .with(
         "sample.wgsl",
@@ -531,9 +555,11 @@ fn captures() {
     let files = files(
         "Buffer(name: \"total\"), Buffer(name: \"unused\")",
         "Clear(name: \"wipe\", target: \"unused\"),
-         Clear(name: \"reset\", target: \"total\"), Compute(name: \"add1\", shader: \"add\", dispatch: Groups(1, 1, 1)),
+         Clear(name: \"reset\", target: \"total\"), Compute(name: \"add1\", shader: \"add\", \
+             dispatch: Groups(1, 1, 1)),
          Compute(name: \"add2\", shader: \"add\", dispatch: Groups(1, 1, 1)),
-         Compute(name: \"aside\", shader: \"add\", bind: {\"total\": \"unused\"}, dispatch: Groups(1, 1, 1))",
+         Compute(name: \"aside\", shader: \"add\", bind: {\"total\": \"unused\"}, dispatch: \
+             Groups(1, 1, 1))",
         "(name: \"total\")",
     )
     .with(
@@ -571,8 +597,10 @@ fn captures() {
 #[test]
 fn every_pass_is_timed_or_the_reason_is_known() {
     let files = files(
-        "Texture(name: \"image\", format: R32Float, size: Viewport), Texture(name: \"copy\", format: R32Float, size: Viewport)",
-        "Fullscreen(name: \"number\", color: [(target: \"image\")]), Copy(name: \"keep\", from: \"image\", to: \"copy\")",
+        "Texture(name: \"image\", format: R32Float, size: Viewport), Texture(name: \"copy\", \
+         format: R32Float, size: Viewport)",
+        "Fullscreen(name: \"number\", color: [(target: \"image\")]), Copy(name: \"keep\", from: \
+         \"image\", to: \"copy\")",
         "(name: \"copy\")",
     )
     .with("number.wgsl", NUMBER);
@@ -614,7 +642,8 @@ fn every_pass_is_timed_or_the_reason_is_known() {
     }
 }
 
-/// A host may submit several frames before it asks, and one that drops an encoder, which it should not, still gets what it asked for.
+/// A host may submit several frames before it asks, and one that drops an encoder, which it should
+/// not, still gets what it asked for.
 #[test]
 fn frames_that_are_not_finished_one_by_one() {
     let files = files(
@@ -712,7 +741,8 @@ fn an_output_that_the_plan_does_not_have() {
     );
 }
 
-/// Right as WGSL, but this device was not opened with what it needs: an error that names the pass, and no panic.
+/// Right as WGSL, but this device was not opened with what it needs: an error that names the pass,
+/// and no panic.
 #[test]
 fn a_shader_that_the_device_refuses() {
     let files = files(

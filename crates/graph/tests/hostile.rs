@@ -33,7 +33,8 @@ fn said(document: &str) -> String {
         .map_or("nothing".to_owned(), |errors| errors.to_string())
 }
 
-/// What is said about a shader: declarations, and the body of its function, which has an array `items` of u32.
+/// What is said about a shader: declarations, and the body of its function, which has an array
+/// `items` of u32.
 #[track_caller]
 fn of_shader(declarations: &str, body: &str) -> String {
     let shader = format!(
@@ -61,11 +62,14 @@ fn many(count: usize, each: impl Fn(usize) -> String) -> String {
     (0..count).map(each).collect::<Vec<_>>().join(",\n")
 }
 
-/// A document on lines of their own: params, materials, passes, in this order, beside a buffer `items`.
+/// A document on lines of their own: params, materials, passes, in this order, beside a buffer
+/// `items`.
 fn document(params: &str, materials: &str, passes: &str) -> String {
     format!(
-        "(format: 1,\nparams: [{params}],\nmaterials: [Buffer(name: \"items\", count: 4), {materials}],\n\
-         passes: [Compute(name: \"index\", dispatch: Over(\"items\")), {passes}],\noutputs: [(name: \"items\")])"
+        "(format: 1,\nparams: [{params}],\nmaterials: [Buffer(name: \"items\", count: 4), \
+         {materials}],\n\
+         passes: [Compute(name: \"index\", dispatch: Over(\"items\")), {passes}],\noutputs: \
+             [(name: \"items\")])"
     )
 }
 
@@ -99,7 +103,8 @@ fn lists_without_end() {
     assert_said(&said_of, "graph.ron:2002", &["nothing is called `m2000`"]);
 }
 
-/// For each name that nothing has, all names are searched for what was meant: not for as many as there may be of both.
+/// For each name that nothing has, all names are searched for what was meant: not for as many as
+/// there may be of both.
 #[test]
 fn as_many_misspelt_names_as_names() {
     let long =
@@ -226,7 +231,8 @@ fn repeats_without_end() {
         (one.replace(")", ", repeat: 4294967295)"), "graph.ron:4:"),
         (
             format!(
-                "Group(name: \"a\", repeat: 1000, passes: [Group(name: \"b\", repeat: 1000, passes: [Group(name: \"c\", repeat: 1000, passes: [{one}])])])"
+                "Group(name: \"a\", repeat: 1000, passes: [Group(name: \"b\", repeat: 1000, \
+                 passes: [Group(name: \"c\", repeat: 1000, passes: [{one}])])])"
             ),
             "graph.ron:4:",
         ),
@@ -269,7 +275,8 @@ fn groups_in_groups() {
             &["nested too deep"],
         );
     }
-    // As deep as it is read; the clear comes after what it would spoil, so nothing is wrong but that.
+    // As deep as it is read; the clear comes after what it would spoil, so nothing is wrong but
+    // that.
     assert!(!said(&document("", "", &nested(20))).contains("nested"));
 }
 
@@ -555,7 +562,8 @@ fn shaders_that_claim_without_end() {
         ("graph.ron", COMPUTE),
         (
             "index.wgsl",
-            "var<storage, read_write> items: array<u32, 4294967295>; @compute @workgroup_size(1) fn main() { items[0] = 1u; }",
+            "var<storage, read_write> items: array<u32, 4294967295>; @compute @workgroup_size(1) \
+             fn main() { items[0] = 1u; }",
         ),
     ]);
     let said_of = answer(&files)
@@ -566,7 +574,8 @@ fn shaders_that_claim_without_end() {
         ("graph.ron", COMPUTE),
         (
             "index.wgsl",
-            "var<storage, read_write> items: array<u32>; @compute @workgroup_size(4294967295, 4294967295, 4294967295) fn main() { items[0] = 1u; }",
+            "var<storage, read_write> items: array<u32>; @compute @workgroup_size(4294967295, \
+             4294967295, 4294967295) fn main() { items[0] = 1u; }",
         ),
     ]);
     answer(&files).expect_err("no workgroup is as large");

@@ -5,7 +5,8 @@ mod support;
 use skiagraph_graph::{Capture, Field, MemoryEntry, Plan, PlanRequest, Scalar};
 use support::{Files, Triangle, load};
 
-/// `draw` writes image and depth with the camera bound; `gather` writes the items without it; `keep` copies both.
+/// `draw` writes image and depth with the camera bound; `gather` writes the items without it;
+/// `keep` copies both.
 const DOCUMENT: &str = r#"(
     format: 1,
     materials: [

@@ -1,4 +1,5 @@
-//! What a plan says about a document: which passes run in which order, which do not and why, what is built for them.
+//! What a plan says about a document: which passes run in which order, which do not and why, what
+//! is built for them.
 
 mod support;
 
@@ -66,7 +67,8 @@ fn fill(name: &str, target: &str) -> String {
 
 fn blur(name: &str, from: &str, to: &str) -> String {
     format!(
-        "Fullscreen(name: \"{name}\", shader: \"blur\", bind: {{\"image\": \"{from}\"}}, color: [(target: \"{to}\")])"
+        "Fullscreen(name: \"{name}\", shader: \"blur\", bind: {{\"image\": \"{from}\"}}, color: \
+         [(target: \"{to}\")])"
     )
 }
 
@@ -127,7 +129,8 @@ fn outputs_by_choice() {
     let files = Files::new(SHADERS).with(
         "graph.ron",
         format!(
-            "(format: 1, materials: [{}, {}], passes: [{}, {}], outputs: [(name: \"a\"), (name: \"second\", material: \"b\")])",
+            "(format: 1, materials: [{}, {}], passes: [{}, {}], outputs: [(name: \"a\"), (name: \
+             \"second\", material: \"b\")])",
             texture("a"),
             texture("b"),
             fill("fill_a", "a"),
@@ -196,7 +199,8 @@ fn depth_that_is_loaded_orders_its_passes() {
     ];
     let draw = |name: &str, target: &str, rest: &str| {
         format!(
-            "Raster(name: \"{name}\", shader: \"draw\", draw: Vertices(3), color: [(target: \"{target}\")], depth: (target: \"depth\"{rest}))"
+            "Raster(name: \"{name}\", shader: \"draw\", draw: Vertices(3), color: [(target: \
+             \"{target}\")], depth: (target: \"depth\"{rest}))"
         )
     };
     let passes = [
@@ -234,7 +238,8 @@ fn load_and_clear_of_a_target() {
         )),
         ["first", "second"]
     );
-    let second = "Fullscreen(name: \"second\", shader: \"fill\", color: [(target: \"image\", load: Clear(0, 0, 0, 0))])";
+    let second = "Fullscreen(name: \"second\", shader: \"fill\", color: [(target: \"image\", \
+        load: Clear(0, 0, 0, 0))])";
     assert_eq!(
         names(&plan(
             &materials,
@@ -249,7 +254,8 @@ fn load_and_clear_of_a_target() {
 /// ```text
 /// first ─▶ image ◀─overwrites all─ copy ◀─ other
 /// ```
-/// A copy and a clear overwrite everything, so what was there is nobody's; a clear of one view leaves the rest.
+/// A copy and a clear overwrite everything, so what was there is nobody's; a clear of one view
+/// leaves the rest.
 #[test]
 fn copies_and_clears_cover() {
     let materials = ["image", "other"].map(texture);
@@ -270,7 +276,11 @@ fn copies_and_clears_cover() {
         &[],
     );
     assert_eq!(names(&found), ["clear"]);
-    let materials = ["Texture(name: \"image\", format: R32Float, size: Square(4), layers: 2, views: [(name: \"front\", layer: 0, layers: 1)])".to_owned()];
+    let materials = [
+        "Texture(name: \"image\", format: R32Float, size: Square(4), layers: 2, \
+        views: [(name: \"front\", layer: 0, layers: 1)])"
+            .to_owned(),
+    ];
     let all = "Clear(name: \"all\", target: \"image\")";
     let clear = "Clear(name: \"clear\", target: \"front\")";
     let found = plan(&materials, &[all, clear], "(name: \"image\")", &[]);
@@ -284,7 +294,8 @@ fn copies_and_clears_cover() {
 fn parts_are_independent() {
     let materials = [
         "Texture(name: \"stack\", format: R32Float, size: Square(4), mips: 2, layers: 2, views: [
-            (name: \"top0\", mip: 0, mips: 1, layer: 0, layers: 1), (name: \"low0\", mip: 1, mips: 1, layer: 0, layers: 1),
+            (name: \"top0\", mip: 0, mips: 1, layer: 0, layers: 1), (name: \"low0\", mip: 1, \
+                mips: 1, layer: 0, layers: 1),
             (name: \"top1\", mip: 0, mips: 1, layer: 1, layers: 1)])"
             .to_owned(),
         texture("image"),
@@ -328,10 +339,12 @@ fn sizes_in_any_order() {
     .map(str::to_owned)
     .to_vec();
     let document = format!(
-        "(format: 1, materials: [{}], passes: [Compute(name: \"number\", dispatch: Over(\"c\"))], outputs: [(name: \"c\")])",
+        "(format: 1, materials: [{}], passes: [Compute(name: \"number\", dispatch: Over(\"c\"))], \
+         outputs: [(name: \"c\")])",
         materials.join(", ")
     );
-    let shader = "var<storage, read_write> c: array<vec2<u32>>; @compute @workgroup_size(1) fn main() { c[0] = vec2<u32>(1u); }";
+    let shader = "var<storage, read_write> c: array<vec2<u32>>; @compute @workgroup_size(1) fn \
+        main() { c[0] = vec2<u32>(1u); }";
     let files = Files::new([("number.wgsl", shader)]).with("graph.ron", document);
     let graph = load(&files).unwrap_or_else(|errors| panic!("{errors}"));
     assert!(

@@ -270,11 +270,14 @@ proptest! {
 #[test]
 fn more_bytes_than_can_be_counted() {
     let document = "(format: 1,
-        materials: [Texture(name: \"image\", format: Rgba32Float, size: Texels(4294967295, 4294967295), mips: 32, layers: 64),
+        materials: [Texture(name: \"image\", format: Rgba32Float, size: Texels(4294967295, \
+            4294967295), mips: 32, layers: 64),
             Buffer(name: \"items\", count: Times(4294967295, 1073741823))],
-        passes: [Clear(name: \"reset\", target: \"image\"), Compute(name: \"number\", dispatch: Groups(1, 1, 1))],
+        passes: [Clear(name: \"reset\", target: \"image\"), Compute(name: \"number\", dispatch: \
+            Groups(1, 1, 1))],
         outputs: [(name: \"image\"), (name: \"items\")])";
-    let shader = "var<storage, read_write> items: array<u32>; @compute @workgroup_size(1) fn main() { items[0] = 1u; }";
+    let shader = "var<storage, read_write> items: array<u32>; @compute @workgroup_size(1) fn \
+        main() { items[0] = 1u; }";
     let files = Files::new([("graph.ron", document), ("number.wgsl", shader)]);
     let graph = Graph::load("graph.ron", &Registry::standard(), &files)
         .unwrap_or_else(|errors| panic!("{errors}"));
@@ -452,7 +455,8 @@ fn varied(choices: &[(usize, usize)]) -> Files {
     files
 }
 
-/// What plans must also run, or be refused with an error: wgpu's own answer to an error that nobody catches is a panic.
+/// What plans must also run, or be refused with an error: wgpu's own answer to an error that nobody
+/// catches is a panic.
 #[test]
 fn what_plans_runs_or_is_refused() {
     let gpu = gpu::open(None).unwrap_or_else(|error| panic!("{error}"));

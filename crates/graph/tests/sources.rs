@@ -1,4 +1,5 @@
-//! Stores of documents and shaders: folders, layers, and what is said when a file is there but cannot be read.
+//! Stores of documents and shaders: folders, layers, and what is said when a file is there but
+//! cannot be read.
 
 mod support;
 
@@ -34,7 +35,8 @@ fn a_folder() {
     );
 }
 
-/// A device has length 0 and gives bytes for ever; to open a pipe into which nobody writes takes for ever.
+/// A device has length 0 and gives bytes for ever; to open a pipe into which nobody writes takes
+/// for ever.
 #[test]
 #[cfg(unix)]
 fn files_without_end() {

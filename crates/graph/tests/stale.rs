@@ -1,4 +1,5 @@
-//! Cases where a frame could find something stale: what ran for another plan, what the host changed in between.
+//! Cases where a frame could find something stale: what ran for another plan, what the host changed
+//! in between.
 
 mod support;
 
@@ -33,7 +34,8 @@ fn document(params: &str, buffers: &[&str], passes: &[String], outputs: &[&str])
         .map(|name| format!("(name: \"{name}\"),"))
         .collect();
     let text = format!(
-        "(format: 1, params: [{params}], materials: [{buffers}], passes: [{}], outputs: [{outputs}])",
+        "(format: 1, params: [{params}], materials: [{buffers}], passes: [{}], outputs: \
+         [{outputs}])",
         passes.concat()
     );
     Files::new([]).with("graph.ron", text)
@@ -52,7 +54,8 @@ fn first(report: &FrameReport, index: usize) -> u32 {
 /// ```text
 /// start ─▶ sum ⟲ add[0..times]      all OnChange
 /// ```
-/// With fewer repeats the same passes are left, each as it was, but what the last ones added must go.
+/// With fewer repeats the same passes are left, each as it was, but what the last ones added must
+/// go.
 #[test]
 fn fewer_repeats_take_back_what_the_last_ones_added() {
     let add = compute(
@@ -165,10 +168,17 @@ fn provided_items_that_the_plan_did_not_count_are_refused() {
     let files = document(
         "",
         &["seen"],
-        &["Compute(name: \"take\", dispatch: Over(\"host.value\"), bind: {\"input\": \"host.value\", \"out\": \"seen\"}),".to_owned()],
+        &[
+            "Compute(name: \"take\", dispatch: Over(\"host.value\"), bind: {\"input\": \
+            \"host.value\", \"out\": \"seen\"}),"
+                .to_owned(),
+        ],
         &["seen"],
     )
-    .with("take.wgsl", shader(&format!("{INPUT}{OUT}"), "out[0] = arrayLength(&input);"));
+    .with(
+        "take.wgsl",
+        shader(&format!("{INPUT}{OUT}"), "out[0] = arrayLength(&input);"),
+    );
     let mut provider = Updated {
         buffer: buffer(1),
         value: 1,
@@ -274,18 +284,28 @@ fn a_capture_after_a_skipped_pass_is_of_this_frame() {
 /// Reading one mip while a pass below writes another is no reason to run again.
 #[test]
 fn another_part_written_below_is_no_change() {
-    let files = Files::new([]).with(
-        "graph.ron",
-        "(format: 1, materials: [
-            Texture(name: \"t\", format: R32Uint, size: Texels(2, 2), mips: 2, views: [(name: \"t0\", mip: 0, mips: 1), (name: \"t1\", mip: 1, mips: 1)]),
+    let files = Files::new([])
+        .with(
+            "graph.ron",
+            "(format: 1, materials: [
+            Texture(name: \"t\", format: R32Uint, size: Texels(2, 2), mips: 2, views: [(name: \
+                \"t0\", mip: 0, mips: 1), (name: \"t1\", mip: 1, mips: 1)]),
             Buffer(name: \"seen\", count: 1)],
           passes: [
             Clear(name: \"zero\", run: Once, target: \"t0\", value: (3, 0, 0, 0)),
-            Compute(name: \"take\", run: OnChange, dispatch: Groups(1, 1, 1), bind: {\"input\": \"t0\", \"out\": \"seen\"}),
+            Compute(name: \"take\", run: OnChange, dispatch: Groups(1, 1, 1), bind: {\"input\": \
+                \"t0\", \"out\": \"seen\"}),
             Clear(name: \"one\", run: Once, target: \"t1\"),
           ], outputs: [(name: \"seen\"), (name: \"t1\")])",
-    )
-    .with("take.wgsl", shader(&format!("var input: texture_2d<u32>; {OUT}"), "out[0] = textureLoad(input, vec2(0u), 0).x;"));
+        )
+        .with(
+            "take.wgsl",
+            shader(
+                &format!("var input: texture_2d<u32>; {OUT}"),
+                "out[0] = \
+        textureLoad(input, vec2(0u), 0).x;",
+            ),
+        );
     let mut executor = executor(&files, &request(&NoProvider));
     assert_eq!(frame(&mut executor, &["seen"]).skipped, [""; 0]);
     assert_eq!(
@@ -302,13 +322,25 @@ fn once_stays_once_when_other_materials_come_and_go() {
         &["seen"],
         &[
             "Include(graph: \"inner.ron\", prefix: \"i\", repeat: Param(\"times\")),".to_owned(),
-            compute("take", "run: Once,", "\"input\": \"host.value\", \"out\": \"seen\""),
+            compute(
+                "take",
+                "run: Once,",
+                "\"input\": \"host.value\", \"out\": \"seen\"",
+            ),
         ],
         &["seen"],
     )
-    .with("inner.ron", "(format: 1, materials: [Buffer(name: \"b\", count: 1)], passes: [Clear(name: \"c\", target: \"b\"), Compute(name: \"d\", dispatch: Groups(1, 1, 1), bind: {\"out\": \"b\"})], outputs: [(name: \"b\")])")
+    .with(
+        "inner.ron",
+        "(format: 1, materials: [Buffer(name: \"b\", count: 1)], passes: \
+        [Clear(name: \"c\", target: \"b\"), Compute(name: \"d\", dispatch: Groups(1, 1, 1), bind: \
+        {\"out\": \"b\"})], outputs: [(name: \"b\")])",
+    )
     .with("d.wgsl", shader(OUT, "out[0] = 1u;"))
-    .with("take.wgsl", shader(&format!("{INPUT}{OUT}"), "out[0] = input[0];"));
+    .with(
+        "take.wgsl",
+        shader(&format!("{INPUT}{OUT}"), "out[0] = input[0];"),
+    );
     let mut provider = Updated {
         buffer: buffer(1),
         value: 1,
@@ -327,12 +359,18 @@ fn once_stays_once_when_other_materials_come_and_go() {
 /// One param is one condition, in a group of an included document as outside of it.
 #[test]
 fn a_condition_is_the_same_in_a_group() {
-    let inner = "(format: 1, params: [(name: \"on\", type: Bool, default: true)], materials: [Buffer(name: \"b\", count: 1)],
+    let inner = "(format: 1, params: [(name: \"on\", type: Bool, default: true)], materials: \
+        [Buffer(name: \"b\", count: 1)],
         passes: [Clear(name: \"c\", run: When(\"on\"), target: \"b\"),
-                 Group(name: \"g\", passes: [Compute(name: \"d\", run: When(\"on\"), dispatch: Groups(1, 1, 1), bind: {\"out\": \"b\"})])],
+                 Group(name: \"g\", passes: [Compute(name: \"d\", run: When(\"on\"), dispatch: \
+                     Groups(1, 1, 1), bind: {\"out\": \"b\"})])],
         outputs: [(name: \"b\")])";
     let files = Files::new([])
-        .with("graph.ron", "(format: 1, passes: [Include(graph: \"inner.ron\", prefix: \"i\")], outputs: [(name: \"o\", material: \"i.b\")])")
+        .with(
+            "graph.ron",
+            "(format: 1, passes: [Include(graph: \"inner.ron\", prefix: \"i\")], \
+            outputs: [(name: \"o\", material: \"i.b\")])",
+        )
         .with("inner.ron", inner)
         .with("d.wgsl", shader(OUT, "out[0] = 1u;"));
     let mut executor = executor(&files, &request(&NoProvider));
@@ -342,12 +380,17 @@ fn a_condition_is_the_same_in_a_group() {
 /// Two params of one name, of two documents, are two conditions.
 #[test]
 fn params_of_two_documents_are_two_conditions() {
-    let inner = "(format: 1, params: [(name: \"on\", type: Bool, default: true)], materials: [Buffer(name: \"b\", count: 1)],
+    let inner = "(format: 1, params: [(name: \"on\", type: Bool, default: true)], materials: \
+        [Buffer(name: \"b\", count: 1)],
         passes: [Clear(name: \"c\", run: When(\"on\"), target: \"b\")], outputs: [(name: \"b\")])";
     let files = Files::new([])
-        .with("graph.ron", "(format: 1, params: [(name: \"on\", type: Bool, default: false)],
-            passes: [Include(graph: \"inner.ron\"), Compute(name: \"d\", run: When(\"on\"), dispatch: Groups(1, 1, 1), bind: {\"out\": \"b\"})],
-            outputs: [(name: \"b\")])")
+        .with(
+            "graph.ron",
+            "(format: 1, params: [(name: \"on\", type: Bool, default: false)],
+            passes: [Include(graph: \"inner.ron\"), Compute(name: \"d\", run: When(\"on\"), \
+                dispatch: Groups(1, 1, 1), bind: {\"out\": \"b\"})],
+            outputs: [(name: \"b\")])",
+        )
         .with("inner.ron", inner)
         .with("d.wgsl", shader(OUT, "out[0] = out[0] + 1u;"));
     let errors = support::plan(&files).expect_err("one runs, the other does not");
@@ -359,7 +402,8 @@ fn params_of_two_documents_are_two_conditions() {
     );
 }
 
-/// Out of turn, but harmless: nothing to wait for, the same frame twice, two frames before one submission.
+/// Out of turn, but harmless: nothing to wait for, the same frame twice, two frames before one
+/// submission.
 #[test]
 fn calls_out_of_turn_are_no_panics() {
     let files = document("", &["n"], &[compute("make", "", "\"out\": \"n\"")], &["n"])
@@ -406,19 +450,25 @@ fn calls_out_of_turn_are_no_panics() {
     assert_eq!(numbers(&mut executor, "n"), [5]);
 }
 
-/// What a pass leaves unwritten of a material with a history is not last frame's: the pattern shows it.
+/// What a pass leaves unwritten of a material with a history is not last frame's: the pattern shows
+/// it.
 #[test]
 fn poison_shows_what_a_write_leaves_of_a_material_with_a_history() {
-    let files = Files::new([]).with(
-        "graph.ron",
-        "(format: 1, materials: [Buffer(name: \"x\", count: 2), Buffer(name: \"y\", count: 1)],
+    let files = Files::new([])
+        .with(
+            "graph.ron",
+            "(format: 1, materials: [Buffer(name: \"x\", count: 2), Buffer(name: \"y\", count: 1)],
           passes: [
             Compute(name: \"make\", dispatch: Groups(1, 1, 1), bind: {\"out\": \"x\"}),
-            Compute(name: \"take\", dispatch: Groups(1, 1, 1), bind: {\"input\": Previous(\"x\"), \"out\": \"y\"}),
+            Compute(name: \"take\", dispatch: Groups(1, 1, 1), bind: {\"input\": Previous(\"x\"), \
+                \"out\": \"y\"}),
           ], outputs: [(name: \"x\"), (name: \"y\")])",
-    )
-    .with("make.wgsl", shader(OUT, "out[0] = 5u;"))
-    .with("take.wgsl", shader(&format!("{INPUT}{OUT}"), "out[0] = input[0];"));
+        )
+        .with("make.wgsl", shader(OUT, "out[0] = 5u;"))
+        .with(
+            "take.wgsl",
+            shader(&format!("{INPUT}{OUT}"), "out[0] = input[0];"),
+        );
     let mut wanted = request(&NoProvider);
     wanted.poison = Some(0x11);
     let mut executor = executor(&files, &wanted);

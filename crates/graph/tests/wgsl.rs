@@ -1,4 +1,5 @@
-//! Shaders: imports and their line map, binding numbers, derived access, the params block. All without a GPU, but the last.
+//! Shaders: imports and their line map, binding numbers, derived access, the params block. All
+//! without a GPU, but the last.
 
 mod support;
 
@@ -37,14 +38,16 @@ fn first_place(files: &Files) -> String {
     label.map_or_else(|| found.to_string(), |label| label.span.to_string())
 }
 
-/// Errors point into the file and line where the author wrote them, wherever imports moved the text.
+/// Errors point into the file and line where the author wrote them, wherever imports moved the
+/// text.
 #[test]
 fn errors_are_found_in_their_file() {
     let good = "// ein Kommentar: größer → ∞\nfn one() -> f32 { return 1.0; }\n";
     let table = [
         // In the second import, after a first one.
         (
-            "#import \"a.wgsl\"\n#import \"b.wgsl\"\n@fragment fn f() -> @location(0) f32 { return one(); }",
+            "#import \"a.wgsl\"\n#import \"b.wgsl\"\n@fragment fn f() -> @location(0) f32 { \
+             return one(); }",
             "\n\nfn two() -> f32 { return nothing; }",
             "b.wgsl:3:26",
         ),
@@ -67,7 +70,8 @@ fn errors_are_found_in_their_file() {
         ),
         // Windows line ends, and an import that is indented.
         (
-            "  #import \"a.wgsl\"\r\n#import \"b.wgsl\"\r\nfn f() -> f32 {\r\n  return nothing;\r\n}\r\n",
+            "  #import \"a.wgsl\"\r\n#import \"b.wgsl\"\r\nfn f() -> f32 {\r\n  return \
+             nothing;\r\n}\r\n",
             "fn two() -> f32 {\r\n return 2.0;\r\n}\r\n",
             "main.wgsl:4:10",
         ),
@@ -106,9 +110,16 @@ fn errors_are_found_in_their_file() {
 #[test]
 fn an_import_is_there_once() {
     let once = "fn one() -> f32 { return 1.0; }";
-    let files = one_pass("#import \"a.wgsl\" // one()\n#import \"b.wgsl\"\n#import \"a.wgsl\"\n@fragment fn f() -> @location(0) f32 { return one() + two(); }")
-        .with("a.wgsl", once)
-        .with("b.wgsl", "#import \"a.wgsl\"\n#import \"main.wgsl\"\nfn two() -> f32 { return 2.0 * one(); }");
+    let files = one_pass(
+        "#import \"a.wgsl\" // one()\n#import \"b.wgsl\"\n#import \
+        \"a.wgsl\"\n@fragment fn f() -> @location(0) f32 { return one() + two(); }",
+    )
+    .with("a.wgsl", once)
+    .with(
+        "b.wgsl",
+        "#import \"a.wgsl\"\n#import \"main.wgsl\"\nfn two() -> f32 { return 2.0 \
+            * one(); }",
+    );
     load(&files).unwrap_or_else(|errors| panic!("{errors}"));
     // A comment ends at any of WGSL's line breaks, and code behind it would be lost.
     for after in [
@@ -123,7 +134,8 @@ fn an_import_is_there_once() {
     }
 }
 
-/// Shaders stand beside the document, beside its folder in `shaders/`, or in the store's `shaders/`; imports likewise.
+/// Shaders stand beside the document, beside its folder in `shaders/`, or in the store's
+/// `shaders/`; imports likewise.
 #[test]
 fn where_shaders_are_looked_for() {
     let files = one_pass("");
@@ -165,7 +177,8 @@ fn where_shaders_are_looked_for() {
     }
 }
 
-/// Numbers that are written stay, free ones are given, and one number for two globals of an entry point is a mistake.
+/// Numbers that are written stay, free ones are given, and one number for two globals of an entry
+/// point is a mistake.
 #[test]
 fn binding_numbers() {
     let with = |module: &str, own: &str, body: &str| {
@@ -193,9 +206,11 @@ fn binding_numbers() {
     let module = "var<storage, read> b: array<u32>;\nvar<storage, read> c: array<u32>;";
     let own = "var<storage, read_write> a: array<u32>;\nvar<storage, read> d: array<u32>;";
     with(module, own, all).unwrap_or_else(|errors| panic!("{errors}"));
-    let numbered = "@group(1) @binding(0) var<storage, read> d: array<u32>;\n@group(0) @binding(1) var<storage, read_write> a: array<u32>;";
+    let numbered = "@group(1) @binding(0) var<storage, read> d: array<u32>;\n@group(0) \
+        @binding(1) var<storage, read_write> a: array<u32>;";
     with(module, numbered, all).unwrap_or_else(|errors| panic!("{errors}"));
-    let clash = "@group(1) @binding(3) var<storage, read> d: array<u32>;\n@group(1) @binding(3) var<storage, read_write> a: array<u32>;";
+    let clash = "@group(1) @binding(3) var<storage, read> d: array<u32>;\n@group(1) @binding(3) \
+        var<storage, read_write> a: array<u32>;";
     let found = errors(with(module, clash, all));
     assert_eq!(
         found.iter().map(|error| error.code).collect::<Vec<_>>(),
@@ -205,7 +220,8 @@ fn binding_numbers() {
     with(module, clash, "a[0] = b[0] + c[0];").unwrap_or_else(|errors| panic!("{errors}"));
 }
 
-/// What a pass does to `items`, told by what the graph demands: a read or a change needs a write before.
+/// What a pass does to `items`, told by what the graph demands: a read or a change needs a write
+/// before.
 #[test]
 fn access_is_derived_from_the_shader() {
     let needs_clear = |declaration: &str, body: &str, clear: bool| {
@@ -227,7 +243,8 @@ fn access_is_derived_from_the_shader() {
             false => document,
         };
         let shader = format!(
-            "{declaration}\nvar<storage, read_write> total: u32;\nfn touch(x: u32) {{ }}\n@compute @workgroup_size(1) fn main() {{ total = 1u; {body} }}"
+            "{declaration}\nvar<storage, read_write> total: u32;\nfn touch(x: u32) {{ \
+             }}\n@compute @workgroup_size(1) fn main() {{ total = 1u; {body} }}"
         );
         plan(&Files::new([("main.wgsl", shader.as_str())]).with("graph.ron", document))
     };
@@ -315,24 +332,30 @@ fn access_is_derived_from_the_shader() {
     }
 }
 
-/// Params reach the shader bit for bit, whatever the layout rules put between them, and overrides are filled.
+/// Params reach the shader bit for bit, whatever the layout rules put between them, and overrides
+/// are filled.
 #[test]
 fn params_and_overrides_arrive() {
     let gpu = gpu::open(None).unwrap_or_else(|error| panic!("{error}"));
     let document = "(format: 1,
         params: [
             (name: \"scale\", type: F32, default: 0.5), (name: \"offset\", type: I32, default: -7),
-            (name: \"edge\", type: U32, default: 4294967295), (name: \"soft\", type: Bool, default: true),
+            (name: \"edge\", type: U32, default: 4294967295), (name: \"soft\", type: Bool, \
+                default: true),
             (name: \"cull\", type: Choice([\"none\", \"front\", \"back\"]), default: \"back\"),
-            (name: \"pair\", type: Vec2, default: (1, 2)), (name: \"sun\", type: Vec3, default: (3, 4, 5)),
-            (name: \"tint\", type: Vec4, default: (6, 7, 8, 9)), (name: \"steps\", type: U32, default: 12),
-            (name: \"bend\", type: F32, default: 0.25), (name: \"hard\", type: Bool, default: false),
+            (name: \"pair\", type: Vec2, default: (1, 2)), (name: \"sun\", type: Vec3, default: \
+                (3, 4, 5)),
+            (name: \"tint\", type: Vec4, default: (6, 7, 8, 9)), (name: \"steps\", type: U32, \
+                default: 12),
+            (name: \"bend\", type: F32, default: 0.25), (name: \"hard\", type: Bool, default: \
+                false),
             (name: \"shift\", type: I32, default: -3),
         ],
         materials: [Buffer(name: \"words\")],
         passes: [Compute(name: \"main\", dispatch: Groups(1, 1, 1))],
         outputs: [(name: \"words\")])";
-    let shader = "struct Params { scale: f32, sun: vec3<f32>, soft: u32, pair: vec2<f32>, offset: i32, tint: vec4<f32>, cull: u32, edge: u32 }
+    let shader = "struct Params { scale: f32, sun: vec3<f32>, soft: u32, pair: vec2<f32>, offset: \
+        i32, tint: vec4<f32>, cull: u32, edge: u32 }
         var<uniform> params: Params;
         var<storage, read_write> words: array<u32, 18>;
         override steps: u32 = 1;

@@ -1,11 +1,14 @@
 //! What Skiagraph's graphs need of a scene, the tracer, and the shadow presets.
 //!
-//! - [`SceneProvider`] uploads a [`skiagraph_scene::Scene`] piece by piece, as live passes ask for it.
-//! - [`registry`] knows the standard pass kinds and [`Trace`]: rays in, hits out, on compute shaders.
+//! - [`SceneProvider`] uploads a [`skiagraph_scene::Scene`] piece by piece, as live passes ask for
+//!   it.
+//! - [`registry`] knows the standard pass kinds and [`Trace`]: rays in, hits out, on compute
+//!   shaders.
 //! - [`EmbeddedSources`] holds the presets and their shaders, [`presets()`] lists them.
 //!
 //! ```no_run
-//! use skiagraph_graph::{Executor, Frame, Graph, PlanRequest, gpu};
+//! use skiagraph_gpu::{Executor, Frame, device};
+//! use skiagraph_graph::{Graph, PlanRequest};
 //! use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
 //! # fn scene() -> skiagraph_scene::Scene { unimplemented!() }
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -15,12 +18,12 @@
 //!
 //! let graph = Graph::load("pipelines/rt.ron", &registry(), &EmbeddedSources)?;
 //! let plan = graph.plan(&PlanRequest::new(viewport, &provider))?;
-//! let gpu = gpu::open(None)?;
+//! let gpu = device::open(None)?;
 //! let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider)?;
 //! let mut encoder = gpu.device.create_command_encoder(&Default::default());
 //! executor.encode(&mut encoder, &Frame { read: &["visibility"], ..Frame::default() })?;
 //! gpu.queue.submit([encoder.finish()]);
-//! executor.submitted(&gpu.queue)?;
+//! executor.submitted()?;
 //! let visibility = &executor.finish()?.readbacks[0];
 //! # let _ = visibility;
 //! # Ok(())

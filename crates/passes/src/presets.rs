@@ -1,6 +1,6 @@
 //! The presets and their shaders, embedded, and the registry of pass kinds that they need.
 
-use crate::Trace;
+use crate::trace::Trace;
 use include_dir::{Dir, include_dir};
 use skiagraph_graph::{Registry, Sources};
 use std::sync::Arc;
@@ -56,7 +56,8 @@ impl Sources for EmbeddedSources {
 pub struct Preset {
     /// Name on the command line: the file's name without `.ron`.
     pub name: String,
-    /// Path to hand to `Graph::load` with [`EmbeddedSources`] or a folder that holds the same files.
+    /// Path to hand to `Graph::load` with [`EmbeddedSources`] or a folder that holds the same
+    /// files.
     pub path: String,
 }
 

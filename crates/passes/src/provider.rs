@@ -1,10 +1,11 @@
 //! The scene as resources of a graph, each uploaded when a live pass first asks for it.
 
 use crate::{
-    Error,
+    error::Error,
     uniforms::{CameraUniform, LightUniform},
 };
-use skiagraph_graph::{Provided, Provider, ProviderError};
+use skiagraph_gpu::{Provider, ProviderError};
+use skiagraph_graph::{Describe, Provided, ProvidedBinding};
 use skiagraph_scene::{Adjacency, Bvh, BvhNode, Scene, View};
 use std::{collections::BTreeMap, sync::Arc};
 use wgpu::util::DeviceExt;
@@ -47,9 +48,11 @@ const NAMES: [&str; 9] = [
 /// | `camera` | [`CameraUniform`] |
 /// | `light` | [`LightUniform`] |
 ///
-/// What was built stays and is shared by all graphs that are executed with the same provider, which therefore belongs to
-/// the device that it was first used with; [`set_view`](SceneProvider::set_view) changes the one camera that they all see. wgpu binds no buffer of size zero: an array of an empty scene holds one zero
-/// item, its hierarchy one leaf around a triangle without area, which no ray hits; [`Provider::describe`] still says 0 items, so
+/// What was built stays and is shared by all graphs that are executed with the same provider, which
+/// therefore belongs to the device that it was first used with;
+/// [`set_view`](SceneProvider::set_view) changes the one camera that they all see. wgpu binds no
+/// buffer of size zero: an array of an empty scene holds one zero item, its hierarchy one leaf
+/// around a triangle without area, which no ray hits; [`Describe::describe`] still says 0 items, so
 /// that nothing is drawn.
 pub struct SceneProvider {
     scene: Arc<Scene>,
@@ -62,7 +65,8 @@ pub struct SceneProvider {
 }
 
 impl SceneProvider {
-    /// Provides `scene`. Builds nothing; until [`set_view`](Self::set_view) the `camera` is all zeros.
+    /// Provides `scene`. Builds nothing; until [`set_view`](Self::set_view) the `camera` is all
+    /// zeros.
     pub fn new(scene: Arc<Scene>) -> Self {
         Self {
             scene,
@@ -80,7 +84,7 @@ impl SceneProvider {
     }
 
     /// The camera of executors made from now on, and of others from their next
-    /// [`refresh`](skiagraph_graph::Executor::refresh) on.
+    /// [`refresh`](skiagraph_gpu::Executor::refresh) on.
     pub fn set_view(&mut self, view: &View, viewport: [u32; 2]) {
         self.camera = CameraUniform::from(&view.camera(viewport));
         self.camera_version += 1;
@@ -181,7 +185,7 @@ fn node_words(node: &BvhNode) -> [u32; 8] {
     ]
 }
 
-impl Provider for SceneProvider {
+impl Describe for SceneProvider {
     fn names(&self) -> Vec<String> {
         NAMES.map(str::to_owned).to_vec()
     }
@@ -193,14 +197,14 @@ impl Provider for SceneProvider {
             Some(Provided {
                 items: items.map(|items| items as u64),
                 stride,
-                uniform: false,
+                binding: ProvidedBinding::Storage,
             })
         };
         let uniform = |bytes: usize| {
             Some(Provided {
                 items: Some(1),
                 stride: bytes as u64,
-                uniform: true,
+                binding: ProvidedBinding::Uniform,
             })
         };
         match name {
@@ -215,7 +219,9 @@ impl Provider for SceneProvider {
             _ => None,
         }
     }
+}
 
+impl Provider for SceneProvider {
     fn version(&self, name: &str) -> u64 {
         if name == CAMERA {
             self.camera_version
@@ -230,15 +236,15 @@ impl Provider for SceneProvider {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
+        let why = |error: Error| ProviderError(error.to_string());
         let known = NAMES.into_iter().find(|&known| known == name);
-        let name = known.ok_or_else(|| Error::Unknown {
+        let unknown = || Error::Unknown {
             name: name.to_owned(),
             known: self.names(),
-        });
-        let name = name.map_err(|error| error.to_string())?;
+        };
+        let name = known.ok_or_else(unknown).map_err(why)?;
         if !self.buffers.contains_key(name) {
-            self.upload_named(name, device)
-                .map_err(|error| error.to_string())?;
+            self.upload_named(name, device).map_err(why)?;
         }
         if name == CAMERA && self.camera_uploaded != self.camera_version {
             queue.write_buffer(&self.buffers[name], 0, bytemuck::bytes_of(&self.camera));

@@ -1,9 +1,10 @@
-//! `Trace`: rays in, hits out, through the scene's hierarchy, on compute shaders. The number of rays stays on the GPU.
+//! `Trace`: rays in, hits out, through the scene's hierarchy, on compute shaders. The number of
+//! rays stays on the GPU.
 
 use serde::Deserialize;
 use skiagraph_graph::{
-    Located, Lowering, PassKind,
-    step::{Dispatch, Groups, Program, Step},
+    Lowering, PassKind, Reference,
+    step::{Dispatch, Groups, Operand, Program, Step, Threads},
 };
 
 /// Which hit of a ray is recorded.
@@ -18,26 +19,38 @@ pub enum Mode {
 /// Body of a `Trace` pass:
 ///
 /// ```ron
-/// Trace(name: "trace_rays", rays: "rays", hits: "hits", count: "ray_count", skip: "ray_primitives", mode: Any)
+/// Trace(
+///     name: "trace_rays", rays: "rays", hits: "hits", count: "ray_count",
+///     groups: "ray_groups", skip: "ray_primitives", mode: Any,
+/// )
 /// ```
 ///
-/// - `rays`: buffer of 32-byte items `origin: vec3<f32>, t_min: f32, direction: vec3<f32>, t_max: f32`; a hit counts if
-///   t_min < t ≤ t_max, t in units of `direction`, which need not be of unit length.
-/// - `hits`: buffer of 16-byte items `t: f32, primitive: u32, u: f32, v: f32`; u and v are the weights of the primitive's second and
-///   third corner. A ray that hits nothing gets its t_max and the primitive `0xffffffff`.
-/// - `count`: buffer of one u32, the number of rays; rays beyond the end of `rays` or `hits` are left out.
-/// - `skip` (optional): buffer of one u32 per ray, the primitive that the ray does not see, such as its own.
+/// - `rays`: buffer of 32-byte items `origin: vec3<f32>, t_min: f32, direction: vec3<f32>, t_max:
+///   f32`; a hit counts if t_min < t ≤ t_max, t in units of `direction`, which need not be of unit
+///   length.
+/// - `hits`: buffer of 16-byte items `t: f32, primitive: u32, u: f32, v: f32`; u and v are the
+///   weights of the primitive's second and third corner. A ray that hits nothing gets its t_max and
+///   the primitive `0xffffffff`.
+/// - `count`: buffer of one u32, the number of rays; rays beyond the end of `rays` or `hits` are
+///   left out.
+/// - `groups` (optional): buffer of three u32, the workgroups of 64 rays, folded to two dimensions,
+///   that `count` comes to, as `dispatch_arguments.wgsl` makes them; without it the pass counts
+///   them once more.
+/// - `skip` (optional): buffer of one u32 per ray, the primitive that the ray does not see, such as
+///   its own.
 /// - `mode`: `Any` or `Closest`.
 ///
 /// Triangles are two-sided; those without area are never hit.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Trace {
-    rays: Located<String>,
-    hits: Located<String>,
-    count: Located<String>,
+    rays: Reference,
+    hits: Reference,
+    count: Reference,
     #[serde(default)]
-    skip: Option<Located<String>>,
+    groups: Option<Reference>,
+    #[serde(default)]
+    skip: Option<Reference>,
     mode: Mode,
 }
 
@@ -50,27 +63,35 @@ impl Trace {
             (Mode::Closest, Some(_)) => "closest_hit_skip",
         }
     }
+
+    /// A dispatch of its own, because a buffer cannot be written and be the size of the dispatch
+    /// that writes it.
+    fn count_groups(&self, pass: &mut Lowering<'_>) -> Operand {
+        let groups = Operand::from(pass.scratch("groups", 12));
+        let mut program = pass.program_of("dispatch_arguments");
+        bind(pass, &mut program, "count", (&self.count).into());
+        bind(pass, &mut program, "groups", groups.clone());
+        pass.step(Step::Dispatch(Dispatch {
+            program,
+            groups: Groups::Direct(Threads::Groups([1; 3])),
+        }));
+        groups
+    }
 }
 
 impl PassKind for Trace {
     fn lower(&self, pass: &mut Lowering<'_>) {
-        // Two dispatches, because a buffer cannot be written and be the size of the dispatch that writes it.
-        let groups = pass.scratch("groups", 12);
-        let mut fold = pass.program_of("trace_fold");
-        bind(pass, &mut fold, "count", &self.count);
-        bind(pass, &mut fold, "groups", &groups);
-        pass.step(Step::Dispatch(Dispatch {
-            program: fold,
-            groups: Groups::Fixed([1; 3]),
-        }));
-
+        let groups = match &self.groups {
+            Some(groups) => Operand::from(groups),
+            None => self.count_groups(pass),
+        };
         let mut trace = pass.program_of("trace_rays");
         trace.compute = Some(pass.named(self.entry_point()));
-        bind(pass, &mut trace, "count", &self.count);
-        bind(pass, &mut trace, "rays", &self.rays);
-        bind(pass, &mut trace, "hits", &self.hits);
+        bind(pass, &mut trace, "count", (&self.count).into());
+        bind(pass, &mut trace, "rays", (&self.rays).into());
+        bind(pass, &mut trace, "hits", (&self.hits).into());
         if let Some(skip) = &self.skip {
-            bind(pass, &mut trace, "skip", skip);
+            bind(pass, &mut trace, "skip", skip.into());
         }
         pass.step(Step::Dispatch(Dispatch {
             program: trace,
@@ -79,6 +100,6 @@ impl PassKind for Trace {
     }
 }
 
-fn bind(pass: &Lowering<'_>, program: &mut Program, global: &str, resource: &Located<String>) {
-    program.bind.push((pass.named(global), resource.clone()));
+fn bind(pass: &Lowering<'_>, program: &mut Program, global: &str, operand: Operand) {
+    program.bind.push((pass.named(global), operand));
 }

@@ -1,10 +1,10 @@
-//! What shaders know of the camera and the light. The WGSL twins are `shaders/shared/camera.wgsl` and `light.wgsl`; a
-//! test compares both layouts with what naga makes of them.
+//! What shaders know of the camera and the light. The structs of `shaders/shared/camera.wgsl` and
+//! `light.wgsl` are laid out alike; a test compares both with what naga makes of them.
 
-use glam::{DVec3, Mat3, Mat4, Vec3};
+use glam::{Mat3, Mat4, Vec3};
 use skiagraph_scene::{Camera, Scene};
 
-/// Twin of WGSL's `Camera`: a perspective camera, 80 bytes.
+/// WGSL's `Camera`: a perspective camera, 80 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct CameraUniform {
@@ -12,7 +12,8 @@ pub struct CameraUniform {
     pub eye: Vec3,
     /// Near plane distance.
     pub near: f32,
-    /// What rounding the eye left over, so that corners far from the origin keep their distance to the eye.
+    /// What rounding the eye left over, so that corners far from the origin keep their distance to
+    /// the eye.
     pub eye_low: Vec3,
     /// Far plane distance.
     pub far: f32,
@@ -48,19 +49,23 @@ impl From<&Camera> for CameraUniform {
     }
 }
 
-/// Twin of WGSL's `Light`: a directional light and the light space fitted to the scene's corners, 112 bytes.
+/// WGSL's `Light`: a directional light and the light space fitted to the scene's corners,
+/// 112 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LightUniform {
-    /// From a position relative to `centre` to the light's clip space (w stays 1; z in 0..1 grows away from the light).
+    /// From a position relative to `centre` to the light's clip space (w stays 1; z in 0..1 grows
+    /// away from the light).
     pub clip_from_relative: Mat4,
     /// Unit vector towards the light.
-    pub towards: Vec3,
-    /// A length beyond which nothing of the scene is met from any point in it.
-    pub reach: f32,
-    /// Centre of the scene's box, world space: a matrix on absolute positions would lose the detail of a far-off scene.
+    pub to_light: Vec3,
+    /// No two points of the scene are farther apart.
+    pub max_distance: f32,
+    /// Centre of the scene's box, world space: a matrix on absolute positions would lose the detail
+    /// of a far-off scene.
     pub centre: Vec3,
-    /// The most that is summed up, sizes alone, for clip x or y of a point in the scene's box: what their rounding is a share of.
+    /// The most that is summed up, sizes alone, for clip x or y of a point in the scene's box: what
+    /// their rounding is a share of.
     pub corner_across: f32,
     /// World units per unit of light-space clip x, y and z.
     pub extent: Vec3,
@@ -69,7 +74,8 @@ pub struct LightUniform {
 }
 
 impl LightUniform {
-    /// The light of `scene` over all corners of its mesh; an empty mesh counts as a point at the origin.
+    /// The light of `scene` over all corners of its mesh; an empty mesh counts as a point at the
+    /// origin.
     pub fn new(scene: &Scene) -> Self {
         let (min, max) = scene.mesh.bounds().unwrap_or((Vec3::ZERO, Vec3::ZERO));
         let fit = scene.light.fit(scene.mesh.corner_positions());
@@ -86,17 +92,13 @@ impl LightUniform {
         ) * half;
         Self {
             clip_from_relative,
-            towards: scene.light.towards().as_vec3(),
-            reach: reach(min, max),
+            to_light: scene.light.to_light().as_vec3(),
+            // Doubled: receivers may lie a rounding outside of the box, and it costs nothing.
+            max_distance: (2.0 * min.distance(max)) as f32,
             centre,
             corner_across: summed.x.max(summed.y),
             extent: fit.extent.as_vec3(),
             corner_along: summed.z,
         }
     }
-}
-
-/// The box's diagonal, doubled: receivers may lie a rounding outside of it, and the doubling costs nothing.
-fn reach(min: DVec3, max: DVec3) -> f32 {
-    (2.0 * min.distance(max)) as f32
 }

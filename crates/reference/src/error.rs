@@ -10,7 +10,11 @@ pub enum Error {
     #[error("interrupted before the reference was finished")]
     Interrupted,
     /// A buffer does not hold one value per viewport pixel.
-    #[error("{name} holds {actual} values, but a viewport of {}x{} has {expected} pixels", viewport[0], viewport[1])]
+    #[error(
+        "{name} holds {actual} values, but a viewport of {}x{} has {expected} pixels",
+        viewport[0],
+        viewport[1]
+    )]
     PixelCount {
         /// Which buffer: `primitives`, `visibility` or `status`.
         name: &'static str,
@@ -62,9 +66,11 @@ pub enum Error {
     /// The offset of [`OracleMode::Offset`](crate::OracleMode::Offset) is negative or not finite.
     #[error("the oracle's offset is {0}; expected a finite length of at least 0, in scene units")]
     Offset(f64),
-    /// The offset of [`OracleMode::Offset`](crate::OracleMode::Offset) is out of all proportion to the mesh.
+    /// The offset of [`OracleMode::Offset`](crate::OracleMode::Offset) is out of all proportion to
+    /// the mesh.
     #[error(
-        "the oracle's offset is {length:e}, a million times the scene and more; expected at most {most:.3e}, in scene units"
+        "the oracle's offset is {length:e}, a million times the scene and more; expected at most \
+         {most:.3e}, in scene units"
     )]
     OffsetTooLong {
         /// The offset, in scene units.
@@ -74,7 +80,8 @@ pub enum Error {
     },
     /// Text that is neither `exact` nor `offset:LENGTH`.
     #[error(
-        "`{0}` is no oracle mode; expected `exact` or `offset:LENGTH` with a length of at least 0 in scene units, such as `offset:0.03`"
+        "`{0}` is no oracle mode; expected `exact` or `offset:LENGTH` with a length of at least 0 \
+         in scene units, such as `offset:0.03`"
     )]
     Mode(String),
     /// A prebuilt hierarchy that does not belong to the mesh.

@@ -1,8 +1,9 @@
 //! Pictures as RGB bytes; whoever needs a file encodes them.
 
 use crate::{
-    Class, Error, Reference,
-    oracle::check_pixel_count,
+    error::Error,
+    oracle::{Class, Reference},
+    pixels::check_pixel_count,
     statistics::{Verdict, for_each_verdict, status},
 };
 
@@ -15,10 +16,11 @@ const SHADOW: Colour = [0, 0, 0];
 const FACING_AWAY: Colour = [0, 128, 0];
 const UNCERTAIN: Colour = [160, 32, 240];
 const WRONGLY_LIT: Colour = [48, 96, 255];
-const WRONGLY_LIT_IN_BAND: Colour = [160, 190, 255];
+const WRONGLY_LIT_INDETERMINATE: Colour = [160, 190, 255];
 const WRONGLY_SHADOWED: Colour = [255, 32, 32];
-const WRONGLY_SHADOWED_IN_BAND: Colour = [255, 170, 170];
-/// Grey levels under the error image: dark enough for blue and red to stand out, apart enough to show shadow contours.
+const WRONGLY_SHADOWED_INDETERMINATE: Colour = [255, 170, 170];
+/// Grey levels under the error image: dark enough for blue and red to stand out, apart enough to
+/// show shadow contours.
 const DIM_LIGHT: Colour = [96, 96, 96];
 const DIM_SHADOW: Colour = [40, 40, 40];
 const DIM_FACING_AWAY: Colour = [24, 24, 24];
@@ -37,27 +39,28 @@ pub struct Image {
 }
 
 impl Image {
-    /// Where a method is wrong: blue = wrongly lit, red = wrongly in shadow, both paler in band, over the
-    /// reference's shadows in dark grey. What counts as wrong is said at [`Statistics`](crate::Statistics).
+    /// Where a method is wrong: blue = wrongly lit, red = wrongly in shadow, both paler where
+    /// indeterminate, over the reference's shadows in dark grey. What counts as wrong is said at
+    /// [`Statistics`](crate::Statistics).
     ///
     /// # Errors
     /// Those of [`Statistics::judged`](crate::Statistics::judged).
-    pub fn error<V, S>(visibility: &[V], status: &[S], reference: &Reference) -> Result<Self, Error>
-    where
-        V: Copy + Into<u32>,
-        S: Copy + Into<u32>,
-    {
+    pub fn error(
+        visibility: &[impl Copy + Into<u32>],
+        status: &[impl Copy + Into<u32>],
+        reference: &Reference,
+    ) -> Result<Self, Error> {
         let mut rgb = Vec::with_capacity(reference.classes.len() * 3);
         for_each_verdict(
             visibility,
             status,
             reference,
-            |_, class, _, in_band, verdict| {
-                rgb.extend(match (verdict, in_band, class) {
+            |class, _, indeterminate, verdict| {
+                rgb.extend(match (verdict, indeterminate, class) {
                     (Verdict::WronglyLit, false, _) => WRONGLY_LIT,
-                    (Verdict::WronglyLit, true, _) => WRONGLY_LIT_IN_BAND,
+                    (Verdict::WronglyLit, true, _) => WRONGLY_LIT_INDETERMINATE,
                     (Verdict::WronglyShadowed, false, _) => WRONGLY_SHADOWED,
-                    (Verdict::WronglyShadowed, true, _) => WRONGLY_SHADOWED_IN_BAND,
+                    (Verdict::WronglyShadowed, true, _) => WRONGLY_SHADOWED_INDETERMINATE,
                     (Verdict::Right, _, Class::Background) => DIM_BACKGROUND,
                     (Verdict::Right, _, Class::FacingAway) => DIM_FACING_AWAY,
                     (Verdict::Right, _, Class::Lit) => DIM_LIGHT,
@@ -71,19 +74,16 @@ impl Image {
         })
     }
 
-    /// A method's shadows: white = lit, black = shadow, green = facing away, grey-blue = background.
+    /// A method's shadows: white = lit, black = shadow, green = facing away, grey-blue =
+    /// background.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if a buffer does not fit `viewport`.
-    pub fn visibility<V, S>(
+    pub fn visibility(
         viewport: [u32; 2],
-        visibility: &[V],
-        status: &[S],
-    ) -> Result<Self, Error>
-    where
-        V: Copy + Into<u32>,
-        S: Copy + Into<u32>,
-    {
+        visibility: &[impl Copy + Into<u32>],
+        status: &[impl Copy + Into<u32>],
+    ) -> Result<Self, Error> {
         check_pixel_count("visibility", viewport, visibility.len())?;
         check_pixel_count("status", viewport, status.len())?;
         let colour = |visibility: u32, status: u32| match status {
@@ -106,15 +106,11 @@ impl Image {
     ///
     /// # Errors
     /// [`Error::PixelCount`] if a buffer does not fit the reference.
-    pub fn uncertain<V, S>(
-        visibility: &[V],
-        status: &[S],
+    pub fn uncertain(
+        visibility: &[impl Copy + Into<u32>],
+        status: &[impl Copy + Into<u32>],
         reference: &Reference,
-    ) -> Result<Self, Error>
-    where
-        V: Copy + Into<u32>,
-        S: Copy + Into<u32>,
-    {
+    ) -> Result<Self, Error> {
         check_pixel_count("status", reference.viewport, status.len())?;
         let mut image = Self::shaded(visibility, reference)?;
         for (pixel, &status) in image.rgb.chunks_exact_mut(3).zip(status) {
@@ -125,13 +121,13 @@ impl Image {
         Ok(image)
     }
 
-    /// The scene in grey under Lambert's law: max(n · l, 0) × visibility + ambient, with the reference's n · l and the given
-    /// visibility.
+    /// The scene in grey under Lambert's law: max(n · l, 0) × visibility + ambient, with the
+    /// reference's n · l and the given visibility.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if `visibility` does not fit the reference.
-    pub fn shaded<V: Copy + Into<u32>>(
-        visibility: &[V],
+    pub fn shaded(
+        visibility: &[impl Copy + Into<u32>],
         reference: &Reference,
     ) -> Result<Self, Error> {
         check_pixel_count("visibility", reference.viewport, visibility.len())?;
@@ -191,7 +187,7 @@ fn grey(linear: f32) -> Colour {
 mod tests {
     use super::*;
 
-    /// One pixel of each class, then a shadowed one in band.
+    /// One pixel of each class, then a shadowed one that is indeterminate.
     fn reference() -> Reference {
         Reference {
             viewport: [5, 1],
@@ -202,7 +198,7 @@ mod tests {
                 Class::Shadow,
                 Class::Shadow,
             ],
-            in_band: vec![false, false, false, false, true],
+            indeterminate: vec![false, false, false, false, true],
             n_dot_l: vec![0.0, -0.5, 1.0, 1.0, 0.5],
         }
     }
@@ -241,7 +237,7 @@ mod tests {
         );
         assert_eq!(
             wrong[2..],
-            [WRONGLY_SHADOWED, WRONGLY_LIT, WRONGLY_LIT_IN_BAND]
+            [WRONGLY_SHADOWED, WRONGLY_LIT, WRONGLY_LIT_INDETERMINATE]
         );
         assert!(Image::error(&[0u8; 4], &[0u8; 5], &reference).is_err());
     }

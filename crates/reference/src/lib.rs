@@ -1,9 +1,10 @@
-//! The reference against which Skiagraph measures shadow methods: an f64 ray tracer ([`Oracle`]), pixel counts
-//! ([`Statistics`]) and pictures ([`Image`]).
+//! The reference against which Skiagraph measures shadow methods: an f64 ray tracer ([`Oracle`]),
+//! pixel counts ([`Statistics`]) and pictures ([`Image`]).
 //!
-//! The oracle starts from what a GPU's G-buffer says each pixel shows (one primitive id per pixel), recomputes the hit on
-//! that primitive in f64, traces a shadow ray in f64, and marks the pixels *in band*, whose answer flips when
-//! receiver or casters move by their own f32 rounding error. It knows no GPU and writes no files.
+//! The oracle starts from what a GPU's G-buffer says each pixel shows (one primitive id per pixel),
+//! recomputes the hit on that primitive in f64, traces a shadow ray in f64, and marks the pixels
+//! *indeterminate*: their answer flips when receiver or casters move within their f32 error bounds.
+//! It knows no GPU and writes no files.
 //!
 //! ```
 //! use skiagraph_reference::{Oracle, OracleMode, Progress, Statistics};
@@ -19,25 +20,28 @@
 //! let camera = view.camera([8, 8]);
 //! let oracle = Oracle::new(&mesh);
 //! let primitives = oracle.primary(&camera, Progress::default())?;
-//! let reference = oracle.shade(&camera, &light, &primitives, OracleMode::Exact, Progress::default())?;
+//! let (mode, progress) = (OracleMode::Exact, Progress::default());
+//! let reference = oracle.shade(&camera, &light, &primitives, mode, progress)?;
 //! let counts = Statistics::judged(&reference.visibility(), &reference.status(), &reference)?;
 //! assert_eq!(counts.pixels.background, 64);
 //! assert_eq!(counts.wrong.total, 0);
 //! # Ok::<(), skiagraph_reference::Error>(())
 //! ```
 
-mod band;
+mod contact;
 mod error;
+pub mod error_bound;
 pub mod image;
 pub mod oracle;
-pub mod predicates;
+pub mod pixels;
 mod ray;
-mod receiver;
+pub mod receiver;
 pub mod statistics;
 mod tree;
-pub mod twin;
 
 pub use error::Error;
 pub use image::Image;
-pub use oracle::{BACKGROUND, Class, Occlusion, Oracle, OracleMode, Progress, Reference};
+pub use oracle::{Class, Occlusion, Oracle, OracleMode, Reference};
+pub use pixels::{BACKGROUND, Progress};
+pub use receiver::Receiver;
 pub use statistics::{CertainCounts, ClassSplit, PixelCounts, Split, Statistics, WrongCounts};

@@ -1,8 +1,9 @@
 //! A ray in f64 against boxes and triangles, watertight.
 //!
-//! Woop, Benthin, Wald: *Watertight Ray/Triangle Intersection*, JCGT 2(1), 2013. Every corner is sheared once per ray into a
-//! plane where the ray is a point; a shared corner is sheared to the same bits in all its triangles, and the sign of an edge
-//! function of two sheared corners is computed exactly, so that a ray cannot slip between two triangles of one edge.
+//! Woop, Benthin, Wald: *Watertight Ray/Triangle Intersection*, JCGT 2(1), 2013. Every corner is
+//! sheared once per ray into a plane where the ray is a point; a shared corner is sheared to the
+//! same bits in all its triangles, and the sign of an edge function of two sheared corners is
+//! computed exactly, so that a ray cannot slip between two triangles of one edge.
 
 use glam::DVec3;
 use skiagraph_scene::BvhNode;
@@ -17,11 +18,13 @@ pub(crate) struct Ray {
     inverse: [f64; 3],
     /// Axis order of the shear: the last is the direction's longest.
     axes: [usize; 3],
-    /// Sx, Sy of the shear and Sz = 1 / (longest component), so that a sheared z is in units of the direction.
+    /// Sx, Sy of the shear and Sz = 1 / (longest component), so that a sheared z is in units of the
+    /// direction.
     pub(crate) shear: [f64; 3],
     /// By how much boxes are widened on every side.
     pad: f64,
-    /// What f64 rounding may have moved the origin by along the ray: a surface met sooner is the origin's own, beyond an edge.
+    /// What f64 rounding may have moved the origin by along the ray: a surface met sooner is the
+    /// origin's own, beyond an edge.
     pub(crate) nearest: f64,
 }
 
@@ -35,9 +38,9 @@ pub(crate) struct Hit {
 }
 
 impl Ray {
-    /// A ray against a scene whose corners are all within `reach` of `origin`; `grow` widens every box on top of the
-    /// rounding errors of box and triangle tests.
-    pub(crate) fn new(origin: DVec3, direction: DVec3, reach: f64, grow: f64) -> Self {
+    /// A ray against a scene whose corners are all within `max_distance` of `origin`; `grow` widens
+    /// every box on top of the rounding errors of box and triangle tests.
+    pub(crate) fn new(origin: DVec3, direction: DVec3, max_distance: f64, grow: f64) -> Self {
         let d = direction.to_array();
         let longest = (0..3).fold(0, |best, axis| {
             if d[axis].abs() > d[best].abs() {
@@ -51,7 +54,8 @@ impl Ray {
             // Keeps the winding of the sheared triangle, and with it `Hit::front`.
             std::mem::swap(&mut first, &mut second);
         }
-        // An infinite inverse would make 0 · ∞ = NaN on a box face through the origin; a huge finite one cannot.
+        // An infinite inverse would make 0 · ∞ = NaN on a box face through the origin; a huge
+        // finite one cannot.
         let inverse = d.map(|c| {
             1.0 / if c.abs() < 1e-200 {
                 1e-200f64.copysign(c)
@@ -59,9 +63,10 @@ impl Ray {
                 c
             }
         });
-        // Shearing errs by a few ulps of the distance to the corner, the slab test by a few of the distance to the box, and
-        // `origin ± pad` by one of the origin: sixteen of the larger one contain them all.
-        let pad = grow + (reach + origin.abs().max_element()) * (16.0 * f64::EPSILON);
+        // Shearing errs by a few ulps of the distance to the corner, the slab test by a few of the
+        // distance to the box, and `origin ± pad` by one of the origin: sixteen of the larger one
+        // contain them all.
+        let pad = grow + (max_distance + origin.abs().max_element()) * (16.0 * f64::EPSILON);
         Self {
             origin: origin.to_array(),
             inverse,
@@ -72,13 +77,14 @@ impl Ray {
                 1.0 / d[longest],
             ],
             pad,
-            // Rounding of the origin and of t, up to grazing angles where it is met four times magnified.
-            nearest: (reach + origin.abs().max_element()) * (64.0 * f64::EPSILON),
+            // Rounding of the origin and of t, up to grazing angles where it is met four times
+            // magnified.
+            nearest: (max_distance + origin.abs().max_element()) * (64.0 * f64::EPSILON),
         }
     }
 
-    /// Distance at which the ray enters the widened box, if it does so between 0 and `t_max`.
-    pub(crate) fn enters(&self, node: &BvhNode, t_max: f64) -> Option<f64> {
+    /// Distance at which the ray slab_test the widened box, if it does so between 0 and `t_max`.
+    pub(crate) fn slab_test(&self, node: &BvhNode, t_max: f64) -> Option<f64> {
         let (mut near, mut far) = (0.0, t_max);
         for axis in 0..3 {
             let low =
@@ -92,7 +98,8 @@ impl Ray {
         (near <= far).then_some(near)
     }
 
-    /// A corner in the ray's own space: x and y across the ray, z along it in units of the direction.
+    /// A corner in the ray's own space: x and y across the ray, z along it in units of the
+    /// direction.
     pub(crate) fn sheared(&self, corner: [f32; 3]) -> DVec3 {
         self.sheared_vector(std::array::from_fn(|axis| {
             f64::from(corner[axis]) - self.origin[axis]
@@ -109,12 +116,14 @@ impl Ray {
         )
     }
 
-    /// Edge functions of three sheared corners, each with its exact sign; all at least 0 where the ray meets the front.
+    /// Edge functions of three sheared corners, each with its exact sign; all at least 0 where the
+    /// ray meets the front.
     pub(crate) fn edges([a, b, c]: [DVec3; 3]) -> [f64; 3] {
         [edge(c, b), edge(a, c), edge(b, a)]
     }
 
-    /// The hit on a triangle, edges and corners included, at any t. A triangle seen edge-on has none.
+    /// The hit on a triangle, edges and corners included, at any t. A triangle seen edge-on has
+    /// none.
     pub(crate) fn hit(&self, corners: &Corners) -> Option<Hit> {
         let sheared = corners.map(|corner| self.sheared(corner));
         Self::hit_sheared(sheared, Self::edges(sheared))
@@ -136,8 +145,9 @@ impl Ray {
     }
 }
 
-/// p.x · q.y − p.y · q.x with its exact sign. Rounding is monotone, so two different rounded products are in the order of the
-/// exact ones; for equal ones the residuals, which a fused multiply-add yields exactly, decide.
+/// p.x · q.y − p.y · q.x with its exact sign. Rounding is monotone, so two different rounded
+/// products are in the order of the exact ones; for equal ones the residuals, which a fused
+/// multiply-add yields exactly, decide.
 fn edge(p: DVec3, q: DVec3) -> f64 {
     let (left, right) = (p.x * q.y, p.y * q.x);
     if left != right {
@@ -153,7 +163,8 @@ mod tests {
 
     #[test]
     fn the_sign_of_an_edge_function_survives_cancellation() {
-        // (1 + ε)(1 − ε) = 1 − ε², which rounds to 1: a plain difference says 0, the exact one is −ε².
+        // (1 + ε)(1 − ε) = 1 − ε², which rounds to 1: a plain difference says 0, the exact one is
+        // −ε².
         let epsilon = f64::EPSILON;
         let p = DVec3::new(1.0 + epsilon, 1.0, 0.0);
         let q = DVec3::new(1.0, 1.0 - epsilon, 0.0);
@@ -224,20 +235,24 @@ mod tests {
             count: 1,
         };
         let along = |x: f64| {
-            Ray::new(DVec3::new(x, 0.0, -1.0), DVec3::Z, 4.0, 0.0).enters(&flat, f64::INFINITY)
+            Ray::new(DVec3::new(x, 0.0, -1.0), DVec3::Z, 4.0, 0.0).slab_test(&flat, f64::INFINITY)
         };
         assert!(along(1.0).is_some());
         assert!(along(1.0 + 1e-9).is_none());
         let away = Ray::new(DVec3::new(1.0, 1.0, 3.0), DVec3::Z, 4.0, 0.0);
-        assert!(away.enters(&flat, f64::INFINITY).is_none());
+        assert!(away.slab_test(&flat, f64::INFINITY).is_none());
     }
 
     proptest! {
-        /// Two triangles of one edge: a ray aimed at a point of that edge hits at least one of them.
+        /// Two triangles of one edge: a ray aimed at a point of that edge hits at least one of
+        /// them.
         #[test]
         fn a_shared_edge_lets_nothing_through(
-            p in prop::array::uniform3(-1.0f32..1.0), q in prop::array::uniform3(-1.0f32..1.0), along in 0.0f64..1.0,
-            origin in prop::array::uniform3(-3.0f64..3.0), apart in 0.1f32..1.0,
+            p in prop::array::uniform3(-1.0f32..1.0),
+            q in prop::array::uniform3(-1.0f32..1.0),
+            along in 0.0f64..1.0,
+            origin in prop::array::uniform3(-3.0f64..3.0),
+            apart in 0.1f32..1.0,
         ) {
             let (vp, vq) = (glam::Vec3::from(p), glam::Vec3::from(q));
             let (start, end) = (vp.as_dvec3(), vq.as_dvec3());
@@ -245,7 +260,10 @@ mod tests {
             let side = (end - start).cross(direction);
             prop_assume!(side.length() > 1e-3 && along > 1e-6 && along < 1.0 - 1e-6);
             let side = side.normalize().as_vec3() * apart;
-            let (left, right) = ((vp.midpoint(vq) + side).to_array(), (vp.midpoint(vq) - side).to_array());
+            let (left, right) = (
+                (vp.midpoint(vq) + side).to_array(),
+                (vp.midpoint(vq) - side).to_array(),
+            );
             let ray = Ray::new(DVec3::from(origin), direction, 8.0, 0.0);
             prop_assert!(ray.hit(&[p, q, left]).is_some() || ray.hit(&[q, p, right]).is_some());
         }

@@ -1,6 +1,10 @@
 //! Counts of right and wrong pixels, as `results.json` holds them.
 
-use crate::{Class, Error, Reference, oracle::check_pixel_count};
+use crate::{
+    error::Error,
+    oracle::{Class, Reference},
+    pixels::check_pixel_count,
+};
 use serde::{Deserialize, Serialize};
 
 /// Values of the output `status` of a shadow preset.
@@ -17,7 +21,8 @@ pub mod status {
     pub const UNCERTAIN: u32 = 4;
 }
 
-/// The reference's pixels. `background + facing_away + facing_light` is the viewport, `lit + shadow` is `facing_light`.
+/// The reference's pixels. `background + facing_away + facing_light` is the viewport, `lit +
+/// shadow` is `facing_light`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PixelCounts {
     /// Show no geometry.
@@ -48,23 +53,24 @@ pub struct WrongCounts {
     pub lit: u64,
     /// In shadow by the method, lit by the reference.
     pub shadow: u64,
-    /// `lit + shadow`, in-band pixels included.
+    /// `lit + shadow`, indeterminate pixels included.
     pub total: u64,
-    /// Of `total`: the method called them certain, and they are not in band.
+    /// Of `total`: the method called them certain, and they are not indeterminate.
     pub certain: u64,
-    /// Of `total`: in band, where the answer hangs on f32 rounding.
+    /// Of `total`: indeterminate, the answer being within the f32 error bound.
     pub in_band: u64,
 }
 
-/// The PFL pixels of one class by what the method said of them. `certain_right + certain_wrong + uncertain` is the class, but for
-/// pixels that the method does not take for facing the light; in-band pixels are included.
+/// The PFL pixels of one class by what the method said of them. `certain_right + certain_wrong +
+/// uncertain` is the class, but for pixels that the method does not take for facing the light;
+/// indeterminate pixels are included.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ClassSplit {
     /// Called certain, and rightly so.
     pub certain_right: u64,
     /// Called certain, and wrong.
     pub certain_wrong: u64,
-    /// Of `certain_wrong`: not in band.
+    /// Of `certain_wrong`: not indeterminate.
     pub certain_wrong_outside_band: u64,
     /// Called uncertain.
     pub uncertain: u64,
@@ -82,13 +88,13 @@ pub struct Split {
 }
 
 impl ClassSplit {
-    fn add(&mut self, status: u32, in_band: bool, verdict: Verdict) {
+    fn add(&mut self, status: u32, indeterminate: bool, verdict: Verdict) {
         let wrong = verdict != Verdict::Right;
         match (status, wrong) {
             (status::CERTAIN_LIGHT | status::CERTAIN_SHADOW, false) => self.certain_right += 1,
             (status::CERTAIN_LIGHT | status::CERTAIN_SHADOW, true) => {
                 self.certain_wrong += 1;
-                self.certain_wrong_outside_band += u64::from(!in_band);
+                self.certain_wrong_outside_band += u64::from(!indeterminate);
             }
             (status::UNCERTAIN, _) => {
                 self.uncertain += 1;
@@ -114,14 +120,19 @@ impl Split {
 
 /// How one method's picture compares with the reference.
 ///
-/// *Which pixels are judged.* Every PFL pixel of the reference, by the visibility it shows (0 is shadow): one that the method calls background or facing
-/// away (status 0 or 1) is wrong if it shows shadow where the reference is lit, or light where it is not. A
-/// pixel that the reference calls facing away but the method does not (status 2 to 4) is wrong, as `lit`, if it shows light; shown in
-/// shadow it looks the same and is right. Pixels facing away by both, and background, are not judged, whatever their visibility.
-/// `facing_mismatch` counts the disagreements about facing, wrong or not.
+/// Fields are those of `results.json`, where the indeterminate pixels are called the *band*.
 ///
-/// `certain` and `uncertain` count PFL pixels of the reference, so that `certain.lit + certain.shadow + uncertain` is
-/// `pixels.facing_light` but for PFL pixels that the method does not take for such.
+/// *Which pixels are judged.* Every PFL pixel of the reference, by the visibility it shows (0 is
+/// shadow): one that the method calls background or facing away (status 0 or 1) is wrong if it
+/// shows shadow where the reference is lit, or light where it is not. A pixel that the reference
+/// calls facing away but the method does not (status 2 to 4) is wrong, as `lit`, if it shows light;
+/// shown in shadow it looks the same and is right. Pixels facing away by both, and background, are
+/// not judged, whatever their visibility. `facing_mismatch` counts the disagreements about facing,
+/// wrong or not.
+///
+/// `certain` and `uncertain` count PFL pixels of the reference, so that `certain.lit +
+/// certain.shadow + uncertain` is `pixels.facing_light` but for PFL pixels that the method does not
+/// take for such.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Statistics {
     /// The reference's own pixels.
@@ -134,56 +145,54 @@ pub struct Statistics {
     pub split: Split,
     /// Wrong pixels.
     pub wrong: WrongCounts,
-    /// PFL pixels in band, right or wrong.
+    /// PFL pixels that are indeterminate, right or wrong.
     pub band: u64,
-    /// Pixels that face the light by the reference but not by the method's status, or the other way round.
+    /// Pixels that face the light by the reference but not by the method's status, or the other way
+    /// round.
     pub facing_mismatch: u64,
 }
 
 impl Statistics {
-    /// Judges a method's outputs, one value per pixel, row by row from the top left, as u8 or u32: `visibility` is 0 in shadow and 1 in
-    /// light, `status` is one of [`status`].
+    /// Judges a method's outputs, one value per pixel, row by row from the top left, as u8 or u32:
+    /// `visibility` is 0 in shadow and 1 in light, `status` is one of [`status`].
     ///
     /// # Errors
-    /// [`Error::PixelCount`] if a buffer is not as large as the reference, [`Error::Value`] for a value outside the contract.
-    pub fn judged<V, S>(
-        visibility: &[V],
-        status: &[S],
+    /// [`Error::PixelCount`] if a buffer is not as large as the reference, [`Error::Value`] for a
+    /// value outside the contract.
+    pub fn judged(
+        visibility: &[impl Copy + Into<u32>],
+        status: &[impl Copy + Into<u32>],
         reference: &Reference,
-    ) -> Result<Self, Error>
-    where
-        V: Copy + Into<u32>,
-        S: Copy + Into<u32>,
-    {
+    ) -> Result<Self, Error> {
         let mut counts = Self::default();
         for_each_verdict(
             visibility,
             status,
             reference,
-            |_, class, status, in_band, verdict| {
-                counts.add(class, status, in_band, verdict);
+            |class, status, indeterminate, verdict| {
+                counts.add(class, status, indeterminate, verdict);
             },
         )?;
         Ok(counts)
     }
 
-    fn add(&mut self, class: Class, status: u32, in_band: bool, verdict: Verdict) {
+    fn add(&mut self, class: Class, status: u32, indeterminate: bool, verdict: Verdict) {
         let faces_light = class.faces_light();
         match class {
             Class::Background => self.pixels.background += 1,
             Class::FacingAway => self.pixels.facing_away += 1,
             Class::Lit => {
                 self.pixels.lit += 1;
-                self.split.lit.add(status, in_band, verdict);
+                self.split.lit.add(status, indeterminate, verdict);
             }
             Class::Shadow => {
                 self.pixels.shadow += 1;
-                self.split.shadow.add(status, in_band, verdict);
+                self.split.shadow.add(status, indeterminate, verdict);
             }
         }
         if faces_light {
             self.pixels.facing_light += 1;
-            self.band += u64::from(in_band);
+            self.band += u64::from(indeterminate);
             match status {
                 status::CERTAIN_LIGHT => self.certain.lit += 1,
                 status::CERTAIN_SHADOW => self.certain.shadow += 1,
@@ -198,9 +207,9 @@ impl Statistics {
             Verdict::WronglyShadowed => self.wrong.shadow += 1,
         }
         self.wrong.total += 1;
-        self.wrong.in_band += u64::from(in_band);
+        self.wrong.in_band += u64::from(indeterminate);
         let certain = matches!(status, status::CERTAIN_LIGHT | status::CERTAIN_SHADOW);
-        self.wrong.certain += u64::from(certain && !in_band);
+        self.wrong.certain += u64::from(certain && !indeterminate);
     }
 
     /// A count as a share of the pixels facing the light, 0..1; 0 where none does.
@@ -222,8 +231,8 @@ impl Statistics {
         self.share(self.uncertain)
     }
 
-    /// The band as a share of PFL.
-    pub fn band_share(&self) -> f64 {
+    /// Indeterminate pixels as a share of PFL.
+    pub fn indeterminate_share(&self) -> f64 {
         self.share(self.band)
     }
 }
@@ -236,20 +245,20 @@ pub(crate) enum Verdict {
     WronglyShadowed,
 }
 
-/// Calls `pixel` with index, class, status, in-band flag and verdict of every pixel.
-pub(crate) fn for_each_verdict<V, S>(
-    visibility: &[V],
-    status: &[S],
+/// Calls `pixel` with class, status, whether it is indeterminate, and verdict of every pixel.
+pub(crate) fn for_each_verdict(
+    visibility: &[impl Copy + Into<u32>],
+    status: &[impl Copy + Into<u32>],
     reference: &Reference,
-    mut pixel: impl FnMut(usize, Class, u32, bool, Verdict),
-) -> Result<(), Error>
-where
-    V: Copy + Into<u32>,
-    S: Copy + Into<u32>,
-{
+    mut pixel: impl FnMut(Class, u32, bool, Verdict),
+) -> Result<(), Error> {
     check_pixel_count("visibility", reference.viewport, visibility.len())?;
     check_pixel_count("status", reference.viewport, status.len())?;
-    for (index, (&class, &in_band)) in reference.classes.iter().zip(&reference.in_band).enumerate()
+    for (index, (&class, &indeterminate)) in reference
+        .classes
+        .iter()
+        .zip(&reference.indeterminate)
+        .enumerate()
     {
         let (visibility, status) = (visibility[index].into(), status[index].into());
         let value = |name, value, expected| {
@@ -270,7 +279,8 @@ where
             ));
         }
         if status > status::UNCERTAIN {
-            let expected = "expected 0 background, 1 facing away, 2 certain light, 3 certain shadow or 4 uncertain";
+            let expected = "expected 0 background, 1 facing away, 2 certain light, 3 certain \
+                shadow or 4 uncertain";
             return Err(value("status", status, expected));
         }
         let verdict = match (class, visibility) {
@@ -279,7 +289,7 @@ where
             (Class::Lit, 0) => Verdict::WronglyShadowed,
             _ => Verdict::Right,
         };
-        pixel(index, class, status, in_band, verdict);
+        pixel(class, status, indeterminate, verdict);
     }
     Ok(())
 }
@@ -288,12 +298,12 @@ where
 mod tests {
     use super::*;
 
-    /// One row of pixels: class, whether in band.
+    /// One row of pixels: class, whether indeterminate.
     fn reference(pixels: &[(Class, bool)]) -> Reference {
         Reference {
             viewport: [pixels.len() as u32, 1],
             classes: pixels.iter().map(|pixel| pixel.0).collect(),
-            in_band: pixels.iter().map(|pixel| pixel.1).collect(),
+            indeterminate: pixels.iter().map(|pixel| pixel.1).collect(),
             n_dot_l: vec![0.5; pixels.len()],
         }
     }
@@ -301,13 +311,13 @@ mod tests {
     #[test]
     fn every_combination_is_counted_once() {
         use Class::{Background, FacingAway, Lit, Shadow};
-        // Class, in band, visibility, status.
+        // Class, indeterminate, visibility, status.
         let pixels: [(Class, bool, u8, u8); 15] = [
             (Background, false, 1, 0),
             (FacingAway, false, 1, 1), // not judged
             (FacingAway, false, 0, 3), // looks the same
             (FacingAway, false, 1, 2), // wrongly lit, certain
-            (FacingAway, true, 1, 4),  // wrongly lit, in band
+            (FacingAway, true, 1, 4),  // wrongly lit, indeterminate
             (Lit, false, 1, 2),
             (Lit, true, 1, 4),
             (Lit, false, 0, 3), // wrongly in shadow, certain
@@ -315,7 +325,7 @@ mod tests {
             (Lit, false, 0, 1), // taken for facing away: wrongly in shadow
             (Shadow, false, 0, 3),
             (Shadow, false, 0, 1), // taken for facing away, looks the same
-            (Shadow, true, 1, 2),  // wrongly lit, in band
+            (Shadow, true, 1, 2),  // wrongly lit, indeterminate
             (Shadow, false, 1, 2), // wrongly lit, certain
             (Shadow, false, 1, 0), // taken for background, shown lit
         ];
@@ -370,7 +380,7 @@ mod tests {
         );
         assert_eq!(expected.wrong_share(), 0.8);
         assert_eq!(expected.uncertain_share(), 0.2);
-        assert_eq!(expected.band_share(), 0.2);
+        assert_eq!(expected.indeterminate_share(), 0.2);
     }
 
     #[test]

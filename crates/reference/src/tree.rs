@@ -1,7 +1,7 @@
 //! Traversal of the scene's hierarchy by f64 rays.
 
 use crate::{
-    Error,
+    error::Error,
     ray::{Corners, Ray},
 };
 use glam::DVec3;
@@ -16,7 +16,8 @@ pub(crate) struct Caster {
     pub(crate) primitive: u32,
     /// Its corners.
     pub(crate) corners: Corners,
-    /// For each edge, in the order of `Ray::edges`, whether no other triangle has it: it may be the rim of a crack.
+    /// For each edge, in the order of `Ray::edges`, whether no other triangle has it: it may be the
+    /// rim of a crack.
     pub(crate) open: [bool; 3],
 }
 
@@ -85,7 +86,7 @@ impl<'a> Tree<'a> {
     }
 
     /// Distance from `origin` beyond which there is no corner.
-    pub(crate) fn reach(&self, origin: DVec3) -> f64 {
+    pub(crate) fn max_distance(&self, origin: DVec3) -> f64 {
         self.bounds.map_or(0.0, |(min, max)| {
             (origin - min).abs().max((origin - max).abs()).length()
         })
@@ -97,7 +98,8 @@ impl<'a> Tree<'a> {
     }
 
     /// Calls `visit` with the current end of the ray and every triangle whose box the ray enters,
-    /// nearer boxes first. `visit` may shorten the ray, or end the walk by `Break`. `stack` is scratch memory.
+    /// nearer boxes first. `visit` may shorten the ray, or end the walk by `Break`. `stack` is
+    /// scratch memory.
     pub(crate) fn walk(
         &self,
         ray: &Ray,
@@ -109,7 +111,7 @@ impl<'a> Tree<'a> {
         stack.clear();
         if nodes
             .first()
-            .is_some_and(|root| ray.enters(root, t_max).is_some())
+            .is_some_and(|root| ray.slab_test(root, t_max).is_some())
         {
             stack.push(0);
         }
@@ -125,8 +127,8 @@ impl<'a> Tree<'a> {
                 continue;
             }
             match (
-                ray.enters(&nodes[first], t_max),
-                ray.enters(&nodes[first + 1], t_max),
+                ray.slab_test(&nodes[first], t_max),
+                ray.slab_test(&nodes[first + 1], t_max),
             ) {
                 (Some(left), Some(right)) if left <= right => {
                     stack.extend([node.first + 1, node.first])
@@ -140,7 +142,8 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// For each triangle and each of its edges, in the order of `Ray::edges`, whether it is the only one to have it.
+/// For each triangle and each of its edges, in the order of `Ray::edges`, whether it is the only
+/// one to have it.
 fn open_edges(mesh: &Mesh) -> Vec<[bool; 3]> {
     let keys = |&[a, b, c]: &[u32; 3]| [(b, c), (c, a), (a, b)].map(|(p, q)| (p.min(q), p.max(q)));
     let mut all: Vec<(u32, u32)> = mesh.triangles.iter().flat_map(keys).collect();
@@ -162,7 +165,8 @@ mod tests {
     use proptest::prelude::*;
     use std::collections::HashMap;
 
-    /// A sphere of 1,280 triangles: an icosahedron divided three times, its vertices shared by index.
+    /// A sphere of 1,280 triangles: an icosahedron divided three times, its vertices shared by
+    /// index.
     fn sphere() -> Mesh {
         let golden = (1.0 + 5f32.sqrt()) / 2.0;
         let mut positions: Vec<Vec3> = [
@@ -245,7 +249,7 @@ mod tests {
 
     /// Ids of all triangles that the ray hits in front of its origin, sorted.
     fn hits(tree: &Tree, origin: DVec3, direction: DVec3) -> Vec<u32> {
-        let ray = Ray::new(origin, direction, tree.reach(origin), 0.0);
+        let ray = Ray::new(origin, direction, tree.max_distance(origin), 0.0);
         let mut hits = Vec::new();
         tree.walk(&ray, &mut Vec::new(), |caster, _| {
             if ray.hit(&caster.corners).is_some_and(|hit| hit.t > 0.0) {
@@ -329,15 +333,24 @@ mod tests {
     proptest! {
         #[test]
         fn the_hierarchy_finds_what_brute_force_finds(
-            corners in prop::collection::vec(prop::array::uniform3(prop::array::uniform3(coordinate())), 1..60),
+            corners in prop::collection::vec(
+                prop::array::uniform3(prop::array::uniform3(coordinate())),
+                1..60,
+            ),
             origin in prop::array::uniform3(coordinate()),
             direction in prop::array::uniform3(coordinate()),
         ) {
-            let (origin, direction) = (Vec3::from(origin).as_dvec3(), Vec3::from(direction).as_dvec3());
+            let (origin, direction) = (
+                Vec3::from(origin).as_dvec3(),
+                Vec3::from(direction).as_dvec3(),
+            );
             prop_assume!(direction != DVec3::ZERO);
             let ray = Ray::new(origin, direction, 8.0, 0.0);
             let hit = |corners: &Corners| ray.hit(corners).is_some_and(|hit| hit.t > 0.0);
-            let expected: Vec<u32> = (0..corners.len()).filter(|&i| hit(&corners[i])).map(|i| i as u32).collect();
+            let expected: Vec<u32> = (0..corners.len())
+                .filter(|&i| hit(&corners[i]))
+                .map(|i| i as u32)
+                .collect();
             prop_assert_eq!(hits(&tree(&soup(&corners)), origin, direction), expected);
         }
     }

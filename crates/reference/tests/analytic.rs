@@ -11,9 +11,10 @@ const MODES: [OracleMode; 2] = [OracleMode::Exact, OracleMode::Offset(1e-3)];
 
 #[test]
 fn a_square_throws_a_square_shadow() {
-    // Pixels are 0.1 wide on the floor, centres at odd multiples of 0.05. The light moves the square's shadow from ±0.9 to 3.1..4.9 in x:
-    // 18 × 18 pixels. The square itself, at height 2 of 10, hides ±1.125 of the floor: 22 × 22 pixels, all lit.
-    // It is no exact square, lest its diagonal pass through pixels' centres, where a coplanar neighbour is 0 ± an ulp away.
+    // Pixels are 0.1 wide on the floor, centres at odd multiples of 0.05. The light moves the
+    // square's shadow from ±0.9 to 3.1..4.9 in x: 18 × 18 pixels. The square itself, at height 2 of
+    // 10, hides ±1.125 of the floor: 22 × 22 pixels, all lit. It is no exact square, lest its
+    // diagonal pass through pixels' centres, where a coplanar neighbour is 0 ± an ulp away.
     let mut mesh = floor();
     add_rectangle(&mut mesh, [-0.9, 0.9], 2.0, [-0.91, 0.9]);
     for mode in MODES {
@@ -50,7 +51,8 @@ fn a_square_throws_a_square_shadow() {
 
 #[test]
 fn casters_are_two_sided_and_light_may_run_along_an_axis() {
-    // From below the square, at height 1 of 2: pixels are 0.02 wide, the shadow of ±0.5 is 50 × 50 of them.
+    // From below the square, at height 1 of 2: pixels are 0.02 wide, the shadow of ±0.5 is 50 × 50
+    // of them.
     for back in [false, true] {
         let mut mesh = floor();
         let x = if back { [0.5, -0.5] } else { [-0.5, 0.5] };
@@ -96,7 +98,7 @@ fn casters_without_area_throw_no_shadow() {
 
 #[test]
 fn light_along_a_surface_does_not_face_it() {
-    // N · L = 0 exactly: facing away by definition, and in band, for an ulp would turn it.
+    // N · L = 0 exactly: facing away by definition, and indeterminate, for an ulp would turn it.
     let reference = render(
         &floor(),
         &from_above(1.0, [16, 16]),
@@ -109,7 +111,12 @@ fn light_along_a_surface_does_not_face_it() {
         0,
         "only pixels facing the light count"
     );
-    assert!(reference.in_band.iter().all(|&in_band| in_band));
+    assert!(
+        reference
+            .indeterminate
+            .iter()
+            .all(|&indeterminate| indeterminate)
+    );
     // A thousandth of a degree decides.
     for (y, class) in [(-2e-5, Class::Lit), (2e-5, Class::FacingAway)] {
         let reference = render(
@@ -119,13 +126,19 @@ fn light_along_a_surface_does_not_face_it() {
             OracleMode::Exact,
         );
         assert!(reference.classes.iter().all(|&c| c == class));
-        assert!(reference.in_band.iter().all(|&in_band| !in_band));
+        assert!(
+            reference
+                .indeterminate
+                .iter()
+                .all(|&indeterminate| !indeterminate)
+        );
     }
 }
 
 #[test]
 fn the_mode_decides_what_a_receiver_shades_itself_with() {
-    // Two floors 0.01 apart, the lower one shown: in shadow, unless its rays start above the upper one.
+    // Two floors 0.01 apart, the lower one shown: in shadow, unless its rays start above the upper
+    // one.
     let mut mesh = floor();
     add(
         &mut mesh,
@@ -153,7 +166,7 @@ fn the_mode_decides_what_a_receiver_shades_itself_with() {
 }
 
 #[test]
-fn a_primitive_seen_edge_on_is_in_band() {
+fn a_primitive_seen_edge_on_is_indeterminate() {
     let mut mesh = floor();
     add(
         &mut mesh,
@@ -170,7 +183,7 @@ fn a_primitive_seen_edge_on_is_in_band() {
         Progress::default(),
     );
     let reference = reference.expect("primitive 1 exists");
-    assert!((0..9).all(|row| reference.in_band[row * 9 + 4]));
+    assert!((0..9).all(|row| reference.indeterminate[row * 9 + 4]));
     assert!(reference.n_dot_l.iter().all(|n_dot_l| n_dot_l.is_finite()));
 }
 

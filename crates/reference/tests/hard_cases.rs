@@ -1,14 +1,13 @@
-//! The oracle on the catalogue of hard cases: its band stays below the case's cap, and where geometry alone knows the answer, it says the same.
+//! The oracle on the catalogue of hard cases: no more is indeterminate than the case's cap, and
+//! where geometry alone knows the answer, it says the same.
 
 mod common;
 
 use common::scenes::render;
 use glam::DVec3;
+use skiagraph_cases::{HardCase, Shows, cases};
 use skiagraph_reference::{Class, Oracle, OracleMode, Progress, Reference};
-use skiagraph_scene::{
-    Camera, Mesh, Scene,
-    hard::{HardCase, Shows, cases},
-};
+use skiagraph_scene::{Camera, Mesh, Scene};
 
 const VIEWPORTS: [[u32; 2]; 2] = [[96, 96], [61, 43]];
 
@@ -36,13 +35,13 @@ fn complaints(case: &HardCase, viewport: [u32; 2]) -> Vec<String> {
         |wanted: &dyn Fn(usize) -> bool| (0..primitives.len()).filter(|&i| wanted(i)).count();
     let facing = |i: usize| reference.classes[i].faces_light();
     let facing_light = count(&facing);
-    let band = count(&|i| facing(i) && reference.in_band[i]);
-    let share = band as f64 / facing_light.max(1) as f64;
+    let indeterminate = count(&|i| facing(i) && reference.indeterminate[i]);
+    let share = indeterminate as f64 / facing_light.max(1) as f64;
     let mut complaints = Vec::new();
-    if share > case.band_cap {
+    if share > case.indeterminate_cap {
         complaints.push(format!(
-            "{band} of {facing_light} in band, {share:.4} instead of {}",
-            case.band_cap
+            "{indeterminate} of {facing_light} indeterminate, {share:.4} instead of {}",
+            case.indeterminate_cap
         ));
     }
     complaints.extend(unexpected(case, &reference));
@@ -54,7 +53,7 @@ fn complaints(case: &HardCase, viewport: [u32; 2]) -> Vec<String> {
         }
         let wrong = |i: usize| {
             let said = reference.classes[i] == Class::Lit;
-            facing(i) && !reference.in_band[i] && answer(i).is_some_and(|lit| lit != said)
+            facing(i) && !reference.indeterminate[i] && answer(i).is_some_and(|lit| lit != said)
         };
         let wrongs: Vec<usize> = (0..primitives.len()).filter(|&i| wrong(i)).collect();
         if let Some(&first) = wrongs.first() {
@@ -68,7 +67,7 @@ fn complaints(case: &HardCase, viewport: [u32; 2]) -> Vec<String> {
         }
     }
     println!(
-        "{:28} {viewport:?} {facing_light:5} facing, band {share:.4}",
+        "{:28} {viewport:?} {facing_light:5} facing, indeterminate {share:.4}",
         case.name
     );
     complaints
@@ -84,9 +83,10 @@ fn unexpected(case: &HardCase, reference: &Reference) -> Option<String> {
     );
     let right = match case.shows {
         Shows::Both => lit >= enough && shadow >= enough,
-        // A shadow in band may be no shadow.
+        // An indeterminate shadow may be none.
         Shows::LitOnly => {
-            let certain = |i: usize| reference.classes[i] == Class::Shadow && !reference.in_band[i];
+            let certain =
+                |i: usize| reference.classes[i] == Class::Shadow && !reference.indeterminate[i];
             lit >= enough && !(0..reference.classes.len()).any(certain)
         }
         Shows::Nothing => lit + shadow == 0,
@@ -95,7 +95,7 @@ fn unexpected(case: &HardCase, reference: &Reference) -> Option<String> {
 }
 
 #[test]
-fn the_oracle_agrees_with_geometry_and_its_band_is_small() {
+fn the_oracle_agrees_with_geometry_and_little_is_indeterminate() {
     let found: Vec<String> = cases()
         .iter()
         .flat_map(|case| {

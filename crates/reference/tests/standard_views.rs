@@ -1,19 +1,20 @@
 //! The views that results are published for: Sponza's `main` and the nine of `park`.
 //!
-//! Sponza's mesh is not part of the repository: its tests need the folder with `sponza/sponza.obj` in the environment variable
-//! `SKIAGRAPH_ASSETS`, relative to the workspace or absolute.
+//! Sponza's mesh is not part of the repository: its tests need the folder with `sponza/sponza.obj`
+//! in the environment variable `SKIAGRAPH_ASSETS`, relative to the workspace or absolute.
 
 mod common;
 
-use common::twin;
+use common::f32_shading;
 use skiagraph_reference::{Oracle, OracleMode, Progress, Reference, Statistics};
 use skiagraph_scene::{Bvh, Camera, Scene, SceneLibrary, SceneRequest, View};
 use std::{path::Path, sync::OnceLock, time::Instant};
 
-/// What the band may take of the pixels facing the light.
-const BAND_CAP: f64 = 1e-3;
+/// Most indeterminate pixels, as a share of those facing the light.
+const INDETERMINATE_CAP: f64 = 1e-3;
 
-/// The scene, or `None`, with a word why, where no folder is named. A folder without the mesh is a failure.
+/// The scene, or `None`, with a word why, where no folder is named. A folder without the mesh is a
+/// failure.
 fn sponza() -> Option<&'static Scene> {
     static SPONZA: OnceLock<Option<Scene>> = OnceLock::new();
     let load = || {
@@ -21,7 +22,8 @@ fn sponza() -> Option<&'static Scene> {
             println!("SKIAGRAPH_ASSETS is not set: nothing to test without the Sponza mesh");
             return None;
         };
-        // Tests run in the crate's folder, but a relative path is meant from where the command is typed.
+        // Tests run in the crate's folder, but a relative path is meant from where the command is
+        // typed.
         let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         let assets = std::env::split_paths(&folders)
             .map(|folder| workspace.join(folder))
@@ -52,7 +54,8 @@ fn main_view(scene: &Scene) -> &View {
     scene.view("main").expect("the scene file names it")
 }
 
-/// The ids that a rasteriser with 8 bits of subpixel precision might write: vertices snapped half a step off.
+/// The ids that a rasteriser with 8 bits of subpixel precision might write: vertices snapped half a
+/// step off.
 fn snapped(camera: &Camera) -> Camera {
     let step = |half: f64, pixels: u32| 2.0 * half / f64::from(pixels) / 512.0;
     let shift = camera.right * step(camera.half_width, camera.viewport[0])
@@ -75,8 +78,9 @@ fn shade(
         .expect("the mesh's own primitives")
 }
 
-/// The f32 twin against the oracle, on a rasteriser's ids: wrong in band only, and the band is small.
-fn f32_errs_in_a_small_band_only(scene: &Scene, mode: OracleMode) {
+/// Shading in f32 against the oracle, on a rasteriser's ids: wrong in indeterminate
+/// pixels only, and these are few.
+fn f32_errs_in_few_indeterminate_pixels_only(scene: &Scene, mode: OracleMode) {
     let bvh = Bvh::build(&scene.mesh);
     let oracle = Oracle::with_bvh(&scene.mesh, &bvh).expect("built over it");
     for view in &scene.views {
@@ -86,12 +90,15 @@ fn f32_errs_in_a_small_band_only(scene: &Scene, mode: OracleMode) {
             .expect("nobody interrupts");
         let reference = shade(&oracle, scene, &camera, &primitives, mode);
         let (visibility, status) =
-            twin::shade(&scene.mesh, &bvh, &camera, &scene.light, &primitives, mode);
+            f32_shading::shade(&scene.mesh, &bvh, &camera, &scene.light, &primitives, mode);
         let counts = Statistics::judged(&visibility, &status, &reference).expect("valid values");
-        let (name, band) = (&view.name, 100.0 * counts.band_share());
-        println!("{name} {mode}: {counts:?}, band {band:.4} %");
+        let (name, share) = (&view.name, 100.0 * counts.indeterminate_share());
+        println!("{name} {mode}: {counts:?}, indeterminate {share:.4} %");
         assert_eq!(counts.wrong.total, counts.wrong.in_band, "{name}");
-        assert!(counts.band_share() < BAND_CAP, "{name}: {counts:?}");
+        assert!(
+            counts.indeterminate_share() < INDETERMINATE_CAP,
+            "{name}: {counts:?}"
+        );
     }
 }
 
@@ -119,14 +126,17 @@ fn sponza_has_the_dissertations_counts() {
             let counts =
                 Statistics::judged(&reference.visibility(), &reference.status(), &reference)
                     .expect("its own");
-            let (pixels, band) = (counts.pixels, 100.0 * counts.band_share());
+            let (pixels, share) = (counts.pixels, 100.0 * counts.indeterminate_share());
             println!(
-                "{viewport:?} {mode}: {pixels:?}, band {} ({band:.4} %), {elapsed:?}",
+                "{viewport:?} {mode}: {pixels:?}, indeterminate {} ({share:.4} %), {elapsed:?}",
                 counts.band
             );
             assert_eq!(pixels.background, 0);
             assert_eq!(counts.wrong.total, 0);
-            assert!(counts.band_share() < BAND_CAP, "{counts:?}");
+            assert!(
+                counts.indeterminate_share() < INDETERMINATE_CAP,
+                "{counts:?}"
+            );
             if mode != OracleMode::Exact {
                 for (count, expected) in [pixels.facing_light, pixels.lit, pixels.shadow]
                     .into_iter()
@@ -144,7 +154,7 @@ fn sponza_has_the_dissertations_counts() {
 fn sponza_in_f32() {
     let Some(scene) = sponza() else { return };
     for mode in [OracleMode::Exact, OracleMode::Offset(0.03)] {
-        f32_errs_in_a_small_band_only(scene, mode);
+        f32_errs_in_few_indeterminate_pixels_only(scene, mode);
     }
 }
 
@@ -152,5 +162,5 @@ fn sponza_in_f32() {
 fn park_in_f32() {
     let scene = scene("park", SceneLibrary::default());
     assert_eq!(scene.views.len(), 9);
-    f32_errs_in_a_small_band_only(&scene, OracleMode::Exact);
+    f32_errs_in_few_indeterminate_pixels_only(&scene, OracleMode::Exact);
 }

@@ -1,18 +1,20 @@
 //! Which triangle lies across each edge.
 
-use crate::Mesh;
+use crate::mesh::Mesh;
 use std::collections::HashMap;
 
 /// What [`Adjacency::opposite`] holds for an edge that has not exactly two triangles.
 pub const NO_NEIGHBOUR: u32 = u32::MAX;
 
-/// Edge adjacency of a mesh over its welded positions: the *corner table* of Rossignac, Safonova and Szymczak ("3D
-/// Compression Made Simple", SMI 2001).
+/// Edge adjacency of a mesh over its welded positions: the *corner table* of Rossignac, Safonova
+/// and Szymczak ("3D Compression Made Simple", SMI 2001).
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Adjacency {
-    /// Three entries per triangle. Entry `3 * p + i` belongs to the edge from corner i to corner i + 1 (mod 3) of triangle p and
-    /// names the corner `3 * q + k` of the triangle q across it that does not lie on the edge: q is the entry divided by 3, and its
-    /// edge is the one after k. [`NO_NEIGHBOUR`] for an edge with one triangle, or with more than two. Windings play no part.
+    /// Three entries per triangle. Entry `3 * p + i` belongs to the edge of triangle p from corner
+    /// i to the next one, and names the corner `3 * q + k` of the triangle q across it that does
+    /// not lie on the edge: q is the entry divided by 3, and its edge is the one after k.
+    /// [`NO_NEIGHBOUR`] for an edge with one triangle, or with more than two. Windings play no
+    /// part.
     pub opposite: Vec<u32>,
 }
 
@@ -25,8 +27,8 @@ enum Edge {
 }
 
 impl Adjacency {
-    /// Of a mesh, in time linear in its triangles. Triangles that name a position twice have no area whatever their place, and
-    /// no neighbours: what lies on both sides of one is adjacent.
+    /// Of a mesh, in time linear in its triangles. Triangles that name a position twice have no
+    /// area whatever their place, and no neighbours: what lies on both sides of one is adjacent.
     pub fn new(mesh: &Mesh) -> Self {
         let mut opposite = vec![NO_NEIGHBOUR; 3 * mesh.triangles.len()];
         let mut edges = HashMap::with_capacity(3 * mesh.triangles.len() / 2);
@@ -39,8 +41,8 @@ impl Adjacency {
                 let edge = edges.entry((from.min(to), from.max(to)));
                 edge.and_modify(|edge| match *edge {
                     Edge::One { entry: other } => {
-                        opposite[entry as usize] = corner_across(other);
-                        opposite[other as usize] = corner_across(entry);
+                        opposite[entry as usize] = opposite_corner(other);
+                        opposite[other as usize] = opposite_corner(entry);
                         *edge = Edge::Two;
                     }
                     Edge::Two | Edge::More => *edge = Edge::More,
@@ -61,7 +63,7 @@ impl Adjacency {
 }
 
 /// The corner that the edge of this entry does not touch.
-fn corner_across(entry: u32) -> u32 {
+fn opposite_corner(entry: u32) -> u32 {
     entry - entry % 3 + (entry + 2) % 3
 }
 
@@ -119,7 +121,8 @@ mod tests {
         // Four at one edge: not two pairs.
         let four = adjacency(&[[0, 1, 2], [1, 0, 3], [0, 1, 4], [1, 0, 5]]);
         assert_eq!(four, [NONE; 12]);
-        // A triangle and its copy close nothing: each edge has two, folded onto itself; the sides tell, not the table.
+        // A triangle and its copy close nothing: each edge has two, folded onto itself; the sides
+        // tell, not the table.
         let double = adjacency(&[[0, 1, 2], [0, 1, 2]]);
         assert_eq!(double, [5, 3, 4, 2, 0, 1]);
     }

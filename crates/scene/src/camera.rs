@@ -64,10 +64,59 @@ impl View {
             viewport,
         }
     }
+
+    /// Whether a camera can be made of this view.
+    ///
+    /// # Errors
+    /// What is wrong with it, naming the view.
+    pub fn check(&self) -> Result<(), String> {
+        let name = &self.name;
+        if !self.eye.is_finite() {
+            return Err(format!("view {name:?}: the eye {} is not finite", self.eye));
+        }
+        let (Some(direction), Some(up)) = (self.direction.try_normalize(), self.up.try_normalize())
+        else {
+            return Err(format!(
+                "view {name:?}: direction {} and up {} must be finite and longer than 0",
+                self.direction, self.up
+            ));
+        };
+        // Below this sine the right vector would be mostly rounding error.
+        if direction.cross(up).length() < 1e-9 {
+            return Err(format!(
+                "view {name:?}: up {} is parallel to the direction {}",
+                self.up, self.direction
+            ));
+        }
+        if !(self.fov_y_degrees > 0.0 && self.fov_y_degrees < 180.0) {
+            return Err(format!(
+                "view {name:?}: fov_y_degrees is {}, expected more than 0 and less than 180",
+                self.fov_y_degrees
+            ));
+        }
+        if !(self.near > 0.0 && self.near < self.far && self.far.is_finite()) {
+            return Err(format!(
+                "view {name:?}: near is {} and far is {}, expected 0 < near < far",
+                self.near, self.far
+            ));
+        }
+        // Shaders get it in 32 bits.
+        let camera = self.camera([1, 1]).view_projection();
+        if !camera.as_mat4().is_finite() {
+            return Err(format!(
+                "view {name:?}: its camera overflows 32-bit numbers with eye {}, fov_y_degrees \
+                 {}, near {} and far {}; \
+                 bring them nearer to 1",
+                self.eye, self.fov_y_degrees, self.near, self.far
+            ));
+        }
+        Ok(())
+    }
 }
 
 impl Camera {
-    /// Direction from the eye through the centre of pixel (`x`, `y`), y down; its component along `forward` is 1.
+    /// Direction from the eye through the centre of pixel (`x`, `y`), y down; its component along
+    /// `forward` is 1.
     pub fn pixel_direction(&self, x: u32, y: u32) -> DVec3 {
         let ndc_x = (f64::from(x) + 0.5) / f64::from(self.viewport[0]) * 2.0 - 1.0;
         let ndc_y = 1.0 - (f64::from(y) + 0.5) / f64::from(self.viewport[1]) * 2.0;

@@ -6,7 +6,8 @@ use thiserror::Error;
 /// How many faces an error or a warning spells out before it only counts.
 pub const FACES_SHOWN: usize = 5;
 
-/// Extents and coordinates of a mesh, in scene units, of which all products that shaders take stay within f32 (docs/precision.md).
+/// Extents and coordinates of a mesh, in scene units, of which all products that shaders take stay
+/// within f32 (docs/precision.md).
 pub(crate) const EXTENTS: std::ops::RangeInclusive<f64> = 1e-12..=1e12;
 
 /// Why a scene could not be loaded. Every message names the file and what to do about it.
@@ -77,7 +78,8 @@ pub enum SceneError {
     },
     /// A mesh whose lengths, multiplied as geometry must, leave the range of f32.
     #[error(
-        "{}: the model is {across:.1e} units across and reaches {farthest:.1e} from the origin, but f32 can only tell right from wrong between {:.0e} and {:.0e}: scale it",
+        "{}: the model is {across:.1e} units across and reaches {farthest:.1e} from the origin, \
+         but f32 can only tell right from wrong between {:.0e} and {:.0e}: scale it",
         path.display(), EXTENTS.start(), EXTENTS.end()
     )]
     Extent {
@@ -102,7 +104,8 @@ pub enum SceneError {
     },
     /// The mesh of a scene file is in none of the places searched.
     #[error(
-        "the mesh {file:?} of scene {scene:?} was not found; searched\n{}{}put it at {file:?} below a folder that the environment variable SKIAGRAPH_ASSETS names",
+        "the mesh {file:?} of scene {scene:?} was not found; searched\n{}{}put it at {file:?} \
+         below a folder that the environment variable SKIAGRAPH_ASSETS names",
         list_places(searched),
         download(source_text.as_deref())
     )]
@@ -125,7 +128,11 @@ pub enum SceneError {
         path: PathBuf,
     },
     /// No scene of that name, and no file of that path.
-    #[error("no scene {argument:?}: it is neither the path of a .ron or .obj file, nor the name of a .ron file in {}, nor one of the built-in scenes {}", folder.display(), builtin.join(", "))]
+    #[error(
+        "no scene {argument:?}: it is neither the path of a .ron or .obj file, nor the name of a \
+         .ron file in {}, nor one of the built-in scenes {}",
+        folder.display(), builtin.join(", ")
+    )]
     UnknownScene {
         /// What was asked for.
         argument: String,
@@ -135,14 +142,17 @@ pub enum SceneError {
         builtin: Vec<&'static str>,
     },
     /// A bare `.obj` came without the view and the light that a scene file would hold.
-    #[error("{}: an .obj file holds no view and no light: give --eye x,y,z --look x,y,z (direction) and --light x,y,z (the direction in which the light travels); --fov DEGREES, --near and --far if the defaults do not suit it", path.display())]
+    #[error("{}: an .obj file holds no view and no light: give --eye x,y,z --look x,y,z \
+        (direction) and --light x,y,z (the direction in which the light travels); --fov DEGREES, \
+        --near and --far if the defaults do not suit it", path.display())]
     ObjNeedsView {
         /// The OBJ file.
         path: PathBuf,
     },
     /// A view was given for a scene that brings its own views.
     #[error(
-        "scene {argument:?} has its own views and light: a view and a light (--eye, --look, --light …) can only be given with a bare .obj file"
+        "scene {argument:?} has its own views and light: a view and a light (--eye, --look, \
+         --light …) can only be given with a bare .obj file"
     )]
     ViewNotWanted {
         /// What was asked for.

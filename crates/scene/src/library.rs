@@ -1,8 +1,18 @@
 //! Finds scenes by name or path, and the meshes that they name.
 
 use crate::{
-    DirectionalLight, ImportReport, Limit, MeshSource, ObjOptions, QuadDiagonal, Scene, SceneError,
-    SceneFile, View, generate, load_obj,
+    camera::View,
+    error::SceneError,
+    generate::named,
+    light::DirectionalLight,
+    limit::Limit,
+    obj::{
+        options::{ObjOptions, QuadDiagonal},
+        read::load_obj,
+    },
+    report::ImportReport,
+    scene::Scene,
+    scene_file::{MeshSource, SceneFile},
 };
 use std::path::{Path, PathBuf};
 
@@ -25,9 +35,11 @@ const BUILT_IN: [(&str, &str); 2] = [
 /// What a user asked for.
 #[derive(Clone, Debug, Default)]
 pub struct SceneRequest {
-    /// A built-in name, a name in `scenes/`, the path of a `.ron` file, or the path of an `.obj` file.
+    /// A built-in name, a name in `scenes/`, the path of a `.ron` file, or the path of an `.obj`
+    /// file.
     pub argument: String,
-    /// View and light of a bare `.obj` file; must be absent for any other scene, which brings its own.
+    /// View and light of a bare `.obj` file; must be absent for any other scene, which brings its
+    /// own.
     pub obj: Option<ObjSetup>,
 }
 
@@ -67,7 +79,8 @@ pub struct SceneLibrary {
 }
 
 impl SceneLibrary {
-    /// `scenes/` below the working directory; the folders of `SKIAGRAPH_ASSETS`, then the user's cache folder.
+    /// `scenes/` below the working directory; the folders of `SKIAGRAPH_ASSETS`, then the user's
+    /// cache folder.
     pub fn from_environment() -> Self {
         let variable = std::env::var_os(ASSETS_VARIABLE).unwrap_or_default();
         let mut assets: Vec<PathBuf> = std::env::split_paths(&variable)
@@ -86,8 +99,8 @@ impl SceneLibrary {
     /// Loads a scene with its mesh.
     ///
     /// # Errors
-    /// [`SceneError`]: no such scene, a broken scene file or mesh, a mesh that is nowhere to be found (with every place
-    /// searched), a bare `.obj` without view and light.
+    /// [`SceneError`]: no such scene, a broken scene file or mesh, a mesh that is nowhere to be
+    /// found (with every place searched), a bare `.obj` without view and light.
     pub fn load(&self, request: &SceneRequest) -> Result<(Scene, ImportReport), SceneError> {
         let path = Path::new(&request.argument);
         if has_extension(path, "obj") {
@@ -205,7 +218,7 @@ impl SceneLibrary {
             MeshSource::Generated(name) => {
                 // The scene file was refused where no generator has that name.
                 (
-                    generate::by_name(name).unwrap_or_default(),
+                    named::by_name(name).unwrap_or_default(),
                     ImportReport::default(),
                 )
             }
@@ -216,7 +229,8 @@ impl SceneLibrary {
                 source,
             } => {
                 let places = self.mesh_places(mesh, file);
-                // What is neither file nor folder is there as well; reading it says what is wrong with it.
+                // What is neither file nor folder is there as well; reading it says what is wrong
+                // with it.
                 let place = places.iter().find(|place| place.is_file()).or_else(|| {
                     places
                         .iter()

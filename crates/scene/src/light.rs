@@ -9,23 +9,40 @@ pub struct DirectionalLight {
     pub direction: DVec3,
 }
 
-/// Light space: an orthographic box that maps to wgpu clip space; depth z in 0..1 grows away from the light.
+/// Light space: an orthographic box that maps to wgpu clip space; depth z in 0..1 grows away from
+/// the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightFit {
     /// World to clip space of the light (affine: w stays 1).
     pub view_projection: DMat4,
-    /// World units per unit of light-space clip x, y and z (half the box's width, half its height, its whole depth).
+    /// World units per unit of light-space clip x, y and z (half the box's width, half its height,
+    /// its whole depth).
     pub extent: DVec3,
 }
 
 impl DirectionalLight {
-    /// Unit vector *towards* the light, l = −direction.
-    pub fn towards(&self) -> DVec3 {
+    /// Unit vector from any point to the light, l = −direction.
+    pub fn to_light(&self) -> DVec3 {
         -self.direction.normalize()
     }
 
-    /// The smallest light-space box around some points whose third axis is the light's direction: one side of the rectangle of least area
-    /// around a convex polygon lies on an edge of it (Freeman and Shapira, CACM 18(7), 1975). No points count as one at the origin.
+    /// Whether the light has a direction.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn check(&self) -> Result<(), String> {
+        match self.direction.try_normalize() {
+            Some(_) => Ok(()),
+            None => Err(format!(
+                "the light's direction {} must be finite and longer than 0",
+                self.direction
+            )),
+        }
+    }
+
+    /// The smallest light-space box around some points whose third axis is the light's direction:
+    /// one side of the rectangle of least area around a convex polygon lies on an edge of it
+    /// (Freeman and Shapira, CACM 18(7), 1975). No points count as one at the origin.
     pub fn fit(&self, points: impl IntoIterator<Item = Vec3>) -> LightFit {
         let forward = self.direction.normalize();
         let helper = if forward.y.abs() < 0.9 {
@@ -50,7 +67,8 @@ impl DirectionalLight {
         let (right, up) = (right * turn.x + up * turn.y, up * turn.x - right * turn.y);
         let (low, high) = (low.extend(nearest), high.extend(farthest));
         let centre = (low + high) * 0.5;
-        // A flat scene still needs a box of some volume, and one large enough to be told from its place.
+        // A flat scene still needs a box of some volume, and one large enough to be told from its
+        // place.
         let largest = (high - low)
             .max_element()
             .max(1e-6 * low.abs().max(high.abs()).max_element())
@@ -99,8 +117,8 @@ fn convex_hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
     if hull.is_empty() { points } else { hull }
 }
 
-/// The rectangle of least area around a convex polygon: its unit x axis, and its lower and upper corner in its own axes. An upright one
-/// that is as small to a thousandth is preferred.
+/// The rectangle of least area around a convex polygon: its unit x axis, and its lower and upper
+/// corner in its own axes. An upright one that is as small to a thousandth is preferred.
 fn least_rectangle(hull: &[DVec2]) -> (DVec2, DVec2, DVec2) {
     let around = |axis: DVec2| {
         let turned = hull

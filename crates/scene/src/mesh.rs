@@ -3,13 +3,15 @@
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
-/// A triangle mesh. Positions are *welded* (bit-equal positions are stored once, -0 counts as 0), so that an index names a
-/// point in space and adjacency can be read off `triangles`; normals are indexed apart, so that a crease costs no duplicate position.
+/// A triangle mesh. Positions are *welded* (bit-equal positions are stored once, -0 counts as 0),
+/// so that an index names a point in space and adjacency can be read off `triangles`; normals are
+/// indexed apart, so that a crease costs no duplicate position.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     /// Welded positions, world space, finite.
     pub positions: Vec<Vec3>,
-    /// Three position indices per triangle, counter-clockwise seen from outside. The index in this list is the *primitive id*.
+    /// Three position indices per triangle, counter-clockwise seen from outside. The index in this
+    /// list is the *primitive id*.
     pub triangles: Vec<[u32; 3]>,
     /// Vertex normals, unit length.
     pub normals: Vec<Vec3>,

@@ -18,9 +18,11 @@ pub struct ImportReport {
     pub lines: usize,
     /// Vertices that became another's after welding.
     pub vertices_welded: usize,
-    /// Faces without a normal at every corner: they got the geometric normal of each of their triangles.
+    /// Faces without a normal at every corner: they got the geometric normal of each of their
+    /// triangles.
     pub faces_without_normals: usize,
-    /// Corners whose normal had no direction (zero or not finite) and was replaced by the geometric one.
+    /// Corners whose normal had no direction (zero or not finite) and was replaced by the geometric
+    /// one.
     pub normals_replaced: usize,
     /// Triangles dropped because two of their corners are the same point.
     pub dropped: Degenerate,

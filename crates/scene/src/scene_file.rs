@@ -7,15 +7,20 @@
 //!     description: "a park bench in the evening",
 //!     mesh: Generated("park"),
 //!     light: (direction: (0.744, -0.408, 0.527)),
-//!     views: [(name: "bench", eye: (-23, 18, 30), direction: (0.4, -0.6, -0.7), fov_y_degrees: 60, near: 1, far: 400)],
+//!     views: [(
+//!         name: "bench", eye: (-23, 18, 30), direction: (0.4, -0.6, -0.7),
+//!         fov_y_degrees: 60, near: 1, far: 400,
+//!     )],
 //! )"#;
 //! let scene = skiagraph_scene::SceneFile::parse(text, "garden.ron")?;
 //! assert_eq!(scene.views[0].name, "bench");
 //! # Ok::<(), skiagraph_scene::SceneError>(())
 //! ```
 
-use crate::{DirectionalLight, QuadDiagonal, SceneError, View};
-use glam::DVec3;
+use crate::{
+    camera::View, error::SceneError, generate::named, light::DirectionalLight,
+    obj::options::QuadDiagonal,
+};
 use serde::{Deserialize, Deserializer, de::Error};
 use std::collections::HashSet;
 
@@ -47,7 +52,8 @@ pub struct SceneFile {
 pub enum MeshSource {
     /// A Wavefront OBJ file.
     Obj {
-        /// Path with forward slashes, searched beside the scene file, in the assets folders and in the cache folder.
+        /// Path with forward slashes, searched beside the scene file, in the assets folders and in
+        /// the cache folder.
         file: String,
         /// Groups that are left out, by name.
         #[serde(default)]
@@ -55,7 +61,8 @@ pub enum MeshSource {
         /// How polygons are split.
         #[serde(default)]
         quads: QuadDiagonal,
-        /// Where the file can be downloaded, for the message that it is missing; absent for a mesh of one's own.
+        /// Where the file can be downloaded, for the message that it is missing; absent for a mesh
+        /// of one's own.
         #[serde(default, deserialize_with = "given")]
         source: Option<String>,
     },
@@ -67,8 +74,8 @@ impl SceneFile {
     /// Reads the text of a scene file; `file` only serves messages.
     ///
     /// # Errors
-    /// [`SceneError::SceneFile`] with line and column for anything that is not RON, not a scene's field, or makes no
-    /// camera or light.
+    /// [`SceneError::SceneFile`] with line and column for anything that is not RON, not a scene's
+    /// field, or makes no camera or light.
     pub fn parse(text: &str, file: &str) -> Result<Self, SceneError> {
         let options = ron::Options::default();
         options
@@ -138,10 +145,10 @@ fn format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
 
 fn generator<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
     let name = String::deserialize(deserializer)?;
-    if crate::generate::NAMES.contains(&name.as_str()) {
+    if named::NAMES.contains(&name.as_str()) {
         return Ok(name);
     }
-    let known = crate::generate::NAMES.join(", ");
+    let known = named::NAMES.join(", ");
     Err(D::Error::custom(format!(
         "no generated mesh is called {name:?}; there are: {known}"
     )))
@@ -166,76 +173,4 @@ fn views<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<View>, D::Err
         return Err(D::Error::custom(format!("two views are called {name:?}")));
     }
     Ok(views)
-}
-
-impl View {
-    /// Whether a camera can be made of this view.
-    ///
-    /// # Errors
-    /// What is wrong with it, naming the view.
-    pub fn check(&self) -> Result<(), String> {
-        let name = &self.name;
-        if !self.eye.is_finite() {
-            return Err(format!("view {name:?}: the eye {} is not finite", self.eye));
-        }
-        let (Some(direction), Some(up)) = (unit(self.direction), unit(self.up)) else {
-            return Err(format!(
-                "view {name:?}: direction {} and up {} must be finite and longer than 0",
-                self.direction, self.up
-            ));
-        };
-        // Below this sine the right vector would be mostly rounding error.
-        if direction.cross(up).length() < 1e-9 {
-            return Err(format!(
-                "view {name:?}: up {} is parallel to the direction {}",
-                self.up, self.direction
-            ));
-        }
-        if !(self.fov_y_degrees > 0.0 && self.fov_y_degrees < 180.0) {
-            return Err(format!(
-                "view {name:?}: fov_y_degrees is {}, expected more than 0 and less than 180",
-                self.fov_y_degrees
-            ));
-        }
-        if !(self.near > 0.0 && self.near < self.far && self.far.is_finite()) {
-            return Err(format!(
-                "view {name:?}: near is {} and far is {}, expected 0 < near < far",
-                self.near, self.far
-            ));
-        }
-        // Shaders get it in 32 bits.
-        let camera = self.camera([1, 1]).view_projection();
-        if !camera.as_mat4().is_finite() {
-            return Err(format!(
-                "view {name:?}: its camera overflows 32-bit numbers with eye {}, fov_y_degrees {}, near {} and far {}; \
-                 bring them nearer to 1",
-                self.eye, self.fov_y_degrees, self.near, self.far
-            ));
-        }
-        Ok(())
-    }
-}
-
-impl DirectionalLight {
-    /// Whether the light has a direction.
-    ///
-    /// # Errors
-    /// What is wrong with it.
-    pub fn check(&self) -> Result<(), String> {
-        match unit(self.direction) {
-            Some(_) => Ok(()),
-            None => Err(format!(
-                "the light's direction {} must be finite and longer than 0",
-                self.direction
-            )),
-        }
-    }
-}
-
-fn unit(vector: DVec3) -> Option<DVec3> {
-    if vector.is_finite() {
-        vector.try_normalize()
-    } else {
-        None
-    }
 }

@@ -4,8 +4,8 @@ use glam::Vec3;
 use std::collections::HashMap;
 
 /// Vectors met so far, each once, in the order of their first appearance.
-#[derive(Default)]
-pub(crate) struct Welder {
+#[derive(Clone, Debug, Default)]
+pub struct Welder {
     /// The vectors.
     pub values: Vec<Vec3>,
     by_bits: HashMap<[u32; 3], u32>,

@@ -1,4 +1,5 @@
-//! The hierarchy holds every triangle once, in boxes that contain it, at bounded depth, for meshes of any kind.
+//! The hierarchy holds every triangle once, in boxes that contain it, at bounded depth, for meshes
+//! of any kind.
 
 use glam::Vec3;
 use proptest::prelude::*;
@@ -115,7 +116,8 @@ fn triangles_without_area() {
 
 #[test]
 fn geometrically_growing_triangles_stay_within_the_depth() {
-    // Each triangle is 1.3 times as large as the one before, all from one corner: the best tree by surface area is a chain.
+    // Each triangle is 1.3 times as large as the one before, all from one corner: the best tree by
+    // surface area is a chain.
     let nested: Vec<_> = (0..400)
         .map(|i| 1.3f32.powi(i - 200))
         .map(|size| {
@@ -153,7 +155,11 @@ fn two_builds_are_equal() {
 
 proptest! {
     #[test]
-    fn any_soup(count in 0usize..200, seed: u32, size in prop_oneof![Just(0.0f32), Just(1e-3), Just(1.0), Just(200.0)]) {
+    fn any_soup(
+        count in 0usize..200,
+        seed: u32,
+        size in prop_oneof![Just(0.0f32), Just(1e-3), Just(1.0), Just(200.0)],
+    ) {
         checked(&mesh(&soup(count, seed, size)));
     }
 }

@@ -1,4 +1,5 @@
-//! OBJ and scene files made to break us: each gives a located answer, or is rightly accepted, in bounded time and memory.
+//! OBJ and scene files made to break us: each gives a located answer, or is rightly accepted, in
+//! bounded time and memory.
 
 #[path = "../../../tests/support/bounds.rs"]
 mod bounds;
@@ -40,7 +41,8 @@ fn assert_error(text: impl AsRef<[u8]>, place: &str, part: &str) {
     assert!(error.len() < 1000, "it says {} bytes", error.len());
 }
 
-const HOUSE: &str = "# a house\no house\nv 0 0 0\nv 1 0 0\nv 1 1 0 1.0\nv 0 1 0 0.5 0.5 0.5\nvn 0 0 1\ng wall\nusemtl brick\n\
+const HOUSE: &str = "# a house\no house\nv 0 0 0\nv 1 0 0\nv 1 1 0 1.0\nv 0 1 0 0.5 0.5 0.5\nvn 0 \
+    0 1\ng wall\nusemtl brick\n\
     f 1//1 2//1 3//1 4//1\nf 1/1/1 2/1/1 \\\n 4/1/-1\nl 1 2 3\np 1\n";
 
 /// Cut off after any byte it is a smaller mesh, or the error names the file.
@@ -183,7 +185,8 @@ fn two_hundred_thousand_groups() {
     assert_eq!((mesh.triangles.len(), report.faces_left_out), (1, 199_999));
 }
 
-/// The largest numbers that a model may have and the smallest that there are make a mesh with a hierarchy.
+/// The largest numbers that a model may have and the smallest that there are make a mesh with a
+/// hierarchy.
 #[test]
 fn numbers_at_their_ends() {
     let text = "v 3e11 0 0\nv -3e11 3e11 0\nv 0 -3e11 3e11\nv 1e-45 0 0\nv 0 1e-45 0\nv 0 0 1e-45\n\
@@ -272,11 +275,7 @@ fn views_that_make_no_camera() {
         let error = parse_scene(&SCENE.replace(from, to))
             .unwrap_err()
             .to_string();
-        let line = if from == "direction: (0, -1, 0)" {
-            3
-        } else {
-            4
-        };
+        let line = 4 - usize::from(from == "direction: (0, -1, 0)");
         assert!(
             error.starts_with(&format!("garden.ron:{line}:")) && error.contains(part),
             "{to}: {error}"
@@ -303,7 +302,8 @@ fn scene_files_of_nothing_and_without_end() {
     // Time must not grow with the square of the views.
     let view = |i: usize| {
         format!(
-            "(name: \"{i}\", eye: (0, 5, 0), direction: (0, 0, 1), fov_y_degrees: 60, near: 1, far: 100),"
+            "(name: \"{i}\", eye: (0, 5, 0), direction: (0, 0, 1), fov_y_degrees: 60, near: 1, \
+             far: 100),"
         )
     };
     let views: String = (0..50_000).map(view).collect();
@@ -358,7 +358,8 @@ fn files_that_are_no_text_or_too_long() {
     }
 }
 
-/// A device has length 0 and gives bytes for ever; to open a pipe into which nobody writes takes for ever.
+/// A device has length 0 and gives bytes for ever; to open a pipe into which nobody writes takes
+/// for ever.
 #[test]
 #[cfg(unix)]
 fn devices_and_pipes() {
@@ -388,14 +389,16 @@ fn devices_and_pipes() {
         assert_eq!(
             said_of_file(&file(name)),
             format!(
-                "cannot read {}: it is a device, a pipe or a socket, whose length nobody knows: copy what it gives into a file, and name that",
+                "cannot read {}: it is a device, a pipe or a socket, whose length nobody knows: \
+                 copy what it gives into a file, and name that",
                 file(read).display()
             )
         );
     }
 }
 
-/// The kernel's files say that they are regular and of no length, whatever they hold: what is read counts.
+/// The kernel's files say that they are regular and of no length, whatever they hold: what is read
+/// counts.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_file_that_is_longer_than_it_says() {

@@ -1,4 +1,5 @@
-//! The generated park: what its nine views promise, and that its parts are closed solids that touch nothing.
+//! The generated park: what its nine views promise, and that its parts are closed solids that touch
+//! nothing.
 
 mod common;
 
@@ -89,12 +90,12 @@ fn big_triangles_in_the_trees_and_tiny_ones_in_the_flowers() {
 #[test]
 fn no_flat_face_of_the_furniture_lies_along_the_light() {
     let (scene, _) = &*PARK;
-    let towards = scene.light.towards();
+    let to_light = scene.light.to_light();
     for name in ["lawn", "bench", "planter"] {
         let group = scene.mesh.groups.iter().find(|group| group.name == name);
         for primitive in group.unwrap().triangles.clone() {
             let [a, b, c] = scene.mesh.corners(primitive);
-            let cosine = (b - a).cross(c - a).normalize().dot(towards);
+            let cosine = (b - a).cross(c - a).normalize().dot(to_light);
             assert!(cosine.abs() > 0.03, "{name}, near {a}: {cosine}");
         }
     }
@@ -106,7 +107,8 @@ fn area([a, b, c]: [DVec3; 3]) -> f64 {
 
 #[test]
 fn the_same_bits_everywhere() {
-    // FNV-1a over positions and indices. Change it only together with the park's design: measurements refer to it.
+    // FNV-1a over positions and indices. Change it only together with the park's design:
+    // measurements refer to it.
     let mesh = &PARK.0.mesh;
     let words = mesh
         .positions
@@ -219,8 +221,8 @@ fn no_two_parts_touch() {
     );
 }
 
-/// Distance of two triangles, 0 where they meet: the nearest points lie on two edges, or on a corner and a face; where
-/// the triangles meet, an edge of one pierces the other.
+/// Distance of two triangles, 0 where they meet: the nearest points lie on two edges, or on a
+/// corner and a face; where the triangles meet, an edge of one pierces the other.
 fn triangle_distance(a: [DVec3; 3], b: [DVec3; 3]) -> f64 {
     let mut nearest = f64::INFINITY;
     for (one, other) in [(a, b), (b, a)] {
@@ -255,7 +257,8 @@ fn point_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let inside = [(a, b), (b, c), (c, a)]
         .iter()
         .all(|&(from, to)| (to - from).cross(foot - from).dot(normal) >= 0.0);
-    // Where the foot lies outside, two edges, or the corner and an edge, are nearer: `segment_segment` finds them.
+    // Where the foot lies outside, two edges, or the corner and an edge, are nearer:
+    // `segment_segment` finds them.
     if inside {
         (p - foot).length()
     } else {
@@ -358,8 +361,8 @@ fn nearest(scene: &Scene, bvh: &Bvh, origin: DVec3, direction: DVec3) -> Option<
     nearest
 }
 
-/// The dissertation's share of pixels that face the light, and of these in shadow, in per cent at 1024² (tables 27 to
-/// 34; it prints none for `flowers_with`, whose text gives 99 and 41).
+/// The dissertation's share of pixels that face the light, and of these in shadow, in per cent at
+/// 1024² (tables 27 to 34; it prints none for `flowers_with`, whose text gives 99 and 41).
 const DISSERTATION: [(&str, f64, f64); 9] = [
     ("bench_side", 94.9, 27.1),
     ("bench_with", 99.9, 34.9),
@@ -375,7 +378,7 @@ const DISSERTATION: [(&str, f64, f64); 9] = [
 #[test]
 fn the_views_show_about_as_much_shadow_as_the_dissertations() {
     let (scene, bvh) = &*PARK;
-    let towards = scene.light.towards();
+    let to_light = scene.light.to_light();
     for (name, facing_share, shadow_share) in DISSERTATION {
         let camera = scene.view(name).unwrap().camera([96, 96]);
         let (mut facing, mut shadow) = (0, 0);
@@ -383,12 +386,12 @@ fn the_views_show_about_as_much_shadow_as_the_dissertations() {
             let Some(hit) = nearest(scene, bvh, camera.eye, camera.pixel_direction(x, y)) else {
                 continue;
             };
-            if hit.normal(&scene.mesh).dot(towards) <= 0.0 {
+            if hit.normal(&scene.mesh).dot(to_light) <= 0.0 {
                 continue;
             }
             facing += 1;
             let point = camera.eye + camera.pixel_direction(x, y) * hit.t;
-            let lit = cast(&scene.mesh, bvh, point, towards, |blocker| {
+            let lit = cast(&scene.mesh, bvh, point, to_light, |blocker| {
                 blocker.primitive == hit.primitive
             });
             shadow += i32::from(!lit);

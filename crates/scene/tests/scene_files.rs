@@ -32,28 +32,43 @@ fn a_good_file() {
         ("garden", "")
     );
     assert_eq!(scene.views[0].up, glam::DVec3::Y);
-    assert_eq!(scene.light.towards(), glam::DVec3::Y);
+    assert_eq!(scene.light.to_light(), glam::DVec3::Y);
 }
 
 #[test]
 fn broken_files_are_explained_with_line_and_column() {
-    assert_snapshot!(error("near: 1", "naer: 1"), @"garden.ron:7:78: Unexpected field named `naer` in `View`, expected one of `name`, `eye`, `direction`, `up`, `fov_y_degrees`, `near`, or `far` instead");
-    assert_snapshot!(error("name: \"garden\",", ""), @"garden.ron:9:1: Unexpected missing field named `name` in `SceneFile`");
-    assert_snapshot!(error("format: 1", "format: 2"), @"garden.ron:2:13: format 2 is unknown; this program reads format 1");
-    assert_snapshot!(error("\"park\"", "\"parc\""), @r#"garden.ron:4:22: no generated mesh is called "parc"; there are: park"#);
-    assert_snapshot!(error("Generated(", "Made("), @"garden.ron:4:11: Unexpected variant named `Made` in enum `MeshSource`, expected either `Obj` or `Generated` instead");
-    assert_snapshot!(error("(0, -1, 0)", "(0, -1)"), @"garden.ron:5:30: Expected a tuple of size 3 but found 2 elements instead");
-    assert_snapshot!(error("(0, -1, 0)", "(0, 0, 0)"), @"garden.ron:5:33: the light's direction [0, 0, 0] must be finite and longer than 0");
-    assert_snapshot!(error("direction: (0, 0, 1)", "direction: (0, NaN, 1)"), @r#"garden.ron:7:97: view "a": direction [0, NaN, 1] and up [0, 1, 0] must be finite and longer than 0"#);
-    assert_snapshot!(error("direction: (0, 0, 1)", "direction: (0, -2, 0)"), @r#"garden.ron:7:96: view "a": up [0, 1, 0] is parallel to the direction [0, -2, 0]"#);
-    assert_snapshot!(error("fov_y_degrees: 60", "fov_y_degrees: 180"), @r#"garden.ron:7:96: view "a": fov_y_degrees is 180, expected more than 0 and less than 180"#);
-    assert_snapshot!(error("near: 1,", "near: 0,"), @r#"garden.ron:7:95: view "a": near is 0 and far is 100, expected 0 < near < far"#);
-    assert_snapshot!(error("far: 100", "far: 1"), @r#"garden.ron:7:93: view "a": near is 1 and far is 1, expected 0 < near < far"#);
-    assert_snapshot!(error("(0, 5, 0)", "(0, inf, 0)"), @r#"garden.ron:7:97: view "a": the eye [0, inf, 0] is not finite"#);
+    assert_snapshot!(error("near: 1", "naer: 1"), @"garden.ron:7:78: Unexpected field named \
+        `naer` in `View`, expected one of `name`, `eye`, `direction`, `up`, `fov_y_degrees`, \
+        `near`, or `far` instead");
+    assert_snapshot!(error("name: \"garden\",", ""), @"garden.ron:9:1: Unexpected missing field \
+        named `name` in `SceneFile`");
+    assert_snapshot!(error("format: 1", "format: 2"), @"garden.ron:2:13: format 2 is unknown; \
+        this program reads format 1");
+    assert_snapshot!(error("\"park\"", "\"parc\""), @"garden.ron:4:22: no generated mesh is called \
+        \"parc\"; there are: park");
+    assert_snapshot!(error("Generated(", "Made("), @"garden.ron:4:11: Unexpected variant named \
+        `Made` in enum `MeshSource`, expected either `Obj` or `Generated` instead");
+    assert_snapshot!(error("(0, -1, 0)", "(0, -1)"), @"garden.ron:5:30: Expected a tuple of size \
+        3 but found 2 elements instead");
+    assert_snapshot!(error("(0, -1, 0)", "(0, 0, 0)"), @"garden.ron:5:33: the light's direction \
+        [0, 0, 0] must be finite and longer than 0");
+    assert_snapshot!(error("direction: (0, 0, 1)", "direction: (0, NaN, 1)"), @"garden.ron:7:97: \
+        view \"a\": direction [0, NaN, 1] and up [0, 1, 0] must be finite and longer than 0");
+    assert_snapshot!(error("direction: (0, 0, 1)", "direction: (0, -2, 0)"), @"garden.ron:7:96: \
+        view \"a\": up [0, 1, 0] is parallel to the direction [0, -2, 0]");
+    assert_snapshot!(error("fov_y_degrees: 60", "fov_y_degrees: 180"), @"garden.ron:7:96: view \
+        \"a\": fov_y_degrees is 180, expected more than 0 and less than 180");
+    assert_snapshot!(error("near: 1,", "near: 0,"), @"garden.ron:7:95: view \"a\": near is 0 and \
+        far is 100, expected 0 < near < far");
+    assert_snapshot!(error("far: 100", "far: 1"), @"garden.ron:7:93: view \"a\": near is 1 and far \
+        is 1, expected 0 < near < far");
+    assert_snapshot!(error("(0, 5, 0)", "(0, inf, 0)"), @"garden.ron:7:97: view \"a\": the eye [0, \
+        inf, 0] is not finite");
     assert_snapshot!(error("    ],\n)", "    ],"), @"garden.ron:8:6: Unexpected end of RON");
     let view = GOOD.lines().nth(6).unwrap();
     assert_snapshot!(error(view, ""), @"garden.ron:8:5: a scene needs at least one view");
-    assert_snapshot!(error(view, &format!("{view}\n{view}")), @r#"garden.ron:9:5: two views are called "a""#);
+    assert_snapshot!(error(view, &format!("{view}\n{view}")), @"garden.ron:9:5: two views are \
+        called \"a\"");
 }
 
 fn request(argument: impl AsRef<Path>) -> SceneRequest {
@@ -129,7 +144,8 @@ fn a_broken_file_is_listed_with_its_fault() {
         scenes: folder.path().to_owned(),
         assets: Vec::new(),
     };
-    assert_snapshot!(library.list()[0].description, @"bad:1:10: format 7 is unknown; this program reads format 1");
+    assert_snapshot!(library.list()[0].description, @"bad:1:10: format 7 is unknown; this program \
+        reads format 1");
 }
 
 #[test]
@@ -138,7 +154,9 @@ fn unknown_scenes_and_missing_files() {
         scenes: "scenes".into(),
         assets: Vec::new(),
     };
-    assert_snapshot!(library.load(&request("parc")).unwrap_err(), @r#"no scene "parc": it is neither the path of a .ron or .obj file, nor the name of a .ron file in scenes, nor one of the built-in scenes park, sponza"#);
+    assert_snapshot!(library.load(&request("parc")).unwrap_err(), @"no scene \"parc\": it is \
+        neither the path of a .ron or .obj file, nor the name of a .ron file in scenes, nor one of \
+        the built-in scenes park, sponza");
     assert!(matches!(
         library.load(&request("nowhere/parc.ron")),
         Err(SceneError::Read { .. })
@@ -221,9 +239,11 @@ fn a_mesh_of_ones_own_has_no_source_and_a_folder_is_no_mesh() {
     put it at "t.obj" below a folder that the environment variable SKIAGRAPH_ASSETS names
     "#);
     fs::create_dir(folder.path().join("t.obj")).unwrap();
-    assert_snapshot!(error(r#"Obj(file: "t.obj")"#), @r#"the mesh of scene "garden": OWN/t.obj is a folder, expected an .obj file"#);
+    assert_snapshot!(error(r#"Obj(file: "t.obj")"#), @"the mesh of scene \"garden\": OWN/t.obj is \
+        a folder, expected an .obj file");
     fs::write(folder.path().join("u.obj"), TRIANGLE).unwrap();
-    assert_snapshot!(error(r#"Obj(file: "u.obj", leave_out: ["roof"])"#), @r#"OWN/u.obj: there is no group "roof" to leave out; the file has no groups"#);
+    assert_snapshot!(error(r#"Obj(file: "u.obj", leave_out: ["roof"])"#), @"OWN/u.obj: there is no \
+        group \"roof\" to leave out; the file has no groups");
     fs::write(
         &scene,
         GOOD.replace(r#"Generated("park")"#, r#"Obj(file: "u.obj")"#),
@@ -238,7 +258,10 @@ fn a_bare_obj_needs_a_view_and_a_light() {
     let path = folder.path().join("T.OBJ");
     fs::write(&path, TRIANGLE).unwrap();
     let library = SceneLibrary::default();
-    assert_snapshot!(library.load(&request("t.obj")).unwrap_err(), @"t.obj: an .obj file holds no view and no light: give --eye x,y,z --look x,y,z (direction) and --light x,y,z (the direction in which the light travels); --fov DEGREES, --near and --far if the defaults do not suit it");
+    assert_snapshot!(library.load(&request("t.obj")).unwrap_err(), @"t.obj: an .obj file holds no \
+        view and no light: give --eye x,y,z --look x,y,z (direction) and --light x,y,z (the \
+        direction in which the light travels); --fov DEGREES, --near and --far if the defaults do \
+        not suit it");
     let (scene, report) = library
         .load(&SceneRequest {
             obj: Some(setup()),
@@ -261,10 +284,13 @@ fn a_bare_obj_needs_a_view_and_a_light() {
         }),
         ..request("t.obj")
     };
-    assert_snapshot!(library.load(&bad).unwrap_err(), @r#"t.obj: view "a": direction [0, 0, 0] and up [0, 1, 0] must be finite and longer than 0"#);
+    assert_snapshot!(library.load(&bad).unwrap_err(), @"t.obj: view \"a\": direction [0, 0, 0] and \
+        up [0, 1, 0] must be finite and longer than 0");
     let unwanted = SceneRequest {
         obj: Some(setup()),
         ..request("park")
     };
-    assert_snapshot!(library.load(&unwanted).unwrap_err(), @r#"scene "park" has its own views and light: a view and a light (--eye, --look, --light …) can only be given with a bare .obj file"#);
+    assert_snapshot!(library.load(&unwanted).unwrap_err(), @"scene \"park\" has its own views and \
+        light: a view and a light (--eye, --look, --light …) can only be given with a bare .obj \
+        file");
 }

@@ -39,7 +39,7 @@ fn sponza_has_the_dissertations_triangles() {
     assert!(bvh.depth < 50, "{}", bvh.depth);
     // The view's facing-away share at a small size: the dissertation's is 20.9 % at every size.
     let camera = scene.views[0].camera([128, 128]);
-    let towards = scene.light.towards();
+    let to_light = scene.light.to_light();
     let mut facing = 0;
     for (x, y) in (0..128).flat_map(|x| (0..128).map(move |y| (x, y))) {
         let mut nearest: Option<common::Hit> = None;
@@ -55,7 +55,7 @@ fn sponza_has_the_dissertations_triangles() {
                 true
             },
         );
-        facing += i32::from(nearest.unwrap().normal(&scene.mesh).dot(towards) > 0.0);
+        facing += i32::from(nearest.unwrap().normal(&scene.mesh).dot(to_light) > 0.0);
     }
     let share = f64::from(facing) / (128.0 * 128.0);
     assert!((share - 829_652.0 / 1_048_576.0).abs() < 0.003, "{share}");

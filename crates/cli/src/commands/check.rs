@@ -1,28 +1,42 @@
 //! `skiagraph check`: every diagnostic of some graphs, without a GPU.
 
-use crate::{
-    args::{CheckArgs, CheckFormat},
-    check_json::{CheckReport, FileReport},
-    error::{CliError, note, print},
-    preset::{self, Faults},
-};
-use glam::{DVec3, Vec3};
-use skiagraph_graph::{Diagnostics, Graph, Plan, PlanRequest, Registry, Sources};
-use skiagraph_passes::SceneProvider;
-use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
-use std::sync::Arc;
+use crate::args::commands::{CheckArgs, CheckFormat};
+use crate::args::shared::GpuArgs;
+use crate::error::CliError;
+use crate::files::json::to_text;
+use crate::graphs::faults::{GraphFaults, warn};
+use crate::graphs::planning::{self, Capabilities};
+use crate::graphs::preset;
+use crate::measuring::device;
+use crate::records::check::{CheckReport, FileReport};
+use crate::terminal::console::{note, print};
+use skiagraph_graph::{Diagnostics, Graph, Plan, Sources};
+use skiagraph_passes::registry;
 
-/// Loads and plans each graph under default limits and says what is wrong with it.
+/// Loads and plans each graph and says what is wrong with it: on whatever adapter, or on the one
+/// that the arguments name.
 ///
 /// # Errors
-/// Every fault of every graph together; warnings are printed and are no error.
-pub fn check(args: &CheckArgs) -> Result<(), CliError> {
+/// Every fault of every graph together; warnings are printed and are no error. No adapter of that
+/// name.
+pub fn check(args: &CheckArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let sources = preset::sources();
-    let registry = skiagraph_passes::registry();
+    let registry = registry();
+    let paths: Vec<_> = args
+        .graphs
+        .iter()
+        .map(|name| preset::locate(name, &sources))
+        .collect();
+    let adapter = match gpu.adapter {
+        Some(_) => Some(open(gpu, paths.iter().flatten(), &sources)?),
+        None => None,
+    };
     let mut found = Vec::new();
-    for argument in &args.graphs {
-        let checked = match preset::locate(argument, &sources) {
-            Ok(path) => all_at_once(&path, &registry, &sources).map_err(Fault::Graph),
+    for (argument, path) in args.graphs.iter().zip(paths) {
+        let checked = match path {
+            Ok(path) => {
+                planning::check(&path, &registry, &sources, adapter.as_ref()).map_err(Fault::Graph)
+            }
             Err(error) => Err(Fault::Missing(error.to_string())),
         };
         found.push((argument.as_str(), checked));
@@ -31,6 +45,17 @@ pub fn check(args: &CheckArgs) -> Result<(), CliError> {
         CheckFormat::Text => text(&found),
         CheckFormat::Json => json(&found),
     }
+}
+
+/// What the adapter that the arguments name can do for these graphs.
+fn open<'a>(
+    gpu: &GpuArgs,
+    paths: impl Iterator<Item = &'a String>,
+    sources: &dyn Sources,
+) -> Result<Capabilities, CliError> {
+    let graphs = paths.filter_map(|path| Graph::load(path, &registry(), sources).ok());
+    let gpu = device::open(gpu, &graphs.collect::<Vec<_>>())?;
+    Ok(Capabilities::of(&gpu))
 }
 
 /// Why an argument cannot be used.
@@ -45,16 +70,16 @@ enum Fault {
 type Found<'a> = (&'a str, Result<(Graph, Plan), Fault>);
 
 fn text(found: &[Found]) -> Result<(), CliError> {
-    let mut faults = Faults::default();
+    let mut faults = GraphFaults::default();
     let mut fine = String::new();
     let mut missing = Vec::new();
     for (argument, checked) in found {
         match checked {
             Ok((graph, plan)) => {
-                preset::warn(graph, plan.warnings());
+                warn(graph, plan.warnings());
                 let passes = plan.passes().len();
                 let noun = if passes == 1 { "pass" } else { "passes" };
-                fine.push_str(&format!("{argument}: fine, {passes} {noun}\n"));
+                fine += &format!("{argument}: fine, {passes} {noun}\n");
             }
             Err(Fault::Graph(diagnostics)) => faults.add(argument, diagnostics),
             Err(Fault::Missing(message)) => missing.push(message.as_str()),
@@ -75,12 +100,13 @@ fn json(found: &[Found]) -> Result<(), CliError> {
     let report = |(argument, checked): &Found| match checked {
         Ok((graph, plan)) => {
             let warnings = graph.warnings().iter().chain(plan.warnings());
-            FileReport::fine(argument, plan.passes().len(), warnings)
+            FileReport::new(argument, Some(plan.passes().len()), warnings)
         }
-        Err(Fault::Graph(diagnostics)) => FileReport::faulty(argument, diagnostics.iter()),
+        Err(Fault::Graph(diagnostics)) => FileReport::new(argument, None, diagnostics.iter()),
         Err(Fault::Missing(message)) => FileReport::missing(argument, message.clone()),
     };
-    print(&CheckReport::new(found.iter().map(report).collect()).to_json())?;
+    let report = CheckReport::new(found.iter().map(report).collect());
+    print(&to_text(&report))?;
     let faulty = found.iter().filter(|(_, checked)| checked.is_err()).count();
     match faulty {
         0 => Ok(()),
@@ -89,64 +115,4 @@ fn json(found: &[Found]) -> Result<(), CliError> {
             found.len()
         ))),
     }
-}
-
-const VIEWPORT: [u32; 2] = [64, 64];
-
-/// Everything that is wrong with a graph, as far as it can be said without a scene and an adapter.
-pub fn all_at_once(
-    path: &str,
-    registry: &Registry,
-    sources: &dyn Sources,
-) -> Result<(Graph, Plan), Diagnostics> {
-    let provider = provider(VIEWPORT);
-    let mut request = PlanRequest::new(VIEWPORT, &provider);
-    // Without an adapter, those that the graph requires are taken to be there; all of them if it does not even say which.
-    request.features = Graph::load(path, registry, sources)
-        .map_or(wgpu::Features::all(), |graph| graph.features());
-    Graph::check(path, registry, sources, &request)
-}
-
-/// Describes all that a scene can give, without a scene.
-pub fn provider(viewport: [u32; 2]) -> SceneProvider {
-    let (scene, view) = one_triangle();
-    let mut provider = SceneProvider::new(Arc::new(scene));
-    provider.set_view(&view, viewport);
-    provider
-}
-
-/// The least scene that has all that a provider may be asked for.
-fn one_triangle() -> (Scene, View) {
-    let view = View {
-        name: "main".into(),
-        eye: DVec3::ZERO,
-        direction: DVec3::NEG_Z,
-        up: DVec3::Y,
-        fov_y_degrees: 60.0,
-        near: 0.1,
-        far: 10.0,
-    };
-    let mesh = Mesh {
-        positions: vec![
-            Vec3::new(0.0, 0.0, -1.0),
-            Vec3::new(1.0, 0.0, -1.0),
-            Vec3::new(0.0, 1.0, -1.0),
-        ],
-        triangles: vec![[0, 1, 2]],
-        normals: vec![Vec3::Z],
-        normal_indices: vec![[0, 0, 0]],
-        groups: Vec::new(),
-    };
-    let light = DirectionalLight {
-        direction: DVec3::NEG_Z,
-    };
-    (
-        Scene {
-            name: "check".into(),
-            mesh,
-            views: vec![view.clone()],
-            light,
-        },
-        view,
-    )
 }

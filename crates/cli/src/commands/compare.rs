@@ -1,23 +1,24 @@
 //! `skiagraph compare`: every method on every view, viewport and map size, speed beside error.
 
-mod comparison;
-
-use crate::{
-    args::{CompareArgs, GpuArgs, Images},
-    contract,
-    error::{CliError, note},
-    files::check_folder,
-    interrupt,
-    measure::{self, Method, check_stems, reference_stem, stem},
-    parse::{Size, unique},
-    preset, published,
-    reference::Primary,
-    render,
-    results::{Results, Scene as SceneResult},
-    stage::Stage,
-};
-use comparison::{Comparison, Subject};
-use skiagraph_graph::gpu::Gpu;
+use crate::args::commands::{CompareArgs, Format, Images};
+use crate::args::shared::GpuArgs;
+use crate::args::values::{Size, unique};
+use crate::error::CliError;
+use crate::files::json;
+use crate::files::write::check_folder;
+use crate::graphs::method::{self, Method};
+use crate::graphs::planning::Capabilities;
+use crate::graphs::{contract, preset};
+use crate::measuring::comparison::{Comparison, ComparisonSetup};
+use crate::measuring::reference::PrimaryVisibility;
+use crate::measuring::scene_selection::SceneSelection;
+use crate::measuring::{date, device};
+use crate::pictures::run_pictures::{check_stems, reference_stem, stem};
+use crate::records::results::{PROGRAM, Results};
+use crate::reporting::results_csv::save;
+use crate::reporting::{markdown, published, results_table};
+use crate::terminal::console::{note, print};
+use crate::terminal::interrupt;
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::View;
 use std::sync::Arc;
@@ -25,55 +26,51 @@ use std::sync::Arc;
 /// Checks everything, then runs the comparison.
 ///
 /// # Errors
-/// Faulty graphs, a scene that cannot be loaded, no GPU, earlier results that cannot be resumed, Ctrl-C, no method that runs on this
-/// adapter.
-pub fn compare(args: &CompareArgs, asked: &GpuArgs) -> Result<(), CliError> {
-    let published = published::read(&args.beside)?;
+/// Faulty graphs, a scene that cannot be loaded, no GPU, earlier results that cannot be resumed,
+/// Ctrl-C, no method that runs on this adapter.
+pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
+    let published = published::read(&args.published)?;
     let sources = preset::sources();
-    let names = if args.presets.is_empty() {
-        skiagraph_passes::presets()
-            .into_iter()
-            .map(|preset| preset.name)
-            .collect()
-    } else {
-        args.presets.clone()
-    };
+    let names = preset::named_or_all(&args.presets, &sources);
     let presets = contract::load_all(&names, &sources)?;
-    let methods = measure::methods(&presets, &args.params, &args.map_size)?;
+    let methods = method::methods(&presets, &args.params, &args.map_size)?;
     if !args.map_size.is_empty() && methods.iter().all(|method| method.map_size.is_none()) {
         note("--map-size has no effect: none of these graphs has the param `map_size`");
     }
-    let primary = Primary::load(&sources)?;
-    let wanted = presets.iter().map(|preset| preset.graph.features());
-    let gpu = render::open(
-        asked,
-        wanted.fold(wgpu::Features::empty(), |all, own| all | own),
-    )?;
-    let Stage { scene, views } = Stage::load(&args.scene)?;
+    let primary = PrimaryVisibility::load(&sources)?;
+    let gpu = device::open(gpu, preset::graphs(&presets))?;
+    let features = gpu.device.features();
+    let methods: Vec<Method> = methods
+        .into_iter()
+        .map(|method| method.settled(features))
+        .collect();
+    let SceneSelection { scene, views } = SceneSelection::load(&args.scene)?;
+    let viewports: Vec<[u32; 2]> = unique(&args.size).iter().map(|Size(size)| *size).collect();
     if args.images == Images::All {
-        check_pictures(&methods, &views, args)?;
+        check_pictures(&methods, &views, &viewports)?;
     }
     let scene = Arc::new(scene);
     let provider = SceneProvider::new(scene.clone());
-    check_plans(&gpu, &primary, &methods, args, &provider)?;
+    // Everything is planned before anything runs: nobody should wait for an hour to read that the
+    // last file has a mistake. What a provider describes is the same for every view.
+    for &viewport in &viewports {
+        primary.plan(&gpu, viewport, &provider)?;
+    }
+    let device = Capabilities::of(&gpu);
+    contract::check_plans(&methods, &viewports, &provider, Some(&device))?;
     check_folder(&args.out)?;
-    let trust = render::trust(&gpu);
     let results = Results {
         schema: 1,
-        program: concat!("skiagraph ", env!("CARGO_PKG_VERSION")).into(),
-        adapter: render::describe(&gpu, &trust),
-        scene: SceneResult {
-            name: scene.name.clone(),
-            triangles: scene.mesh.triangles.len() as u64,
-        },
+        program: PROGRAM.into(),
+        adapter: device::describe(&gpu, device::timestamp_trust(&gpu)),
+        scene: (&*scene).into(),
         oracle: args.oracle.to_string(),
         frames: args.frames,
         warmup: args.warmup,
         cached_frames: args.cached_frames.unwrap_or(args.frames),
         runs: Vec::new(),
     };
-    let viewports: Vec<[u32; 2]> = unique(&args.size).iter().map(|size| size.0).collect();
-    let subject = Subject {
+    let setup = ComparisonSetup {
         gpu: &gpu,
         scene: &scene,
         views: &views,
@@ -82,44 +79,123 @@ pub fn compare(args: &CompareArgs, asked: &GpuArgs) -> Result<(), CliError> {
         primary: &primary,
         fingerprint: primary.fingerprint.with_scene(&scene.mesh, &scene.light),
     };
-    let mut comparison = Comparison::new(args, subject, provider, published, results)?;
+    let mut comparison = Comparison::new(args, setup, provider, published, results)?;
     interrupt::install()?;
-    let outcome = comparison.run();
-    comparison.finish(outcome)
-}
-
-/// Plans everything before anything runs: nobody should wait for an hour to read that the last file has a mistake. A graph
-/// that only this adapter cannot run is no mistake. What a provider describes is the same for every view.
-fn check_plans(
-    gpu: &Gpu,
-    primary: &Primary,
-    methods: &[Method],
-    args: &CompareArgs,
-    provider: &SceneProvider,
-) -> Result<(), CliError> {
-    let viewports: Vec<[u32; 2]> = unique(&args.size).iter().map(|size| size.0).collect();
-    for &viewport in &viewports {
-        primary.plan(gpu, viewport, provider)?;
-    }
-    contract::check_plans(methods, &viewports, provider, Some(gpu))
+    let outcome = run(args, &mut comparison, &views, viewports.len());
+    finish(args, comparison, outcome)
 }
 
 /// Refuses runs that would overwrite each other's pictures, before anything runs.
-fn check_pictures(methods: &[Method], views: &[View], args: &CompareArgs) -> Result<(), CliError> {
+fn check_pictures(
+    methods: &[Method],
+    views: &[View],
+    viewports: &[[u32; 2]],
+) -> Result<(), CliError> {
     let mut stems = Vec::new();
-    for view in views {
-        for Size(viewport) in unique(&args.size) {
+    for View { name: view, .. } in views {
+        for &viewport in viewports {
             stems.extend(methods.iter().map(|method| {
-                (
-                    stem(method, &view.name, viewport),
-                    format!("`{}` on view `{}`", method.preset.name, view.name),
-                )
+                let owner = format!("`{}` on view `{view}`", method.preset.name);
+                (stem(method, view, viewport), owner)
             }));
-            stems.push((
-                reference_stem(&view.name, viewport),
-                format!("the reference on view `{}`", view.name),
-            ));
+            let owner = format!("the reference on view `{view}`");
+            stems.push((reference_stem(view, viewport), owner));
         }
     }
     check_stems(stems, "--out")
+}
+
+/// Measures what is missing, and prints every view and viewport when it is whole.
+fn run(
+    args: &CompareArgs,
+    comparison: &mut Comparison,
+    views: &[View],
+    viewports: usize,
+) -> Result<(), CliError> {
+    if args.format == Format::Markdown {
+        let is_done = comparison.results.runs.len() == comparison.planned();
+        let today = (!is_done).then(date::today);
+        let header = markdown::header(&comparison.results, today.as_deref(), &args.published);
+        print(&header)?;
+    }
+    for (index, view) in views.iter().enumerate() {
+        if args.format == Format::Markdown {
+            print(&markdown::view(&view.name))?;
+        }
+        for viewport in 0..viewports {
+            let outcome = comparison.measure(index, viewport);
+            let (results, runs) = (&comparison.results, comparison.runs(index, viewport));
+            match args.format {
+                Format::Table => print(&format!("{}\n", results_table::group(results, runs)))?,
+                Format::Markdown => print(&markdown::viewport(results, runs))?,
+                Format::Json => {}
+            }
+            outcome?;
+        }
+    }
+    Ok(())
+}
+
+/// Says what came of it.
+fn finish(
+    args: &CompareArgs,
+    comparison: Comparison,
+    outcome: Result<(), CliError>,
+) -> Result<(), CliError> {
+    let planned = comparison.planned();
+    let Comparison {
+        results, broken, ..
+    } = comparison;
+    if args.format == Format::Json && !results.runs.is_empty() {
+        print(&json::to_text(&results))?;
+    }
+    let kept = match results.runs.len() {
+        0 => "no run was finished".into(),
+        done => format!(
+            "{done} of {planned} runs are kept in {}; the same command with --resume goes on \
+             from there",
+            args.out.join("results.json").display()
+        ),
+    };
+    match outcome {
+        Ok(()) => {}
+        Err(CliError::Interrupted { .. }) => return Err(CliError::Interrupted { kept }),
+        Err(error) => {
+            note(&kept);
+            return Err(error);
+        }
+    }
+    if args.resume {
+        // Where every run was kept, nothing has been written yet.
+        save(&results, &args.out)?;
+    }
+    if !broken.is_empty() {
+        return Err(CliError::Contract(broken.join("\nerror: ")));
+    }
+    if results.runs.iter().all(|run| run.measured.is_none()) {
+        return Err(CliError::Input(format!(
+            "no method can run on {}; the reasons stand above",
+            results.adapter.name
+        )));
+    }
+    let files = match args.images {
+        Images::All => "results.json, results.csv and the pictures",
+        Images::None => "results.json and results.csv",
+    };
+    if !args.published.is_empty() && results.runs.iter().all(|run| run.published.is_empty()) {
+        note(
+            "--beside has no effect: none of its figures is of these scenes, views, viewports, \
+             maps and presets",
+        );
+    }
+    note(&format!("{files} are in {}", args.out.display()));
+    let runs = results.runs.iter().filter_map(|run| run.measured.as_ref());
+    let bare = runs.filter(|run| run.images.is_none()).count();
+    if args.images == Images::All && bare > 0 {
+        note(&format!(
+            "{bare} of the runs that were kept have no pictures: they were measured with --images \
+             none"
+        ));
+    }
+    Ok(())
 }

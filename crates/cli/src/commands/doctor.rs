@@ -1,85 +1,76 @@
 //! `skiagraph doctor`: what this machine can do, and why not where it cannot.
 
-use crate::{
-    args::GpuArgs,
-    error::{CliError, print},
-    render,
-    table::bytes,
+use crate::args::shared::GpuArgs;
+use crate::error::CliError;
+use crate::measuring::device::{driver, open, timestamp_trust};
+use crate::terminal::console::print;
+use crate::wording::bytes;
+use skiagraph_gpu::{
+    device::{self, Gpu},
+    timing::Trust,
 };
-use skiagraph_graph::{gpu, timing::Trust};
 use skiagraph_scene::{SceneLibrary, library::ASSETS_VARIABLE};
 
 /// Prints adapters, limits, features, whether timestamps are true, and where meshes are searched.
 ///
 /// # Errors
 /// No usable adapter, after all that can be said without one.
-pub fn doctor(asked: &GpuArgs) -> Result<(), CliError> {
+pub fn doctor(args: &GpuArgs) -> Result<(), CliError> {
     let mut text = String::from("Adapters\n");
-    let adapters = gpu::adapters();
+    let adapters = device::adapters();
     for info in &adapters {
-        text.push_str(&format!(
-            "  {} · {} · {:?} · {}\n",
-            info.name,
-            info.backend.to_str(),
-            info.device_type,
-            render::driver(info)
-        ));
+        text += &format!("  {}\n", adapter(info));
     }
     if adapters.is_empty() {
         text.push_str("  none\n");
     }
     print(&text)?;
     print(&meshes())?;
-    let gpu = render::open(asked, wgpu::Features::empty())?;
+    let gpu = open(args, &[])?;
     print(&chosen(&gpu))?;
-    let verdict = match render::trust(&gpu) {
-        Trust::Trusted => "  GPU times: true (a long dispatch after a raster pass takes as long as the clock says)".into(),
+    let verdict = match timestamp_trust(&gpu) {
+        Trust::Trusted => "  GPU times: true (a long dispatch after a raster pass takes as long \
+            as the clock says)"
+            .into(),
         Trust::Untrusted { reason } => format!("  GPU times: none, {reason}"),
     };
     print(&format!("{verdict}\n"))
 }
 
-fn chosen(gpu: &gpu::Gpu) -> String {
-    let info = gpu.adapter.get_info();
-    let limits = gpu.device.limits();
-    let features = gpu.device.features();
-    let mut text = format!(
-        "\nChosen: {} · {} · {:?} · {}\n",
+fn adapter(info: &wgpu::AdapterInfo) -> String {
+    format!(
+        "{} · {} · {:?} · {}",
         info.name,
         info.backend.to_str(),
         info.device_type,
-        render::driver(&info)
-    );
+        driver(info)
+    )
+}
+
+fn chosen(gpu: &Gpu) -> String {
+    let limits = gpu.device.limits();
+    let features = gpu.device.features();
+    let mut text = format!("\nChosen: {}\n", adapter(&gpu.adapter.get_info()));
     let edge = limits.max_texture_dimension_2d;
+    let storage = limits.max_storage_buffer_binding_size;
     // 32 bytes per ray, as the ray buffer holds them.
-    let rays = limits.max_storage_buffer_binding_size / 32;
-    text.push_str(&format!("  textures: up to {edge}x{edge}\n"));
-    text.push_str(&format!(
-        "  storage buffer binding: up to {} (rays of {} million pixels)\n",
-        bytes(limits.max_storage_buffer_binding_size),
-        rays / 1_000_000
-    ));
-    text.push_str(&format!(
-        "  buffer: up to {}\n",
-        bytes(limits.max_buffer_size)
-    ));
-    text.push_str(&match gpu.memory {
-        Some(free) => format!("  memory for a graph: {}\n", bytes(free)),
-        None => {
-            "  memory for a graph: what the driver gives (it does not say how much)\n".to_owned()
-        }
-    });
-    text.push_str(&format!(
+    let (storage, rays) = (bytes(storage), storage / 32 / 1_000_000);
+    let memory = gpu.memory.map(bytes);
+    let memory = memory.unwrap_or("what the driver gives (it does not say how much)".into());
+    text += &format!("  textures: up to {edge}x{edge}\n");
+    text += &format!("  storage buffer binding: up to {storage} (rays of {rays} million pixels)\n");
+    text += &format!("  buffer: up to {}\n", bytes(limits.max_buffer_size));
+    text += &format!("  memory for a graph: {memory}\n");
+    text += &format!(
         "  compute: {} invocations per workgroup, {} groups per dimension\n",
         limits.max_compute_invocations_per_workgroup, limits.max_compute_workgroups_per_dimension
-    ));
+    );
     for (feature, use_of_it) in FEATURES {
-        let has = if features.contains(feature) {
-            "yes"
-        } else {
-            "no "
+        let has = match features.contains(feature) {
+            true => "yes",
+            false => "no ",
         };
-        text.push_str(&format!("  {has} {use_of_it}\n"));
+        text += &format!("  {has} {use_of_it}\n");
     }
     text
 }
@@ -109,16 +100,15 @@ fn meshes() -> String {
         "\nMeshes are searched beside the scene file, then (${ASSETS_VARIABLE}, cache folder) in\n"
     );
     for folder in &library.assets {
-        let there = if folder.is_dir() {
-            ""
-        } else {
-            " (no such folder)"
+        let there = match folder.is_dir() {
+            true => "",
+            false => " (no such folder)",
         };
-        text.push_str(&format!("  {}{there}\n", folder.display()));
+        text += &format!("  {}{there}\n", folder.display());
     }
     for scene in library.list() {
         let found = if scene.mesh_found { "found" } else { "missing" };
-        text.push_str(&format!("  mesh of the scene {}: {found}\n", scene.name));
+        text += &format!("  mesh of the scene {}: {found}\n", scene.name);
     }
     text
 }

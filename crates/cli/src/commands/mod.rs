@@ -1,4 +1,4 @@
-//! One file per command.
+//! One file per command: arguments in, calls, an exit code out.
 
 pub mod check;
 pub mod compare;
@@ -8,4 +8,5 @@ pub mod presets;
 pub mod profile;
 pub mod run;
 pub mod scenes;
+pub mod show;
 pub mod stress;

@@ -1,108 +1,103 @@
-//! `skiagraph stress`: the hard cases with every method, and whether each keeps its promise.
+//! `skiagraph stress`: the hard cases with every method, and whether each keeps what it guarantees.
 
-mod matrix;
-mod promise;
-mod report;
-mod trial;
-
-use crate::{
-    args::{GpuArgs, StressArgs, StressFormat},
-    contract,
-    error::{CliError, print},
-    files::check_folder,
-    interrupt, markdown, measure,
-    measure::{Method, check_stems, reference_stem},
-    parse::unique,
-    preset::{self, closest},
-    progress::Step,
-    reference::Primary,
-    render,
-    table::{add_row, new_table},
-};
-use report::{Column, Report, Verdict};
-use skiagraph_graph::{gpu::Gpu, timing::Trust};
+use crate::args::commands::{StressArgs, StressFormat};
+use crate::args::shared::GpuArgs;
+use crate::args::values::unique;
+use crate::error::CliError;
+use crate::files::json::to_text;
+use crate::files::write::{check_folder, write_whole};
+use crate::graphs::faults::reasons;
+use crate::graphs::method::{self, Method};
+use crate::graphs::planning::Capabilities;
+use crate::graphs::{contract, preset};
+use crate::measuring::hard_case::{HardCaseContext, MethodRun};
+use crate::measuring::reference::PrimaryVisibility;
+use crate::measuring::{device, guarantee};
+use crate::pictures::run_pictures::{check_stems, reference_stem};
+use crate::records::results::PROGRAM;
+use crate::records::stress::{Column, Report, Verdict};
+use crate::reporting::stress_matrix;
+use crate::reporting::table::table;
+use crate::terminal::console::print;
+use crate::terminal::interrupt;
+use crate::terminal::progress::Step;
+use crate::wording::{command_line, did_you_mean, plural};
+use skiagraph_cases::{Casters, HardCase};
+use skiagraph_gpu::{device::Gpu, timing::Trust};
 use skiagraph_passes::SceneProvider;
-use skiagraph_scene::hard::{self, Casters, HardCase};
 use std::{path::Path, sync::Arc};
-use trial::{Contender, Trial};
 
 /// Checks everything, then runs the matrix.
 ///
 /// # Errors
-/// Faulty graphs, an unknown case, no GPU, Ctrl-C, files that cannot be written, a promise that is broken, a band above its cap.
-pub fn stress(args: &StressArgs, asked: &GpuArgs) -> Result<(), CliError> {
+/// Faulty graphs, an unknown case, no GPU, Ctrl-C, files that cannot be written, a guarantee that
+/// is broken, a band above its cap.
+pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     if args.list {
         return list();
     }
     let cases = cases(&args.cases)?;
     let sources = preset::sources();
-    let names = if args.presets.is_empty() {
-        skiagraph_passes::presets()
-            .into_iter()
-            .map(|preset| preset.name)
-            .collect()
-    } else {
-        args.presets.clone()
-    };
+    let names = preset::named_or_all(&args.presets, &sources);
     check_exact(&args.exact, &names)?;
     let presets = contract::load_all(&names, &sources)?;
-    let methods = measure::methods(&presets, &args.params, &args.map_size)?;
-    let primary = Primary::load(&sources)?;
-    let provider = SceneProvider::new(Arc::new(tangible(&cases).scene()));
-    contract::check_plans(&methods, &[args.size.0], &provider, None)?;
-    let wanted = presets.iter().map(|preset| preset.graph.features());
-    let gpu = render::open(
-        asked,
-        wanted.fold(wgpu::Features::empty(), |all, own| all | own),
-    )?;
-    primary.plan(&gpu, args.size.0, &provider)?;
-    let contenders: Vec<Contender> = methods
+    let methods = method::methods(&presets, &args.params, &args.map_size)?;
+    for method in &methods {
+        guarantee::of(method, &args.exact)?;
+    }
+    let primary = PrimaryVisibility::load(&sources)?;
+    let viewport = args.size.0;
+    let provider = SceneProvider::new(Arc::new(with_triangles(&cases).scene()));
+    contract::check_plans(&methods, &[viewport], &provider, None)?;
+    let gpu = device::open(gpu, preset::graphs(&presets))?;
+    primary.plan(&gpu, viewport, &provider)?;
+    let methods: Vec<MethodRun> = methods
         .into_iter()
-        .map(|method| contender(method, args, &gpu, &provider))
-        .collect();
-    check_abilities(&contenders, &gpu)?;
+        .map(|method| method_run(method, args, &gpu, &provider))
+        .collect::<Result<_, _>>()?;
+    check_abilities(&methods, &gpu)?;
     if let Some(folder) = &args.save {
-        check_pictures(&contenders, &cases, args)?;
+        check_pictures(&methods, &cases, viewport)?;
         check_folder(folder)?;
     }
     if let Some(folder) = &args.out {
         check_folder(folder)?;
     }
-    let trial = Trial {
+    let context = HardCaseContext {
         gpu: &gpu,
         primary: &primary,
-        contenders: &contenders,
-        viewport: args.size.0,
+        methods: &methods,
+        viewport,
         pictures: args.save.as_deref(),
     };
     let mut report = Report {
         schema: 1,
-        program: concat!("skiagraph ", env!("CARGO_PKG_VERSION")).into(),
+        program: PROGRAM.into(),
         // Nothing is timed, so whether timestamps can be trusted is of no interest.
-        adapter: render::describe(&gpu, &Trust::Trusted),
-        viewport: args.size.0,
-        methods: contenders.iter().map(Contender::column).collect(),
+        adapter: device::describe(&gpu, Trust::Trusted),
+        viewport,
+        methods: methods.iter().map(MethodRun::column).collect(),
         cases: Vec::new(),
     };
     interrupt::install()?;
-    let outcome = run(&trial, &cases, &mut report, args.out.as_deref());
+    let outcome = run(&context, &cases, &mut report, args.out.as_deref());
     finish(&report, outcome, cases.len(), args)
 }
 
 /// Runs case after case; whatever is done is on disk at once.
 fn run(
-    trial: &Trial,
+    context: &HardCaseContext,
     cases: &[HardCase],
     report: &mut Report,
     out: Option<&Path>,
 ) -> Result<(), CliError> {
     let step = Step::bar("hard cases".into(), cases.len() as u64, "cases");
     for (done, case) in (0..).zip(cases) {
-        step.name(case.name);
-        step.reach(done);
-        report.cases.push(trial.run(case)?);
+        step.set_part(case.name);
+        step.set_done(done);
+        report.cases.push(context.run(case)?);
         if let Some(folder) = out {
-            report.save(folder)?;
+            write_whole(&folder.join("stress.json"), to_text(report).as_bytes())?;
         }
     }
     Ok(())
@@ -118,10 +113,10 @@ fn finish(
     let done = report.cases.len();
     if done > 0 {
         match args.format {
-            StressFormat::Table => print(&matrix::render(report, &|column, case, set| {
-                look(args, column, case, set)
+            StressFormat::Table => print(&stress_matrix::render(report, &|column, case, set| {
+                command_for(args, column, case, set)
             }))?,
-            StressFormat::Json => print(&report.to_json())?,
+            StressFormat::Json => print(&to_text(report))?,
         }
     }
     if let Err(CliError::Interrupted { .. }) = outcome {
@@ -141,38 +136,33 @@ fn finish(
         (report.failed_cases(), "case"),
     ];
     let failed = failed.into_iter().filter(|(count, _)| *count > 0);
-    let failed: Vec<String> = failed
-        .map(|(count, noun)| match count {
-            1 => format!("1 {noun}"),
-            _ => format!("{count} {noun}s"),
-        })
-        .collect();
+    let failed: Vec<String> = failed.map(|(count, noun)| plural(count, noun)).collect();
     match &failed[..] {
         [] => Ok(()),
         _ => Err(CliError::Judged(format!("{} failed", failed.join(" and ")))),
     }
 }
 
-/// The method with what is promised of it, and why this adapter cannot run it, if it cannot.
-fn contender<'a>(
+/// The method with what it guarantees, and why this adapter cannot run it, if it cannot.
+fn method_run<'a>(
     method: Method<'a>,
     args: &StressArgs,
     gpu: &Gpu,
     provider: &SceneProvider,
-) -> Contender<'a> {
-    let plan = method.plan(args.size.0, render::abilities(gpu), provider);
-    let unavailable = plan.err().map(|faults| measure::reasons(&faults));
-    Contender {
-        unavailable,
-        ..Contender::new(method, &args.exact)
-    }
+) -> Result<MethodRun<'a>, CliError> {
+    let method = method.settled(gpu.device.features());
+    let plan = method.plan(args.size.0, Capabilities::of(gpu), provider);
+    Ok(MethodRun {
+        unavailable: plan.err().map(|faults| reasons(&faults)),
+        ..MethodRun::new(method, &args.exact)?
+    })
 }
 
 /// Refuses to run where there is nothing to run.
-fn check_abilities(contenders: &[Contender], gpu: &Gpu) -> Result<(), CliError> {
-    let reasons = contenders.iter().map(|contender| {
-        let reason = contender.unavailable.as_ref()?;
-        Some(format!("\n  {}: {reason}", contender.method.preset.name))
+fn check_abilities(methods: &[MethodRun], gpu: &Gpu) -> Result<(), CliError> {
+    let reasons = methods.iter().map(|run| {
+        let reason = run.unavailable.as_ref()?;
+        Some(format!("\n  {}: {reason}", run.method.preset.name))
     });
     match reasons.collect::<Option<String>>() {
         Some(reasons) => Err(CliError::Input(format!(
@@ -184,7 +174,7 @@ fn check_abilities(contenders: &[Contender], gpu: &Gpu) -> Result<(), CliError> 
 }
 
 /// The command that shows a cell.
-fn look(args: &StressArgs, column: &Column, case: &str, set: Option<&str>) -> String {
+fn command_for(args: &StressArgs, column: &Column, case: &str, set: Option<&str>) -> String {
     let mut words = vec!["skiagraph".into(), "stress".into(), column.preset.clone()];
     let mut option = |name: &str, value: String| words.extend([name.into(), value]);
     option("--case", case.into());
@@ -202,19 +192,18 @@ fn look(args: &StressArgs, column: &Column, case: &str, set: Option<&str>) -> St
         option("--exact", column.preset.clone());
     }
     option("--save", "pictures".into());
-    markdown::command_line(words.into_iter().map(|word: String| word.into()))
+    command_line(words.into_iter().map(|word: String| word.into()))
 }
 
 /// The cases of these names, or all.
 fn cases(names: &[String]) -> Result<Vec<HardCase>, CliError> {
     if names.is_empty() {
-        return Ok(hard::cases());
+        return Ok(skiagraph_cases::cases());
     }
     let find = |name: &String| {
-        hard::case(name).ok_or_else(|| {
-            let known = hard::cases();
-            let hint = closest(name, known.iter().map(|case| case.name))
-                .map_or(String::new(), |name| format!("; did you mean `{name}`?"));
+        skiagraph_cases::case(name).ok_or_else(|| {
+            let known = skiagraph_cases::cases();
+            let hint = did_you_mean(name, known.iter().map(|case| case.name));
             CliError::Input(format!(
                 "there is no case `{name}`{hint}\n  `skiagraph stress --list` names them"
             ))
@@ -223,18 +212,18 @@ fn cases(names: &[String]) -> Result<Vec<HardCase>, CliError> {
     unique(names).iter().map(find).collect()
 }
 
-/// A case with something to draw, if there is one: what is wrong with a graph on an empty mesh is a result, not a mistake in the graph.
-fn tangible(cases: &[HardCase]) -> HardCase {
-    let is_tangible = |case: &&HardCase| !case.scene().mesh.triangles.is_empty();
-    *cases.iter().find(is_tangible).unwrap_or(&cases[0])
+/// A case with something to draw, if there is one: what is wrong with a graph on an empty mesh is a
+/// result, not a mistake in the graph.
+fn with_triangles(cases: &[HardCase]) -> HardCase {
+    let has_triangles = |case: &&HardCase| !case.scene().mesh.triangles.is_empty();
+    *cases.iter().find(has_triangles).unwrap_or(&cases[0])
 }
 
 fn check_exact(exact: &[String], names: &[String]) -> Result<(), CliError> {
     match exact.iter().find(|name| !names.contains(name)) {
         None => Ok(()),
         Some(name) => {
-            let hint = closest(name, names.iter().map(String::as_str))
-                .map_or(String::new(), |name| format!("; did you mean `{name}`?"));
+            let hint = did_you_mean(name, names.iter().map(String::as_str));
             Err(CliError::Usage(format!(
                 "--exact {name}: none of the methods that run has this name{hint}\n  methods: {}",
                 names.join(", ")
@@ -245,16 +234,16 @@ fn check_exact(exact: &[String], names: &[String]) -> Result<(), CliError> {
 
 /// Refuses cells that would overwrite each other's pictures, before anything runs.
 fn check_pictures(
-    contenders: &[Contender],
+    methods: &[MethodRun],
     cases: &[HardCase],
-    args: &StressArgs,
+    viewport: [u32; 2],
 ) -> Result<(), CliError> {
     let mut stems = Vec::new();
     for case in cases {
-        let reference = reference_stem(case.name, args.size.0);
+        let reference = reference_stem(case.name, viewport);
         stems.push((reference, format!("the reference of `{}`", case.name)));
-        for contender in contenders {
-            stems.extend(contender.stems(case, args.size.0));
+        for run in methods {
+            stems.extend(run.stems(case, viewport));
         }
     }
     check_stems(stems, "--save")
@@ -262,17 +251,14 @@ fn check_pictures(
 
 /// Lists the catalogue.
 fn list() -> Result<(), CliError> {
-    let mut table = new_table(&["case", "casters", "what it provokes"], 3);
-    for case in hard::cases() {
+    let row = |case: HardCase| {
         let casters = match case.casters {
             Casters::Closed => "closed",
             Casters::Open => "open",
         };
-        add_row(
-            &mut table,
-            vec![case.name.into(), casters.into(), case.reason.into()],
-            3,
-        );
-    }
+        vec![case.name.into(), casters.into(), case.reason.into()]
+    };
+    let heads = ["case", "casters", "what it provokes"];
+    let table = table(heads, 3, skiagraph_cases::cases().into_iter().map(row));
     print(&format!("{table}\n"))
 }

@@ -30,7 +30,8 @@ pub struct Host {
 impl Host {
     pub fn new(light: [f32; 2]) -> Result<Self, Box<dyn Error>> {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-        // wgpu's flags of a debug build hand labels to the driver, on which the software driver of Mesa 22.3 crashes.
+        // wgpu's flags of a debug build hand labels to the driver, on which the software driver of
+        // Mesa 22.3 crashes.
         descriptor.flags = wgpu::InstanceFlags::empty().with_env();
         let instance = wgpu::Instance::new(descriptor);
         let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
@@ -166,7 +167,8 @@ impl Host {
         pass.draw(0..(self.scene.vertices.size() / 16) as u32, 0..1);
     }
 
-    /// Encodes the host's shading, one letter per pixel, and returns the buffer that they arrive in.
+    /// Encodes the host's shading, one letter per pixel, and returns the buffer that they arrive
+    /// in.
     pub fn shade(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -215,8 +217,8 @@ fn entry(binding: u32, resource: wgpu::BindingResource<'_>) -> wgpu::BindGroupEn
     wgpu::BindGroupEntry { binding, resource }
 }
 
-/// The columns of the matrix that slides the world along (x, -1, z) onto the ground, 2·half of which fill the picture; depth is 0
-/// five units above the ground and 1 as far below.
+/// The columns of the matrix that slides the world along (x, -1, z) onto the ground, 2·half of
+/// which fill the picture; depth is 0 five units above the ground and 1 as far below.
 fn view([x, z]: [f32; 2], half: f32) -> [[f32; 4]; 4] {
     [
         [1.0 / half, 0.0, 0.0, 0.0],

@@ -1,50 +1,88 @@
 //! The entries of `passes`: passes, included documents, and groups of entries.
 
 use super::{
-    Document, list,
-    located::{Field, Located, Node, from_fields},
-    ok,
-    params::Written,
-    value::{Map, Reference, Value},
+    fields::Mentions,
+    raw::{Broken, RawEntry, RawMap, stem},
+    ron::{Field, Node, from_fields},
+    typed::Document,
 };
 use crate::{
-    diagnostics::{Code, Diagnostic},
-    registry::{PassKind, Registry},
+    diagnostics::{
+        diagnostic::Diagnostic,
+        reports::{Mistake, Reported, Reports},
+    },
+    errors::document::DocumentError,
+    kinds::{
+        kind::{Lowering, PassKind},
+        registry::Registry,
+        step::Step,
+    },
+    language::{
+        name::{Name, RESERVED},
+        syntax::{Expr, Reference},
+    },
+    source::span::Located,
 };
-use serde::Deserialize;
-use std::{fmt, sync::Arc};
+use serde::{Deserialize, Deserializer};
+use std::sync::Arc;
 
 /// One entry, at its place in the sequential program.
 #[derive(Debug)]
-pub(crate) enum Entry {
-    Pass(PassEntry),
-    Include(IncludeEntry),
-    Group(GroupEntry),
-    /// Could not be read, which was reported; what it would have written is not known.
-    Broken,
-    /// The same of an include: what it would have declared is not known either.
-    BrokenInclude,
+pub(crate) struct Entry {
+    pub name: Located<Name>,
+    /// Whether it is there.
+    pub condition: Option<Expr>,
+    /// How often it is instantiated; `None` = once, without an index.
+    pub repeat: Option<Expr>,
+    /// In which frames it runs; `None` = as what is around it.
+    pub run: Option<Run>,
+    pub bind: Vec<(Located<String>, Reference)>,
+    pub set: Vec<(Located<String>, Expr)>,
+    pub what: What,
 }
 
-/// How often an entry is instantiated; `None` = once, without an index.
-pub(crate) type Repeat = Option<Located<Value<u32>>>;
+#[derive(Debug)]
+pub(crate) enum What {
+    Pass(Pass),
+    Include(Include),
+    Group(Vec<Result<Entry, Broken>>),
+}
 
 /// A pass: what every kind has, and the kind's own body.
-#[derive(Clone, Debug)]
-pub(crate) struct PassEntry {
-    pub name: Located<String>,
+#[derive(Debug)]
+pub(crate) struct Pass {
     pub shader: Option<Located<String>>,
-    pub bind: Vec<(Located<String>, Located<String>)>,
-    pub run: Run,
     /// What the author promises that the pass writes in every texel or item.
-    pub overwrites: Vec<Located<String>>,
-    pub repeat: Repeat,
+    pub overwrites: Vec<Reference>,
     pub kind: &'static str,
     pub body: Arc<dyn PassKind>,
+    /// Names of the shaders that it runs.
+    pub shaders: Vec<Located<String>>,
+    /// What its fields name.
+    pub mentions: Mentions,
+}
+
+/// Another document whose passes stand here.
+#[derive(Debug)]
+pub(crate) struct Include {
+    pub graph: Located<String>,
+    /// Whether it has a name of its own, which stands before what it gives.
+    pub is_named: bool,
+    /// Params of the included document that are params here, too.
+    pub expose: Vec<Located<String>>,
+    /// Put here once it is read.
+    pub document: Option<Result<Arc<Document>, Reported>>,
+}
+
+impl Include {
+    /// The included document, if it could be read.
+    pub fn document(&self) -> Option<&Arc<Document>> {
+        self.document.as_ref()?.as_ref().ok()
+    }
 }
 
 /// In which frames a pass runs.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default)]
 pub(crate) enum Run {
     /// In every frame.
     #[default]
@@ -53,44 +91,27 @@ pub(crate) enum Run {
     Once,
     /// In frames where something that it reads has changed.
     OnChange,
-    /// In frames where a Bool param is true.
-    When(Located<String>),
+    /// In frames where an expression over params is true.
+    When(Expr),
 }
 
-impl PartialEq for Run {
-    fn eq(&self, other: &Self) -> bool {
-        self.to_string() == other.to_string()
-    }
-}
-
-impl fmt::Display for Run {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::When(param) => write!(f, "When({:?})", param.value),
-            other => write!(f, "{other:?}"),
+impl<'de> Deserialize<'de> for Run {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(rename = "run")]
+        enum Words {
+            Always,
+            Once,
+            OnChange,
+            When(Expr),
         }
+        Ok(match Words::deserialize(deserializer)? {
+            Words::Always => Self::Always,
+            Words::Once => Self::Once,
+            Words::OnChange => Self::OnChange,
+            Words::When(expr) => Self::When(expr),
+        })
     }
-}
-
-/// Another document whose passes stand here.
-#[derive(Debug)]
-pub(crate) struct IncludeEntry {
-    pub graph: Located<String>,
-    pub prefix: Option<Located<String>>,
-    pub params: Vec<(Located<String>, Located<Value<Written>>)>,
-    /// The included document's materials under the names that they get here.
-    pub materials: Vec<(Located<String>, Located<String>)>,
-    pub repeat: Repeat,
-    /// Put here once it is read; `None` if it could not be, which was reported.
-    pub document: Option<Arc<Document>>,
-}
-
-/// Entries that are repeated together.
-#[derive(Debug)]
-pub(crate) struct GroupEntry {
-    pub name: Located<String>,
-    pub repeat: Repeat,
-    pub entries: Vec<Entry>,
 }
 
 /// The tags that are no pass kinds.
@@ -98,157 +119,179 @@ const COMPOSITION: [&str; 2] = ["Include", "Group"];
 
 /// Reads the entries of a section, whatever is wrong with some of them.
 pub(super) fn read(
-    section: Option<&Node>,
+    raw: Vec<Result<RawEntry, Broken>>,
     registry: &Registry,
-    diagnostics: &mut Vec<Diagnostic>,
-) -> Vec<Entry> {
-    let mut entries = Vec::new();
-    for node in list(section, diagnostics) {
-        let entry = entry(&node, registry, diagnostics);
-        entries.push(
-            ok(entry, diagnostics).unwrap_or_else(|| match node.variant() {
-                Some((tag, _)) if *tag == "Include" => Entry::BrokenInclude,
-                _ => Entry::Broken,
-            }),
-        );
-    }
-    entries
+    reports: &mut Reports,
+) -> Vec<Result<Entry, Broken>> {
+    let read = |raw: Result<RawEntry, Broken>| {
+        let raw = raw?;
+        let is_include = *raw.tag == "Include";
+        let entry = entry(raw, registry, reports);
+        entry.map_err(|error| Broken {
+            is_include,
+            reported: reports.tell(error),
+        })
+    };
+    raw.into_iter().map(read).collect()
 }
+
+/// What every entry has.
+#[derive(Deserialize)]
+struct Header {
+    #[serde(default)]
+    name: Option<Located<Name>>,
+    #[serde(default, rename = "if")]
+    condition: Option<Expr>,
+    #[serde(default)]
+    repeat: Option<Expr>,
+    #[serde(default)]
+    run: Option<Run>,
+}
+
+const HEADER: [&str; 4] = ["name", "if", "repeat", "run"];
 
 fn entry(
-    node: &Node,
+    mut raw: RawEntry,
     registry: &Registry,
-    diagnostics: &mut Vec<Diagnostic>,
+    reports: &mut Reports,
 ) -> Result<Entry, Diagnostic> {
-    let tags = || registry.kinds().chain(COMPOSITION);
-    let Some((tag, body)) = node.variant() else {
-        return Err(
-            Diagnostic::error(Code::Syntax, "a pass begins with its kind")
-                .at(node.span.clone(), "for example `Compute(name: \"…\", …)`")
-                .suggest("", tags()),
-        );
-    };
-    match tag.as_str() {
-        "Include" => include(&tag, &body).map(Entry::Include),
-        "Group" => group(&tag, &body, registry, diagnostics).map(Entry::Group),
-        _ if registry.get(&tag).is_some() => pass(&tag, &body, registry).map(Entry::Pass),
-        _ => Err(Diagnostic::error(
-            Code::UnknownVariant,
-            format!("unknown pass kind `{}`", *tag),
-        )
-        .at(tag.span.clone(), "no pass kind of this name is registered")
-        .suggest(&tag, tags())),
+    let is_composed = COMPOSITION.contains(&raw.tag.as_str());
+    if !is_composed && registry.get(&raw.tag).is_none() {
+        let known = registry
+            .kinds()
+            .chain(COMPOSITION)
+            .map(str::to_owned)
+            .collect();
+        return Err(DocumentError::UnknownKind(raw.tag, known).diagnostic());
     }
-}
-
-fn pass(tag: &Located<String>, body: &Node, registry: &Registry) -> Result<PassEntry, Diagnostic> {
-    #[derive(Deserialize)]
-    struct Header {
-        name: Located<String>,
-        #[serde(default)]
-        shader: Option<Located<String>>,
-        #[serde(default)]
-        bind: Map<Reference>,
-        #[serde(default)]
-        run: Run,
-        #[serde(default)]
-        overwrites: Vec<Located<String>>,
-        #[serde(default)]
-        repeat: Repeat,
+    if let Some(passes) = raw.passes.take_if(|_| *raw.tag != "Group") {
+        drop(passes);
+        let name = Located::new("passes".to_owned(), raw.tag.span);
+        return Err(DocumentError::UnknownField(name, Vec::new()).diagnostic());
     }
-    const HEADER: [&str; 6] = ["name", "shader", "bind", "run", "overwrites", "repeat"];
-    let (header, own): (Vec<Field>, Vec<Field>) = body
-        .fields()?
+    let (header, own): (Vec<Field>, Vec<Field>) = raw
+        .fields
         .into_iter()
         .partition(|field| HEADER.contains(&field.name.as_str()));
-    let header: Header = from_fields(&header, &tag.span)?;
-    let bind = header.bind.unique("bound")?.into_iter();
-    let kind = registry.get(tag).ok_or_else(|| {
-        Diagnostic::error(
-            Code::UnknownVariant,
-            format!("unknown pass kind `{}`", **tag),
-        )
-        .at(tag.span.clone(), "")
-    })?;
-    Ok(PassEntry {
-        name: header.name,
-        shader: header.shader,
-        bind: bind
-            .map(|(global, Reference(name))| (global, name))
-            .collect(),
-        run: header.run,
-        overwrites: header.overwrites,
+    let header: Header = from_fields(&header, &raw.tag.span)?;
+    let unnamed = || DocumentError::MissingField(raw.tag.span.clone(), "name".to_owned());
+    let (name, what) = match raw.tag.as_str() {
+        "Include" => {
+            let (include, name) = include(&raw.tag, &own, header.name)?;
+            (name, What::Include(include))
+        }
+        "Group" => {
+            let entries = raw.passes.ok_or_else(|| {
+                let missing = "passes".to_owned();
+                DocumentError::MissingField(raw.tag.span.clone(), missing).diagnostic()
+            })?;
+            if let Some(field) = own.first() {
+                let known = HEADER.map(str::to_owned).to_vec();
+                let error = DocumentError::UnknownField(field.name.clone(), known);
+                return Err(error.diagnostic());
+            }
+            let name = header.name.ok_or_else(|| unnamed().diagnostic())?;
+            (name, What::Group(read(entries, registry, reports)))
+        }
+        _ => {
+            let name = header.name.ok_or_else(|| unnamed().diagnostic())?;
+            let pass = pass(&raw.tag, &name, own, registry)?;
+            (name, What::Pass(pass))
+        }
+    };
+    if is_composed && RESERVED.contains(&name.as_str()) {
+        return Err(DocumentError::Reserved(name).diagnostic());
+    }
+    Ok(Entry {
+        name,
+        condition: header.condition,
         repeat: header.repeat,
-        kind: kind.name,
-        body: (kind.parse)(&own, &tag.span)?,
+        run: header.run,
+        bind: parsed(raw.bind)?,
+        set: parsed(raw.set)?,
+        what,
     })
 }
 
-fn include(tag: &Located<String>, body: &Node) -> Result<IncludeEntry, Diagnostic> {
+fn parsed<T: serde::de::DeserializeOwned>(
+    map: RawMap,
+) -> Result<Vec<(Located<String>, T)>, Diagnostic> {
+    let parse = |(key, node): (Located<String>, Node)| Ok((key, node.parse()?));
+    map.into_iter().map(parse).collect()
+}
+
+fn pass(
+    tag: &Located<String>,
+    name: &Located<Name>,
+    own: Vec<Field>,
+    registry: &Registry,
+) -> Result<Pass, Diagnostic> {
+    #[derive(Deserialize)]
+    struct Common {
+        #[serde(default)]
+        shader: Option<Located<String>>,
+        #[serde(default)]
+        overwrites: Vec<Reference>,
+    }
+    let (common, own): (Vec<Field>, Vec<Field>) = own
+        .into_iter()
+        .partition(|field| matches!(field.name.as_str(), "shader" | "overwrites"));
+    let common: Common = from_fields(&common, &tag.span)?;
+    let kind = registry
+        .get(tag)
+        .ok_or_else(|| DocumentError::UnknownKind(tag.clone(), Vec::new()).diagnostic())?;
+    Mentions::take();
+    let body = (kind.parse)(&own, &tag.span)?;
+    let mut mentions = Mentions::take();
+    mentions
+        .references
+        .extend(common.overwrites.iter().cloned());
+    // Which shaders it names depends on nothing that has a value later.
+    let mut lowering = Lowering::new(name, common.shader.as_ref(), &[], None);
+    body.lower(&mut lowering);
+    let programs = lowering.steps.iter().filter_map(Step::program);
+    let shaders = programs
+        .filter_map(|program| program.shader.clone())
+        .collect();
+    Ok(Pass {
+        shader: common.shader,
+        overwrites: common.overwrites,
+        kind: kind.name,
+        body,
+        shaders,
+        mentions,
+    })
+}
+
+fn include(
+    tag: &Located<String>,
+    own: &[Field],
+    name: Option<Located<Name>>,
+) -> Result<(Include, Located<Name>), Diagnostic> {
     #[derive(Deserialize)]
     #[serde(deny_unknown_fields)]
     struct Fields {
         graph: Located<String>,
         #[serde(default)]
-        prefix: Option<Located<String>>,
-        #[serde(default)]
-        params: Map<Located<Value<Written>>>,
-        #[serde(default)]
-        materials: Map<Located<String>>,
-        #[serde(default)]
-        repeat: Repeat,
+        expose: Vec<Located<String>>,
     }
-    let fields: Fields = from_fields(&body.fields()?, &tag.span)?;
-    let wrong_prefix = match &fields.prefix {
-        Some(prefix) if prefix.is_empty() => Some("the prefix is empty"),
-        None if fields.repeat.is_some() => Some("a repeated include needs a prefix"),
-        _ => None,
+    let fields: Fields = from_fields(own, &tag.span)?;
+    let is_named = name.is_some();
+    let name = match name {
+        Some(name) => name,
+        None => {
+            let stem = stem(&fields.graph);
+            let span = fields.graph.span.clone();
+            let name = Name::new(stem);
+            let name = name.map_err(|_| DocumentError::Unnamed(span.clone(), stem.to_owned()));
+            Located::new(name.map_err(Mistake::diagnostic)?, span)
+        }
     };
-    if let Some(what) = wrong_prefix {
-        let place = fields.prefix.as_ref().unwrap_or(tag);
-        return Err(Diagnostic::error(Code::MissingField, what)
-            .at(place.span.clone(), "")
-            .help("`prefix: \"eye\"` makes `eye.depth` of `depth`, and `eye[0].depth` where it is repeated"));
-    }
-    Ok(IncludeEntry {
+    let include = Include {
         graph: fields.graph,
-        prefix: fields.prefix,
-        params: fields.params.unique("given")?,
-        materials: fields.materials.unique("renamed")?,
-        repeat: fields.repeat,
+        is_named,
+        expose: fields.expose,
         document: None,
-    })
-}
-
-fn group(
-    tag: &Located<String>,
-    body: &Node,
-    registry: &Registry,
-    diagnostics: &mut Vec<Diagnostic>,
-) -> Result<GroupEntry, Diagnostic> {
-    #[derive(Deserialize)]
-    #[serde(deny_unknown_fields)]
-    struct Header {
-        name: Located<String>,
-        #[serde(default)]
-        repeat: Repeat,
-    }
-    let (passes, header): (Vec<Field>, Vec<Field>) = body
-        .fields()?
-        .into_iter()
-        .partition(|field| *field.name == "passes");
-    let header: Header = from_fields(&header, &tag.span)?;
-    let [passes] = passes.as_slice() else {
-        let (code, what) = match passes.is_empty() {
-            true => (Code::MissingField, "the field `passes` is missing"),
-            false => (Code::DuplicateName, "the field `passes` is given twice"),
-        };
-        let place = passes.last().map_or(&tag.span, |field| &field.name.span);
-        return Err(Diagnostic::error(code, what).at(place.clone(), ""));
     };
-    Ok(GroupEntry {
-        name: header.name,
-        repeat: header.repeat,
-        entries: read(Some(&passes.node), registry, diagnostics),
-    })
+    Ok((include, name))
 }

@@ -1,99 +1,176 @@
-//! Materials: the textures, buffers and samplers of a document ("material" is Nau3D's word for what passes share).
+//! Materials: the textures, buffers and samplers of a document ("material" is Nau3D's word for what
+//! passes share), and the inputs that an includer or the host gives.
 
 use super::{
-    located::{self, Located},
-    value::Value,
+    fields::Compare,
+    ron::{Node, raw, read, refuse},
+};
+use crate::{
+    errors::document::DocumentError,
+    language::{
+        name::Name,
+        syntax::{Expr, Leaf},
+    },
+    source::span::Located,
 };
 use serde::{Deserialize, Deserializer};
 
 /// A declared material.
 #[derive(Clone, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "a document has a handful, each made once"
-)]
-pub enum Material {
-    /// A 2D texture, possibly with mips and layers.
+pub(crate) enum Material {
     Texture(TextureEntry),
-    /// A storage buffer; the layout of its items comes from WGSL.
     Buffer(BufferEntry),
-    /// A sampler.
     Sampler(SamplerEntry),
 }
 
 impl Material {
-    /// Its name.
-    pub fn name(&self) -> &Located<String> {
+    pub fn name(&self) -> &Located<Name> {
         match self {
             Self::Texture(texture) => &texture.name,
             Self::Buffer(buffer) => &buffer.name,
             Self::Sampler(sampler) => &sampler.name,
         }
     }
+
+    /// Calls `each` with everything that its size and format are made of.
+    pub fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
+        let exprs = match self {
+            Self::Texture(texture) => {
+                let format = match &texture.format {
+                    FormatEntry::Expr(format) => Some(format),
+                    FormatEntry::Named(_) => None,
+                };
+                let mips = match &texture.mips {
+                    Mips::Number(mips) => Some(mips),
+                    Mips::One | Mips::All => None,
+                };
+                let (size, layers) = (texture.size.as_ref(), texture.layers.as_ref());
+                [format, mips, size, layers, texture.samples.as_ref()]
+            }
+            Self::Buffer(buffer) => [buffer.count.as_ref(), None, None, None, None],
+            Self::Sampler(_) => [None; 5],
+        };
+        exprs
+            .into_iter()
+            .flatten()
+            .for_each(|expr| expr.visit(each));
+    }
 }
 
 /// A texture as the document writes it.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct TextureEntry {
-    /// Name.
-    pub name: Located<String>,
-    /// wgpu's name of the format, for example `R32Uint`.
-    pub format: Located<Format>,
-    /// Size of mip 0.
-    pub size: Located<Size>,
-    /// Number of mips.
-    #[serde(default = "one")]
-    pub mips: Value<u32>,
-    /// Number of layers; above 1 (or from a param) makes it an array.
-    #[serde(default = "one")]
-    pub layers: Value<u32>,
-    /// Names for parts of the texture.
+pub(crate) struct TextureEntry {
+    pub name: Located<Name>,
+    pub format: FormatEntry,
+    /// Size of mip 0: one number (a square), two, or three (a 3D texture). Where none is given, the
+    /// viewport's, or the file's.
     #[serde(default)]
-    pub views: Vec<ViewEntry>,
+    pub size: Option<Expr>,
+    #[serde(default)]
+    pub mips: Mips,
+    #[serde(default)]
+    pub layers: Option<Expr>,
+    #[serde(default)]
+    pub samples: Option<Expr>,
+    /// The picture that the texture holds; it is never written then.
+    #[serde(default)]
+    pub file: Option<Located<String>>,
 }
 
-fn one() -> Value<u32> {
-    Value::Literal(1)
+/// Number of mips.
+#[derive(Clone, Debug, Default)]
+pub(crate) enum Mips {
+    #[default]
+    One,
+    /// Down to one texel.
+    All,
+    Number(Expr),
 }
 
-/// A named part of a texture: some of its mips and layers.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ViewEntry {
-    /// Name; used like a material's.
-    pub name: Located<String>,
-    /// First mip.
-    #[serde(default)]
-    pub mip: u32,
-    /// Number of mips; all that follow where not given.
-    #[serde(default)]
-    pub mips: Option<u32>,
-    /// First layer.
-    #[serde(default)]
-    pub layer: u32,
-    /// Number of layers; all that follow where not given.
-    #[serde(default)]
-    pub layers: Option<u32>,
+impl<'de> Deserialize<'de> for Mips {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        match raw(deserializer)? {
+            ("All", _) => Ok(Self::All),
+            (text, _) => read(text).map(Self::Number),
+        }
+    }
+}
+
+/// A format by wgpu's name, or `"other.format"`.
+#[derive(Clone, Debug)]
+pub(crate) enum FormatEntry {
+    Named(wgt::TextureFormat),
+    Expr(Expr),
+}
+
+impl<'de> Deserialize<'de> for FormatEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (text, span) = raw(deserializer)?;
+        if text.starts_with('"') {
+            return read(text).map(Self::Expr);
+        }
+        let named = format_named(text).map(Self::Named);
+        let unknown = || {
+            let known = FORMATS.iter().map(|&name| name.to_owned()).collect();
+            DocumentError::UnknownWord(Located::new(text.to_owned(), span), known)
+        };
+        named.ok_or_else(|| refuse(unknown()))
+    }
 }
 
 /// A buffer as the document writes it.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct BufferEntry {
-    /// Name.
-    pub name: Located<String>,
-    /// Number of items of the runtime-sized array that the shaders see; not needed where they see a fixed size.
+pub(crate) struct BufferEntry {
+    pub name: Located<Name>,
+    /// Number of items of the runtime-sized array that the shaders see; none where they see a fixed
+    /// size.
     #[serde(default)]
-    pub count: Option<Located<Count>>,
+    pub count: Option<Expr>,
+    /// The items that the buffer holds; it is never written then.
+    #[serde(default)]
+    pub data: Option<Located<Data>>,
+}
+
+/// Constant items: numbers, or tuples of numbers, one per scalar of the shader's type.
+#[derive(Clone, Debug)]
+pub(crate) struct Data(pub Vec<Vec<f64>>);
+
+impl<'de> Deserialize<'de> for Data {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (_, span) = raw(deserializer)?;
+        let wrong = || refuse(DocumentError::Data(span.clone()));
+        let items = Node { span: span.clone() }.list().map_err(|_| wrong())?;
+        let mut data = Vec::new();
+        for item in items {
+            let mut numbers = Vec::new();
+            match item.text().starts_with('(') {
+                true => flatten(&item, &mut numbers).ok_or_else(wrong)?,
+                false => numbers.push(read(item.text())?),
+            }
+            data.push(numbers);
+        }
+        Ok(Self(data))
+    }
+}
+
+/// The numbers of a tuple, those of tuples in it in their places.
+fn flatten(tuple: &Node, numbers: &mut Vec<f64>) -> Option<()> {
+    for part in tuple.list().ok()? {
+        match part.text().starts_with('(') {
+            true => flatten(&part, numbers)?,
+            false => numbers.push(part.text().replace('_', "").parse().ok()?),
+        }
+    }
+    Some(())
 }
 
 /// A sampler as the document writes it.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SamplerEntry {
-    /// Name.
-    pub name: Located<String>,
+pub(crate) struct SamplerEntry {
+    pub name: Located<Name>,
     /// Minification, magnification and mip filter.
     #[serde(default)]
     pub filter: Filter,
@@ -102,7 +179,7 @@ pub struct SamplerEntry {
     pub address: Address,
     /// Makes it a comparison sampler.
     #[serde(default)]
-    pub compare: Option<super::value::Compare>,
+    pub compare: Option<Compare>,
 }
 
 /// A sampler's filter.
@@ -127,114 +204,116 @@ pub enum Address {
     MirrorRepeat,
 }
 
-/// A texture format by wgpu's name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Format(pub wgpu::TextureFormat);
+/// What a document asks its includer, or the host, for.
+#[derive(Clone, Debug)]
+pub(crate) struct Input {
+    pub name: Located<Name>,
+    pub kind: InputKind,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum InputKind {
+    /// `None`: of any format.
+    Texture(Option<wgt::TextureFormat>),
+    Buffer,
+    Sampler {
+        compare: bool,
+    },
+}
+
+impl InputKind {
+    /// What is asked for, for messages.
+    pub fn describe(&self) -> &'static str {
+        match self {
+            Self::Texture(_) => "a texture",
+            Self::Buffer => "a buffer",
+            Self::Sampler { compare: true } => "a sampler with `compare`",
+            Self::Sampler { compare: false } => "a sampler without `compare`",
+        }
+    }
+
+    /// The same with the format that a texture must have.
+    pub fn describe_with_format(&self) -> String {
+        match self {
+            Self::Texture(Some(format)) => format!("a texture {format:?}"),
+            other => other.describe().to_owned(),
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TextureInput {
+    name: Located<Name>,
+    #[serde(default)]
+    format: Option<FormatEntry>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BufferInput {
+    name: Located<Name>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SamplerInput {
+    name: Located<Name>,
+    #[serde(default)]
+    compare: bool,
+}
+
+impl TryFrom<TextureInput> for Input {
+    type Error = DocumentError;
+    fn try_from(input: TextureInput) -> Result<Self, DocumentError> {
+        let format = match input.format {
+            None => None,
+            Some(FormatEntry::Named(format)) => Some(format),
+            Some(FormatEntry::Expr(expr)) => return Err(DocumentError::InputFormat(expr.span)),
+        };
+        Ok(Self {
+            name: input.name,
+            kind: InputKind::Texture(format),
+        })
+    }
+}
+
+impl From<BufferInput> for Input {
+    fn from(input: BufferInput) -> Self {
+        Self {
+            name: input.name,
+            kind: InputKind::Buffer,
+        }
+    }
+}
+
+impl From<SamplerInput> for Input {
+    fn from(input: SamplerInput) -> Self {
+        Self {
+            name: input.name,
+            kind: InputKind::Sampler {
+                compare: input.compare,
+            },
+        }
+    }
+}
 
 macro_rules! formats {
     ($($name:ident)*) => {
         const FORMATS: &[&str] = &[$(stringify!($name)),*];
-        fn format_named(name: &str) -> Option<wgpu::TextureFormat> {
-            match name { $(stringify!($name) => Some(wgpu::TextureFormat::$name),)* _ => None }
+        fn format_named(name: &str) -> Option<wgt::TextureFormat> {
+            match name {
+                $(stringify!($name) => Some(wgt::TextureFormat::$name),)*
+                _ => None,
+            }
         }
     };
 }
 
 formats! {
-    R8Unorm R8Snorm R8Uint R8Sint R16Uint R16Sint R16Float Rg8Unorm Rg8Snorm Rg8Uint Rg8Sint R32Uint R32Sint R32Float
-    Rg16Uint Rg16Sint Rg16Float Rgba8Unorm Rgba8UnormSrgb Rgba8Snorm Rgba8Uint Rgba8Sint Bgra8Unorm Bgra8UnormSrgb
-    Rgb10a2Unorm Rgb10a2Uint Rg11b10Ufloat Rg32Uint Rg32Sint Rg32Float Rgba16Uint Rgba16Sint Rgba16Float Rgba32Uint
-    Rgba32Sint Rgba32Float Depth16Unorm Depth24Plus Depth32Float
-}
-
-impl<'de> Deserialize<'de> for Format {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Name;
-        impl serde::de::Visitor<'_> for Name {
-            type Value = Format;
-            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str("a texture format, for example R32Uint")
-            }
-            fn visit_str<E: serde::de::Error>(self, name: &str) -> Result<Format, E> {
-                format_named(name)
-                    .map(Format)
-                    .ok_or_else(|| E::unknown_variant(name, FORMATS))
-            }
-        }
-        deserializer.deserialize_identifier(Name)
-    }
-}
-
-/// Size of a texture.
-#[derive(Clone, Debug, Deserialize)]
-pub enum Size {
-    /// The viewport's.
-    Viewport,
-    /// The viewport's times a factor, rounded up.
-    ViewportTimes(Value<f32>),
-    /// That of another texture.
-    Like(Located<String>),
-    /// Equal width and height.
-    Square(Value<u32>),
-    /// Width and height.
-    Texels(Value<u32>, Value<u32>),
-}
-
-/// Number of items.
-#[derive(Clone, Debug)]
-pub enum Count {
-    /// A number or a param.
-    Number(Value<u32>),
-    /// As many as the viewport has pixels.
-    Pixels,
-    /// As many as a texture has texels in mip 0 of one layer.
-    PixelsOf(Located<String>),
-    /// As many as another buffer or provided resource has.
-    CountOf(Located<String>),
-    /// A product.
-    Times(Box<Count>, Box<Count>),
-}
-
-impl Count {
-    /// Whether it is that of one of `names`.
-    pub(crate) fn refers_to(&self, names: &std::collections::HashSet<&str>) -> bool {
-        match self {
-            Self::Number(_) | Self::Pixels => false,
-            Self::PixelsOf(name) | Self::CountOf(name) => names.contains(name.as_str()),
-            Self::Times(a, b) => a.refers_to(names) || b.refers_to(names),
-        }
-    }
-
-    /// Whether it is taken from something else's count, which may be 0 through no fault of the document.
-    pub(crate) fn is_taken(&self) -> bool {
-        match self {
-            Self::CountOf(_) => true,
-            Self::Times(a, b) => a.is_taken() || b.is_taken(),
-            Self::Number(_) | Self::Pixels | Self::PixelsOf(_) => false,
-        }
-    }
-}
-
-impl<'de> Deserialize<'de> for Count {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(rename = "Count")]
-        enum Words {
-            Param(Located<String>),
-            Pixels,
-            PixelsOf(Located<String>),
-            CountOf(Located<String>),
-            Times(Count, Count),
-        }
-        Ok(match located::literal(deserializer)? {
-            Ok(number) => Self::Number(Value::Literal(number)),
-            Err(text) => match located::word::<Words, D::Error>(text)? {
-                Words::Param(name) => Self::Number(Value::Param(name)),
-                Words::Pixels => Self::Pixels,
-                Words::PixelsOf(name) => Self::PixelsOf(name),
-                Words::CountOf(name) => Self::CountOf(name),
-                Words::Times(a, b) => Self::Times(Box::new(a), Box::new(b)),
-            },
-        })
-    }
+    R8Unorm R8Snorm R8Uint R8Sint R16Uint R16Sint R16Float Rg8Unorm Rg8Snorm Rg8Uint Rg8Sint
+    R32Uint R32Sint R32Float Rg16Uint Rg16Sint Rg16Float Rgba8Unorm Rgba8UnormSrgb Rgba8Snorm
+    Rgba8Uint Rgba8Sint Bgra8Unorm Bgra8UnormSrgb Rgb10a2Unorm Rgb10a2Uint Rg11b10Ufloat Rg32Uint
+    Rg32Sint Rg32Float Rgba16Uint Rgba16Sint Rgba16Float Rgba32Uint Rgba32Sint Rgba32Float
+    Stencil8 Depth16Unorm Depth24Plus Depth24PlusStencil8 Depth32Float Depth32FloatStencil8
 }

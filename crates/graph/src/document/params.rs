@@ -1,11 +1,21 @@
 //! Params: the typed knobs of a document.
 
-use super::located::Located;
-use serde::{Deserialize, Deserializer, Serialize};
-use std::fmt;
+use super::ron::{Field, from_fields};
+use crate::{
+    diagnostics::{diagnostic::Diagnostic, reports::Mistake},
+    errors::document::DocumentError,
+    language::{
+        name::Name,
+        syntax::Expr,
+        value::{Scalar, Value, Word},
+    },
+    source::span::Located,
+};
+use serde::{Deserialize, Serialize};
+use std::{collections::HashSet, fmt, sync::Arc};
 
 /// Type of a param.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ParamType {
     /// 32-bit float.
     F32,
@@ -22,13 +32,16 @@ pub enum ParamType {
     /// Four floats.
     Vec4,
     /// One of the named words; travels to WGSL as its index, `u32`.
-    Choice(Vec<String>),
+    Choice(Arc<[Name]>),
 }
 
 impl fmt::Display for ParamType {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Choice(words) => write!(f, "{}", words.join("|")),
+            Self::Choice(words) => {
+                let words: Vec<&str> = words.iter().map(Name::as_str).collect();
+                f.write_str(&words.join("|"))
+            }
             other => write!(f, "{}", format!("{other:?}").to_lowercase()),
         }
     }
@@ -71,12 +84,12 @@ impl fmt::Display for ParamValue {
 /// A declared param.
 #[derive(Clone, Debug)]
 pub struct Param {
-    /// Name, as in `params.NAME` of a shader and `--set NAME=…`.
+    /// Name, as in `params.NAME` of a shader and `--set NAME=…`; that of a named include has a dot.
     pub name: Located<String>,
     /// Type.
     pub ty: ParamType,
-    /// Value where nothing else is asked for.
-    pub default: ParamValue,
+    /// Value where nothing else is asked for; `None`: somebody must be asked.
+    pub default: Option<Expr>,
     /// Least value of a number (each component of a vector).
     pub min: Option<f64>,
     /// Greatest value of a number (each component of a vector).
@@ -85,178 +98,226 @@ pub struct Param {
     pub description: String,
 }
 
-/// A param as the document writes it.
-#[derive(Debug, Deserialize)]
+/// Why a param, or a value of one, cannot be.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ParamFault {
+    /// The value has another type.
+    #[error("the value must be of type {0}")]
+    Type(String),
+    /// The value has the type, but is not allowed.
+    #[error("{0}")]
+    Value(String),
+}
+
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct ParamEntry {
-    pub name: Located<String>,
-    #[serde(rename = "type")]
-    pub ty: ParamType,
-    pub default: Located<Written>,
+struct Fields {
+    name: Located<Name>,
     #[serde(default)]
-    pub min: Option<f64>,
+    words: Vec<Located<Name>>,
     #[serde(default)]
-    pub max: Option<f64>,
+    default: Option<Expr>,
     #[serde(default)]
-    pub description: String,
-}
-
-/// A default as the document writes it: number, bool, word or tuple of numbers.
-#[derive(Clone, Debug)]
-pub(crate) enum Written {
-    Number(f64),
-    Bool(bool),
-    Word(String),
-    Tuple(Vec<f64>),
-}
-
-impl<'de> Deserialize<'de> for Written {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Visitor;
-        impl<'de> serde::de::Visitor<'de> for Visitor {
-            type Value = Written;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a number, true or false, a \"word\", or a tuple of numbers")
-            }
-            fn visit_bool<E>(self, value: bool) -> Result<Written, E> {
-                Ok(Written::Bool(value))
-            }
-            fn visit_i64<E>(self, value: i64) -> Result<Written, E> {
-                Ok(Written::Number(value as f64))
-            }
-            fn visit_u64<E>(self, value: u64) -> Result<Written, E> {
-                Ok(Written::Number(value as f64))
-            }
-            fn visit_f64<E>(self, value: f64) -> Result<Written, E> {
-                Ok(Written::Number(value))
-            }
-            fn visit_unit<E: serde::de::Error>(self) -> Result<Written, E> {
-                Err(E::custom("a word stands in quotes: \"word\""))
-            }
-            fn visit_str<E>(self, value: &str) -> Result<Written, E> {
-                Ok(Written::Word(value.to_owned()))
-            }
-            fn visit_seq<A: serde::de::SeqAccess<'de>>(
-                self,
-                mut seq: A,
-            ) -> Result<Written, A::Error> {
-                let mut values = Vec::new();
-                while let Some(value) = seq.next_element()? {
-                    values.push(value);
-                }
-                Ok(Written::Tuple(values))
-            }
-        }
-        deserializer.deserialize_any(Visitor)
-    }
+    min: Option<f64>,
+    #[serde(default)]
+    max: Option<f64>,
+    #[serde(default)]
+    description: String,
 }
 
 impl Param {
-    /// Turns the entry into a param, or says why its default does not fit.
-    pub(crate) fn from_entry(entry: ParamEntry) -> Result<Self, (Located<String>, String)> {
-        let place = Located::new(entry.name.value.clone(), entry.default.span.clone());
-        let mut param = Self {
-            name: entry.name,
-            ty: entry.ty,
-            default: ParamValue::Bool(false),
-            min: entry.min,
-            max: entry.max,
-            description: entry.description,
+    /// Reads the entry of a param: its type, and its fields.
+    pub(super) fn read(tag: &Located<String>, fields: &[Field]) -> Result<Self, Diagnostic> {
+        let fields: Fields = from_fields(fields, &tag.span)?;
+        let wrong = |why: &str| DocumentError::Param {
+            name: fields.name.clone(),
+            why: why.to_owned(),
         };
-        if let ParamType::Choice(words) = &param.ty {
-            let different: std::collections::HashSet<&String> = words.iter().collect();
-            let repeated = different.len() < words.len();
-            if words.is_empty() || repeated {
-                return Err((
-                    place,
-                    "a Choice has at least one word, and each only once".to_owned(),
-                ));
-            }
+        let ty = match tag.as_str() {
+            "F32" => ParamType::F32,
+            "I32" => ParamType::I32,
+            "U32" => ParamType::U32,
+            "Bool" => ParamType::Bool,
+            "Vec2" => ParamType::Vec2,
+            "Vec3" => ParamType::Vec3,
+            "Vec4" => ParamType::Vec4,
+            "Choice" => ParamType::Choice(fields.words.iter().map(|w| w.value.clone()).collect()),
+            _ => return Err(DocumentError::UnknownParamType(tag.clone()).diagnostic()),
+        };
+        let mut different = HashSet::new();
+        let repeats = !fields
+            .words
+            .iter()
+            .all(|word| different.insert(&word.value));
+        let is_choice = matches!(ty, ParamType::Choice(_));
+        if is_choice == fields.words.is_empty() || repeats {
+            let why = match is_choice {
+                true => "a Choice has `words`, one at least, and each only once",
+                false => "only a Choice has `words`",
+            };
+            return Err(wrong(why).diagnostic());
         }
-        if let (Some(min), Some(max)) = (param.min, param.max)
+        if let (Some(min), Some(max)) = (fields.min, fields.max)
             && min.partial_cmp(&max).is_none_or(std::cmp::Ordering::is_gt)
         {
-            return Err((place, format!("no value can lie in {min}..{max}")));
+            return Err(wrong(&format!("no value can lie in {min}..{max}")).diagnostic());
         }
-        match param.read(&entry.default.value) {
-            Ok(value) => {
-                param.default = value;
-                Ok(param)
+        if *fields.name.value == *"index" {
+            let why = "`index` is that of a repetition, and no param";
+            return Err(wrong(why).diagnostic());
+        }
+        Ok(Self {
+            name: Located::new(fields.name.value.to_string(), fields.name.span),
+            ty,
+            default: fields.default,
+            min: fields.min,
+            max: fields.max,
+            description: fields.description,
+        })
+    }
+
+    /// The value of an expression as one of this param.
+    pub(crate) fn convert(&self, value: &Value) -> Result<ParamValue, ParamFault> {
+        let wrong = || ParamFault::Type(self.ty.to_string());
+        let list = |count: usize| match value {
+            Value::List(list) if list.len() == count => {
+                let list = list.iter().map(|scalar| scalar.number() as f32);
+                Ok(ParamValue::Vec(list.collect()))
             }
-            Err(why) => Err((place, why)),
-        }
-    }
-
-    /// The value that a document writes, if it fits.
-    pub(crate) fn read(&self, written: &Written) -> Result<ParamValue, String> {
-        let value = self.value_of(written)?;
-        self.check(&value).map(|()| value)
-    }
-
-    fn value_of(&self, written: &Written) -> Result<ParamValue, String> {
-        let wrong = || format!("the value must be of type {}", self.ty);
-        let whole = |number: f64| (number.fract() == 0.0).then_some(number).ok_or_else(wrong);
-        let vector = |length: usize| match written {
-            Written::Tuple(values) if values.len() == length => Ok(ParamValue::Vec(
-                values.iter().map(|&value| value as f32).collect(),
-            )),
             _ => Err(wrong()),
         };
-        match (&self.ty, written) {
-            (ParamType::F32, Written::Number(number)) => Ok(ParamValue::F32(*number as f32)),
-            (ParamType::I32, Written::Number(number)) => whole(*number).and_then(|n| {
-                if n >= f64::from(i32::MIN) && n <= f64::from(i32::MAX) {
-                    Ok(ParamValue::I32(n as i32))
-                } else {
-                    Err(wrong())
+        let converted = match (&self.ty, value) {
+            (ParamType::F32, Value::Scalar(scalar)) => ParamValue::F32(scalar.number() as f32),
+            (ParamType::I32, Value::Scalar(Scalar::Whole(whole))) => {
+                ParamValue::I32(i32::try_from(*whole).map_err(|_| wrong())?)
+            }
+            (ParamType::U32, Value::Scalar(Scalar::Whole(whole))) => {
+                ParamValue::U32(u32::try_from(*whole).map_err(|_| wrong())?)
+            }
+            (ParamType::Bool, Value::Bool(value)) => ParamValue::Bool(*value),
+            (ParamType::Vec2, _) => list(2)?,
+            (ParamType::Vec3, _) => list(3)?,
+            (ParamType::Vec4, _) => list(4)?,
+            (ParamType::Choice(_), Value::Word(word)) => ParamValue::Choice(word.word.to_string()),
+            _ => return Err(wrong()),
+        };
+        self.check(&converted).map(|()| converted)
+    }
+
+    /// A value of this param in an expression.
+    pub(crate) fn value(&self, value: &ParamValue) -> Value {
+        // The decimal number that it was written as: 0.51 is no f32, and yet `n >= 0.51` holds of it.
+        let number = |number: &f32| {
+            let written = number.to_string().parse();
+            Scalar::Number(written.unwrap_or(f64::from(*number)))
+        };
+        match value {
+            ParamValue::F32(value) => Value::Scalar(number(value)),
+            ParamValue::I32(value) => Value::whole(*value),
+            ParamValue::U32(value) => Value::whole(*value),
+            ParamValue::Bool(value) => Value::Bool(*value),
+            ParamValue::Vec(values) => Value::List(values.iter().map(number).collect()),
+            ParamValue::Choice(word) => {
+                let words = match &self.ty {
+                    ParamType::Choice(words) => Some(Arc::clone(words)),
+                    _ => None,
+                };
+                let known = words.iter().flat_map(|words| words.iter());
+                // What was checked is one of the words; else it is none, and compares so.
+                match known.clone().find(|known| ***known == **word).cloned() {
+                    Some(word) => Value::Word(Word { word, of: words }),
+                    None => Value::Bool(false),
                 }
-            }),
-            (ParamType::U32, Written::Number(number)) => whole(*number).and_then(|n| {
-                if (0.0..=f64::from(u32::MAX)).contains(&n) {
-                    Ok(ParamValue::U32(n as u32))
-                } else {
-                    Err(wrong())
-                }
-            }),
-            (ParamType::Bool, Written::Bool(value)) => Ok(ParamValue::Bool(*value)),
-            (ParamType::Vec2, _) => vector(2),
-            (ParamType::Vec3, _) => vector(3),
-            (ParamType::Vec4, _) => vector(4),
-            (ParamType::Choice(_), Written::Word(word)) => Ok(ParamValue::Choice(word.clone())),
-            _ => Err(wrong()),
+            }
         }
     }
 
-    /// Reads a value from text as the command line writes it: `1024`, `0.5`, `true`, `front`, `1,2,3`.
+    /// What stands for a value where nobody is there to give one: `min`, else 1, false, the first
+    /// word.
+    pub(crate) fn stand_in(&self) -> ParamValue {
+        let number = self
+            .min
+            .unwrap_or(1.0)
+            .min(self.max.unwrap_or(f64::INFINITY));
+        match &self.ty {
+            ParamType::F32 => ParamValue::F32(number as f32),
+            ParamType::I32 => ParamValue::I32(number as i32),
+            ParamType::U32 => ParamValue::U32(number as u32),
+            ParamType::Bool => ParamValue::Bool(false),
+            ParamType::Vec2 => ParamValue::Vec(vec![number as f32; 2]),
+            ParamType::Vec3 => ParamValue::Vec(vec![number as f32; 3]),
+            ParamType::Vec4 => ParamValue::Vec(vec![number as f32; 4]),
+            ParamType::Choice(words) => {
+                ParamValue::Choice(words.first().map(Name::to_string).unwrap_or_default())
+            }
+        }
+    }
+
+    /// Whether every value of `other` is one of this param.
+    pub(crate) fn holds_all_of(&self, other: &Param) -> bool {
+        let within = match (self.min, other.min) {
+            (Some(least), Some(other)) => least <= other,
+            (least, _) => least.is_none(),
+        } && match (self.max, other.max) {
+            (Some(most), Some(other)) => most >= other,
+            (most, _) => most.is_none(),
+        };
+        match (&self.ty, &other.ty) {
+            (ParamType::Choice(words), ParamType::Choice(others)) => {
+                others.iter().all(|word| words.contains(word))
+            }
+            (a, b) => a == b && within,
+        }
+    }
+
+    /// Reads a value from text as the command line writes it: `1024`, `0.5`, `true`, `front`,
+    /// `1,2,3`.
     ///
     /// # Errors
     /// What was expected.
-    pub fn parse(&self, text: &str) -> Result<ParamValue, String> {
-        let number = |text: &str| {
-            text.trim()
-                .parse::<f64>()
-                .map_err(|_| format!("the value must be of type {}", self.ty))
+    pub fn parse(&self, text: &str) -> Result<ParamValue, ParamFault> {
+        let wrong = || ParamFault::Type(self.ty.to_string());
+        let scalar = |text: &str| {
+            let text = text.trim();
+            let whole = text.parse().map(Scalar::Whole).ok();
+            // 1e3 and 4.0 are whole numbers, too.
+            let number = || {
+                let number: f64 = text.parse().ok()?;
+                let is_whole = number.fract() == 0.0 && number.abs() < 9e15;
+                Some(match is_whole && self.ty != ParamType::F32 {
+                    true => Scalar::Whole(number as i64),
+                    false => Scalar::Number(number),
+                })
+            };
+            whole.or_else(number).ok_or_else(wrong)
         };
-        let written = match self.ty {
-            ParamType::Choice(_) => Written::Word(text.to_owned()),
+        let value = match self.ty {
+            ParamType::Choice(_) => return self.checked(ParamValue::Choice(text.to_owned())),
             ParamType::Bool => match text {
-                "true" | "1" => Written::Bool(true),
-                "false" | "0" => Written::Bool(false),
-                _ => return Err("the value must be true or false".to_owned()),
+                "true" | "1" => Value::Bool(true),
+                "false" | "0" => Value::Bool(false),
+                _ => {
+                    let why = "the value must be true or false";
+                    return Err(ParamFault::Value(why.to_owned()));
+                }
             },
             ParamType::Vec2 | ParamType::Vec3 | ParamType::Vec4 => {
-                Written::Tuple(text.split(',').map(number).collect::<Result<_, _>>()?)
+                Value::List(text.split(',').map(scalar).collect::<Result<_, _>>()?)
             }
-            _ => Written::Number(number(text)?),
+            _ => Value::Scalar(scalar(text)?),
         };
-        self.read(&written)
+        self.convert(&value)
+    }
+
+    fn checked(&self, value: ParamValue) -> Result<ParamValue, ParamFault> {
+        self.check(&value).map(|()| value)
     }
 
     /// Whether a value has the param's type and lies in its range.
     ///
     /// # Errors
     /// What was expected.
-    pub fn check(&self, value: &ParamValue) -> Result<(), String> {
+    pub fn check(&self, value: &ParamValue) -> Result<(), ParamFault> {
         let numbers: Vec<f64> = match (&self.ty, value) {
             (ParamType::F32, ParamValue::F32(v)) => vec![f64::from(*v)],
             (ParamType::I32, ParamValue::I32(v)) => vec![f64::from(*v)],
@@ -272,13 +333,16 @@ impl Param {
                 v.iter().map(|&v| f64::from(v)).collect()
             }
             (ParamType::Choice(words), ParamValue::Choice(word)) => {
-                return if words.contains(word) {
-                    Ok(())
-                } else {
-                    Err(format!("must be one of {}", words.join(", ")))
+                let words: Vec<&str> = words.iter().map(Name::as_str).collect();
+                return match words.contains(&word.as_str()) {
+                    true => Ok(()),
+                    false => Err(ParamFault::Value(format!(
+                        "must be one of {}",
+                        words.join(", ")
+                    ))),
                 };
             }
-            _ => return Err(format!("the value must be of type {}", self.ty)),
+            _ => return Err(ParamFault::Type(self.ty.to_string())),
         };
         // Bounds as values are stored: 0.51 is no f32, and yet within 0.51 and up.
         let whole = matches!(self.ty, ParamType::I32 | ParamType::U32);
@@ -291,7 +355,7 @@ impl Param {
         };
         for number in numbers {
             if !number.is_finite() {
-                return Err("the value must be finite".to_owned());
+                return Err(ParamFault::Value("the value must be finite".to_owned()));
             }
             let below = self.min.is_some_and(|min| number < stored(min));
             if below || self.max.is_some_and(|max| number > stored(max)) {
@@ -299,14 +363,14 @@ impl Param {
                     true => number.to_string(),
                     false => (number as f32).to_string(),
                 };
-                return Err(match (self.min, self.max) {
+                return Err(ParamFault::Value(match (self.min, self.max) {
                     (Some(min), Some(max)) => format!("must lie in {min}..{max}, not {shown}"),
                     (Some(min), None) => format!("must be at least {min}, not {shown}"),
                     (None, max) => format!(
                         "must be at most {}, not {shown}",
                         max.unwrap_or(f64::INFINITY)
                     ),
-                });
+                }));
             }
         }
         Ok(())
@@ -320,7 +384,7 @@ impl Param {
             (ParamValue::Bool(value), _) => Some(u32::from(*value)),
             (ParamValue::Choice(word), ParamType::Choice(words)) => words
                 .iter()
-                .position(|known| known == word)
+                .position(|known| **known == **word)
                 .and_then(|index| u32::try_from(index).ok()),
             _ => None,
         }
@@ -330,14 +394,14 @@ impl Param {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::source::SourceFile;
+    use crate::source::span::SourceFile;
 
     #[test]
     fn bounds_are_rounded_as_values_are() {
         let param = Param {
             name: Located::new("n".to_owned(), SourceFile::new("graph.ron", "").span(0..0)),
             ty: ParamType::F32,
-            default: ParamValue::F32(0.51),
+            default: None,
             min: Some(0.51),
             max: Some(0.7),
             description: String::new(),
@@ -351,7 +415,7 @@ mod tests {
             assert_eq!(param.parse(text).is_ok(), inside, "{text}");
         }
         assert_eq!(
-            param.parse("0.3").unwrap_err(),
+            param.parse("0.3").unwrap_err().to_string(),
             "must lie in 0.51..0.7, not 0.3"
         );
     }

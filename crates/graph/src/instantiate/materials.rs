@@ -1,294 +1,313 @@
-//! Materials of all documents in one list: declared under a prefix, renamed, or connected with one of an outer document.
+//! Sizes of materials: found when somebody first asks for one, each once.
 
-use super::{Builder, MOST, ScopeId, clash, scope::Place, split_layer};
-use crate::{
-    diagnostics::{Code, Diagnostic},
-    document::{
-        Document, IncludeEntry,
-        located::Located,
-        materials::{Count, Material, Size},
-        value::Value,
-    },
-    registry::{FromParam, Params},
-    source::Span,
+use super::{
+    frames::Place,
+    state::{Declared, State},
+    world::World,
 };
-use std::{collections::HashMap, sync::Arc};
+use crate::{
+    diagnostics::reports::{Reported, Reports},
+    document::materials::{BufferEntry, FormatEntry, Material, Mips, SamplerEntry, TextureEntry},
+    errors::{evaluation::EvaluationError, resource::SizeError},
+    language::{syntax::Expr, value::Value},
+    resource::{Buffer, Origin, ResourceId, ResourceKind, Sampler, Texture},
+    source::{
+        sources::Picture,
+        span::{Located, Span},
+    },
+};
+use std::sync::Arc;
 
-impl Builder<'_, '_> {
-    /// Enters the materials of a document.
-    pub(super) fn declare(&mut self, document: &Document, scope: ScopeId) {
-        for name in &document.broken.materials {
-            let place = self.scopes.place(scope, name);
-            self.scopes.publish(&place);
-            if place.connected.is_none() {
-                self.unread.push(place.full);
+impl World<'_> {
+    /// Sees to it that the size of a resource is known.
+    pub fn settle(&mut self, id: ResourceId, reports: &mut Reports) -> Result<(), Reported> {
+        let declared = match &self.states[id.index()] {
+            State::Known => return Ok(()),
+            State::Broken(reported) => return Err(*reported),
+            State::Declared(declared) => declared.clone(),
+            State::Resolving => {
+                let name = &self.get(id).name;
+                let span = self.get(id).declared.clone();
+                let span = span.unwrap_or_else(|| self.graph.place());
+                let name = Located::new(name.clone(), span);
+                return Err(reports.report(EvaluationError::Circular(name)));
             }
-        }
-        for material in &document.materials {
-            if self.materials.len() >= MOST {
-                return self.full(material.name(), "materials");
-            }
-            let place = self.scopes.place(scope, material.name());
-            match &place.connected {
-                None => self.enter(material, place, scope),
-                Some(by) => self.connect(material, &place, by, scope),
-            }
-        }
-    }
-
-    fn enter(&mut self, material: &Material, place: Place, scope: ScopeId) {
-        let mut entered = material.clone();
-        self.scopes.publish(&place);
-        let full = place.full;
-        let number = self.materials.len();
-        if !self.claim(&full, &material.name().span, number) {
-            return;
-        }
-        match &mut entered {
-            Material::Texture(texture) => {
-                texture.name.value = full;
-                for view in &mut texture.views {
-                    self.view(&mut view.name, number, scope);
-                }
-            }
-            Material::Buffer(buffer) => buffer.name.value = full,
-            Material::Sampler(sampler) => sampler.name.value = full,
-        }
-        self.materials.push((entered, scope));
-    }
-
-    /// Gives a view its name in the whole graph.
-    fn view(&mut self, name: &mut Located<String>, texture: usize, scope: ScopeId) {
-        let place = self.scopes.place(scope, name);
-        self.scopes.publish(&place);
-        self.claim(&place.full, &name.span, texture);
-        name.value = place.full;
-    }
-
-    /// Whether a name is still free; reports it if not.
-    fn claim(&mut self, full: &str, place: &Span, number: usize) -> bool {
-        if let Some((first, _)) = self.declared.get(full) {
-            self.diagnostics.push(clash("material", full, first, place));
-            return false;
-        }
-        self.declared
-            .insert(full.to_owned(), (place.clone(), number));
-        true
-    }
-
-    /// A material that is one of an outer document.
-    fn connect(
-        &mut self,
-        material: &Material,
-        place: &Place,
-        by: &Located<String>,
-        scope: ScopeId,
-    ) {
-        // One with a mistake that was reported is not declared.
-        let Some((declared, number)) = self.declared.get(self.whole(&place.full)).cloned() else {
-            return self.scopes.publish(place);
         };
-        let outer = &self.materials[number].0;
-        if let Some(error) = mismatch(material, outer, (by, &place.full, declared)) {
-            self.diagnostics.push(error);
-            return self.spoil(material, scope);
-        }
-        self.scopes.publish(place);
-        let Material::Texture(texture) = material else {
-            return;
+        self.states[id.index()] = State::Resolving;
+        let kind = self.kind(&declared, reports);
+        let (state, result) = match kind {
+            Ok(kind) => {
+                let is_constant = match &kind {
+                    ResourceKind::Texture(texture) => texture.picture.is_some(),
+                    ResourceKind::Buffer(buffer) => buffer.data.is_some(),
+                    _ => false,
+                };
+                if is_constant {
+                    self.resources[id.index()].origin = Origin::Constant;
+                }
+                self.resources[id.index()].kind = kind;
+                (State::Known, Ok(()))
+            }
+            Err(reported) => (State::Broken(reported), Err(reported)),
         };
-        let mut views = texture.views.clone();
-        for view in &mut views {
-            self.view(&mut view.name, number, scope);
-        }
-        if let Material::Texture(outer) = &mut self.materials[number].0 {
-            outer.views.extend(views);
-        }
+        self.states[id.index()] = state;
+        result
     }
 
-    /// The name without the layers that it may end in.
-    fn whole<'n>(&self, mut name: &'n str) -> &'n str {
-        while let (false, Some((whole, _))) = (self.declared.contains_key(name), split_layer(name))
-        {
-            name = whole;
-        }
-        name
-    }
-
-    /// Nothing more is said about a material with a mistake.
-    fn spoil(&mut self, material: &Material, scope: ScopeId) {
-        let mut names = vec![material.name()];
-        if let Material::Texture(texture) = material {
-            names.extend(texture.views.iter().map(|view| &view.name));
-        }
-        for name in names {
-            let full = self.scopes.hide(scope, name);
-            self.unread.push(full);
-        }
-    }
-
-    /// Every rename must be one of a material of the included document.
-    pub(super) fn check_renames(
+    fn kind(
         &mut self,
-        include: &IncludeEntry,
-        document: &Document,
-        scope: ScopeId,
-    ) {
-        let known = self.scopes.get(scope);
-        for (name, _) in &include.materials {
-            if !known.knows(name) && !self.is_full {
-                let error = Diagnostic::error(
-                    Code::UnknownResource,
-                    format!("`{}` has no material `{}`", document.file.name, **name),
-                );
-                let error = error.at(name.span.clone(), "");
-                let found = self.diagnostics.len();
-                self.diagnostics.push(error.suggest_to(found, name, || {
-                    let mut names: Vec<&str> = known.names().collect();
-                    names.sort_unstable();
-                    names
-                }));
+        declared: &Declared,
+        reports: &mut Reports,
+    ) -> Result<ResourceKind, Reported> {
+        let place = Place {
+            frame: declared.frame,
+            index: None,
+        };
+        match declared.material() {
+            Material::Texture(entry) => {
+                let texture = self.texture(entry, declared, place, reports)?;
+                self.check_texture(entry, &texture, reports)?;
+                Ok(ResourceKind::Texture(texture))
             }
+            Material::Buffer(entry) => self.buffer(entry, place, reports),
+            Material::Sampler(entry) => Ok(ResourceKind::Sampler(sampler(entry))),
         }
     }
 
-    /// Names and params in sizes and counts become names of the whole graph and numbers.
-    pub(super) fn settle_materials(&mut self) -> Vec<Material> {
-        // A material that is connected with a layer or a view is as large as that.
-        let mut views: HashMap<String, String> = HashMap::new();
-        for (material, _) in &self.materials {
-            if let Material::Texture(texture) = material {
-                let first_mip = texture.views.iter().filter(|view| view.mip == 0);
-                views.extend(
-                    first_mip.map(|view| (view.name.value.clone(), texture.name.value.clone())),
-                );
+    fn texture(
+        &mut self,
+        entry: &TextureEntry,
+        declared: &Declared,
+        place: Place,
+        reports: &mut Reports,
+    ) -> Result<Texture, Reported> {
+        let format = match &entry.format {
+            FormatEntry::Named(format) => *format,
+            FormatEntry::Expr(expr) => self.format(expr, place, reports)?,
+        };
+        let picture = match &entry.file {
+            None => None,
+            Some(file) => Some(self.picture(entry, file, declared, format, reports)?),
+        };
+        let edges = match (&entry.size, &picture) {
+            (_, Some(picture)) => picture.size.map(u64::from).to_vec(),
+            (Some(size), None) => size.edges(&mut self.at(place, None, reports))?,
+            (None, None) => self.request.viewport.map(u64::from).to_vec(),
+        };
+        let mut one = |expr: &Option<Expr>| match expr {
+            Some(expr) => expr.count32(&mut self.at(place, None, reports)),
+            None => Ok(1),
+        };
+        let (layers, samples) = (one(&entry.layers)?, one(&entry.samples)?);
+        let name = entry.name.value.clone();
+        let span = size_span(entry);
+        let too_large = || SizeError::Absurd {
+            name: Located::new(name.to_string(), span.clone()),
+        };
+        let narrow = |edge: &u64| u32::try_from(*edge).ok();
+        let narrow: Option<Vec<u32>> = edges.iter().map(narrow).collect();
+        let narrow = narrow.ok_or_else(|| reports.report(too_large()))?;
+        let size = [narrow[0], narrow[1]];
+        let is_3d = narrow.len() == 3;
+        let depth = narrow.get(2).copied().unwrap_or(1);
+        let mips = match &entry.mips {
+            Mips::One => 1,
+            Mips::All => {
+                let longest = size[0].max(size[1]).max(if is_3d { depth } else { 1 });
+                longest.max(1).ilog2() + 1
             }
+            Mips::Number(expr) => expr.count32(&mut self.at(place, None, reports))?,
+        };
+        if is_3d && layers != 1 {
+            let name = Located::new(name.to_string(), entry.name.span.clone());
+            return Err(reports.report(SizeError::LayersOf3d(name)));
         }
-        let mut settled = Vec::new();
-        for (mut material, scope) in std::mem::take(&mut self.materials) {
-            let params = Arc::clone(&self.scopes.get(scope).params);
-            let index = self.scopes.index(scope);
-            let mut translate = |name: &mut Located<String>| {
-                name.value = self.scopes.full_name(scope, index, name);
-            };
-            let before = self.diagnostics.len();
-            let diagnostics = &mut *self.diagnostics;
-            match &mut material {
-                Material::Texture(texture) => {
-                    fix(&mut texture.mips, &params, diagnostics);
-                    fix(&mut texture.layers, &params, diagnostics);
-                    match &mut texture.size.value {
-                        Size::Viewport => {}
-                        Size::ViewportTimes(factor) => fix(factor, &params, diagnostics),
-                        Size::Like(name) => {
-                            translate(name);
-                            let whole = self.whole(name);
-                            name.value = views.get(whole).unwrap_or(&whole.to_owned()).clone();
-                        }
-                        Size::Square(edge) => fix(edge, &params, diagnostics),
-                        Size::Texels(width, height) => {
-                            fix(width, &params, diagnostics);
-                            fix(height, &params, diagnostics);
-                        }
-                    }
-                }
-                Material::Buffer(buffer) => {
-                    if let Some(count) = &mut buffer.count {
-                        count.value.names(&mut translate);
-                        count
-                            .value
-                            .numbers(&mut |value| fix(value, &params, diagnostics));
-                    }
-                }
-                Material::Sampler(_) => {}
-            }
-            if self.diagnostics.len() == before {
-                settled.push(material);
-                continue;
-            }
-            self.unread.push(material.name().value.clone());
-            if let Material::Texture(texture) = material {
-                self.unread
-                    .extend(texture.views.into_iter().map(|view| view.name.value));
-            }
+        Ok(Texture {
+            format,
+            size,
+            layers: if is_3d { depth } else { layers },
+            is_3d,
+            mips,
+            samples,
+            picture,
+        })
+    }
+
+    fn format(
+        &mut self,
+        expr: &Expr,
+        place: Place,
+        reports: &mut Reports,
+    ) -> Result<wgt::TextureFormat, Reported> {
+        match expr.value(&mut self.at(place, None, reports))? {
+            Value::Format(format) => Ok(format),
+            found => Err(reports.report(EvaluationError::Type {
+                span: expr.span.clone(),
+                expected: "a format",
+                found,
+            })),
         }
-        settled
+    }
+
+    fn picture(
+        &self,
+        entry: &TextureEntry,
+        file: &Located<String>,
+        declared: &Declared,
+        format: wgt::TextureFormat,
+        reports: &mut Reports,
+    ) -> Result<Picture, Reported> {
+        let picture = self.graph.pictures.get(&declared.document, file)?;
+        let takes = [
+            (entry.size.is_some(), "size"),
+            (!matches!(entry.mips, Mips::One), "mips"),
+            (entry.layers.is_some(), "layers"),
+            (entry.samples.is_some(), "samples"),
+        ];
+        if let Some((_, field)) = takes.into_iter().find(|(given, _)| *given) {
+            return Err(reports.report(SizeError::FileHas(file.clone(), field)));
+        }
+        if !crate::picture::can_hold(format) {
+            let place = Located::new(format!("{format:?}"), file.span.clone());
+            return Err(reports.report(SizeError::PictureFormat(place)));
+        }
+        Ok(picture)
+    }
+
+    fn buffer(
+        &mut self,
+        entry: &BufferEntry,
+        place: Place,
+        reports: &mut Reports,
+    ) -> Result<ResourceKind, Reported> {
+        let name = |span: &Span| Located::new(entry.name.value.to_string(), span.clone());
+        let count = match (&entry.count, &entry.data) {
+            (Some(count), Some(_)) => {
+                return Err(reports.report(SizeError::DataHas(name(&count.span))));
+            }
+            (None, Some(data)) if data.0.is_empty() => {
+                return Err(reports.report(SizeError::NoItems(name(&data.span))));
+            }
+            (None, Some(data)) => Some(data.0.len() as u64),
+            (None, None) => None,
+            (Some(expr), None) => match expr.count(&mut self.at(place, None, reports))? {
+                // As for what a host provides: wgpu binds nothing of size zero.
+                0 if expr.is_taken() => Some(1),
+                0 => return Err(reports.report(SizeError::NoItems(name(&expr.span)))),
+                count => Some(count),
+            },
+        };
+        let data = entry.data.as_ref().map(|data| Arc::new(data.0.clone()));
+        Ok(ResourceKind::Buffer(Buffer {
+            count,
+            data,
+            ..Buffer::default()
+        }))
+    }
+
+    fn check_texture(
+        &self,
+        entry: &TextureEntry,
+        texture: &Texture,
+        reports: &mut Reports,
+    ) -> Result<(), Reported> {
+        let limits = &self.request.limits;
+        let Texture {
+            size: [width, height],
+            layers,
+            mips,
+            samples,
+            ..
+        } = *texture;
+        let name = |span: Span| Located::new(entry.name.value.to_string(), span);
+        let (whole, sized) = (entry.name.span.clone(), size_span(entry));
+        if [width, height, layers, mips, samples].contains(&0) {
+            return Err(reports.report(SizeError::NoTexels {
+                name: name(sized),
+                size: [width, height],
+                layers,
+                mips,
+                samples,
+            }));
+        }
+        let (most, third) = match texture.is_3d {
+            true => (
+                limits.max_texture_dimension_3d,
+                limits.max_texture_dimension_3d,
+            ),
+            false => (
+                limits.max_texture_dimension_2d,
+                limits.max_texture_array_layers,
+            ),
+        };
+        if width > most || height > most {
+            let size = [width, height];
+            let name = name(sized);
+            reports.beyond(SizeError::Texels { name, size, most })?;
+        }
+        if layers > third {
+            reports.beyond(SizeError::Layers {
+                name: name(whole.clone()),
+                layers,
+                most: third,
+            })?;
+        }
+        let longest = width
+            .max(height)
+            .max(if texture.is_3d { layers } else { 1 });
+        let full = longest.ilog2() + 1;
+        if mips > full {
+            return Err(reports.report(SizeError::Mips {
+                name: name(whole),
+                mips,
+                full,
+            }));
+        }
+        if samples > 1 {
+            self.check_samples(name(whole), texture, reports)?;
+        }
+        Ok(())
+    }
+
+    fn check_samples(
+        &self,
+        name: Located<String>,
+        texture: &Texture,
+        reports: &mut Reports,
+    ) -> Result<(), Reported> {
+        if texture.is_3d || texture.layers > 1 || texture.mips > 1 {
+            return Err(reports.report(SizeError::SamplesOfMany(name)));
+        }
+        let format = texture.format;
+        let features = format.guaranteed_format_features(self.request.features);
+        let counts = [1, 2, 4, 8, 16];
+        let known = counts
+            .into_iter()
+            .filter(|count| features.flags.sample_count_supported(*count));
+        let known: Vec<u32> = known.collect();
+        match known.contains(&texture.samples) {
+            true => Ok(()),
+            false => reports.beyond(SizeError::Samples {
+                name,
+                format,
+                samples: texture.samples,
+                known,
+            }),
+        }
     }
 }
 
-/// Puts the value of a param in its place.
-fn fix<T: FromParam>(value: &mut Value<T>, params: &Params, diagnostics: &mut Vec<Diagnostic>) {
-    if let Some(known) = params.value(value, diagnostics) {
-        *value = Value::Literal(known);
+fn size_span(entry: &TextureEntry) -> Span {
+    match &entry.size {
+        Some(size) => size.span.clone(),
+        None => entry.name.span.clone(),
     }
 }
 
-/// Why a material cannot be the one of an outer document that is called `full` and declared at `place`.
-fn mismatch(
-    material: &Material,
-    outer: &Material,
-    (by, full, place): (&Located<String>, &str, Span),
-) -> Option<Diagnostic> {
-    let name = material.name();
-    let (own, others) = (describe(material), describe(outer));
-    let code = match (material, outer) {
-        (Material::Texture(texture), _) if own == others => {
-            if outer.name().value == full || texture.views.is_empty() {
-                return None;
-            }
-            let message = format!("`{}` has views and cannot be a part of a texture", **name);
-            return Some(
-                Diagnostic::error(Code::ResourceKind, message)
-                    .at(by.span.clone(), "connected here")
-                    .at(name.span.clone(), "declared here")
-                    .help("connect it with a whole texture"),
-            );
-        }
-        _ if own == others => return None,
-        (Material::Texture(_), Material::Texture(_)) => Code::FormatMismatch,
-        _ => Code::ResourceKind,
-    };
-    let message = format!("`{}` cannot be connected with `{}`", **name, **by);
-    Some(
-        Diagnostic::error(code, message)
-            .at(by.span.clone(), "connected here")
-            .at(name.span.clone(), own)
-            .at(place, others),
-    )
-}
-
-fn describe(material: &Material) -> String {
-    match material {
-        Material::Texture(texture) => format!("a texture of format {:?}", texture.format.value.0),
-        Material::Buffer(_) => "a buffer".to_owned(),
-        Material::Sampler(sampler) if sampler.compare.is_some() => {
-            "a sampler with `compare`".to_owned()
-        }
-        Material::Sampler(_) => "a sampler without `compare`".to_owned(),
-    }
-}
-
-impl Count {
-    /// Calls `each` with every resource name that the count is derived from.
-    pub(crate) fn names(&mut self, each: &mut dyn FnMut(&mut Located<String>)) {
-        match self {
-            Self::PixelsOf(name) | Self::CountOf(name) => each(name),
-            Self::Times(a, b) => {
-                a.names(each);
-                b.names(each);
-            }
-            Self::Number(_) | Self::Pixels => {}
-        }
-    }
-
-    fn numbers(&mut self, each: &mut dyn FnMut(&mut Value<u32>)) {
-        match self {
-            Self::Number(value) => each(value),
-            Self::Times(a, b) => {
-                a.numbers(each);
-                b.numbers(each);
-            }
-            Self::PixelsOf(_) | Self::CountOf(_) | Self::Pixels => {}
-        }
+fn sampler(entry: &SamplerEntry) -> Sampler {
+    Sampler {
+        filter: entry.filter,
+        address: entry.address,
+        compare: entry.compare.map(Into::into),
     }
 }

@@ -1,87 +1,142 @@
-//! Colour and depth attachments: formats, sizes, what the fragment shader writes.
+//! Draws: colour, depth and stencil attachments, their formats and sizes, what the fragment shader
+//! writes.
 
-use super::{Access, LinkedColor, LinkedDepth, LinkedPass, LinkedProgram, Linker, Usage};
-use crate::{
-    diagnostics::{Code, Diagnostic},
-    document::located::Located,
-    resolve::{ResourceKind, Target, Texture},
-    step::{DepthTarget, Draw},
-    wgsl::ScalarClass,
+use super::{
+    linker::{Linker, access},
+    pass::{Attachment, Ids, LinkedPass, LinkedProgram, Usage},
+    textures::scalar_of,
 };
+use crate::{
+    diagnostics::reports::Reported,
+    errors::link::LinkError,
+    kinds::step::{ColorTarget, DepthTarget, Draw, DrawCall, Names, StencilTarget},
+    language::syntax::Reference,
+    resource::{ResourceKind, SubresourceRange, Texture},
+    shader::class::ScalarClass,
+    source::span::{Located, Span},
+};
+use naga::ShaderStage;
+use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags, TextureUsages};
 
-/// What a fragment shader must write for a colour format.
-pub(super) fn scalar_of(format: wgpu::TextureFormat) -> Option<ScalarClass> {
-    match format.sample_type(None, None)? {
-        wgpu::TextureSampleType::Float { .. } | wgpu::TextureSampleType::Depth => {
-            Some(ScalarClass::Float)
-        }
-        wgpu::TextureSampleType::Uint => Some(ScalarClass::Uint),
-        wgpu::TextureSampleType::Sint => Some(ScalarClass::Sint),
-    }
-}
+const ATTACHMENT: Usage = Usage::Texture(TextureUsages::RENDER_ATTACHMENT);
 
 impl Linker<'_, '_> {
-    pub(super) fn colors(
+    pub(super) fn draw(
         &mut self,
-        draw: &Draw,
+        draw: &Draw<Names>,
+        pass: &mut LinkedPass,
+    ) -> Result<Draw<Ids>, Reported> {
+        // Without colours, a fragment shader that yields none may still discard and set depths.
+        let mut colourless = || {
+            let shader = self.shader(&draw.program);
+            shader.is_ok_and(|shader| shader.colourless_fragments().next().is_some())
+        };
+        let fragment = !draw.colors.is_empty()
+            || draw.fullscreen
+            || draw.program.fragment.is_some()
+            || colourless();
+        let stages: &[ShaderStage] = match (draw.fullscreen, fragment) {
+            (true, _) => &[ShaderStage::Fragment],
+            (false, true) => &[ShaderStage::Vertex, ShaderStage::Fragment],
+            (false, false) => &[ShaderStage::Vertex],
+        };
+        let program = self.program(&draw.program, stages, draw.colors.is_empty(), pass);
+        let colors = self.colors(draw, program.as_ref().ok(), pass);
+        let depth = draw
+            .depth
+            .as_ref()
+            .map(|depth| self.depth(depth, pass))
+            .transpose();
+        let stencil = draw
+            .stencil
+            .as_ref()
+            .map(|entry| self.stencil(entry, pass))
+            .transpose();
+        let call = match &draw.call {
+            DrawCall::Direct {
+                vertices,
+                instances,
+            } => Ok(DrawCall::Direct {
+                vertices: *vertices,
+                instances: *instances,
+            }),
+            DrawCall::Indirect(name) => self.indirect(name, 16, pass).map(DrawCall::Indirect),
+        };
+        self.features(draw, pass)?;
+        let linked = Draw {
+            program: program?,
+            fullscreen: draw.fullscreen,
+            colors: colors?,
+            depth: depth?,
+            stencil: stencil?,
+            area: draw.area,
+            call: call?,
+            primitive: draw.primitive,
+        };
+        self.alike(&linked, pass)?;
+        Ok(linked)
+    }
+
+    /// What of the rasteriser not every device has.
+    fn features(&mut self, draw: &Draw<Names>, pass: &LinkedPass) -> Result<(), Reported> {
+        let asked = [
+            (
+                draw.primitive.conservative,
+                "conservative: true",
+                wgt::Features::CONSERVATIVE_RASTERIZATION,
+                "CONSERVATIVE_RASTERIZATION",
+            ),
+            (
+                draw.primitive.unclipped_depth,
+                "unclipped: true",
+                wgt::Features::DEPTH_CLIP_CONTROL,
+                "DEPTH_CLIP_CONTROL",
+            ),
+        ];
+        for (is_asked, field, feature, name) in asked {
+            if is_asked && !self.world.request.features.contains(feature) {
+                self.reports.beyond(LinkError::DrawFeature {
+                    pass: pass.name.clone(),
+                    field,
+                    feature: name,
+                })?;
+            }
+        }
+        Ok(())
+    }
+
+    fn colors(
+        &mut self,
+        draw: &Draw<Names>,
         program: Option<&LinkedProgram>,
         pass: &mut LinkedPass,
-    ) -> Option<Vec<LinkedColor>> {
+    ) -> Result<Vec<ColorTarget<Ids>>, Reported> {
         let outputs = program.and_then(|program| {
             let entry = *program.entries.last()?;
-            Some((
-                program.shader.fragment_outputs(entry),
-                program.shader.entry_span(entry),
-            ))
+            let outputs = program.shader.fragment_outputs(entry);
+            Some((outputs, program.shader.entry_span(entry)))
         });
-        let most = self.limits.max_color_attachments as usize;
-        if draw.colors.len() > most {
-            self.report(
-                Diagnostic::error(
-                    Code::Limit,
-                    format!(
-                        "{} colour targets are more than the adapter can draw to",
-                        draw.colors.len()
-                    ),
-                )
-                .at(pass.name.span.clone(), "")
-                .help(format!("its limit is {most}")),
-            );
+        let limits = self.world.request.limits.clone();
+        let most = limits.max_color_attachments;
+        if draw.colors.len() > most as usize {
+            self.reports.beyond(LinkError::TooManyTargets {
+                pass: pass.name.clone(),
+                count: draw.colors.len(),
+                most,
+            })?;
         }
-        let mut colors = Vec::new();
+        let mut colors = Vec::with_capacity(draw.colors.len());
         let mut bytes_per_sample = 0u32;
+        let mut wrong = None;
         for (location, color) in (0u32..).zip(&draw.colors) {
-            let (target, texture) = self.attachment(&color.target, pass)?;
-            let format = texture.format;
-            let features = format.guaranteed_format_features(self.features);
-            if format.is_depth_stencil_format()
-                || !features
-                    .allowed_usages
-                    .contains(wgpu::TextureUsages::RENDER_ATTACHMENT)
-            {
-                self.report(
-                    Diagnostic::error(
-                        Code::FormatMismatch,
-                        format!("a texture of format {format:?} cannot be a colour target"),
-                    )
-                    .at(color.target.span.clone(), "")
-                    .help("use a colour format that can be drawn to, or `depth: (target: …)`"),
-                );
-                return None;
-            }
-            if color.blend.is_some()
-                && !features
-                    .flags
-                    .contains(wgpu::TextureFormatFeatureFlags::BLENDABLE)
-            {
-                self.report(
-                    Diagnostic::error(
-                        Code::FormatMismatch,
-                        format!("a target of format {format:?} cannot be blended"),
-                    )
-                    .at(color.target.span.clone(), ""),
-                );
-            }
+            let linked = match self.color(color, pass) {
+                Ok(linked) => linked,
+                Err(reported) => {
+                    wrong = Some(reported);
+                    continue;
+                }
+            };
+            let format = linked.target.format;
             if let (Some(cost), Some(alignment)) = (
                 format.target_pixel_byte_cost(),
                 format.target_component_alignment(),
@@ -89,150 +144,206 @@ impl Linker<'_, '_> {
                 bytes_per_sample = bytes_per_sample.next_multiple_of(alignment.max(1)) + cost;
             }
             if let Some((outputs, span)) = &outputs {
-                self.check_output(location, &color.target, format, outputs, span);
+                let checked = self.check_output(location, &color.target, format, outputs, span);
+                wrong = checked.err().or(wrong);
             }
-            let clear = color.clear;
-            if let Some(value) = clear {
-                self.clear_value(&color.target, format, value);
-            }
-            pass.accesses.push(Access {
-                resource: target.id,
-                part: target.part.clone(),
-                reads: clear.is_none(),
-                writes: true,
-                covers: clear.is_some(),
-                usage: Usage::Texture(wgpu::TextureUsages::RENDER_ATTACHMENT),
-                span: color.target.span.clone(),
-                step: 0,
-            });
-            colors.push(LinkedColor {
-                target,
-                format,
-                clear,
-                blend: color.blend,
-            });
+            colors.push(linked);
         }
-        let most = self.limits.max_color_attachment_bytes_per_sample;
+        let most = limits.max_color_attachment_bytes_per_sample;
         if bytes_per_sample > most {
-            self.report(
-                Diagnostic::error(
-                    Code::Limit,
-                    format!(
-                        "the colour targets of `{}` take {bytes_per_sample} bytes per pixel",
-                        *pass.name
-                    ),
-                )
-                .at(pass.name.span.clone(), "")
-                .help(format!(
-                    "the adapter's limit is {most}: use smaller formats or two passes"
-                )),
-            );
+            self.reports.beyond(LinkError::BytesPerPixel {
+                pass: pass.name.clone(),
+                bytes: bytes_per_sample,
+                most,
+            })?;
         }
-        Some(colors)
+        wrong.map_or(Ok(colors), Err)
+    }
+
+    fn color(
+        &mut self,
+        color: &ColorTarget<Names>,
+        pass: &mut LinkedPass,
+    ) -> Result<ColorTarget<Ids>, Reported> {
+        let name = located(&color.target);
+        let target = self.attachment(&color.target, pass)?;
+        let format = target.format;
+        let features = format.guaranteed_format_features(self.world.request.features);
+        let drawable = features
+            .allowed_usages
+            .contains(TextureUsages::RENDER_ATTACHMENT);
+        if format.is_depth_stencil_format() || !drawable {
+            return Err(self.report(LinkError::NotDrawable { name, format }));
+        }
+        if color.blend.is_some()
+            && !features
+                .flags
+                .contains(TextureFormatFeatureFlags::BLENDABLE)
+        {
+            return Err(self.report(LinkError::NotBlendable { name, format }));
+        }
+        if let Some(value) = color.clear {
+            self.clear_value(&name, format, value)?;
+        }
+        let clears = color.clear.is_some();
+        let used = (!clears, true, clears);
+        pass.accesses
+            .push(access(&target.target, used, ATTACHMENT, &name.span));
+        let resolve = match &color.resolve {
+            Some(resolve) => Some(self.resolved(&target, resolve, pass)?),
+            None => None,
+        };
+        Ok(ColorTarget {
+            target,
+            resolve,
+            clear: color.clear,
+            blend: color.blend,
+            write: color.write,
+        })
+    }
+
+    /// The texture of one sample that a multisampled target ends in.
+    fn resolved(
+        &mut self,
+        target: &Attachment,
+        resolve: &Reference,
+        pass: &mut LinkedPass,
+    ) -> Result<Attachment, Reported> {
+        let name = located(resolve);
+        let resolved = self.attachment(resolve, pass)?;
+        let features = target
+            .format
+            .guaranteed_format_features(self.world.request.features);
+        let why = if target.samples == 1 {
+            Some("what is drawn to has one sample")
+        } else if resolved.samples != 1 {
+            Some("it has several samples itself")
+        } else if resolved.format != target.format {
+            Some("it has another format than what is drawn to")
+        } else if !features
+            .flags
+            .contains(TextureFormatFeatureFlags::MULTISAMPLE_RESOLVE)
+        {
+            Some("this format cannot be resolved")
+        } else {
+            None
+        };
+        if let Some(why) = why {
+            return Err(self.report(LinkError::Resolve { name, why }));
+        }
+        let used = (false, true, true);
+        pass.accesses
+            .push(access(&resolved.target, used, ATTACHMENT, &name.span));
+        Ok(resolved)
     }
 
     fn check_output(
         &mut self,
         location: u32,
-        target: &Located<String>,
-        format: wgpu::TextureFormat,
+        target: &Reference,
+        format: TextureFormat,
         outputs: &[(u32, ScalarClass, u32)],
-        entry: &crate::source::Span,
-    ) {
+        entry: &Span,
+    ) -> Result<(), Reported> {
+        let name = located(target);
         let Some((_, scalar, width)) = outputs.iter().find(|(at, ..)| *at == location) else {
-            self.report(
-                Diagnostic::error(
-                    Code::FormatMismatch,
-                    format!("the fragment shader writes nothing to `{}`", target.value),
-                )
-                .at(
-                    target.span.clone(),
-                    format!("this target has location {location}"),
-                )
-                .at(
-                    entry.clone(),
-                    format!("no output @location({location}) here"),
-                ),
-            );
-            return;
+            return Err(self.report(LinkError::NoFragmentOutput {
+                name,
+                location,
+                entry: entry.clone(),
+            }));
         };
         let needed = u32::from(format.components());
-        if scalar_of(format) != Some(*scalar) || *width < needed {
-            let expected = scalar_of(format).map_or("…".to_owned(), |scalar| scalar.to_string());
-            self.report(
-                Diagnostic::error(
-                    Code::FormatMismatch,
-                    format!(
-                        "`{}` has the format {format:?}, the shader writes {width} × {scalar}",
-                        target.value
-                    ),
-                )
-                .at(target.span.clone(), format!("needs {needed} × {expected}"))
-                .at(
-                    entry.clone(),
-                    format!("writes {width} × {scalar} at @location({location})"),
-                ),
-            );
+        let expected = scalar_of(format, TextureAspect::All);
+        if expected == Some(*scalar) && *width >= needed {
+            return Ok(());
         }
+        Err(self.report(LinkError::FragmentOutput {
+            name,
+            format,
+            expected: expected.map_or("…".to_owned(), |scalar| scalar.to_string()),
+            needed,
+            written: format!("{width} × {scalar}"),
+            location,
+            entry: entry.clone(),
+        }))
     }
 
-    pub(super) fn depth(
+    fn depth(
         &mut self,
-        depth: &DepthTarget,
+        depth: &DepthTarget<Names>,
         pass: &mut LinkedPass,
-    ) -> Option<LinkedDepth> {
-        let (target, texture) = self.attachment(&depth.target, pass)?;
-        let format = texture.format;
+    ) -> Result<DepthTarget<Ids>, Reported> {
+        let name = located(&depth.target);
+        let target = self.attachment(&depth.target, pass)?;
+        let format = target.format;
         if !format.has_depth_aspect() {
-            self.report(
-                Diagnostic::error(
-                    Code::FormatMismatch,
-                    format!("a texture of format {format:?} cannot be a depth target"),
-                )
-                .at(depth.target.span.clone(), "")
-                .help("use Depth32Float, Depth24Plus or Depth16Unorm"),
-            );
-            return None;
+            return Err(self.report(LinkError::NoDepth { name, format }));
         }
         if let Some(value) = depth.clear {
-            self.clear_value(&depth.target, format, [value.into(), 0.0, 0.0, 0.0]);
+            self.clear_value(&name, format, [value.into(), 0.0, 0.0, 0.0])?;
         }
-        pass.accesses.push(Access {
-            resource: target.id,
-            part: target.part.clone(),
-            reads: depth.clear.is_none(),
-            writes: depth.write || depth.clear.is_some(),
-            covers: depth.clear.is_some(),
-            usage: Usage::Texture(wgpu::TextureUsages::RENDER_ATTACHMENT),
-            span: depth.target.span.clone(),
-            step: 0,
-        });
-        let state = wgpu::DepthStencilState {
-            format,
-            depth_write_enabled: Some(depth.write),
-            depth_compare: Some(depth.compare.into()),
-            stencil: wgpu::StencilState::default(),
-            bias: depth.bias,
-        };
-        Some(LinkedDepth {
+        let clears = depth.clear.is_some();
+        let used = (!clears, depth.write || clears, clears);
+        let mut accessed = access(&target.target, used, ATTACHMENT, &name.span);
+        accessed.part = aspect_of(&accessed.part, format, TextureAspect::DepthOnly);
+        pass.accesses.push(accessed);
+        Ok(DepthTarget {
             target,
             clear: depth.clear,
-            state,
+            compare: depth.compare,
+            write: depth.write,
+            bias: depth.bias,
+        })
+    }
+
+    fn stencil(
+        &mut self,
+        stencil: &StencilTarget<Names>,
+        pass: &mut LinkedPass,
+    ) -> Result<StencilTarget<Ids>, Reported> {
+        let name = located(&stencil.target);
+        let target = self.attachment(&stencil.target, pass)?;
+        let format = target.format;
+        if !format.has_stencil_aspect() {
+            return Err(self.report(LinkError::NoStencil { name, format }));
+        }
+        let clears = stencil.clear.is_some();
+        let writes = !stencil.state.is_read_only(None);
+        let used = (!clears, writes || clears, clears);
+        let mut accessed = access(&target.target, used, ATTACHMENT, &name.span);
+        accessed.part = aspect_of(&accessed.part, format, TextureAspect::StencilOnly);
+        pass.accesses.push(accessed);
+        Ok(StencilTarget {
+            target,
+            clear: stencil.clear,
+            state: stencil.state.clone(),
+            reference: stencil.reference,
         })
     }
 
     /// A clear value that the format can hold.
     pub(super) fn clear_value(
         &mut self,
-        target: &Located<String>,
-        format: wgpu::TextureFormat,
+        name: &Located<String>,
+        format: TextureFormat,
         value: [f64; 4],
-    ) {
-        let channels = &value[..usize::from(format.components()).min(4)];
-        let (fits, expected): (fn(&f64) -> bool, _) = match scalar_of(format) {
-            _ if format.is_depth_stencil_format() => {
-                (|v| (0.0..=1.0).contains(v), "a depth from 0 to 1")
-            }
+    ) -> Result<(), Reported> {
+        let mut channels = &value[..usize::from(format.components()).min(4)];
+        let is_stencil = |v: &f64| v.fract() == 0.0 && (0.0..=255.0).contains(v);
+        if format.is_combined_depth_stencil_format() && is_stencil(&value[1]) {
+            channels = &value[..1];
+        }
+        let (fits, expected): (fn(&f64) -> bool, _) = match scalar_of(format, TextureAspect::All) {
+            _ if format.is_combined_depth_stencil_format() => (
+                |v| (0.0..=1.0).contains(v),
+                "a depth from 0 to 1, and a stencil from 0 to 255",
+            ),
+            _ if format.has_depth_aspect() => (|v| (0.0..=1.0).contains(v), "a depth from 0 to 1"),
+            _ if format.has_stencil_aspect() => (
+                |v| v.fract() == 0.0 && (0.0..=255.0).contains(v),
+                "a whole number from 0 to 255",
+            ),
             Some(ScalarClass::Uint) => (
                 |v| v.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(v),
                 "whole numbers from 0",
@@ -243,107 +354,118 @@ impl Linker<'_, '_> {
             ),
             _ => (|v| v.is_finite(), "finite numbers"),
         };
-        if let Some(wrong) = channels.iter().find(|value| !fits(value)) {
-            self.report(
-                Diagnostic::error(
-                    Code::FormatMismatch,
-                    format!("`{}` cannot be cleared to {wrong}", target.value),
-                )
-                .at(
-                    target.span.clone(),
-                    format!("a texture of format {format:?}, which takes {expected}"),
-                ),
-            );
+        match channels.iter().find(|value| !fits(value)) {
+            None => Ok(()),
+            Some(&wrong) => Err(self.report(LinkError::ClearValue {
+                name: name.clone(),
+                wrong,
+                format,
+                expected,
+            })),
         }
     }
 
     fn attachment(
         &mut self,
-        name: &Located<String>,
+        reference: &Reference,
         pass: &LinkedPass,
-    ) -> Option<(Target, Texture)> {
-        let target = self.expect(name)?;
-        let resource = self.resources.get(target.id);
+    ) -> Result<Attachment, Reported> {
+        let target = self.resolve(reference)?;
+        let name = located(reference);
+        let resource = self.world.get(target.id);
         let ResourceKind::Texture(texture) = &resource.kind else {
-            let what = resource.kind.describe();
-            self.report(
-                Diagnostic::error(
-                    Code::ResourceKind,
-                    format!("pass `{}` cannot draw to `{}`", *pass.name, name.value),
-                )
-                .at(
-                    name.span.clone(),
-                    format!("this is {what}, a texture is needed"),
-                ),
-            );
-            return None;
+            let found = resource.kind.describe();
+            return Err(self.report(LinkError::NoTexture {
+                pass: pass.name.value.clone(),
+                name,
+                found,
+            }));
         };
-        let texture = texture.clone();
+        let Texture {
+            format, samples, ..
+        } = *texture;
         if !target.part.is_single() {
-            self.report(
-                Diagnostic::error(Code::ResourceKind, format!("`{}` has several mips or layers", name.value))
-                    .at(name.span.clone(), "a pass draws to one mip of one layer")
-                    .help("declare a view of one mip and layer: `views: [(name: \"…\", mip: 0, mips: 1, layer: 0, layers: 1)]`"),
-            );
-            return None;
+            return Err(self.report(LinkError::SeveralLayers(name)));
         }
-        self.writable(&target, name, &name.span);
-        Some((target, texture))
+        self.writable(target.id, &name.span)?;
+        Ok(Attachment {
+            target,
+            format,
+            samples,
+        })
     }
 
-    /// All attachments of a pass have one size.
-    pub(super) fn attachment_sizes(
-        &mut self,
-        colors: &[LinkedColor],
-        depth: Option<&LinkedDepth>,
-        pass: &LinkedPass,
-    ) {
-        let targets: Vec<&Target> = colors
+    /// All attachments of a draw have one size and number of samples; the area lies in them; depth
+    /// and stencil are one texture.
+    fn alike(&mut self, draw: &Draw<Ids>, pass: &LinkedPass) -> Result<(), Reported> {
+        let colors = draw.colors.iter().map(|color| &color.target);
+        let resolved = draw
+            .colors
             .iter()
-            .map(|color| &color.target)
-            .chain(depth.map(|depth| &depth.target))
-            .collect();
-        if targets.is_empty() {
-            self.report(
-                Diagnostic::error(
-                    Code::MissingField,
-                    format!("pass `{}` draws to nothing", *pass.name),
-                )
-                .at(
-                    pass.name.span.clone(),
-                    "give it `color: […]` or `depth: (…)`",
-                ),
-            );
-            return;
-        }
-        let sizes: Vec<(String, [u32; 2])> = targets
-            .iter()
-            .filter_map(|target| match &self.resources.get(target.id).kind {
-                ResourceKind::Texture(texture) => {
-                    let mip = target.part.mips.start;
-                    let size = texture.size.map(|edge| (edge >> mip).max(1));
-                    Some((self.resources.get(target.id).name.clone(), size))
-                }
-                _ => None,
-            })
-            .collect();
-        let Some((first, size)) = sizes.first() else {
-            return;
+            .filter_map(|color| color.resolve.as_ref());
+        let depth = draw.depth.as_ref().map(|depth| &depth.target);
+        let stencil = draw.stencil.as_ref().map(|stencil| &stencil.target);
+        let drawn: Vec<&Attachment> = colors.chain(depth).chain(stencil).collect();
+        let Some(first) = drawn.first() else {
+            return Err(self.report(LinkError::NoTargets(pass.name.clone())));
         };
-        if let Some((other, different)) = sizes.iter().find(|(_, other)| other != size) {
-            self.report(
-                Diagnostic::error(
-                    Code::Size,
-                    format!("the targets of pass `{}` differ in size", *pass.name),
-                )
-                .at(
-                    pass.name.span.clone(),
-                    format!(
-                        "`{first}` has {}×{} texels, `{other}` {}×{}",
-                        size[0], size[1], different[0], different[1]
-                    ),
-                ),
-            );
+        if let (Some(depth), Some(stencil)) = (depth, stencil)
+            && depth.target != stencil.target
+        {
+            return Err(self.report(LinkError::TwoDepthStencils(pass.name.clone())));
         }
+        let size = |attachment: &Attachment| match &self.world.get(attachment.target.id).kind {
+            ResourceKind::Texture(texture) => texture.mip_size(attachment.target.part.mips.start),
+            _ => [0, 0],
+        };
+        let name = |attachment: &Attachment| self.world.get(attachment.target.id).name.clone();
+        let whole = size(first);
+        let differs = |other: &&Attachment| size(other) != whole;
+        if let Some(other) = drawn.iter().copied().chain(resolved).find(differs) {
+            let error = LinkError::TargetSizes {
+                pass: pass.name.clone(),
+                names: [name(first), name(other)],
+                sizes: [whole, size(other)],
+            };
+            return Err(self.report(error));
+        }
+        if let Some(other) = drawn.iter().find(|other| other.samples != first.samples) {
+            let error = LinkError::TargetSamples {
+                pass: pass.name.clone(),
+                names: [name(first), name(other)],
+                samples: [first.samples, other.samples],
+            };
+            return Err(self.report(error));
+        }
+        let Some([x, y, width, height]) = draw.area else {
+            return Ok(());
+        };
+        let fits = |start: u32, length: u32, whole: u32| {
+            length > 0 && start.checked_add(length).is_some_and(|end| end <= whole)
+        };
+        match fits(x, width, whole[0]) && fits(y, height, whole[1]) {
+            true => Ok(()),
+            false => Err(self.report(LinkError::AreaOutside {
+                pass: pass.name.clone(),
+                area: [x, y, width, height],
+                whole,
+            })),
+        }
+    }
+}
+
+fn located(reference: &Reference) -> Located<String> {
+    Located::new(reference.text().to_owned(), reference.span.clone())
+}
+
+/// One aspect of a texture that has two.
+fn aspect_of(
+    part: &SubresourceRange,
+    format: TextureFormat,
+    aspect: TextureAspect,
+) -> SubresourceRange {
+    match format.is_combined_depth_stencil_format() {
+        true => part.of_aspect(aspect),
+        false => part.clone(),
     }
 }

@@ -1,207 +1,321 @@
-//! Programs: their entry points, and the bindings that they need.
+//! Which resource a shader's global is, and whether it can be.
 
-use super::{LinkedPass, Linker};
-use crate::{
-    diagnostics::{Code, Diagnostic},
-    resolve::{ResourceId, Target},
-    step::Program,
-    wgsl::{Global, Shader},
+use super::{
+    linker::{Linker, access},
+    pass::{BindTarget, Block, LinkedBinding, LinkedPass, LinkedProgram, Usage},
 };
-use naga::ShaderStage;
-use std::sync::Arc;
-
-/// A shader with its entry points, constants and bindings.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct LinkedProgram {
-    pub shader: Arc<Shader>,
-    /// Entry points in stage order (vertex, fragment; or compute).
-    pub entries: Vec<usize>,
-    pub stages: Vec<ShaderStage>,
-    pub constants: Vec<(String, f64)>,
-    pub bindings: Vec<LinkedBinding>,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct LinkedBinding {
-    pub group: u32,
-    pub binding: u32,
-    pub target: BindTarget,
-    pub ty: wgpu::BindingType,
-    pub visibility: wgpu::ShaderStages,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum BindTarget {
-    Buffer(ResourceId),
-    Texture {
-        target: Target,
-        dimension: wgpu::TextureViewDimension,
+use crate::{
+    diagnostics::reports::Reported,
+    document::materials::Filter,
+    errors::link::LinkError,
+    kinds::step::Program,
+    language::name::wgsl_identifier,
+    provider::ProvidedBinding,
+    resource::{FRAME_BYTES, ResourceKind, Sampler, SubresourceRange, Target},
+    shader::{
+        class::{Class, Member, TextureClass},
+        reflect::Global,
     },
-    Sampler(ResourceId),
-    /// The `params` uniform, already laid out.
-    Params(Block),
-}
+};
+use std::num::NonZeroU64;
 
-/// The bytes of a `params` uniform. Two of one size are equal: other bytes are an upload, not another binding.
-#[derive(Clone, Debug)]
-pub(crate) struct Block(pub Vec<u8>);
-
-impl PartialEq for Block {
-    fn eq(&self, other: &Self) -> bool {
-        self.0.len() == other.0.len()
-    }
-}
+/// What is bound, as what, and what its resource must allow for that.
+type Binding = (BindTarget, wgt::BindingType, Usage);
 
 impl Linker<'_, '_> {
-    pub(super) fn program(
+    pub(super) fn bind(
         &mut self,
+        global: &Global,
         program: &Program,
-        stages: &[ShaderStage],
-        depth_only: bool,
+        linked: &LinkedProgram,
         pass: &mut LinkedPass,
-    ) -> Option<LinkedProgram> {
-        let shader = self.shader(program)?;
-        let wanted = program
-            .shader
-            .as_ref()
-            .map_or(&pass.name.span, |name| &name.span)
-            .clone();
-        let mut entries = Vec::new();
-        for stage in stages {
-            let name = match stage {
-                ShaderStage::Vertex => &program.vertex,
-                ShaderStage::Fragment => &program.fragment,
-                _ => &program.compute,
-            };
-            match shader.entry(*stage, depth_only, name.as_ref(), &wanted) {
-                Ok(entry) => entries.push(entry),
-                Err(error) => self.report(error),
-            }
-        }
-        if entries.len() != stages.len() {
-            return None;
-        }
-        let globals = shader.globals(&entries);
-        for (bound, _) in &program.bind {
-            // A kind with several shaders hands its bindings to all of them, so only what no global could be is wrong.
-            let exists = shader
-                .module
-                .global_variables
-                .iter()
-                .any(|(_, global)| global.name.as_deref() == Some(bound.as_str()));
-            if !exists
-                && program.shader.as_ref().is_some_and(|name| {
-                    let own = self.scope.map_or(&pass.name.value, |scope| &scope.own_name);
-                    name.span != pass.name.span || name.value == *own
-                })
-            {
-                let names = || globals.iter().map(|global| global.name.as_str());
-                self.report(
-                    Diagnostic::error(
-                        Code::Binding,
-                        format!(
-                            "`{}` has no global `{}` to bind",
-                            shader.source.file.name, bound.value
-                        ),
-                    )
-                    .at(bound.span.clone(), "")
-                    .suggest_to(self.diagnostics.len(), bound, names),
-                );
-            }
-        }
-        self.groups_exist(&globals);
-        let mut linked = LinkedProgram {
-            constants: self.constants(program, &shader),
-            bindings: Vec::new(),
-            shader,
-            entries,
-            stages: stages.to_vec(),
-        };
-        let mut complete = true;
-        for global in &globals {
-            match self.bind(global, program, &linked, pass) {
-                Some(binding) => linked.bindings.push(binding),
-                None => complete = false,
-            }
-        }
-        self.counts(&linked, pass);
-        complete.then_some(linked)
-    }
-
-    /// Group numbers that the adapter does not have. (One number for two globals is found when the shader is validated.)
-    fn groups_exist(&mut self, globals: &[Global]) {
-        for global in globals
+    ) -> Result<LinkedBinding, Reported> {
+        let bound = program
+            .bind
             .iter()
-            .filter(|global| global.group >= self.limits.max_bind_groups)
-        {
-            self.report(
-                Diagnostic::error(
-                    Code::Limit,
-                    format!(
-                        "`{}` is in @group({}), which the adapter does not have",
-                        global.name, global.group
-                    ),
-                )
-                .at(
-                    global.span.clone(),
-                    format!(
-                        "its groups are 0 to {}",
-                        self.limits.max_bind_groups.saturating_sub(1)
-                    ),
-                )
-                .help("leave the numbers out: the graph gives them"),
-            );
+            .find(|(name, _)| name.value == global.name);
+        let (target, ty) = match (&global.class, bound) {
+            (Class::Unsupported(what), _) => {
+                return Err(self.report(LinkError::Unsupported {
+                    global: global.name.clone(),
+                    what,
+                    span: global.span.clone(),
+                }));
+            }
+            (Class::Uniform { size, members, .. }, None) if global.name == "params" => {
+                let block = self.params_uniform(global, *size, members)?;
+                (BindTarget::Params(block), uniform(*size))
+            }
+            (_, bound) => {
+                let mut target = match bound {
+                    Some((_, operand)) => self.operand(operand, &pass.name)?.0,
+                    None => self.target(global, pass)?,
+                };
+                let (bound, ty, usage) = self.binding(global, &mut target, linked, program)?;
+                if global.writes {
+                    self.writable(target.id, &global.span)?;
+                    self.stage_may_write(global)?;
+                }
+                let used = (global.reads, global.writes, false);
+                pass.accesses
+                    .push(access(&target, used, usage, &global.span));
+                (bound, ty)
+            }
+        };
+        Ok(LinkedBinding {
+            group: global.group,
+            binding: global.binding,
+            target,
+            ty,
+            visibility: global.stages,
+        })
+    }
+
+    /// Vertex shaders write nothing on most devices.
+    fn stage_may_write(&mut self, global: &Global) -> Result<(), Reported> {
+        let needed = wgt::Features::VERTEX_WRITABLE_STORAGE;
+        let has = self.world.request.features.contains(needed);
+        match global.stages.contains(wgt::ShaderStages::VERTEX) && !has {
+            false => Ok(()),
+            true => self.reports.beyond(LinkError::VertexWrites {
+                global: global.name.clone(),
+                span: global.span.clone(),
+            }),
         }
     }
 
-    /// The numbers of bindings that wgpu limits per stage.
-    fn counts(&mut self, linked: &LinkedProgram, pass: &LinkedPass) {
-        let count = |is: fn(&wgpu::BindingType) -> bool| {
-            linked
-                .bindings
-                .iter()
-                .filter(|binding| is(&binding.ty))
-                .count()
+    /// The pass's params as the shader's struct wants them.
+    fn params_uniform(
+        &mut self,
+        global: &Global,
+        size: u64,
+        members: &[Member],
+    ) -> Result<Block, Reported> {
+        let most = self.world.request.limits.max_uniform_buffer_binding_size;
+        let what = if members.is_empty() {
+            "is no struct"
+        } else if size > most {
+            "is too large for the adapter"
+        } else {
+            return self.params_block(global, size, members).map(Block);
         };
-        let limits = self.limits;
-        let checks: [(&str, usize, u32); 4] = [
-            (
-                "storage buffers",
-                count(|ty| {
-                    matches!(
-                        ty,
-                        wgpu::BindingType::Buffer {
-                            ty: wgpu::BufferBindingType::Storage { .. },
-                            ..
-                        }
-                    )
-                }),
-                limits.max_storage_buffers_per_shader_stage,
-            ),
-            (
-                "textures",
-                count(|ty| matches!(ty, wgpu::BindingType::Texture { .. })),
-                limits.max_sampled_textures_per_shader_stage,
-            ),
-            (
-                "storage textures",
-                count(|ty| matches!(ty, wgpu::BindingType::StorageTexture { .. })),
-                limits.max_storage_textures_per_shader_stage,
-            ),
-            (
-                "samplers",
-                count(|ty| matches!(ty, wgpu::BindingType::Sampler(_))),
-                limits.max_samplers_per_shader_stage,
-            ),
-        ];
-        for (what, number, most) in checks {
-            if number > most as usize {
-                self.report(
-                    Diagnostic::error(Code::Limit, format!("pass `{}` binds {number} {what}", *pass.name))
-                        .at(pass.name.span.clone(), "")
-                        .help(format!("the adapter's limit is {most} per shader stage: split the pass or pack what it binds")),
-                );
-            }
+        Err(self.report(LinkError::ParamsUniform {
+            what,
+            size,
+            span: global.span.clone(),
+        }))
+    }
+
+    /// What a global stands for: what a group binds to it, else what is called so.
+    fn target(&mut self, global: &Global, pass: &LinkedPass) -> Result<Target, Reported> {
+        let mut said = self.scope.inherited_bind.iter();
+        if let Some(&said) = said.find(|said| said.name.value == global.name) {
+            return self.world.resolve(said.value, said.place, self.reports);
         }
+        let place = self.scope.place.unwrap_or_else(|| self.world.root());
+        if let Some(found) = self
+            .world
+            .find_global(&global.name, place.frame, self.reports)
+        {
+            return found;
+        }
+        if let Some(reported) = self.world.frames.document(place.frame).incomplete {
+            return Err(reported);
+        }
+        let known = self.world.known(place.frame);
+        let known = known.iter().map(|name| wgsl_identifier(name));
+        let known = self.reports.known(known);
+        Err(self.report(LinkError::UnknownGlobal {
+            global: global.name.clone(),
+            span: global.span.clone(),
+            pass: pass.name.clone(),
+            known,
+        }))
+    }
+
+    fn binding(
+        &mut self,
+        global: &Global,
+        target: &mut Target,
+        linked: &LinkedProgram,
+        program: &Program,
+    ) -> Result<Binding, Reported> {
+        let resource = self.world.get(target.id).clone();
+        let needed = match (&global.class, &resource.kind) {
+            (Class::Uniform { size, .. }, ResourceKind::Frame) => {
+                return self.uniform_buffer(global, target, *size, FRAME_BYTES);
+            }
+            (Class::Uniform { size, .. }, ResourceKind::Provided(provided))
+                if provided.binding != ProvidedBinding::Storage =>
+            {
+                return self.uniform_buffer(global, target, *size, provided.stride);
+            }
+            (Class::Uniform { size, .. }, ResourceKind::Buffer(_)) => {
+                let id = self.world.base(target.id);
+                self.layouts.see(id, &target.part, global);
+                return self.uniform_buffer(global, target, *size, u64::MAX);
+            }
+            (
+                Class::Storage {
+                    fixed,
+                    stride,
+                    read_only,
+                    ..
+                },
+                ResourceKind::Buffer(_) | ResourceKind::Provided(_),
+            ) if self.may_be_storage(target.id) => {
+                let least = fixed + stride.unwrap_or(0);
+                return self.storage_buffer(global, target, least, *read_only);
+            }
+            (Class::Texture(class), ResourceKind::Texture(texture)) => {
+                let (ty, usage, aspect) =
+                    self.texture(global, class, (texture, target), (linked, program))?;
+                target.part.aspect = aspect;
+                let (TextureClass::Sampled { dimension, .. }
+                | TextureClass::Storage { dimension, .. }) = *class;
+                let bound = BindTarget::Texture {
+                    target: target.clone(),
+                    dimension,
+                };
+                return Ok((bound, ty, Usage::Texture(usage)));
+            }
+            (Class::Sampler { comparison }, ResourceKind::Sampler(sampler)) => {
+                match sampler_type(*comparison, sampler) {
+                    Ok(ty) => {
+                        let ty = wgt::BindingType::Sampler(ty);
+                        return Ok((BindTarget::Sampler(target.id), ty, Usage::None));
+                    }
+                    Err(needed) => needed,
+                }
+            }
+            (Class::Uniform { .. }, _) => "a uniform buffer",
+            (Class::Storage { .. }, _) => "a storage buffer",
+            (Class::Texture(_), _) => "a texture",
+            _ => "a sampler",
+        };
+        Err(self.report(LinkError::WrongKind {
+            global: global.name.clone(),
+            span: global.span.clone(),
+            needed,
+            name: resource.name,
+            found: resource.kind.describe(),
+            declared: resource.declared,
+        }))
+    }
+
+    fn may_be_storage(&self, id: crate::resource::ResourceId) -> bool {
+        match &self.world.get(id).kind {
+            ResourceKind::Provided(provided) => provided.binding != ProvidedBinding::Uniform,
+            _ => true,
+        }
+    }
+
+    /// A uniform of `size` bytes in the shader, where `have` are there.
+    fn uniform_buffer(
+        &mut self,
+        global: &Global,
+        target: &Target,
+        size: u64,
+        have: u64,
+    ) -> Result<Binding, Reported> {
+        let most = self.world.request.limits.max_uniform_buffer_binding_size;
+        if size > have {
+            return Err(self.report(LinkError::UniformSize {
+                name: self.world.get(target.id).name.clone(),
+                have,
+                size,
+                span: global.span.clone(),
+            }));
+        }
+        if size > most {
+            self.reports.beyond(LinkError::UniformLimit {
+                global: global.name.clone(),
+                size,
+                most,
+                span: global.span.clone(),
+            })?;
+        }
+        self.aligned(global, target)?;
+        Ok((
+            BindTarget::Buffer(target.clone()),
+            uniform(size),
+            Usage::Buffer(wgt::BufferUsages::UNIFORM),
+        ))
+    }
+
+    /// Items of a provided buffer begin where the device can bind; those of the document's own are
+    /// looked at when their layout is known.
+    fn aligned(&mut self, global: &Global, target: &Target) -> Result<(), Reported> {
+        let ResourceKind::Provided(provided) = &self.world.get(target.id).kind else {
+            return Ok(());
+        };
+        let alignment = u64::from(
+            self.world
+                .request
+                .limits
+                .min_uniform_buffer_offset_alignment,
+        );
+        if target.part == SubresourceRange::WHOLE || provided.stride % alignment == 0 {
+            return Ok(());
+        }
+        let (name, stride) = (self.world.get(target.id).name.clone(), provided.stride);
+        self.reports.beyond(LinkError::Alignment {
+            name,
+            stride,
+            alignment,
+            span: global.span.clone(),
+        })
+    }
+
+    /// A storage buffer of which the shader needs `least` bytes.
+    fn storage_buffer(
+        &mut self,
+        global: &Global,
+        target: &Target,
+        least: u64,
+        read_only: bool,
+    ) -> Result<Binding, Reported> {
+        let resource = self.world.get(target.id);
+        if matches!(resource.kind, ResourceKind::Provided(_)) && !read_only {
+            let name = resource.name.clone();
+            return Err(self.report(LinkError::WritesProvided {
+                name,
+                span: global.span.clone(),
+            }));
+        }
+        self.aligned(global, target)?;
+        let id = self.world.base(target.id);
+        self.layouts.see(id, &target.part, global);
+        Ok((
+            BindTarget::Buffer(target.clone()),
+            wgt::BindingType::Buffer {
+                ty: wgt::BufferBindingType::Storage { read_only },
+                has_dynamic_offset: false,
+                min_binding_size: NonZeroU64::new(least),
+            },
+            Usage::Buffer(wgt::BufferUsages::STORAGE),
+        ))
+    }
+}
+
+/// How a sampler is bound, or what the shader needs instead.
+fn sampler_type(
+    comparison: bool,
+    sampler: &Sampler,
+) -> Result<wgt::SamplerBindingType, &'static str> {
+    match (comparison, sampler.compare.is_some(), sampler.filter) {
+        (true, true, _) => Ok(wgt::SamplerBindingType::Comparison),
+        (false, false, Filter::Linear) => Ok(wgt::SamplerBindingType::Filtering),
+        (false, false, Filter::Nearest) => Ok(wgt::SamplerBindingType::NonFiltering),
+        (true, false, _) => Err("a sampler with `compare`"),
+        (false, true, _) => Err("a sampler without `compare`"),
+    }
+}
+
+fn uniform(size: u64) -> wgt::BindingType {
+    wgt::BindingType::Buffer {
+        ty: wgt::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: NonZeroU64::new(size),
     }
 }

@@ -1,254 +1,390 @@
 //! Sizes of buffers: item layouts come from the shaders that see them, counts from the document.
 
 use crate::{
-    diagnostics::{Code, Diagnostic},
-    document::located::Located,
-    resolve::{Origin, ResourceId, ResourceKind, Resources},
-    source::Span,
-    wgsl::{Class, Global},
+    diagnostics::reports::Reports,
+    errors::layout::LayoutError,
+    instantiate::world::World,
+    resource::{Buffer, FRAME_BYTES, Origin, ResourceId, ResourceKind, SubresourceRange},
+    shader::{class::Class, reflect::Global},
+    source::span::{Located, Span},
 };
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::Arc};
 
 /// What shaders said about each buffer.
 #[derive(Default)]
-pub(crate) struct Layouts {
+pub(super) struct Layouts {
     seen: BTreeMap<ResourceId, Vec<Seen>>,
     least: BTreeMap<ResourceId, (u64, Span)>,
-    same: Vec<[(ResourceId, Located<String>); 2]>,
+    same: Vec<[Copied; 2]>,
 }
 
+/// How a shader sees a buffer or some of its items.
 struct Seen {
     fixed: u64,
     stride: Option<u64>,
     layout: String,
+    fields: Option<Vec<crate::shader::items::Field>>,
     span: Span,
+    part: SubresourceRange,
+    uniform: bool,
+}
+
+/// One end of a copy.
+struct Copied {
+    id: ResourceId,
+    part: SubresourceRange,
+    name: Located<String>,
 }
 
 impl Layouts {
-    /// A shader sees the buffer through this global.
-    pub fn see(&mut self, id: ResourceId, global: &Global) {
-        if let Class::Storage {
+    /// A shader sees a part of the buffer through this global.
+    pub fn see(&mut self, id: ResourceId, part: &SubresourceRange, global: &Global) {
+        let (fixed, stride, layout, uniform) = match &global.class {
+            Class::Storage {
+                fixed,
+                stride,
+                layout,
+                ..
+            } => (*fixed, *stride, layout, false),
+            Class::Uniform { size, layout, .. } => (*size, None, layout, true),
+            _ => return,
+        };
+        self.seen.entry(id).or_default().push(Seen {
             fixed,
             stride,
-            layout,
-            ..
-        } = &global.class
-        {
-            let seen = Seen {
-                fixed: *fixed,
-                stride: *stride,
-                layout: layout.clone(),
-                span: global.span.clone(),
-            };
-            self.seen.entry(id).or_default().push(seen);
-        }
+            layout: layout.clone(),
+            fields: global.fields.clone(),
+            span: global.span.clone(),
+            part: part.clone(),
+            uniform,
+        });
     }
 
-    /// The buffer must hold so many bytes whatever shaders say.
-    pub fn at_least(&mut self, id: ResourceId, bytes: u64, span: Span) {
-        let entry = self.least.entry(id).or_insert((0, span));
-        entry.0 = entry.0.max(bytes);
+    /// The buffer must hold so many bytes behind the begin of a part, whatever shaders say.
+    pub fn at_least(&mut self, id: ResourceId, part: &SubresourceRange, bytes: u64, span: &Span) {
+        // Items are as large as shaders say; that these are large enough is theirs to see.
+        if *part == SubresourceRange::WHOLE {
+            let entry = self.least.entry(id).or_insert((0, span.clone()));
+            entry.0 = entry.0.max(bytes);
+        }
     }
 
     /// The first buffer is copied onto the second: they have one size.
     pub fn same(
         &mut self,
-        from: (ResourceId, &Located<String>),
-        to: (ResourceId, &Located<String>),
+        from: (ResourceId, &SubresourceRange, &Located<String>),
+        to: (ResourceId, &SubresourceRange, &Located<String>),
     ) {
-        self.same
-            .push([from, to].map(|(id, name)| (id, name.clone())));
+        self.same.push([from, to].map(|(id, part, name)| Copied {
+            id,
+            part: part.clone(),
+            name: name.clone(),
+        }));
     }
 
     /// Gives every buffer its size, or says why it has none.
-    pub fn settle(
-        self,
-        resources: &mut Resources<'_>,
-        limits: &wgpu::Limits,
-        diagnostics: &mut Vec<Diagnostic>,
-    ) {
-        for index in 0..resources.list.len() {
-            let id = ResourceId(index);
+    pub fn finalize(self, world: &mut World<'_>, reports: &mut Reports) {
+        let mut errors = Vec::new();
+        for index in 0..world.resources.len() {
+            let id = world.id(index);
             let seen = self.seen.get(&id).map_or(&[][..], Vec::as_slice);
-            let resource = &resources.list[index];
+            let resource = world.get(id);
             if let Some(error) = disagreement(&resource.name, seen) {
-                diagnostics.push(error);
+                errors.push(error);
                 continue;
             }
-            match &resource.kind {
-                ResourceKind::Provided(provided) => {
-                    for view in seen {
-                        let fits = match view.stride {
-                            Some(stride) => view.fixed == 0 && stride == provided.stride,
-                            None => provided.items.is_none_or(|items| {
-                                view.fixed <= items.saturating_mul(provided.stride)
-                            }),
-                        };
-                        if !fits {
-                            diagnostics.push(
-                                Diagnostic::error(
-                                    Code::LayoutMismatch,
-                                    format!(
-                                        "`{}` has items of {} bytes",
-                                        resource.name, provided.stride
-                                    ),
-                                )
-                                .at(
-                                    view.span.clone(),
-                                    format!("the shader sees {}", view.layout),
-                                ),
-                            );
+            match (&resource.kind, resource.origin) {
+                (ResourceKind::Provided(provided), Origin::Host) => {
+                    let name = resource.name.clone();
+                    let sees = seen.iter().filter(|view| !fits(view, *provided));
+                    errors.extend(sees.map(|view| LayoutError::Provided {
+                        name: name.clone(),
+                        stride: provided.stride,
+                        layout: view.layout.clone(),
+                        span: view.span.clone(),
+                    }));
+                }
+                (ResourceKind::Buffer(buffer), Origin::Host) => {
+                    let name = resource.name.clone();
+                    errors.extend(self.imported(id, &name, buffer, seen));
+                }
+                (ResourceKind::Buffer(buffer), Origin::Own | Origin::Constant) => {
+                    match self.sized(id, buffer, seen, world) {
+                        Ok(buffer) => {
+                            world.resources[index].kind = ResourceKind::Buffer(buffer);
                         }
+                        Err(error) => errors.push(error),
                     }
                 }
-                ResourceKind::Buffer(_) if matches!(resource.origin, Origin::Previous(_)) => {}
-                ResourceKind::Buffer(buffer) if resource.origin == Origin::Host => {
-                    let have = buffer.bytes;
-                    let least = self.least.get(&id).map(|(bytes, span)| (*bytes, span));
-                    let needs = seen
-                        .iter()
-                        .map(|view| (view.fixed + view.stride.unwrap_or(0), &view.span));
-                    for (bytes, span) in needs.chain(least).filter(|(bytes, _)| *bytes > have) {
-                        diagnostics.push(
-                            Diagnostic::error(
-                                Code::LayoutMismatch,
-                                format!(
-                                    "the import `{}` has {have} bytes, {bytes} are needed",
-                                    resource.name
-                                ),
-                            )
-                            .at(span.clone(), "needed here"),
-                        );
-                    }
-                }
-                ResourceKind::Buffer(buffer) => match self.bytes(
-                    id,
-                    buffer.count,
-                    seen,
-                    &resource.name,
-                    resource.declared.as_ref(),
-                ) {
-                    Ok(bytes) => {
-                        let most = limits
-                            .max_buffer_size
-                            .min(limits.max_storage_buffer_binding_size);
-                        if bytes > most {
-                            let mut error = Diagnostic::error(
-                                Code::Size,
-                                format!(
-                                    "`{}` needs {bytes} bytes, more than the adapter can bind",
-                                    resource.name
-                                ),
-                            )
-                            .help(format!("its limit is {most} bytes"));
-                            if let Some(span) = &resource.declared {
-                                error = error.at(span.clone(), "");
-                            }
-                            diagnostics.push(error);
-                        } else if let ResourceKind::Buffer(buffer) = &mut resources.list[index].kind
-                        {
-                            buffer.bytes = bytes;
-                        }
-                    }
-                    Err(Some(error)) => diagnostics.push(*error),
-                    Err(None) => {}
-                },
                 _ => {}
             }
         }
-        self.equal_sizes(resources, diagnostics);
-        resources.settle_previous();
-    }
-
-    /// A buffer that no shader sees has the size of what it is copied from or to; others must agree.
-    fn equal_sizes(&self, resources: &mut Resources<'_>, diagnostics: &mut Vec<Diagnostic>) {
-        let bytes = |resources: &Resources<'_>, id: ResourceId| match &resources.list[id.0].kind {
-            ResourceKind::Buffer(buffer) => buffer.bytes,
-            ResourceKind::Provided(provided) => {
-                provided.items.unwrap_or(0).saturating_mul(provided.stride)
-            }
-            _ => 0,
-        };
-        // Copies of copies: each round sizes one more link at least.
-        for _ in 0..self.same.len() {
-            for [(a, _), (b, _)] in &self.same {
-                for (id, size) in [(a, bytes(resources, *b)), (b, bytes(resources, *a))] {
-                    if let ResourceKind::Buffer(buffer) = &mut resources.list[id.0].kind
-                        && buffer.bytes == 0
-                    {
-                        buffer.bytes = size;
-                    }
+        errors.extend(self.equal_sizes(world));
+        for error in errors {
+            match error {
+                LayoutError::TooLarge { .. } | LayoutError::Alignment { .. } => {
+                    // Whoever may not go on is told so by the report.
+                    let _ = reports.beyond(error);
                 }
+                error => drop(reports.report(error)),
             }
         }
-        for [(a, from), (b, to)] in &self.same {
-            let (from_bytes, to_bytes) = (bytes(resources, *a), bytes(resources, *b));
-            if from_bytes != to_bytes {
-                diagnostics.push(
-                    Diagnostic::error(
-                        Code::Size,
-                        format!(
-                            "`{}` cannot be copied onto `{}`: they differ in size",
-                            from.value, to.value
-                        ),
-                    )
-                    .at(from.span.clone(), format!("{from_bytes} bytes"))
-                    .at(to.span.clone(), format!("{to_bytes} bytes"))
-                    .help("give both the same `count`"),
-                );
-            }
-        }
+        world.size_previous();
     }
 
-    /// `Err(None)`: nobody uses the buffer, so it needs no size.
-    fn bytes(
+    /// What an import is too small for.
+    fn imported(
         &self,
         id: ResourceId,
-        count: Option<u64>,
-        seen: &[Seen],
         name: &str,
-        declared: Option<&Span>,
-    ) -> Result<u64, Option<Box<Diagnostic>>> {
-        let least = self.least.get(&id).map(|(bytes, _)| *bytes);
-        let mut bytes = least;
-        for view in seen {
-            let size = match (view.stride, count) {
+        buffer: &Buffer,
+        seen: &[Seen],
+    ) -> Vec<LayoutError> {
+        let have = buffer.bytes;
+        let least = self.least.get(&id).map(|(bytes, span)| (*bytes, span));
+        let needs = seen
+            .iter()
+            .map(|view| (view.fixed + view.stride.unwrap_or(0), &view.span));
+        let short = needs.chain(least).filter(|(bytes, _)| *bytes > have);
+        short
+            .map(|(needed, span)| LayoutError::Import {
+                name: name.to_owned(),
+                have,
+                needed,
+                span: span.clone(),
+            })
+            .collect()
+    }
+
+    /// A buffer of the document with its size and content.
+    fn sized(
+        &self,
+        id: ResourceId,
+        buffer: &Buffer,
+        seen: &[Seen],
+        world: &World<'_>,
+    ) -> Result<Buffer, LayoutError> {
+        let resource = world.get(id);
+        let mut sized = buffer.clone();
+        let declared = || resource.declared.clone();
+        let whole = || {
+            seen.iter()
+                .filter(|view| view.part == SubresourceRange::WHOLE)
+        };
+        let mut bytes = self.least.get(&id).map(|(bytes, _)| *bytes);
+        for view in whole() {
+            let size = match (view.stride, buffer.count) {
                 (None, _) => view.fixed,
                 (Some(stride), Some(count)) => {
+                    sized.stride = stride;
                     view.fixed.saturating_add(stride.saturating_mul(count))
                 }
                 (Some(_), None) => {
-                    let mut error = Diagnostic::error(
-                        Code::Size,
-                        format!("`{name}` does not say how many items it has"),
-                    )
-                    .at(view.span.clone(), "this shader sees an array of any length");
-                    if let Some(span) = declared {
-                        error = error.at(span.clone(), "give it a `count`");
-                    }
-                    return Err(Some(Box::new(error)));
+                    return Err(LayoutError::NoCount {
+                        name: resource.name.clone(),
+                        span: view.span.clone(),
+                        declared: declared(),
+                    });
                 }
             };
             bytes = Some(bytes.unwrap_or(0).max(size));
         }
-        // wgpu copies and clears in fours.
-        bytes
-            .map(|bytes| bytes.checked_next_multiple_of(4).unwrap_or(u64::MAX).max(4))
-            .ok_or(None)
+        // A pass's own buffers and captures have their bytes counted, in fours.
+        let is_own = resource.declared.is_some();
+        let is_array = whole().any(|view| view.stride.is_some());
+        if is_own
+            && !is_array
+            && let (Some(_), Some(fixed)) = (buffer.count, whole().next())
+        {
+            if buffer.data.is_none() {
+                return Err(LayoutError::IgnoredCount {
+                    name: resource.name.clone(),
+                    span: fixed.span.clone(),
+                    declared: declared(),
+                });
+            }
+        } else if !is_own && let Some(count) = buffer.count {
+            bytes = Some(bytes.unwrap_or(0).max(count * 4));
+        }
+        self.items(&sized, seen, world, &resource.name)?;
+        if let Some(data) = &buffer.data {
+            let content = content(&resource.name, data, seen, declared())?;
+            bytes = Some(content.len() as u64);
+            sized.content = Some(content);
+        }
+        let limits = &world.request.limits;
+        let most = limits
+            .max_buffer_size
+            .min(limits.max_storage_buffer_binding_size);
+        // wgpu copies and clears in fours; nobody uses what has no size.
+        let bytes = bytes.map_or(0, |bytes| {
+            bytes.checked_next_multiple_of(4).unwrap_or(u64::MAX).max(4)
+        });
+        sized.bytes = bytes;
+        if bytes > most {
+            return Err(LayoutError::TooLarge {
+                name: resource.name.clone(),
+                bytes,
+                most,
+                declared: declared(),
+            });
+        }
+        Ok(sized)
+    }
+
+    /// Items that are bound alone: they must be as large as the shader's type, and begin where the
+    /// device can bind.
+    fn items(
+        &self,
+        sized: &Buffer,
+        seen: &[Seen],
+        world: &World<'_>,
+        name: &str,
+    ) -> Result<(), LayoutError> {
+        let limits = &world.request.limits;
+        for view in seen {
+            let Some(items) = view.part.items() else {
+                continue;
+            };
+            let needed = view.fixed + view.stride.unwrap_or(0);
+            let have = sized.stride.saturating_mul(items.len() as u64);
+            if sized.stride == 0 || needed > have {
+                return Err(LayoutError::Item {
+                    name: name.to_owned(),
+                    have,
+                    needed,
+                    span: view.span.clone(),
+                });
+            }
+            let alignment = u64::from(match view.uniform {
+                true => limits.min_uniform_buffer_offset_alignment,
+                false => limits.min_storage_buffer_offset_alignment,
+            });
+            if sized.stride % alignment != 0 {
+                return Err(LayoutError::Alignment {
+                    name: name.to_owned(),
+                    stride: sized.stride,
+                    alignment,
+                    span: view.span.clone(),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// A buffer that no shader sees has the size of what it is copied from or to; others must agree.
+    fn equal_sizes(&self, world: &mut World<'_>) -> Vec<LayoutError> {
+        fn bytes(world: &World<'_>, copied: &Copied) -> u64 {
+            let (bytes, stride) = match &world.get(copied.id).kind {
+                ResourceKind::Buffer(buffer) => (buffer.bytes, buffer.stride),
+                ResourceKind::Provided(provided) => {
+                    let items = provided.items.unwrap_or(0);
+                    (items.saturating_mul(provided.stride), provided.stride)
+                }
+                ResourceKind::Frame => (FRAME_BYTES, FRAME_BYTES),
+                _ => (0, 0),
+            };
+            let items = copied.part.items().map(|items| items.len() as u64 * stride);
+            items.unwrap_or(bytes)
+        }
+        // Copies of copies: each round sizes one more link at least, or is the last.
+        let mut sized = true;
+        while std::mem::take(&mut sized) {
+            for [a, b] in &self.same {
+                let sizes = [bytes(world, b), bytes(world, a)];
+                for (copied, size) in [a, b].into_iter().zip(sizes) {
+                    let resource = &mut world.resources[copied.id.index()];
+                    if let ResourceKind::Buffer(buffer) = &mut resource.kind
+                        && buffer.bytes == 0
+                        && size > 0
+                        && copied.part == SubresourceRange::WHOLE
+                    {
+                        buffer.bytes = size;
+                        sized = true;
+                    }
+                }
+            }
+        }
+        let differs = |[a, b]: &&[Copied; 2]| bytes(world, a) != bytes(world, b);
+        let different = self.same.iter().filter(differs);
+        different
+            .map(|[a, b]| LayoutError::Copy {
+                from: a.name.clone(),
+                to: b.name.clone(),
+                bytes: [bytes(world, a), bytes(world, b)],
+            })
+            .collect()
     }
 }
 
-/// Two shaders that see one buffer differently.
-fn disagreement(name: &str, seen: &[Seen]) -> Option<Diagnostic> {
-    let first = seen.first()?;
-    let other = seen.iter().find(|view| view.layout != first.layout)?;
-    Some(
-        Diagnostic::error(
-            Code::LayoutMismatch,
-            format!("two shaders see `{name}` with different layouts"),
-        )
-        .at(other.span.clone(), format!("here it is {}", other.layout))
-        .at(first.span.clone(), format!("here it is {}", first.layout))
-        .help("declare the item type once, in a shared module that both import"),
-    )
+/// Whether a shader's view of a provided buffer is one of its items.
+fn fits(view: &Seen, provided: crate::provider::Provided) -> bool {
+    let items = view
+        .part
+        .items()
+        .map(|items| items.len() as u64)
+        .or(provided.items);
+    match view.stride {
+        Some(stride) => view.fixed == 0 && stride == provided.stride,
+        None => items.is_none_or(|items| view.fixed <= items.saturating_mul(provided.stride)),
+    }
+}
+
+/// Two shaders that see one whole buffer differently.
+fn disagreement(name: &str, seen: &[Seen]) -> Option<LayoutError> {
+    let mut whole = seen
+        .iter()
+        .filter(|view| view.part == SubresourceRange::WHOLE);
+    let first = whole.next()?;
+    let other = whole.find(|view| view.layout != first.layout)?;
+    Some(LayoutError::Disagreement {
+        name: name.to_owned(),
+        layouts: [first.layout.clone(), other.layout.clone()],
+        spans: [first.span.clone(), other.span.clone()],
+    })
+}
+
+/// The bytes of constant items in the layout of the shader that sees them.
+fn content(
+    name: &str,
+    data: &[Vec<f64>],
+    seen: &[Seen],
+    declared: Option<Span>,
+) -> Result<Arc<[u8]>, LayoutError> {
+    let Some(view) = seen.first() else {
+        return Ok(Arc::from([]));
+    };
+    let wrong = |what: String| LayoutError::Data {
+        name: name.to_owned(),
+        what,
+        span: view.span.clone(),
+        declared: declared.clone(),
+    };
+    let Some(fields) = &view.fields else {
+        return Err(wrong(
+            "the shader's items are no plain 32-bit numbers".to_owned(),
+        ));
+    };
+    // A fixed type is one item, or an array of as many as there are.
+    let stride = view.stride.unwrap_or(view.fixed / data.len().max(1) as u64);
+    let stride = usize::try_from(stride).unwrap_or(0);
+    let mut bytes = vec![0; stride * data.len()];
+    for (index, item) in data.iter().enumerate() {
+        if item.len() != fields.len() {
+            let (have, needed) = (item.len(), fields.len());
+            return Err(wrong(format!(
+                "item {index} has {have} numbers, an item {needed}"
+            )));
+        }
+        for (number, field) in item.iter().zip(fields) {
+            let Some(word) = field.scalar.bits(*number) else {
+                return Err(wrong(format!("{number} is no {:?}", field.scalar)));
+            };
+            let at = index * stride + field.offset;
+            if let Some(place) = bytes.get_mut(at..at + 4) {
+                place.copy_from_slice(&word.to_le_bytes());
+            }
+        }
+    }
+    Ok(bytes.into())
 }

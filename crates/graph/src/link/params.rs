@@ -1,44 +1,160 @@
 //! Params on their way into shaders: the `params` uniform and overridable constants.
 
-use super::Linker;
+use super::linker::Linker;
 use crate::{
-    diagnostics::{Code, Diagnostic},
+    diagnostics::reports::Reported,
     document::params::{ParamType, ParamValue},
-    step::Program,
-    wgsl::{Global, Member, ScalarClass, Shader},
+    errors::link::LinkError,
+    kinds::step::Program,
+    language::{
+        syntax::Expr,
+        value::{Scalar, Value},
+    },
+    shader::{
+        class::{Member, ScalarClass},
+        reflect::{Global, Shader},
+    },
+    source::span::Located,
 };
 
-impl Linker<'_, '_> {
-    /// Values of overridable constants: what the pass kind sets, else `index` of a repeat, else the param of that name.
-    pub(super) fn constants(&mut self, program: &Program, shader: &Shader) -> Vec<(String, f64)> {
+/// A value that a shader asks for by name.
+enum Asked<'e> {
+    /// What the entry or a group around it says, with its expression.
+    Set(Value, &'e Expr),
+    /// A param of the document.
+    Param(crate::document::params::Param, ParamValue),
+    /// The number of the repetition.
+    Index(u32),
+}
+
+impl<'a> Linker<'a, '_> {
+    /// The value of what a shader asks for: what the entry sets, else the index of a repetition,
+    /// else the param of that name.
+    fn asked(&mut self, name: &str) -> Option<Result<Asked<'a>, Reported>> {
+        self.scope.asked.insert(name.to_owned());
+        let place = self.scope.place?;
+        let own = self.scope.set.iter().find(|(set, _)| **set == *name);
+        let own = own.map(|(_, expr)| (expr, place));
+        let said = || {
+            let mut said = self.scope.inherited_set.iter();
+            let said = said.find(|said| said.name.value == name)?;
+            Some((said.value, said.place))
+        };
+        if let Some((expr, place)) = own.or_else(said) {
+            let value = expr.value(&mut self.world.at(place, None, self.reports));
+            return Some(value.map(|value| Asked::Set(value, expr)));
+        }
+        if name == "index"
+            && let Some(index) = self.world.frames.index(place, None)
+        {
+            return Some(Ok(Asked::Index(index)));
+        }
+        let params = &self.world.frames.document(place.frame).params;
+        let bound = params.spelt(name)?;
+        Some(
+            bound
+                .value
+                .clone()
+                .map(|value| Asked::Param(bound.param.clone(), value)),
+        )
+    }
+
+    /// Values of overridable constants: what the pass kind gives, else what is asked for by name.
+    pub(super) fn constants(
+        &mut self,
+        program: &Program,
+        shader: &Shader,
+    ) -> Result<Vec<(String, f64)>, Reported> {
         let mut constants = Vec::new();
         for (name, key, has_default, span) in shader.overrides() {
-            let set = program
+            let given = program
                 .constants
                 .iter()
-                .find(|(constant, _)| constant == name)
-                .map(|(_, value)| *value);
-            let index = self.scope.and_then(|scope| scope.index);
-            let index = index.filter(|_| name == "index").map(f64::from);
-            let value = set.or(index).or_else(|| {
-                let (param, value) = self.params.get(name)?;
-                match value {
-                    ParamValue::F32(value) => Some(f64::from(*value)),
-                    ParamValue::I32(value) => Some(f64::from(*value)),
-                    other => param.as_u32(other).map(f64::from),
-                }
-            });
+                .find(|(constant, _)| constant == name);
+            if let Some((_, value)) = given {
+                constants.push((key, *value));
+                continue;
+            }
+            let value = match self.asked(name).transpose()? {
+                Some(asked) => self.number(name, &asked, shader)?,
+                None => None,
+            };
             match value {
                 Some(value) => constants.push((key, value)),
                 None if has_default => {}
-                None => self.report(
-                    Diagnostic::error(Code::UnknownParam, format!("the override `{name}` has no value"))
-                        .at(span, "no param of the document is called so")
-                        .help(format!("declare a param `{name}` with a single number, or write `override {name}: … = …;`")),
-                ),
+                None => {
+                    let name = Located::new(name.to_owned(), span);
+                    return Err(self.report(LinkError::OverrideWithout(name)));
+                }
             }
         }
-        constants
+        Ok(constants)
+    }
+
+    /// A value as one number.
+    fn number(
+        &mut self,
+        name: &str,
+        asked: &Asked<'_>,
+        shader: &Shader,
+    ) -> Result<Option<f64>, Reported> {
+        Ok(match asked {
+            Asked::Index(index) => Some(f64::from(*index)),
+            Asked::Param(_, ParamValue::F32(value)) => Some(f64::from(*value)),
+            Asked::Param(_, ParamValue::I32(value)) => Some(f64::from(*value)),
+            Asked::Param(param, other) => param.as_u32(other).map(f64::from),
+            Asked::Set(value, expr) => match value {
+                Value::Scalar(scalar) => Some(scalar.number()),
+                Value::Bool(value) => Some(f64::from(u8::from(*value))),
+                Value::Word(_) => Some(f64::from(self.word(name, value, expr, shader)?)),
+                other => return Err(self.wrong_value(name, "one number", other, expr)),
+            },
+        })
+    }
+
+    /// The number of a word: its place among those of the document's param of that name, or the
+    /// shader's constant.
+    fn word(
+        &mut self,
+        name: &str,
+        value: &Value,
+        expr: &Expr,
+        shader: &Shader,
+    ) -> Result<u32, Reported> {
+        let Value::Word(word) = value else {
+            return Err(self.wrong_value(name, "a word", value, expr));
+        };
+        let place = self.scope.place.unwrap_or_else(|| self.world.root());
+        let params = &self.world.frames.document(place.frame).params;
+        let words = params.spelt(name).and_then(|bound| match &bound.param.ty {
+            ParamType::Choice(words) => Some(words),
+            _ => None,
+        });
+        let among = words.and_then(|words| words.iter().position(|known| *known == word.word));
+        if let Some(number) = among.and_then(|number| u32::try_from(number).ok()) {
+            return Ok(number);
+        }
+        let constant = format!("{name}_{}", word.word).to_uppercase();
+        match shader.constant(&constant) {
+            Some(Scalar::Whole(number)) if words.is_none() => {
+                Ok(u32::try_from(number).unwrap_or(u32::MAX))
+            }
+            _ => Err(self.report(LinkError::UnknownWord {
+                name: name.to_owned(),
+                word: word.word.to_string(),
+                constant,
+                span: expr.span.clone(),
+            })),
+        }
+    }
+
+    fn wrong_value(&mut self, name: &str, expected: &str, found: &Value, expr: &Expr) -> Reported {
+        self.report(LinkError::SetValue {
+            name: name.to_owned(),
+            expected: expected.to_owned(),
+            found: found.to_string(),
+            span: expr.span.clone(),
+        })
     }
 
     /// Fills the `params` uniform member by member by name.
@@ -47,70 +163,120 @@ impl Linker<'_, '_> {
         global: &Global,
         size: u64,
         members: &[Member],
-    ) -> Option<Vec<u8>> {
-        let mut bytes = vec![0u8; usize::try_from(size).ok()?];
-        let mut complete = true;
+    ) -> Result<Vec<u8>, Reported> {
+        // What does not fit into memory is no uniform; it was refused before.
+        let mut bytes = vec![0u8; usize::try_from(size).unwrap_or(0)];
+        let mut wrong = None;
         for member in members {
-            let Some((param, value)) = self.params.get(&member.name) else {
-                let error = Diagnostic::error(
-                    Code::UnknownParam,
-                    format!(
-                        "no param is called `{}`, which the shader's `params` holds",
-                        member.name
-                    ),
-                );
-                let error = error.at(global.span.clone(), "").help(format!(
-                    "declare it: `params: [(name: \"{}\", type: …, default: …)]`",
-                    member.name
-                ));
-                let found = self.diagnostics.len();
-                self.report(error.suggest_to(found, &member.name, || self.params.names()));
-                complete = false;
-                continue;
-            };
-            let (expected, words): ((ScalarClass, u32), Vec<u32>) = match (&param.ty, value) {
-                (_, ParamValue::F32(value)) => ((ScalarClass::Float, 1), vec![value.to_bits()]),
-                (_, ParamValue::I32(value)) => {
-                    ((ScalarClass::Sint, 1), vec![value.cast_unsigned()])
+            match self.member(global, member) {
+                Ok(words) => {
+                    for (index, word) in words.iter().enumerate() {
+                        let at = usize::try_from(member.offset).unwrap_or(0) + index * 4;
+                        if let Some(place) = bytes.get_mut(at..at + 4) {
+                            place.copy_from_slice(&word.to_le_bytes());
+                        }
+                    }
                 }
-                (_, ParamValue::Vec(values)) => {
-                    let width = values.len() as u32;
-                    (
-                        (ScalarClass::Float, width),
-                        values.iter().map(|value| value.to_bits()).collect(),
-                    )
-                }
-                (ParamType::U32 | ParamType::Bool | ParamType::Choice(_), value) => (
-                    (ScalarClass::Uint, 1),
-                    vec![param.as_u32(value).unwrap_or(0)],
-                ),
-                _ => continue,
-            };
-            if member.vector != Some(expected) {
-                let (scalar, width) = expected;
-                let error = Diagnostic::error(
-                    Code::LayoutMismatch,
-                    format!(
-                        "param `{}` is {} × {scalar} in a shader, `params.{}` is not",
-                        param.name.value, width, member.name
-                    ),
-                )
-                .at(global.span.clone(), "in this uniform")
-                .at(
-                    param.name.span.clone(),
-                    format!("declared {} here", param.ty),
-                );
-                self.report(error);
-                complete = false;
-                continue;
-            }
-            let at = usize::try_from(member.offset).ok()?;
-            for (index, word) in words.iter().enumerate() {
-                bytes
-                    .get_mut(at + index * 4..at + index * 4 + 4)?
-                    .copy_from_slice(&word.to_le_bytes());
+                Err(reported) => wrong = Some(reported),
             }
         }
-        complete.then_some(bytes)
+        wrong.map_or(Ok(bytes), Err)
+    }
+
+    /// The words of a member of `params`.
+    fn member(&mut self, global: &Global, member: &Member) -> Result<Vec<u32>, Reported> {
+        let Some(asked) = self.asked(&member.name).transpose()? else {
+            let place = self.scope.place.unwrap_or_else(|| self.world.root());
+            let params = &self.world.frames.document(place.frame).params;
+            let known = self.reports.known(params.names());
+            return Err(self.report(LinkError::UnknownMember {
+                member: member.name.clone(),
+                span: global.span.clone(),
+                known,
+            }));
+        };
+        let (param, value) = match asked {
+            Asked::Set(value, expr) => return self.set_member(global, member, &value, expr),
+            Asked::Index(index) => {
+                let fits = matches!(member.vector, Some((ScalarClass::Uint, 1)));
+                let wrong = || LinkError::IndexMember(global.span.clone());
+                return match fits {
+                    true => Ok(vec![index]),
+                    false => Err(self.report(wrong())),
+                };
+            }
+            Asked::Param(param, value) => (param, value),
+        };
+        let (expected, words): ((ScalarClass, u32), Vec<u32>) = match &value {
+            ParamValue::F32(value) => ((ScalarClass::Float, 1), vec![value.to_bits()]),
+            ParamValue::I32(value) => ((ScalarClass::Sint, 1), vec![value.cast_unsigned()]),
+            ParamValue::Vec(values) => {
+                let width = values.len() as u32;
+                let words = values.iter().map(|value| value.to_bits()).collect();
+                ((ScalarClass::Float, width), words)
+            }
+            other => (
+                (ScalarClass::Uint, 1),
+                vec![param.as_u32(other).unwrap_or(0)],
+            ),
+        };
+        if member.vector == Some(expected) {
+            return Ok(words);
+        }
+        Err(self.report(LinkError::MemberType {
+            param: Box::new(param),
+            member: member.name.clone(),
+            scalar: expected.0,
+            width: expected.1,
+            span: global.span.clone(),
+        }))
+    }
+
+    /// The words of a member that the entry sets: the type is the member's.
+    fn set_member(
+        &mut self,
+        global: &Global,
+        member: &Member,
+        value: &Value,
+        expr: &Expr,
+    ) -> Result<Vec<u32>, Reported> {
+        let Some((class, width)) = member.vector else {
+            return Err(self.report(LinkError::MemberIsNoVector {
+                member: member.name.clone(),
+                span: global.span.clone(),
+            }));
+        };
+        let list = match value {
+            Value::Scalar(scalar) => vec![*scalar],
+            Value::List(list) => list.clone(),
+            Value::Bool(value) => vec![Scalar::Whole(i64::from(*value))],
+            Value::Word(_) => {
+                let place = self.scope.shader.clone();
+                let shader = place.map(|name| Program {
+                    shader: Some(name),
+                    ..Program::default()
+                });
+                let shader = self.shader(&shader.unwrap_or_default())?;
+                let number = self.word(&member.name, value, expr, &shader)?;
+                vec![Scalar::Whole(number.into())]
+            }
+            Value::Format(_) => Vec::new(),
+        };
+        let word = |scalar: &Scalar| match (class, scalar) {
+            (ScalarClass::Float, scalar) => Some((scalar.number() as f32).to_bits()),
+            (ScalarClass::Uint, Scalar::Whole(whole)) => u32::try_from(*whole).ok(),
+            (ScalarClass::Sint, Scalar::Whole(whole)) => {
+                i32::try_from(*whole).ok().map(i32::cast_unsigned)
+            }
+            _ => None,
+        };
+        let words: Option<Vec<u32>> = list.iter().map(word).collect();
+        match words.filter(|words| words.len() == width as usize) {
+            Some(words) => Ok(words),
+            None => {
+                let expected = format!("{width} × {class}");
+                Err(self.wrong_value(&member.name, &expected, value, expr))
+            }
+        }
     }
 }

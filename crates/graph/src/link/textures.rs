@@ -1,169 +1,211 @@
 //! Whether a texture can be what a shader declares: format, dimension, filtering, storage access.
 
-use super::{LinkedProgram, Linker, attachments::scalar_of};
+use super::{linker::Linker, pass::LinkedProgram};
 use crate::{
-    diagnostics::{Code, Diagnostic},
+    diagnostics::reports::Reported,
     document::materials::Filter,
-    resolve::{Part, Resource, ResourceKind},
-    step::Program,
-    wgsl::{Global, ScalarClass, TextureClass},
+    errors::link::{LinkError, TextureMisfit},
+    kinds::step::{Operand, Program},
+    resource::{ResourceKind, Target, Texture},
+    shader::{
+        class::{ScalarClass, TextureClass},
+        reflect::Global,
+    },
 };
+use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags, TextureUsages};
+
+/// What a shader sees of a format, of one aspect of those that have two.
+pub(super) fn scalar_of(format: TextureFormat, aspect: TextureAspect) -> Option<ScalarClass> {
+    Some(match format.sample_type(Some(aspect), None)? {
+        wgt::TextureSampleType::Float { .. } | wgt::TextureSampleType::Depth => ScalarClass::Float,
+        wgt::TextureSampleType::Uint => ScalarClass::Uint,
+        wgt::TextureSampleType::Sint => ScalarClass::Sint,
+    })
+}
+
+/// Binding, usage, and the aspect that is bound.
+type Bound = (wgt::BindingType, TextureUsages, TextureAspect);
 
 impl Linker<'_, '_> {
     pub(super) fn texture(
         &mut self,
         global: &Global,
         class: &TextureClass,
-        (format, part): (wgpu::TextureFormat, &Part),
+        (texture, target): (&Texture, &Target),
         (linked, program): (&LinkedProgram, &Program),
-        resource: &Resource,
-    ) -> Option<(wgpu::BindingType, wgpu::TextureUsages)> {
-        let features = format.guaranteed_format_features(self.features);
-        let name = &resource.name;
-        let mismatch = |expected: String| {
-            let message = format!(
-                "the texture `{name}` has the format {format:?}, which the shader's `{}` cannot use",
-                global.name
-            );
-            let error =
-                Diagnostic::error(Code::FormatMismatch, message).at(global.span.clone(), expected);
-            match &resource.declared {
-                Some(declared) => error.at(declared.clone(), format!("{format:?}")),
-                None => error,
-            }
-        };
-        let dimension = match class {
+    ) -> Result<Bound, Reported> {
+        let misfit = match class {
             TextureClass::Sampled { dimension, .. } | TextureClass::Storage { dimension, .. } => {
-                *dimension
+                wrong_shape(*dimension, texture, target)
             }
         };
-        if dimension == wgpu::TextureViewDimension::D2 && part.layers.len() > 1 {
-            self.report(
-                Diagnostic::error(
-                    Code::ResourceKind,
-                    format!(
-                        "`{name}` has {} layers, the shader sees one",
-                        part.layers.len()
-                    ),
-                )
-                .at(
-                    global.span.clone(),
-                    "declare an array texture, or bind a view of one layer",
-                ),
-            );
-            return None;
-        }
-        let cube = matches!(
-            dimension,
-            wgpu::TextureViewDimension::Cube | wgpu::TextureViewDimension::CubeArray
-        );
-        if cube
-            && (part.layers.len() % 6 != 0
-                || dimension == wgpu::TextureViewDimension::Cube && part.layers.len() != 6)
-        {
-            self.report(
-                Diagnostic::error(
-                    Code::ResourceKind,
-                    format!("`{name}` has {} layers, a cube has six", part.layers.len()),
-                )
-                .at(global.span.clone(), "the shader sees a cube"),
-            );
-            return None;
-        }
-        match class {
-            TextureClass::Sampled { scalar, depth, .. } => {
-                let declared = scalar_of(format);
-                if declared != Some(*scalar) || (*depth && !format.is_depth_stencil_format()) {
-                    let what = match declared {
-                        _ if *depth => "the shader declares a depth texture".to_owned(),
-                        Some(own) => format!("the shader reads {scalar}, the texture holds {own}"),
-                        None => format!("the shader reads {scalar}"),
-                    };
-                    self.report(mismatch(what));
-                    return None;
-                }
-                let filterable = features
-                    .flags
-                    .contains(wgpu::TextureFormatFeatureFlags::FILTERABLE);
-                let is_depth = format.is_depth_stencil_format();
-                if !filterable || is_depth {
-                    for sampler in linked.shader.samplers_of(&linked.entries, global.handle) {
-                        let bound = program
-                            .bind
-                            .iter()
-                            .find(|(global, _)| global.value == sampler);
-                        let name = match bound {
-                            Some((_, name)) => &name.value,
-                            None => self.global(&sampler),
-                        };
-                        let target = self.resources.find_spelt(name);
-                        let linear = target.is_some_and(|target| {
-                            matches!(&self.resources.get(target.id).kind, ResourceKind::Sampler(entry)
-                                if entry.filter == Filter::Linear && entry.compare.is_none())
-                        });
-                        if linear {
-                            self.report(mismatch(format!("sampled through `{sampler}`, but the format cannot be filtered"))
-                                .help("use a sampler with `filter: Nearest`, textureLoad, or a filterable format"));
-                            return None;
-                        }
-                    }
-                }
-                let sample_type = match (scalar, depth) {
-                    (_, true) => wgpu::TextureSampleType::Depth,
-                    (ScalarClass::Float, _) => wgpu::TextureSampleType::Float {
-                        filterable: filterable && !is_depth,
-                    },
-                    (ScalarClass::Uint, _) => wgpu::TextureSampleType::Uint,
-                    (ScalarClass::Sint, _) => wgpu::TextureSampleType::Sint,
-                };
-                let ty = wgpu::BindingType::Texture {
-                    sample_type,
-                    view_dimension: dimension,
-                    multisampled: false,
-                };
-                Some((ty, wgpu::TextureUsages::TEXTURE_BINDING))
+        let bound = match (misfit, class) {
+            (Some(misfit), _) => Err(misfit),
+            (None, TextureClass::Sampled { .. }) => {
+                self.sampled(global, class, texture, (linked, program))
             }
-            TextureClass::Storage {
-                format: declared,
-                access,
-                ..
-            } => {
-                // naga's storage formats bear wgpu's names.
-                if *declared != format!("{format:?}") {
-                    self.report(mismatch(format!("the shader declares {declared}")));
-                    return None;
-                }
-                let both = *access == wgpu::StorageTextureAccess::ReadWrite;
-                let allowed = features
-                    .allowed_usages
-                    .contains(wgpu::TextureUsages::STORAGE_BINDING)
-                    && (!both
-                        || features
-                            .flags
-                            .contains(wgpu::TextureFormatFeatureFlags::STORAGE_READ_WRITE));
-                if !allowed {
-                    self.report(mismatch("the adapter offers no storage access of this kind".to_owned()).help(
-                        "R32Uint, R32Float and the Rgba formats of 8, 16 and 32 bits can be written by every adapter",
-                    ));
-                    return None;
-                }
-                if part.mips.len() > 1 {
-                    self.report(
-                        Diagnostic::error(
-                            Code::ResourceKind,
-                            format!("`{name}` has several mips, a storage texture is one"),
-                        )
-                        .at(global.span.clone(), "bind a view of one mip"),
-                    );
-                    return None;
-                }
-                let ty = wgpu::BindingType::StorageTexture {
-                    access: *access,
+            (
+                None,
+                TextureClass::Storage {
                     format,
-                    view_dimension: dimension,
-                };
-                Some((ty, wgpu::TextureUsages::STORAGE_BINDING))
-            }
+                    access,
+                    dimension,
+                },
+            ) => self.storage((format, *access, *dimension), texture, target),
+        };
+        bound.or_else(|misfit| {
+            let resource = self.world.get(target.id);
+            let error = LinkError::Texture {
+                name: resource.name.clone(),
+                format: texture.format,
+                global: global.name.clone(),
+                span: global.span.clone(),
+                declared: resource.declared.clone(),
+                misfit: Box::new(misfit),
+            };
+            Err(self.report(error))
+        })
+    }
+
+    fn sampled(
+        &mut self,
+        global: &Global,
+        class: &TextureClass,
+        texture: &Texture,
+        (linked, program): (&LinkedProgram, &Program),
+    ) -> Result<Bound, TextureMisfit> {
+        let TextureClass::Sampled {
+            scalar,
+            dimension,
+            depth,
+            multisampled,
+        } = *class
+        else {
+            return Err(TextureMisfit::Samples(texture.samples));
+        };
+        let format = texture.format;
+        let features = format.guaranteed_format_features(self.world.request.features);
+        // Of a texture with both, the shader's type says which is meant.
+        let aspect = match (format.is_combined_depth_stencil_format(), scalar) {
+            (false, _) => TextureAspect::All,
+            (true, ScalarClass::Uint) => TextureAspect::StencilOnly,
+            (true, _) => TextureAspect::DepthOnly,
+        };
+        let declared = scalar_of(format, aspect);
+        if declared != Some(scalar) || (depth && !format.is_depth_stencil_format()) {
+            return Err(TextureMisfit::Scalar {
+                reads: scalar,
+                holds: declared,
+                depth,
+            });
         }
+        if multisampled != (texture.samples > 1) {
+            return Err(TextureMisfit::Samples(texture.samples));
+        }
+        let is_depth = format.is_depth_stencil_format();
+        let filterable = features
+            .flags
+            .contains(TextureFormatFeatureFlags::FILTERABLE)
+            && !is_depth;
+        if !filterable && let Some(sampler) = self.linear_sampler(global, linked, program) {
+            return Err(TextureMisfit::Filtered(sampler));
+        }
+        let sample_type = match (scalar, depth) {
+            (_, true) => wgt::TextureSampleType::Depth,
+            (ScalarClass::Float, _) => wgt::TextureSampleType::Float {
+                filterable: filterable && !multisampled,
+            },
+            (ScalarClass::Uint, _) => wgt::TextureSampleType::Uint,
+            (ScalarClass::Sint, _) => wgt::TextureSampleType::Sint,
+        };
+        let ty = wgt::BindingType::Texture {
+            sample_type,
+            view_dimension: dimension,
+            multisampled,
+        };
+        Ok((ty, TextureUsages::TEXTURE_BINDING, aspect))
+    }
+
+    /// A linear sampler through which the shader samples a texture.
+    fn linear_sampler(
+        &mut self,
+        global: &Global,
+        linked: &LinkedProgram,
+        program: &Program,
+    ) -> Option<String> {
+        let samplers = linked.shader.samplers_of(&linked.entries, global.handle);
+        samplers.into_iter().find(|sampler| {
+            let bound = program.bind.iter().find(|(name, _)| name.value == *sampler);
+            let place = self.scope.place.unwrap_or_else(|| self.world.root());
+            let target = match bound {
+                Some((_, Operand::Named(reference))) => {
+                    self.world.resolve(reference, place, self.reports).ok()
+                }
+                Some((_, Operand::Scratch(_))) => None,
+                None => self
+                    .world
+                    .find_global(sampler, place.frame, self.reports)
+                    .and_then(Result::ok),
+            };
+            target.is_some_and(|target| {
+                matches!(&self.world.get(target.id).kind, ResourceKind::Sampler(entry)
+                    if entry.filter == Filter::Linear && entry.compare.is_none())
+            })
+        })
+    }
+
+    fn storage(
+        &mut self,
+        (declared, access, dimension): (&str, wgt::StorageTextureAccess, wgt::TextureViewDimension),
+        texture: &Texture,
+        target: &Target,
+    ) -> Result<Bound, TextureMisfit> {
+        let format = texture.format;
+        let features = format.guaranteed_format_features(self.world.request.features);
+        // naga's storage formats bear wgpu's names.
+        if declared != format!("{format:?}") {
+            return Err(TextureMisfit::StorageFormat(declared.to_owned()));
+        }
+        let both = access == wgt::StorageTextureAccess::ReadWrite;
+        let allowed = features
+            .allowed_usages
+            .contains(TextureUsages::STORAGE_BINDING)
+            && (!both
+                || features
+                    .flags
+                    .contains(TextureFormatFeatureFlags::STORAGE_READ_WRITE));
+        if !allowed && !self.reports.any_adapter {
+            return Err(TextureMisfit::NoStorage);
+        }
+        if target.part.mips.len() > 1 {
+            return Err(TextureMisfit::StorageMips);
+        }
+        let ty = wgt::BindingType::StorageTexture {
+            access,
+            format,
+            view_dimension: dimension,
+        };
+        Ok((ty, TextureUsages::STORAGE_BINDING, TextureAspect::All))
+    }
+}
+
+fn wrong_shape(
+    dimension: wgt::TextureViewDimension,
+    texture: &Texture,
+    target: &Target,
+) -> Option<TextureMisfit> {
+    use wgt::TextureViewDimension as D;
+    let layers = target.part.layers.len();
+    match dimension {
+        D::D3 if !texture.is_3d => Some(TextureMisfit::Flat),
+        D::D3 if layers < texture.mip_layers(target.part.mips.start) as usize => {
+            Some(TextureMisfit::Slice)
+        }
+        D::D3 => None,
+        _ if texture.is_3d => Some(TextureMisfit::Solid),
+        D::D2 if layers > 1 => Some(TextureMisfit::Layers(layers)),
+        D::Cube if layers != 6 => Some(TextureMisfit::Cube(layers)),
+        D::CubeArray if layers % 6 != 0 => Some(TextureMisfit::Cube(layers)),
+        _ => None,
     }
 }

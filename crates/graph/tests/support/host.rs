@@ -4,7 +4,8 @@ use super::{Files, load};
 use skiagraph_graph::{Executor, Frame, FrameReport, NoProvider, Plan, PlanRequest, Provider, gpu};
 use std::sync::LazyLock;
 
-/// A device of wgpu's default limits, whatever the adapter could do, so that it is known what it refuses.
+/// A device of wgpu's default limits, whatever the adapter could do, so that it is known what it
+/// refuses.
 pub static GPU: LazyLock<gpu::Gpu> = LazyLock::new(|| {
     let mut gpu = gpu::open(None).unwrap_or_else(|error| panic!("{error}"));
     let made = pollster::block_on(gpu.adapter.request_device(&Default::default()));

@@ -1,41 +1,59 @@
-//! What several test files need: an in-memory store of sources and a small provider.
+//! What the test files of this crate and of `skiagraph-gpu` share: files in memory, and what a small
+//! scene gives.
 
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
-pub mod host;
-
 use skiagraph_graph::{
-    Diagnostics, Graph, NoProvider, Plan, PlanRequest, Provided, Provider, ProviderError, Registry,
-    Sources,
+    Code, Describe, Diagnostic, Diagnostics, Graph, NoProvider, Picture, Plan, PlanRequest,
+    Provided, ProvidedBinding, Registry, Sources,
 };
 use std::{collections::BTreeMap, sync::Arc};
 
 /// Files in memory.
 #[derive(Clone, Debug, Default)]
-pub struct Files(pub BTreeMap<String, String>);
+pub struct Files {
+    pub texts: BTreeMap<String, String>,
+    pub pictures: BTreeMap<String, Picture>,
+}
 
 impl Files {
     /// The files of these paths and texts.
     pub fn new<const N: usize>(files: [(&str, &str); N]) -> Self {
-        Self(
-            files
-                .into_iter()
-                .map(|(path, text)| (path.to_owned(), text.to_owned()))
-                .collect(),
-        )
+        files
+            .into_iter()
+            .fold(Self::default(), |all, (path, text)| all.with(path, text))
+    }
+
+    /// `graph.ron`: these sections, after the format.
+    pub fn graph(sections: &str) -> Self {
+        Self::default().document("graph.ron", sections)
     }
 
     /// One file more.
     pub fn with(mut self, path: &str, text: impl Into<String>) -> Self {
-        self.0.insert(path.to_owned(), text.into());
+        self.texts.insert(path.to_owned(), text.into());
         self
     }
-}
 
-impl Files {
+    /// One document more: these sections, after the format.
+    pub fn document(self, path: &str, sections: &str) -> Self {
+        self.with(path, format!("(format: 2, {sections})"))
+    }
+
+    /// A picture of this width; each texel by its first channel, 255 is one.
+    pub fn picture(mut self, path: &str, width: u32, texels: &[u8]) -> Self {
+        let texel = |value: &u8| [u16::from(*value) * 257, 0, 0, u16::MAX];
+        let picture = Picture {
+            size: [width, texels.len() as u32 / width],
+            texels: texels.iter().map(texel).collect(),
+        };
+        self.pictures.insert(path.to_owned(), picture);
+        self
+    }
+
     /// The same files, with something replaced in one.
     pub fn edited(mut self, path: &str, from: &str, to: &str) -> Self {
-        let text = self.0.get_mut(path).expect("the file is there");
+        let text = self.texts.get_mut(path).expect("the file is there");
         assert!(text.contains(from), "{path} has no {from}");
         *text = text.replace(from, to);
         self
@@ -44,7 +62,7 @@ impl Files {
 
 impl Sources for Files {
     fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
-        Ok(self.0.get(path).map(|text| text.as_str().into()))
+        Ok(self.texts.get(path).map(|text| text.as_str().into()))
     }
 
     fn list(&self, folder: &str) -> Vec<String> {
@@ -52,72 +70,46 @@ impl Sources for Files {
             let (of, name) = path.rsplit_once('/').unwrap_or(("", path));
             (of == folder).then(|| name.to_owned())
         };
-        self.0.keys().filter_map(inside).collect()
+        self.texts.keys().filter_map(inside).collect()
+    }
+
+    fn picture(&self, path: &str) -> Result<Option<Picture>, String> {
+        Ok(self.pictures.get(path).cloned())
     }
 }
 
-/// A triangle under `scene.positions`, and a camera of 64 bytes.
+/// What a scene of one triangle gives: its buffers, a camera of 64 bytes, three lights of 256, and a
+/// stream of items that nobody has counted.
 pub struct Triangle;
 
-impl Provider for Triangle {
+impl Describe for Triangle {
     fn names(&self) -> Vec<String> {
-        ["scene.positions", "scene.indices", "camera"]
-            .map(str::to_owned)
-            .to_vec()
+        let names = [
+            "scene.positions",
+            "scene.indices",
+            "scene.stream",
+            "camera",
+            "light",
+            "lights",
+        ];
+        names.map(str::to_owned).to_vec()
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {
-        match name {
-            "scene.positions" => Some(Provided {
-                items: Some(3),
-                stride: 16,
-                uniform: false,
-            }),
-            "scene.indices" => Some(Provided {
-                items: Some(3),
-                stride: 4,
-                uniform: false,
-            }),
-            "camera" => Some(Provided {
-                items: Some(1),
-                stride: 64,
-                uniform: true,
-            }),
-            _ => None,
-        }
-    }
-
-    fn build(
-        &mut self,
-        name: &str,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-    ) -> Result<wgpu::Buffer, ProviderError> {
-        let positions: [[f32; 4]; 3] = [
-            [-1.0, -1.0, 0.25, 1.0],
-            [3.0, -1.0, 0.25, 1.0],
-            [-1.0, 3.0, 0.25, 1.0],
-        ];
-        let (bytes, usage): (Vec<u8>, _) = match name {
-            "scene.positions" => (
-                bytemuck::cast_slice(&positions).to_vec(),
-                wgpu::BufferUsages::STORAGE,
-            ),
-            "scene.indices" => (
-                bytemuck::cast_slice(&[0u32, 1, 2]).to_vec(),
-                wgpu::BufferUsages::STORAGE,
-            ),
-            "camera" => (vec![0; 64], wgpu::BufferUsages::UNIFORM),
-            _ => return Err(ProviderError(format!("there is no `{name}`"))),
+        let (items, stride, binding) = match name {
+            "scene.positions" => (Some(3), 16, ProvidedBinding::Storage),
+            "scene.indices" => (Some(3), 4, ProvidedBinding::Storage),
+            "scene.stream" => (None, 4, ProvidedBinding::Storage),
+            "camera" => (Some(1), 64, ProvidedBinding::Uniform),
+            "light" => (Some(1), 256, ProvidedBinding::Uniform),
+            "lights" => (Some(3), 256, ProvidedBinding::Both),
+            _ => return None,
         };
-        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(name),
-            size: bytes.len() as u64,
-            usage: usage | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
-            mapped_at_creation: false,
-        });
-        queue.write_buffer(&buffer, 0, &bytes);
-        Ok(buffer)
+        Some(Provided {
+            items,
+            stride,
+            binding,
+        })
     }
 }
 
@@ -129,4 +121,41 @@ pub fn load(files: &Files) -> Result<Graph, Diagnostics> {
 /// Loads and plans `graph.ron` at 8×8 without provided resources.
 pub fn plan(files: &Files) -> Result<Plan, Diagnostics> {
     load(files)?.plan(&PlanRequest::new([8, 8], &NoProvider))
+}
+
+/// What comes without mistakes.
+#[track_caller]
+pub fn right<T>(result: Result<T, Diagnostics>) -> T {
+    result.unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+/// The mistakes of what comes with some.
+#[track_caller]
+pub fn wrong<T>(result: Result<T, Diagnostics>) -> Diagnostics {
+    result
+        .err()
+        .unwrap_or_else(|| panic!("a mistake was not found"))
+}
+
+/// [`Graph::check`] of `graph.ron` with the scene of [`Triangle`]: its mistakes, or where there are
+/// none its warnings.
+pub fn checked(files: &Files) -> Vec<Diagnostic> {
+    let request = PlanRequest::new([8, 8], &Triangle);
+    match Graph::check("graph.ron", &Registry::standard(), files, &request) {
+        Err(errors) => errors.iter().cloned().collect(),
+        Ok((graph, plan)) => {
+            let warnings = graph.warnings().iter().chain(plan.warnings());
+            warnings.cloned().collect()
+        }
+    }
+}
+
+/// The codes of mistakes.
+pub fn codes<'d>(found: impl IntoIterator<Item = &'d Diagnostic>) -> Vec<Code> {
+    found.into_iter().map(|found| found.code).collect()
+}
+
+/// Names of the live passes in order.
+pub fn names(plan: &Plan) -> Vec<String> {
+    plan.passes().into_iter().map(|pass| pass.name).collect()
 }

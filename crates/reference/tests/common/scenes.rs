@@ -45,7 +45,8 @@ pub fn floor() -> Mesh {
     mesh
 }
 
-/// A camera `height` above the floor that looks straight down and sees ±`height` along x (to the right) and z (down).
+/// A camera `height` above the floor that looks straight down and sees ±`height` along x (to the
+/// right) and z (down).
 pub fn from_above(height: f64, viewport: [u32; 2]) -> Camera {
     let eye = DVec3::new(0.0, height, 0.0);
     let (direction, up) = (DVec3::NEG_Y, DVec3::NEG_Z);

@@ -3,9 +3,11 @@
 use glam::DVec3;
 
 /// SplitMix64 (Steele, Lea and Flood 2014): one addition and three multiply-xorshifts per number.
-pub(crate) struct Random(u64);
+#[derive(Clone, Debug)]
+pub struct Random(u64);
 
 impl Random {
+    /// The sequence that belongs to `seed`.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
@@ -51,8 +53,9 @@ impl Random {
 }
 
 /// Cosine and sine of a fraction of a full turn.
-pub(crate) fn turn(fraction: f64) -> (f64, f64) {
-    // A quarter turn at most goes through the series: 12 terms are exact to the last bit of an f32 many times over.
+pub fn turn(fraction: f64) -> (f64, f64) {
+    // A quarter turn at most goes through the series: 12 terms are exact to the last bit of an f32
+    // many times over.
     let quarters = (fraction * 4.0).floor();
     let angle = (fraction * 4.0 - quarters) * std::f64::consts::FRAC_PI_2;
     let (mut cos, mut sin, mut term) = (0.0, 0.0, 1.0);

@@ -1,10 +1,14 @@
 //! Closed solids: everything generated is a loft, a stack of rings closed by a point at either end.
 
 use super::numbers::turn;
-use crate::{Group, Mesh, weld::Welder};
+use crate::{
+    mesh::{Group, Mesh},
+    weld::Welder,
+};
 use glam::DVec3;
 
-/// Faces around a vertex share a smooth normal where they meet at less than 50° (this is the cosine).
+/// Faces around a vertex share a smooth normal where they meet at less than 50° (this is the
+/// cosine).
 const CREASE_COS: f64 = 0.643;
 
 /// A right-handed frame: where a part stands and how it is turned.
@@ -17,7 +21,8 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// Upright at `origin`, its x axis turned from world x towards world −z by a fraction of a full turn.
+    /// Upright at `origin`, its x axis turned from world x towards world −z by a fraction of a full
+    /// turn.
     pub fn upright(origin: DVec3, fraction: f64) -> Self {
         let (cos, sin) = turn(fraction);
         Self {
@@ -84,7 +89,8 @@ impl Builder {
         self.mesh
     }
 
-    /// A solid through rings of equally many corners, each counter-clockwise around the way from `start` to `end`.
+    /// A solid through rings of equally many corners, each counter-clockwise around the way from
+    /// `start` to `end`.
     pub fn loft(&mut self, start: DVec3, rings: &[Vec<DVec3>], end: DVec3) {
         let sides = rings.first().map_or(0, Vec::len);
         let count = (rings.len() * sides) as u32;
@@ -118,8 +124,8 @@ impl Builder {
         self.add(&points, &faces);
     }
 
-    /// A slab over `low`..`high`, its upper side a grid of `cells` × `cells` equal cells: f32 places a point on a triangle the
-    /// better the nearer its corners are.
+    /// A slab over `low`..`high`, its upper side a grid of `cells` × `cells` equal cells: f32
+    /// places a point on a triangle the better the nearer its corners are.
     pub fn slab(&mut self, low: DVec3, high: DVec3, cells: u32) {
         let row = cells + 1;
         let mut points: Vec<DVec3> = (0..row * row)
@@ -177,7 +183,8 @@ impl Builder {
         self.loft(path[0].0, &rings, path[path.len() - 1].0);
     }
 
-    /// A thin pointed plate in the x–z plane of `frame`, from its origin along x: a leaf or a petal.
+    /// A thin pointed plate in the x–z plane of `frame`, from its origin along x: a leaf or a
+    /// petal.
     pub fn leaf(
         &mut self,
         frame: Frame,

@@ -1,8 +1,10 @@
-//! Stands between an OBJ file and `tobj`: hands it one clean line at a time and remembers where each face stood.
+//! Stands between an OBJ file and `tobj`: hands it one clean line at a time and remembers where
+//! each face stood.
 //!
-//! `tobj` reports no line and no face, fails as a whole on an index out of range (and overflows on a huge one), takes
-//! an `l` record of three points for a triangle, reuses the normal of the corner before where one is missing, and does
-//! not join lines continued by `\`. All of that is settled here, line by line, before it sees them.
+//! `tobj` reports no line and no face, fails as a whole on an index out of range (and overflows on
+//! a huge one), takes an `l` record of three points for a triangle, reuses the normal of the corner
+//! before where one is missing, and does not join lines continued by `\`. All of that is settled
+//! here, line by line, before it sees them.
 
 use crate::error::{FACES_SHOWN, FaceFault, FaceProblem, FaceRef, beginning};
 use std::{
@@ -59,7 +61,8 @@ impl<'a> Guard<'a> {
     pub fn new(bytes: &'a [u8], leave_out: &'a [String]) -> Self {
         let leave_out: HashSet<&str> = leave_out.iter().map(String::as_str).collect();
         Self {
-            rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), // a byte order mark is no part of the first word
+            // a byte order mark is no part of the first word
+            rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes),
             handed_on: Vec::new(),
             consumed: 0,
             line: 0,
@@ -92,7 +95,8 @@ impl<'a> Guard<'a> {
         }
     }
 
-    /// Takes the next physical line off the file, without its line end; the flag says whether it had one.
+    /// Takes the next physical line off the file, without its line end; the flag says whether it
+    /// had one.
     fn next_line(&mut self) -> Result<Option<(&'a str, bool)>, String> {
         if self.rest.is_empty() {
             return Ok(None);
@@ -125,7 +129,8 @@ impl<'a> Guard<'a> {
             };
             let mut joined = String::new();
             let mut line = line;
-            // A name or a comment may end in a backslash (a Windows folder); only numbers are continued.
+            // A name or a comment may end in a backslash (a Windows folder); only numbers are
+            // continued.
             let numbers = line.starts_with(['v', 'f', 'l', 'p']);
             while let Some(start) = line.strip_suffix('\\').filter(|_| numbers) {
                 joined.push_str(start);
@@ -151,7 +156,8 @@ impl<'a> Guard<'a> {
         match keyword {
             "v" => {
                 self.vertices += 1;
-                // Six numbers are a position with a colour: the colour is not ours, and tobj fails where only some have one.
+                // Six numbers are a position with a colour: the colour is not ours, and tobj fails
+                // where only some have one.
                 let count = numbers.split_whitespace().count();
                 let taken = if count >= 6 { 3 } else { count };
                 self.hand_on("v", numbers.split_whitespace().take(taken));
@@ -174,7 +180,8 @@ impl<'a> Guard<'a> {
             }
             "p" => self.points += 1,
             "l" => self.lines += 1,
-            // Texture coordinates, materials, smoothing groups, comments, free-form surfaces: nothing that we draw.
+            // Texture coordinates, materials, smoothing groups, comments, free-form surfaces:
+            // nothing that we draw.
             _ => {}
         }
         Ok(())
@@ -242,7 +249,8 @@ impl<'a> Guard<'a> {
         }
         let resolve =
             |written: &str, available: usize, missing: fn(String, usize) -> FaceProblem| {
-                // An index may count back from the last vertex; one that overflows names nothing either.
+                // An index may count back from the last vertex; one that overflows names nothing
+                // either.
                 let digits = written.strip_prefix(['-', '+']).unwrap_or(written);
                 if digits.is_empty() || !digits.bytes().all(|byte| byte.is_ascii_digit()) {
                     return Err(FaceProblem::NotACorner(text.to_owned()));

@@ -24,7 +24,8 @@ impl Hit {
     }
 }
 
-/// Calls `visit` for the triangles that the ray crosses, in no order, until it returns false; whether it never did.
+/// Calls `visit` for the triangles that the ray crosses, in no order, until it returns false;
+/// whether it never did.
 pub fn cast(
     mesh: &Mesh,
     bvh: &Bvh,
@@ -62,7 +63,8 @@ fn cross(mesh: &Mesh, primitive: u32, origin: DVec3, direction: DVec3) -> Option
     let determinant = e1.dot(p);
     let q = s.cross(e1);
     let [u, v, t] = [s.dot(p), direction.dot(q), e2.dot(q)].map(|x| x / determinant);
-    let inside = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0; // false for NaN, that is, for a parallel triangle
+    // false for NaN, that is, for a parallel triangle
+    let inside = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0;
     inside.then_some(Hit {
         t,
         primitive,

@@ -1,14 +1,18 @@
 //! The flower box: a planter and some fifty flowers of very small triangles.
 
-use super::{ACROSS_THE_LIGHT, Builder, Frame, GAP};
-use crate::generate::numbers::{Random, turn};
+use super::placing::{ACROSS_THE_LIGHT, GAP};
+use crate::generate::{
+    numbers::{Random, turn},
+    solid::{Builder, Frame},
+};
 use glam::DVec3;
 
 /// Half length and half width of the planter's inside.
 const INSIDE: (f64, f64) = (11.4, 3.5);
 /// Height of the soil.
 const SOIL: f64 = 2.2;
-/// Distance between neighbouring stems. A flower keeps inside a cylinder of half this radius around its stem's foot.
+/// Distance between neighbouring stems. A flower keeps inside a cylinder of half this radius around
+/// its stem's foot.
 const PITCH: f64 = 1.7;
 
 pub(super) fn flower_box(builder: &mut Builder) {

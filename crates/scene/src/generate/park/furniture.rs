@@ -1,6 +1,10 @@
 //! The bench and the lamp.
 
-use super::{ACROSS_THE_LIGHT, Builder, Frame, GAP};
+use super::placing::{ACROSS_THE_LIGHT, GAP};
+use crate::generate::{
+    numbers::turn,
+    solid::{Builder, Frame},
+};
 use glam::DVec3;
 
 /// A bench of slats on two frames, with a leaning back.
@@ -79,7 +83,7 @@ pub(super) fn lamp(builder: &mut Builder) {
     turned(builder, &[(15.0 + GAP, 0.8), (15.2, 0.9), (15.4, 0.8)]);
     let globe: Vec<(f64, f64)> = (1..12)
         .map(|step| {
-            let (cos, sin) = super::super::numbers::turn(f64::from(step) / 24.0);
+            let (cos, sin) = turn(f64::from(step) / 24.0);
             (16.9 - 1.45 * cos, 1.45 * sin)
         })
         .collect();

@@ -1,7 +1,10 @@
 //! Two trees of few, big triangles. The third group of views sees only their shadows.
 
-use super::{Builder, Frame, GAP};
-use crate::generate::numbers::{Random, turn};
+use super::placing::GAP;
+use crate::generate::{
+    numbers::{Random, turn},
+    solid::{Builder, Frame},
+};
 use glam::DVec3;
 
 /// Radius of a trunk at the ground.

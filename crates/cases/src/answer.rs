@@ -1,0 +1,65 @@
+//! Where light arrives, told from the geometry: how deep the way from a point to the light runs
+//! inside a caster (negative: by how much it misses), and what follows.
+
+use crate::shape::Block;
+use glam::{DVec2, DVec3};
+
+/// Lit or not, from the depth inside every caster; `None` if none blocks the way and some does or
+/// does not by less than `margin`.
+pub(crate) fn judge(depths: impl IntoIterator<Item = f64>, margin: f64) -> Option<bool> {
+    let deepest = depths.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    (deepest.abs() > margin).then_some(deepest < 0.0)
+}
+
+/// Among boxes of which none hides a part of another's surface by more than its own volume: a point
+/// on a box's own surface, which faces the light, is not shaded by this box.
+pub(crate) fn among(point: DVec3, light: DVec3, blocks: &[Block], margin: f64) -> Option<bool> {
+    judge(
+        blocks
+            .iter()
+            .filter_map(|&block| in_block(point, light, block)),
+        margin,
+    )
+}
+
+/// Inside a box, or `None` for a point on its surface.
+pub(crate) fn in_block(point: DVec3, light: DVec3, block: Block) -> Option<f64> {
+    let to_light = -light.normalize();
+    let [low, high] = block.map(|corner| glam::Vec3::from(corner).as_dvec3());
+    let beside = (point - low).min(high - point).min_element();
+    if beside.abs() <= 1e-12 * (low.abs().max(high.abs()).max_element() + point.length()) {
+        return None;
+    }
+    let (mut enter, mut leave, mut within) = (f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY);
+    for axis in 0..3 {
+        let (near, far) = (low[axis] - point[axis], high[axis] - point[axis]);
+        if to_light[axis] == 0.0 {
+            within = within.min(far.min(-near));
+        } else {
+            let (a, b) = (near / to_light[axis], far / to_light[axis]);
+            (enter, leave) = (enter.max(a.min(b)), leave.min(a.max(b)));
+        }
+    }
+    Some((leave - enter).min(leave).min(within))
+}
+
+/// Where the way to the light passes height `y`, as x and z; `None` if it does not.
+pub(crate) fn at_height(point: DVec3, light: DVec3, y: f64) -> Option<DVec2> {
+    let t = (y - point.y) / -light.y;
+    let met = point - light * t;
+    // A point of the plane itself is no further from it than rounding.
+    (t * light.length() > 1e-9).then_some(DVec2::new(met.x, met.z))
+}
+
+/// Inside a horizontal rectangle at height `y`.
+pub(crate) fn in_sheet(point: DVec3, light: DVec3, sheet: [[f32; 2]; 2], y: f32) -> f64 {
+    let [low, high] = sheet.map(|corner| glam::Vec2::from(corner).as_dvec2());
+    let inside = |met: DVec2| (met - low).min(high - met).min_element();
+    at_height(point, light, f64::from(y)).map_or(f64::NEG_INFINITY, inside)
+}
+
+/// Inside a horizontal disc at height `y` around `centre`.
+pub(crate) fn in_disc(point: DVec3, light: DVec3, [x, y, z]: [f64; 3], radius: f64) -> f64 {
+    let inside = |met: DVec2| radius - met.distance(DVec2::new(x, z));
+    at_height(point, light, y).map_or(f64::NEG_INFINITY, inside)
+}

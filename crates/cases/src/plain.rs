@@ -1,0 +1,111 @@
+//! Simple scenes, and scenes of next to nothing.
+
+use crate::{
+    answer::among,
+    case::{HardCase, Shows},
+    shape::{Block, Shape},
+};
+use glam::DVec3;
+
+const BOX: [Block; 2] = [
+    [[-4.0, -0.5, -4.0], [4.0, 0.0, 4.0]],
+    [[-0.5, 0.0, -0.5], [0.5, 1.0, 0.5]],
+];
+const ROOM: [Block; 3] = [
+    [[-4.0, -0.5, -4.0], [4.0, 0.0, 4.0]],
+    [[1.5, 0.0, 1.5], [3.5, 4.0, 3.5]],
+    [[-1.0, 0.0, -0.7], [0.0, 0.7, 0.3]],
+];
+const ROOM_LIGHT: DVec3 = DVec3::new(-1.0, -1.5, -0.9);
+const NEAR: [Block; 4] = [
+    [[-4.0, -0.5, -4.0], [4.0, 0.0, 4.0]],
+    [[-0.4, 0.0, -0.6], [0.3, 0.8, 0.4]],
+    [[1.3, 2.4, 1.5], [2.3, 2.8, 2.4]],
+    [[3.0, 4.0, 3.0], [4.0, 5.0, 4.2]],
+];
+const NEAR_LIGHT: DVec3 = DVec3::new(-1.0, -1.6, -1.2);
+
+pub(crate) const CASES: &[HardCase] = &[
+    HardCase::closed(
+        "box_on_floor",
+        "contact: a closed box stands on the floor that it shades",
+        || {
+            Shape::default().cuboids(&BOX).scene(
+                [2.7, 1.8, 1.5],
+                [0.9, 0.1, 0.0],
+                DVec3::new(1.0, -1.0, 0.0),
+            )
+        },
+    )
+    .with_answer(|p| among(p, DVec3::new(1.0, -1.0, 0.0), &BOX, 1e-3)),
+    HardCase::closed(
+        "empty_scene",
+        "no triangle: no fit, no hierarchy, empty buffers",
+        || Shape::default().scene([0.0, 1.0, 3.0], [0.0; 3], DVec3::new(0.3, -1.0, 0.2)),
+    )
+    .showing(Shows::Nothing),
+    HardCase::open(
+        "one_triangle",
+        "its own receiver, its own caster, the whole map",
+        || {
+            Shape::default()
+                .triangle([[-1.0, 0.1, 1.0], [1.2, -0.2, 0.8], [0.1, 0.3, -1.1]])
+                .scene([0.3, 2.0, 1.0], [0.0; 3], DVec3::new(0.3, -1.0, 0.2))
+        },
+    )
+    .with_answer(|_| Some(true))
+    .showing(Shows::LitOnly),
+    HardCase::open(
+        "one_quad",
+        "two triangles in one plane, each beside the other's receivers",
+        || {
+            Shape::default()
+                .quad([
+                    [-1.0, 0.0, 1.0],
+                    [1.0, 0.0, 1.0],
+                    [1.0, 1.0, -1.0],
+                    [-1.0, 1.0, -1.0],
+                ])
+                .scene([0.4, 2.2, 1.9], [0.0, 0.5, 0.0], DVec3::new(0.3, -1.0, 0.2))
+        },
+    )
+    .with_answer(|_| Some(true))
+    .showing(Shows::LitOnly),
+    HardCase::closed(
+        "everything_faces_away",
+        "no pixel faces the light: no ray, and shares of nothing",
+        || {
+            Shape::default().cuboids(&BOX).scene(
+                [1.0, 4.0, 2.0],
+                [0.0; 3],
+                DVec3::new(0.1, 1.0, 0.05),
+            )
+        },
+    )
+    .showing(Shows::Nothing),
+    HardCase::closed(
+        "camera_inside",
+        "the eye is inside a closed box, whose faces it does not see and whose shadow it does",
+        || {
+            Shape::default()
+                .cuboids(&ROOM)
+                .scene([2.5, 1.9, 2.4], [-0.9, 0.0, -0.6], ROOM_LIGHT)
+        },
+    )
+    .with_answer(|p| among(p, ROOM_LIGHT, &ROOM, 1e-3)),
+    HardCase::closed(
+        "before_the_near_plane",
+        "casters between the eye and the near plane, and around the eye: not drawn, and still \
+             in the light",
+        || {
+            let mut scene = Shape::default().cuboids(&NEAR).scene(
+                [3.5, 4.5, 3.6],
+                [-0.4, 0.0, -0.4],
+                NEAR_LIGHT,
+            );
+            scene.views[0].near = 5.0;
+            scene
+        },
+    )
+    .with_answer(|p| among(p, NEAR_LIGHT, &NEAR, 1e-3)),
+];

@@ -1,0 +1,180 @@
+//! Gaps, extents and places at which f32 runs out of digits.
+
+use crate::{
+    answer::{among, in_sheet, judge},
+    case::HardCase,
+    shape::{Block, Shape},
+};
+use glam::DVec3;
+use skiagraph_scene::Scene;
+
+const LIGHT: DVec3 = DVec3::new(0.8, -1.0, 0.43);
+
+/// Four slabs, each smaller than the one below and `gap` above it; their tops are at multiples of a
+/// quarter.
+fn stack(gap: f32) -> [Block; 4] {
+    std::array::from_fn(|i| {
+        let (half, top) = (1.6 - 0.4 * i as f32, 1.0 + 0.25 * i as f32);
+        let bottom = if i == 0 { 0.5 } else { top - 0.25 + gap };
+        [[-half, bottom, -half], [half, top, half]]
+    })
+}
+
+fn stack_scene(gap: f32) -> Scene {
+    Shape::default()
+        .cuboids(&stack(gap))
+        .scene([2.5, 4.1, 2.9], [0.5, 1.1, 0.3], LIGHT)
+}
+
+/// Of numbers from 1 to 2.
+const ULP: f32 = f32::EPSILON;
+
+const LID: [[f32; 2]; 2] = [[-1.0, -0.8], [0.9, 1.1]];
+
+/// A floor under a lid that the camera sees through, because it is wound downward.
+fn lid_scene(scale: f32, gap: f32) -> Scene {
+    let by = f64::from(scale);
+    let lid = LID.map(|corner| corner.map(|c| c * scale));
+    let lid = Shape::default().sheet(lid, gap).reversed();
+    Shape::default().floor(2.0 * scale, 0.0).and(lid).scene(
+        [1.1 * by, 3.3 * by, 1.7 * by],
+        [0.2 * by, 0.0, 0.1 * by],
+        LIGHT,
+    )
+}
+
+fn lid_lit(p: DVec3, scale: f32, gap: f32) -> Option<bool> {
+    let lid = LID.map(|corner| corner.map(|c| c * scale));
+    judge([in_sheet(p, LIGHT, lid, gap)], 1e-4 * f64::from(scale))
+}
+
+const SHEETS: [[f32; 2]; 2] = [[-0.8, -0.7], [0.7, 0.9]];
+
+const SMALL: [Block; 2] = [
+    [[-4e-4, -5e-5, -4e-4], [4e-4, 0.0, 4e-4]],
+    [[-5e-5, 0.0, -5e-5], [5e-5, 1e-4, 5e-5]],
+];
+const FAR_OFF: f32 = 1e7;
+const FAR: [Block; 2] = [
+    [
+        [FAR_OFF - 4000.0, FAR_OFF - 500.0, FAR_OFF - 4000.0],
+        [FAR_OFF + 4000.0, FAR_OFF, FAR_OFF + 4000.0],
+    ],
+    [
+        [FAR_OFF - 500.0, FAR_OFF, FAR_OFF - 700.0],
+        [FAR_OFF + 600.0, FAR_OFF + 1000.0, FAR_OFF + 500.0],
+    ],
+];
+/// On a plain of a million units.
+const DETAIL: [Block; 3] = [
+    [[-0.01, 0.0, -0.01], [0.0, 0.01, 0.0]],
+    [[0.004, 0.0, 0.003], [0.014, 0.006, 0.013]],
+    [[-2e5, 0.0, 2e5], [-1e5, 1e5, 3e5]],
+];
+const CRUMBS: [Block; 3] = [
+    [[-0.05, 0.0, -0.04], [0.0, 0.05, 0.02]],
+    [[0.03, 0.0, 0.03], [0.05, 0.02, 0.06]],
+    [[-8.0, 0.0, 5.0], [-5.0, 8.0, 8.0]],
+];
+
+pub(crate) const CASES: &[HardCase] = &[
+    HardCase::closed(
+        "stack_gap_one_ulp",
+        "closed slabs an ulp above one another: no bias fits in between",
+        || stack_scene(ULP),
+    )
+    .with_answer(|p| among(p, LIGHT, &stack(ULP), 1e-3)),
+    HardCase::closed(
+        "stack_gap_1e_6",
+        "closed slabs a millionth above one another",
+        || stack_scene(1e-6),
+    )
+    .with_answer(|p| among(p, LIGHT, &stack(1e-6), 1e-3)),
+    HardCase::closed(
+        "stack_gap_1e_3",
+        "closed slabs a thousandth above one another",
+        || stack_scene(1e-3),
+    )
+    .with_answer(|p| among(p, LIGHT, &stack(1e-3), 1e-3)),
+    HardCase::open(
+        "lid_gap_1e_3",
+        "receivers close below a sheet, seen through its back: every bias lights them",
+        || lid_scene(1.0, 1e-3),
+    )
+    .with_answer(|p| lid_lit(p, 1.0, 1e-3)),
+    HardCase::open(
+        "lid_gap_2e_5",
+        "the same at ten times what f32 loses",
+        || lid_scene(1.0, 2e-5),
+    )
+    .with_answer(|p| lid_lit(p, 1.0, 2e-5)),
+    HardCase::open(
+        "lid_gap_1e_6",
+        "the same in a scene of a twentieth: the gap counts in extents",
+        || lid_scene(0.05, 1e-6),
+    )
+    .with_answer(|p| lid_lit(p, 0.05, 1e-6)),
+    HardCase::open(
+        "sheets_an_ulp_apart",
+        "casters of both windings, coplanar or an ulp apart, fight for the map",
+        || {
+            let sheets = (0..5u8).fold(Shape::default(), |shape, i| {
+                let sheet = Shape::default().sheet(SHEETS, 1.0 + f32::from(i / 2) * ULP);
+                shape.and(if i % 2 == 0 { sheet } else { sheet.reversed() })
+            });
+            Shape::default().floor(2.5, 0.0).and(sheets).scene(
+                [1.9, 0.9, 2.8],
+                [0.6, 0.0, 0.3],
+                LIGHT,
+            )
+        },
+    )
+    .with_answer(|p| judge([in_sheet(p, LIGHT, SHEETS, 1.0)], 1e-3)),
+    HardCase::closed(
+        "scale_1e_4",
+        "the unit is a ten-thousandth: constants in scene units are too large",
+        || {
+            Shape::default().cuboids(&SMALL).scene(
+                [2.2e-4, 2.6e-4, 3e-4],
+                [4e-5, 2e-5, 2e-5],
+                LIGHT,
+            )
+        },
+    )
+    .with_answer(|p| among(p, LIGHT, &SMALL, 1e-7)),
+    HardCase::closed(
+        "origin_offset_1e7",
+        "ten million units from the origin, where f32 counts in ones",
+        || {
+            let at = |x, y, z| [x, y, z].map(|c: f64| f64::from(FAR_OFF) + c);
+            Shape::default().cuboids(&FAR).scene(
+                at(3000.0, 4000.0, 5000.0),
+                at(300.0, 200.0, 100.0),
+                LIGHT,
+            )
+        },
+    )
+    .with_answer(|p| among(p, LIGHT, &FAR, 20.0)),
+    HardCase::closed(
+        "extent_1e6_detail_1e_2",
+        "boxes of a hundredth on a plain of a million: all of them in one texel",
+        || {
+            Shape::default()
+                .graded_slab(0.05, 12, 1e5)
+                .cuboids(&DETAIL)
+                .scene([0.03, 0.04, 0.05], [0.004, 0.002, 0.003], LIGHT)
+        },
+    )
+    .with_answer(|p| among(p, LIGHT, &DETAIL, 1e-5)),
+    HardCase::closed(
+        "huge_beside_tiny",
+        "crumbs on a floor of two triangles four hundred times their size",
+        || {
+            Shape::default()
+                .cuboid([[-10.0, -1.0, -10.0], [10.0, 0.0, 10.0]])
+                .cuboids(&CRUMBS)
+                .scene([0.13, 0.2, 0.21], [0.03, 0.01, 0.02], LIGHT)
+        },
+    )
+    .with_answer(|p| among(p, LIGHT, &CRUMBS, 1e-3)),
+];

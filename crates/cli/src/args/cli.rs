@@ -1,0 +1,222 @@
+//! The program, its commands and their examples. Exit codes: 0 fine, 1 the input is wrong, 2 usage,
+//! 3 no usable GPU, or it was lost or hangs.
+
+use crate::args::{
+    commands::{CheckArgs, CompareArgs, GraphArgs, ProfileArgs, RunArgs, ShowArgs, StressArgs},
+    shared::GpuArgs,
+};
+use clap::{Parser, Subcommand};
+
+/// Runs, times and judges shadow methods that are written as RON graphs and WGSL shaders.
+#[derive(Debug, Parser)]
+#[command(
+    name = "skiagraph",
+    version,
+    propagate_version = true,
+    after_help = "Example:\n  skiagraph compare rt nsm --scene park --size 512x512\n\n\
+        Exit codes: 0 fine, 1 the input is wrong, 2 wrong usage, 3 no usable GPU, \
+        or it was lost or hangs, 130 stopped by Ctrl-C."
+)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// Where it is done.
+    #[command(flatten)]
+    pub gpu: GpuArgs,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene with several shadow methods: GPU time per pass and wrong pixels, side by
+    /// side.
+    #[command(after_help = "Examples:\n  skiagraph compare\n  \
+        skiagraph compare rt nsm --scene park --view all --size 512x512,1024x1024 \
+            --map-size 1024,2048\n  \
+        skiagraph compare nsm --scene house.obj --eye 0,2,8 --look 0,0,-1 --light 0.3,-1,-0.2\n  \
+        skiagraph compare rt my_method.ron --oracle offset:0.03 --format markdown\n  \
+        skiagraph compare --view all --map-size 512,1024,2048 --out park --resume   \
+            # after Ctrl-C: only what is missing")]
+    Compare(CompareArgs),
+    /// Render one frame with one graph and save any of its materials.
+    #[command(
+        after_help = "Examples:\n  skiagraph run nsm --save visibility=shadow.png\n  \
+        skiagraph run nsm --save shadow_map@create_shadow_map.draw=map.png --set map_size=512\n  \
+        skiagraph run my_method.ron --scene sponza --save status=status.bin\n  \
+        skiagraph run my_method.ron --poison"
+    )]
+    Run(RunArgs),
+    /// Time every pass of one graph over many frames, and list what its materials take.
+    #[command(
+        after_help = "Examples:\n  skiagraph profile nsm --scene park --frames 100\n  \
+        skiagraph profile nsm --json before.json\n  \
+        skiagraph profile nsm --set map_size=512 --baseline before.json\n  \
+        skiagraph profile my_method.ron --csv passes.csv --trace frames.json   \
+            # open frames.json in ui.perfetto.dev\n\n\
+        docs/profiling.md says how to read the tables and the trace."
+    )]
+    Profile(ProfileArgs),
+    /// Run the hard cases with every method: which pixels does each get wrong, and are the exact
+    /// ones wrong nowhere?
+    #[command(
+        after_help = "Examples:\n  skiagraph stress\n  skiagraph stress --list\n  \
+        skiagraph stress rt crsm --case box_on_floor --save pictures\n  \
+        skiagraph stress crsm --set cull=none --map-size 32,128,512 --out stress\n  \
+        skiagraph stress my_method.ron --exact my_method.ron\n\n\
+        A cell counts pixels outside the band, wrongly lit + wrongly in shadow. Methods \
+            that are called exact must show 0, and no\n\
+        band may be above its case's cap; else the exit code is 1. What casts \
+            shadows by its back faces alone (param `cull`) is\n\
+        judged on open casters with cull=none."
+    )]
+    Stress(StressArgs),
+    /// Check graphs and their shaders. Needs no GPU: what is beyond the limits that every GPU has
+    /// is a warning. With --adapter it is asked of that GPU, and an error where it cannot run them.
+    #[command(
+        after_help = "Examples:\n  skiagraph check my_method.ron pipelines/*.ron\n  \
+        skiagraph check my_method.ron --adapter llvmpipe\n  \
+        skiagraph check my_method.ron --format json\n\n\
+        The JSON is {\"schema\": 1, \"files\": [{\"file\", \"passes\", \"diagnostics\": \
+            [{\"code\", \"severity\", \"message\", \"labels\",\n\
+        \"help\"}]}]}; `passes` is null where there are errors. A label is {\"file\", \"line\", \
+            \"column\", \"end_line\", \"end_column\",\n\
+        \"text\"}, counted from 1 in lines and characters; the end is the first place behind. The \
+            first label is the mistake's own\n\
+        place. Exit codes are those of --format text."
+    )]
+    Check(CheckArgs),
+    /// Draw a graph: passes in order, materials and their lifetimes, what depends on what, what is
+    /// culled and why. Needs no GPU.
+    #[command(after_help = "Examples:\n  skiagraph graph nsm --out nsm.svg\n  \
+        skiagraph graph my_method.ron --outputs visibility --size 1920x1080 --out my_method.svg\n  \
+        skiagraph graph rt --format dot | dot -Tpng -o rt.png\n  \
+        skiagraph graph rt --format json")]
+    Graph(GraphArgs),
+    /// List the presets, those in ./pipelines and the built-in ones, and their params.
+    #[command(after_help = "Example:\n  skiagraph presets")]
+    Presets,
+    /// Print a document or shader, of the working directory or built in.
+    #[command(after_help = "Examples:\n  skiagraph show nsm\n  \
+        skiagraph show shared/light.wgsl\n  skiagraph show crsma_full --flat")]
+    Show(ShowArgs),
+    /// List the scenes and their views.
+    #[command(after_help = "Example:\n  skiagraph scenes")]
+    Scenes,
+    /// Show the GPUs, what they can do, and where meshes are searched.
+    #[command(after_help = "Example:\n  skiagraph doctor --adapter llvmpipe")]
+    Doctor,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::values::{Assignment, Size};
+    use clap::CommandFactory;
+    use glam::DVec3;
+    use skiagraph_reference::OracleMode;
+
+    fn parse(line: &str) -> Result<Cli, clap::Error> {
+        Cli::try_parse_from(line.split_whitespace())
+    }
+
+    #[test]
+    fn clap_finds_no_fault_in_the_definitions() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn every_command_shows_an_example() {
+        for command in Cli::command().get_subcommands() {
+            let help = command
+                .get_after_help()
+                .map(ToString::to_string)
+                .unwrap_or_default();
+            assert!(
+                help.contains(&format!("skiagraph {}", command.get_name())),
+                "{}",
+                command.get_name()
+            );
+        }
+    }
+
+    #[test]
+    fn lists_and_negative_vectors_are_read() {
+        let cli = parse(
+            "skiagraph compare rt a.ron --size 8x4,16x9 --map-size 512,1024 --eye -1,2,-3 --light \
+             -0.5,-1,0 --set bias=-2",
+        )
+        .unwrap();
+        let Command::Compare(args) = cli.command else {
+            panic!("not compare")
+        };
+        assert_eq!(args.presets, ["rt", "a.ron"]);
+        assert_eq!(args.size, [Size([8, 4]), Size([16, 9])]);
+        assert_eq!(args.map_size, [512, 1024]);
+        assert_eq!(args.scene.eye, Some(DVec3::new(-1.0, 2.0, -3.0)));
+        assert_eq!(args.scene.light, Some(DVec3::new(-0.5, -1.0, 0.0)));
+        assert_eq!(
+            args.params,
+            [Assignment {
+                name: "bias".into(),
+                value: "-2".into()
+            }]
+        );
+        assert_eq!(
+            (args.frames, args.warmup, args.oracle),
+            (10, 2, OracleMode::Exact)
+        );
+    }
+
+    #[test]
+    fn the_adapter_may_stand_on_either_side_of_the_command() {
+        for line in [
+            "skiagraph --adapter x doctor",
+            "skiagraph doctor --adapter x",
+        ] {
+            assert_eq!(parse(line).unwrap().gpu.adapter.as_deref(), Some("x"));
+        }
+    }
+
+    #[test]
+    fn a_number_out_of_range_is_told_its_range() {
+        for (line, range) in [
+            ("skiagraph compare --map-size 512,-5", "-5 is not in 1.."),
+            ("skiagraph run nsm --map-size -5", "-5 is not in 1.."),
+            ("skiagraph compare --warmup -1", "-1 is not in 0..=100000"),
+            (
+                "skiagraph compare --frames 100001",
+                "100001 is not in 1..=100000",
+            ),
+        ] {
+            let message = parse(line).unwrap_err().to_string();
+            assert!(message.contains(range), "{line}: {message}");
+        }
+    }
+
+    #[test]
+    fn usage_errors_have_exit_code_2() {
+        for line in [
+            "skiagraph",
+            "skiagraph check",
+            "skiagraph compare --size 10",
+            "skiagraph compare --frames 0",
+            "skiagraph compare --frames 100001",
+            "skiagraph compare --warmup 4294967295 --frames 1",
+            "skiagraph run",
+            "skiagraph run rt --save visibility=a.gif",
+            "skiagraph compare --look 0,0,0",
+            "skiagraph compare --oracle offset:-1",
+            "skiagraph compare --oracle embree",
+            "skiagraph profile",
+            "skiagraph profile rt nsm",
+            "skiagraph profile nsm --frames 0",
+            "skiagraph check a.ron --format yaml",
+            "skiagraph doctor --memory-limit lots",
+            "skiagraph doctor --timeout -1",
+            "skiagraph doctor --timeout 86401",
+        ] {
+            assert_eq!(parse(line).unwrap_err().exit_code(), 2, "{line}");
+        }
+    }
+}

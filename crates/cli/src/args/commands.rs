@@ -1,0 +1,252 @@
+//! What each command takes.
+
+use crate::args::{
+    shared::{MethodArgs, SceneArgs},
+    values::{Assignment, PublishedFile, Save, Size, frames, texels},
+};
+use clap::{Args, ValueEnum};
+use skiagraph_reference::OracleMode;
+use std::path::PathBuf;
+
+/// `skiagraph compare`.
+#[derive(Args, Debug)]
+pub struct CompareArgs {
+    /// Presets by name, or graphs (.ron) with the outputs `visibility` and `status`. Without any:
+    /// all presets, those in ./pipelines and the built-in ones.
+    #[arg(value_name = "PRESET|FILE.ron")]
+    pub presets: Vec<String>,
+    /// What is drawn.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Viewport sizes in pixels, separated by commas.
+    #[arg(
+        long,
+        value_name = "WxH,…",
+        value_delimiter = ',',
+        default_value = "1024x1024"
+    )]
+    pub size: Vec<Size>,
+    /// Shadow map sizes in texels, separated by commas: the param `map_size` of the graphs that
+    /// have it.
+    #[arg(long, value_name = "N,…", value_delimiter = ',',
+          value_parser = texels(), allow_negative_numbers = true)]
+    pub map_size: Vec<u32>,
+    /// A param of the graphs that have it. May be repeated.
+    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub params: Vec<Assignment>,
+    /// Timed frames per run. The frame that is judged and pictured is one more behind them, as its
+    /// readback would be timed, too.
+    #[arg(long, default_value_t = 10, value_name = "N",
+          value_parser = frames(1), allow_negative_numbers = true)]
+    pub frames: u32,
+    /// Frames before the timed ones.
+    #[arg(long, default_value_t = 2, value_name = "N",
+          value_parser = frames(0), allow_negative_numbers = true)]
+    pub warmup: u32,
+    /// Timed frames in which only the camera moves, so that passes may be skipped: as many as
+    /// --frames, 0 for none.
+    #[arg(long, value_name = "N",
+          value_parser = frames(0), allow_negative_numbers = true)]
+    pub cached_frames: Option<u32>,
+    /// What is right: `exact` (own primitive excluded, no offset) or `offset:LENGTH` (ray origin
+    /// moved towards the light).
+    #[arg(long, default_value = "exact", value_name = "MODE")]
+    pub oracle: OracleMode,
+    /// Folder for results.json, results.csv and the pictures.
+    #[arg(long, default_value = "compare", value_name = "DIR")]
+    pub out: PathBuf,
+    /// Keep the runs in DIR/results.json whose graph, shaders, params, scene and view are still the
+    /// same, and go on with the others.
+    #[arg(long)]
+    pub resume: bool,
+    /// Published figures to stand beside ours in results.json and in --format markdown, there as
+    /// (LABEL VALUE): a CSV with the columns scene, view, viewport, map_size, preset, quantity,
+    /// value, source, note. May be repeated.
+    #[arg(long = "beside", value_name = "LABEL:FILE.csv")]
+    pub published: Vec<PublishedFile>,
+    /// Which pictures are written.
+    #[arg(long, value_enum, default_value_t = Images::All)]
+    pub images: Images,
+    /// What is printed on standard output.
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    pub format: Format,
+}
+
+/// Which pictures are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Images {
+    /// Those of every run, and of the reference of every view and viewport.
+    All,
+    /// None.
+    None,
+}
+
+/// How results are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// For a terminal.
+    Table,
+    /// For a document: the command, the conditions, and a table per view and viewport with the
+    /// times of steps.
+    Markdown,
+    /// The contents of results.json.
+    Json,
+}
+
+/// `skiagraph show`.
+#[derive(Args, Debug)]
+pub struct ShowArgs {
+    /// A preset, or a document or shader by its path, also below pipelines/ or shaders/.
+    #[arg(value_name = "NAME|FILE")]
+    pub file: String,
+    /// Write out what a document extends, each line with the file and line that it comes from.
+    #[arg(long)]
+    pub flat: bool,
+}
+
+/// `skiagraph run`.
+#[derive(Args, Debug)]
+pub struct RunArgs {
+    /// What is run.
+    #[command(flatten)]
+    pub method: MethodArgs,
+    /// What it is run on.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Save an output, a material or a view of one, after a pass or at the end: .png a picture,
+    /// .bin raw bytes, .csv the words of a buffer. May be repeated.
+    #[arg(long, value_name = "MATERIAL[@PASS]=FILE")]
+    pub save: Vec<Save>,
+    /// Fill all memory that a frame has not written with two patterns, one after the other, and
+    /// fail if an output differs: the graph then reads what no pass has written.
+    #[arg(long)]
+    pub poison: bool,
+}
+
+/// `skiagraph profile`.
+#[derive(Args, Debug)]
+pub struct ProfileArgs {
+    /// What is timed.
+    #[command(flatten)]
+    pub method: MethodArgs,
+    /// What it is run on.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Timed frames.
+    #[arg(long, default_value_t = 30, value_name = "N",
+          value_parser = frames(1), allow_negative_numbers = true)]
+    pub frames: u32,
+    /// Frames before the timed ones.
+    #[arg(long, default_value_t = 3, value_name = "N",
+          value_parser = frames(0), allow_negative_numbers = true)]
+    pub warmup: u32,
+    /// Write a line per pass and one for the frame.
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Write every timed frame in the Trace Event Format, for ui.perfetto.dev or chrome://tracing.
+    #[arg(long, value_name = "FILE")]
+    pub trace: Option<PathBuf>,
+    /// Write everything, samples included: what --baseline reads.
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Compare with what an earlier --json wrote.
+    #[arg(long, value_name = "OLD.json")]
+    pub baseline: Option<PathBuf>,
+}
+
+/// `skiagraph stress`.
+#[derive(Args, Debug)]
+pub struct StressArgs {
+    /// Presets by name, or graphs (.ron) with the outputs `visibility` and `status`. Without any:
+    /// all presets, those in ./pipelines and the built-in ones.
+    #[arg(value_name = "PRESET|FILE.ron")]
+    pub presets: Vec<String>,
+    /// List the cases instead: names, casters, reasons. Needs no GPU.
+    #[arg(long, exclusive = true)]
+    pub list: bool,
+    /// A case by name. May be repeated. Without any: all cases.
+    #[arg(long = "case", value_name = "NAME")]
+    pub cases: Vec<String>,
+    /// Viewport size in pixels.
+    #[arg(long, value_name = "WxH", default_value = "128x128")]
+    pub size: Size,
+    /// Shadow map sizes in texels, separated by commas: the param `map_size` of the graphs that
+    /// have it.
+    #[arg(long, value_name = "N,…", value_delimiter = ',', default_value = "128",
+          value_parser = texels(), allow_negative_numbers = true)]
+    pub map_size: Vec<u32>,
+    /// A param of the graphs that have it. May be repeated.
+    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub params: Vec<Assignment>,
+    /// Judge this method as an exact one, too: no pixel outside the band may be wrong. May be
+    /// repeated.
+    #[arg(long, value_name = "PRESET|FILE.ron")]
+    pub exact: Vec<String>,
+    /// Folder for the pictures of every cell: shaded, visibility, error, uncertain.
+    #[arg(long, value_name = "DIR")]
+    pub save: Option<PathBuf>,
+    /// Folder for stress.json, written anew after every case.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// What is printed on standard output.
+    #[arg(long, value_enum, default_value_t = StressFormat::Table)]
+    pub format: StressFormat,
+}
+
+/// How the matrix is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum StressFormat {
+    /// For a terminal.
+    Table,
+    /// The contents of stress.json.
+    Json,
+}
+
+/// `skiagraph check`.
+#[derive(Args, Debug)]
+pub struct CheckArgs {
+    /// Graphs (.ron), or presets by name.
+    #[arg(value_name = "FILE.ron", required = true)]
+    pub graphs: Vec<String>,
+    /// How diagnostics are printed: text on standard error, or json on standard output.
+    #[arg(long, value_enum, default_value_t = CheckFormat::Text)]
+    pub format: CheckFormat,
+}
+
+/// How diagnostics are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum CheckFormat {
+    /// For people: source lines with the mistakes underlined, on standard error.
+    Text,
+    /// For programs: one JSON object on standard output.
+    Json,
+}
+
+/// `skiagraph graph`.
+#[derive(Args, Debug)]
+pub struct GraphArgs {
+    /// What is planned.
+    #[command(flatten)]
+    pub method: MethodArgs,
+    /// What is drawn. Without it: what the ending of --out names, else svg.
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub format: Option<DrawingFormat>,
+    /// File to write. Without it: standard output.
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Outputs that are wanted, separated by commas; what only others need is culled. Without it:
+    /// all.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub outputs: Vec<String>,
+}
+
+/// How a graph is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum DrawingFormat {
+    /// A chart of lifetimes, for a browser.
+    Svg,
+    /// Nodes and links, for Graphviz.
+    Dot,
+    /// The plan as data, for scripts.
+    Json,
+}

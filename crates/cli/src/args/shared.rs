@@ -1,0 +1,79 @@
+//! Arguments that several commands share.
+
+use crate::args::values::{self, Assignment, Size, texels};
+use clap::Args;
+use glam::DVec3;
+
+/// The GPU, and how much of it and of our time a graph may take.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "GPU")]
+pub struct GpuArgs {
+    /// GPU to use: part of its name, in any case. Without it: $WGPU_ADAPTER_NAME, else the best one
+    /// found.
+    #[arg(long, global = true, value_name = "NAME")]
+    pub adapter: Option<String>,
+    /// Memory for the textures and buffers of a graph: 512MiB, 2GiB, or bytes. A graph that needs
+    /// more is refused with a table of what takes the most. Without it: on a software adapter what
+    /// the machine has free, else what the driver gives.
+    #[arg(long, global = true, value_name = "SIZE", value_parser = values::bytes)]
+    pub memory_limit: Option<u64>,
+    /// Give a frame up that takes longer than this, and with it the device: its shader may never
+    /// end. 0 waits for ever.
+    #[arg(long, global = true, value_name = "SECONDS", default_value_t = 300,
+          value_parser = clap::value_parser!(u64).range(..=MAX_SECONDS))]
+    pub timeout: u64,
+}
+
+/// A day: far above any frame, and far below what a clock can add.
+const MAX_SECONDS: u64 = 86_400;
+
+/// What is drawn, and from where.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Scene")]
+pub struct SceneArgs {
+    /// Built-in scene, scene file (.ron), name in scenes/, or a mesh (.obj) with --eye, --look and
+    /// --light.
+    #[arg(long, default_value = "park", value_name = "SCENE")]
+    pub scene: String,
+    /// A view of the scene, or `all`. Without it: the scene's first view.
+    #[arg(long, value_name = "NAME")]
+    pub view: Option<String>,
+    /// Eye position, for an .obj.
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    pub eye: Option<DVec3>,
+    /// Direction in which the eye looks, for an .obj.
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
+    pub look: Option<DVec3>,
+    /// Direction in which the light travels, for an .obj.
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
+    pub light: Option<DVec3>,
+    /// Up direction, for an .obj. Without it: 0,1,0.
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
+    pub up: Option<DVec3>,
+    /// Vertical field of view in degrees, for an .obj. Without it: 60.
+    #[arg(long, value_name = "DEGREES", value_parser = values::degrees)]
+    pub fov: Option<f64>,
+    /// Near plane distance, for an .obj. Without it: a ten-thousandth of --far.
+    #[arg(long, value_name = "LENGTH", value_parser = values::positive)]
+    pub near: Option<f64>,
+    /// Far plane distance, for an .obj. Without it: just behind the whole mesh.
+    #[arg(long, value_name = "LENGTH", value_parser = values::positive)]
+    pub far: Option<f64>,
+}
+
+/// One graph, its viewport and its params.
+#[derive(Args, Debug)]
+pub struct MethodArgs {
+    /// Preset by name, or a graph (.ron).
+    #[arg(value_name = "PRESET|FILE.ron")]
+    pub preset: String,
+    /// Viewport size in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1024x1024")]
+    pub size: Size,
+    /// Shadow map size in texels: the param `map_size`.
+    #[arg(long, value_name = "N", value_parser = texels(), allow_negative_numbers = true)]
+    pub map_size: Option<u32>,
+    /// A param of the graph. May be repeated.
+    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub params: Vec<Assignment>,
+}

@@ -1,0 +1,20 @@
+//! CSV: a line per record, quoted where needed.
+
+use csv::{Error, Writer};
+
+/// The contents of a file.
+///
+/// # Errors
+/// A record that is not as long as the header.
+pub fn to_text(
+    header: &[&str],
+    records: impl Iterator<Item = Vec<String>>,
+) -> Result<String, Error> {
+    let mut writer = Writer::from_writer(Vec::new());
+    writer.write_record(header)?;
+    for record in records {
+        writer.write_record(record)?;
+    }
+    let bytes = writer.into_inner().map_err(|error| error.into_error())?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}

@@ -1,0 +1,187 @@
+//! What a run depends on, in one number: `compare --resume` keeps a run only if nothing of it has
+//! changed.
+
+use skiagraph_graph::{Picture, Sources};
+use skiagraph_scene::{DirectionalLight, Mesh, View};
+use std::{
+    collections::BTreeMap,
+    fmt,
+    sync::{Arc, Mutex, PoisonError},
+};
+
+/// A hash of texts and numbers, the same on every machine. FNV-1a of 64 bits (Fowler, Noll, Vo): it
+/// tells changes, not forgeries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fingerprint(u64);
+
+impl Fingerprint {
+    /// Of nothing.
+    pub const EMPTY: Self = Self(0xcbf2_9ce4_8422_2325);
+
+    /// With more bytes.
+    fn with(self, bytes: impl IntoIterator<Item = u8>) -> Self {
+        let mut hash = self.0;
+        for byte in bytes {
+            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+        Self(hash)
+    }
+
+    /// With a text behind its length, so that a word cannot move from one text to the next unseen.
+    pub fn with_text(self, text: &str) -> Self {
+        let length = (text.len() as u64).to_le_bytes();
+        self.with(length).with(text.bytes())
+    }
+
+    /// With what another one is of.
+    pub fn with_all(self, other: Self) -> Self {
+        self.with(other.0.to_le_bytes())
+    }
+
+    /// With a mesh and its light.
+    pub fn with_scene(self, mesh: &Mesh, light: &DirectionalLight) -> Self {
+        let floats = |list: &[glam::Vec3]| -> Self {
+            let numbers = list.iter().flat_map(|v| v.to_array());
+            Self::EMPTY.with(numbers.flat_map(f32::to_le_bytes))
+        };
+        let indices = |list: &[[u32; 3]]| -> Self {
+            let numbers = list.iter().flatten();
+            Self::EMPTY.with(numbers.flat_map(|index| index.to_le_bytes()))
+        };
+        self.with_all(floats(&mesh.positions))
+            .with_all(indices(&mesh.triangles))
+            .with_all(floats(&mesh.normals))
+            .with_all(indices(&mesh.normal_indices))
+            .with_text(&format!("{light:?}"))
+    }
+
+    /// With a view.
+    pub fn with_view(self, view: &View) -> Self {
+        self.with_text(&format!("{view:?}"))
+    }
+}
+
+impl fmt::Display for Fingerprint {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{:016x}", self.0)
+    }
+}
+
+/// Sources that remember what was read of them: a document, those that it includes, and the shaders
+/// of all of them.
+pub struct RecordedSources<'a> {
+    sources: &'a dyn Sources,
+    /// Texts and pictures by path.
+    texts: Mutex<BTreeMap<String, Fingerprint>>,
+}
+
+impl<'a> RecordedSources<'a> {
+    /// Nothing was read yet.
+    pub fn new(sources: &'a dyn Sources) -> Self {
+        Self {
+            sources,
+            texts: Mutex::default(),
+        }
+    }
+
+    /// Of every path and text that was read.
+    pub fn fingerprint(&self) -> Fingerprint {
+        let texts = self.texts.lock().unwrap_or_else(PoisonError::into_inner);
+        let with = |all: Fingerprint, (path, text): (&String, &Fingerprint)| {
+            all.with_text(path).with_all(*text)
+        };
+        texts.iter().fold(Fingerprint::EMPTY, with)
+    }
+
+    fn record(&self, path: &str, content: Fingerprint) {
+        let mut texts = self.texts.lock().unwrap_or_else(PoisonError::into_inner);
+        texts.insert(path.to_owned(), content);
+    }
+}
+
+impl Sources for RecordedSources<'_> {
+    fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
+        let text = self.sources.read(path)?;
+        if let Some(text) = &text {
+            self.record(path, Fingerprint::EMPTY.with_text(text));
+        }
+        Ok(text)
+    }
+
+    fn picture(&self, path: &str) -> Result<Option<Picture>, String> {
+        let picture = self.sources.picture(path)?;
+        if let Some(Picture { size, texels }) = &picture {
+            let texels = texels
+                .iter()
+                .flatten()
+                .flat_map(|value| value.to_le_bytes());
+            let content = Fingerprint::EMPTY
+                .with_text(&format!("{size:?}"))
+                .with(texels);
+            self.record(path, content);
+        }
+        Ok(picture)
+    }
+
+    fn list(&self, folder: &str) -> Vec<String> {
+        self.sources.list(folder)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graphs::preset;
+    use skiagraph_graph::{FolderSources, Graph, LayeredSources};
+
+    #[test]
+    fn it_is_the_published_hash() {
+        // Landon Curt Noll's test vectors.
+        for (text, hash) in [
+            ("", "cbf29ce484222325"),
+            ("a", "af63dc4c8601ec8c"),
+            ("foobar", "85944171f73967e8"),
+        ] {
+            assert_eq!(Fingerprint::EMPTY.with(text.bytes()).to_string(), hash);
+        }
+    }
+
+    #[test]
+    fn words_do_not_move_from_text_to_text_unseen() {
+        let of = |texts: [&str; 2]| {
+            texts
+                .into_iter()
+                .fold(Fingerprint::EMPTY, Fingerprint::with_text)
+        };
+        assert_ne!(of(["ab", "c"]), of(["a", "bc"]));
+        assert_ne!(of(["ab", "c"]), of(["c", "ab"]));
+    }
+
+    #[test]
+    fn an_included_shader_is_part_of_a_graph() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path().to_path_buf();
+        let of_nsm = || {
+            let sources = LayeredSources(vec![
+                Box::new(FolderSources { root: root.clone() }),
+                Box::new(skiagraph_passes::EmbeddedSources),
+            ]);
+            let recorded = RecordedSources::new(&sources);
+            let path = preset::locate("nsm", &sources).unwrap();
+            Graph::load(&path, &skiagraph_passes::registry(), &recorded).unwrap();
+            recorded.fingerprint()
+        };
+        let built_in = of_nsm();
+        assert_eq!(built_in, of_nsm());
+        let shared = "shaders/shared/light.wgsl";
+        let text = skiagraph_passes::EmbeddedSources
+            .read(shared)
+            .unwrap()
+            .unwrap();
+        std::fs::create_dir_all(root.join("shaders/shared")).unwrap();
+        std::fs::write(root.join(shared), &*text).unwrap();
+        assert_eq!(built_in, of_nsm(), "the same text from another place");
+        std::fs::write(root.join(shared), format!("{text}// changed\n")).unwrap();
+        assert_ne!(built_in, of_nsm());
+    }
+}

@@ -1,0 +1,189 @@
+//! A preset with the params that it runs with.
+
+use crate::args::shared::MethodArgs;
+use crate::args::values::{Assignment, unique};
+use crate::error::CliError;
+use crate::files::fingerprint::Fingerprint;
+use crate::graphs::planning::Capabilities;
+use crate::graphs::preset::{self, Preset};
+use crate::wording::did_you_mean;
+use skiagraph_gpu::Provider;
+use skiagraph_graph::{Diagnostics, ParamValue, Plan, Sources};
+use std::{collections::BTreeMap, slice};
+
+/// Values of params, by their names.
+pub type ParamValues = BTreeMap<String, ParamValue>;
+
+/// The param that `--map-size` sets.
+const MAP_SIZE: &str = "map_size";
+
+/// A preset with the params that it runs with.
+pub struct Method<'a> {
+    /// The preset.
+    pub preset: &'a Preset,
+    /// Its params that are not at their defaults.
+    pub params: ParamValues,
+    /// What the adapter has.
+    pub features: wgpu::Features,
+    /// All params; a default may depend on what the adapter can do.
+    values: ParamValues,
+    /// The size of its shadow map, if it has that param.
+    pub map_size: Option<u32>,
+}
+
+impl<'a> Method<'a> {
+    /// Of a preset and what was set of its params, on the most able adapter.
+    pub fn new(preset: &'a Preset, params: ParamValues) -> Self {
+        Self::on(preset, params, wgpu::Features::all())
+    }
+
+    /// Of a preset and what was set of its params, on an adapter with these features.
+    pub fn on(preset: &'a Preset, params: ParamValues, features: wgpu::Features) -> Self {
+        // What is wrong with a value is told where the method is planned.
+        let values = preset.graph.values(&params, features).unwrap_or_default();
+        let map_size = match values.get(MAP_SIZE) {
+            Some(ParamValue::U32(size)) => Some(*size),
+            _ => None,
+        };
+        Self {
+            preset,
+            params,
+            features,
+            values,
+            map_size,
+        }
+    }
+
+    /// The same on an adapter with these features.
+    pub fn settled(self, features: wgpu::Features) -> Self {
+        Self::on(self.preset, self.params, features)
+    }
+
+    /// The plan on a viewport for such an adapter.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn plan(
+        &self,
+        viewport: [u32; 2],
+        capabilities: Capabilities,
+        provider: &dyn Provider,
+    ) -> Result<Plan, Diagnostics> {
+        let mut request = capabilities.request(viewport, provider);
+        request.params = self.params.clone();
+        self.preset.graph.plan(&request)
+    }
+
+    /// Of all that a run on a scene and view depends on, but the params.
+    pub fn fingerprint(&self, scene: Fingerprint) -> String {
+        scene.with_all(self.preset.fingerprint).to_string()
+    }
+
+    /// All params with the values that it runs with.
+    pub fn all_params(&self) -> BTreeMap<String, serde_json::Value> {
+        let entry = |(name, value): (&String, &ParamValue)| (name.clone(), json(value));
+        self.values.iter().map(entry).collect()
+    }
+}
+
+/// A param's value for `results.json`. An f32 is written as the short decimal that it was read
+/// from, not as the f64 nearest to it.
+fn json(value: &ParamValue) -> serde_json::Value {
+    let float = |value: &f32| value.to_string().parse::<f64>().unwrap_or(f64::NAN);
+    match value {
+        ParamValue::F32(number) => float(number).into(),
+        ParamValue::Vec(numbers) => numbers.iter().map(float).collect(),
+        ParamValue::I32(number) => (*number).into(),
+        ParamValue::U32(number) => (*number).into(),
+        ParamValue::Bool(flag) => (*flag).into(),
+        ParamValue::Choice(word) => word.as_str().into(),
+    }
+}
+
+/// Each preset with each map size; a preset without that param once.
+///
+/// # Errors
+/// A value that a param cannot take, and a name that no preset has.
+pub fn methods<'a>(
+    presets: &'a [Preset],
+    params: &[Assignment],
+    map_sizes: &[u32],
+) -> Result<Vec<Method<'a>>, CliError> {
+    check_names(presets, params)?;
+    let mut methods = Vec::new();
+    for preset in presets {
+        let mut sizes: Vec<Option<u32>> = unique(map_sizes).into_iter().map(Some).collect();
+        if sizes.is_empty() || preset.param(MAP_SIZE).is_none() {
+            sizes = vec![None];
+        }
+        for size in sizes {
+            methods.push(Method::new(preset, param_values(preset, params, size)?));
+        }
+    }
+    Ok(methods)
+}
+
+/// Loads the one graph that the arguments name, with the params that they set.
+///
+/// # Errors
+/// Its faults, a param that it does not have, a value that a param cannot take.
+pub fn load_one(
+    args: &MethodArgs,
+    sources: &dyn Sources,
+) -> Result<(Preset, ParamValues), CliError> {
+    let mut presets = preset::load_all(slice::from_ref(&args.preset), sources)?;
+    check_names(&presets, &args.params)?;
+    let preset = presets
+        .pop()
+        .ok_or_else(|| CliError::Input("no graph".into()))?;
+    let params = param_values(&preset, &args.params, args.map_size)?;
+    Ok((preset, params))
+}
+
+/// The params of a preset from `--set` and `--map-size`.
+///
+/// # Errors
+/// A value that a param cannot take, and a map size where there is no such param.
+pub fn param_values(
+    preset: &Preset,
+    assignments: &[Assignment],
+    map_size: Option<u32>,
+) -> Result<ParamValues, CliError> {
+    let own = assignments
+        .iter()
+        .filter(|set| preset.param(&set.name).is_some());
+    let own = own.map(|set| (set.name.as_str(), set.value.clone()));
+    let size = map_size.map(|size| (MAP_SIZE, size.to_string()));
+    let parsed = own.chain(size).map(|(name, value)| {
+        let parsed = preset.graph.parse_param(name, &value);
+        parsed
+            .map(|value| (name.to_owned(), value))
+            .map_err(|error| CliError::Input(error.to_string()))
+    });
+    parsed.collect()
+}
+
+/// Refuses an assignment that no preset has a param for.
+fn check_names(presets: &[Preset], assignments: &[Assignment]) -> Result<(), CliError> {
+    for Assignment { name, .. } in assignments {
+        if presets.iter().any(|preset| preset.param(name).is_some()) {
+            continue;
+        }
+        let mut known: Vec<&str> = presets
+            .iter()
+            .flat_map(|preset| preset.graph.params())
+            .map(|param| param.name.as_str())
+            .collect();
+        known.sort_unstable();
+        known.dedup();
+        let list = match &known[..] {
+            [] => "none".into(),
+            known => known.join(", "),
+        };
+        return Err(CliError::Input(format!(
+            "--set {name}: no such param{}\n  params: {list}",
+            did_you_mean(name, known.iter().copied())
+        )));
+    }
+    Ok(())
+}

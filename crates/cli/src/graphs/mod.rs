@@ -1,0 +1,8 @@
+//! From an argument to a graph that can run: presets and params, planning, what a shadow method
+//! must hand out. Nothing here runs on a GPU.
+
+pub mod contract;
+pub mod faults;
+pub mod method;
+pub mod planning;
+pub mod preset;

@@ -1,0 +1,155 @@
+//! From the arguments `nsm` or `my/method.ron` to loaded graphs.
+
+use crate::error::CliError;
+use crate::files::fingerprint::{Fingerprint, RecordedSources};
+use crate::files::picture_sources::PictureSources;
+use crate::graphs::faults::{GraphFaults, warn};
+use crate::graphs::planning;
+use crate::wording::did_you_mean;
+use skiagraph_graph::{FolderSources, Graph, LayeredSources, Param, Plan, PlanRequest, Sources};
+use skiagraph_passes::{EmbeddedSources, registry};
+use std::path::Path;
+
+/// Where graphs and shaders are read from: the working directory, then what is built in.
+pub fn sources() -> LayeredSources {
+    LayeredSources(vec![
+        Box::new(PictureSources(FolderSources { root: ".".into() })),
+        Box::new(EmbeddedSources),
+    ])
+}
+
+/// Names of the presets: `pipelines/*.ron` on disk and built in, sorted.
+pub fn names(sources: &dyn Sources) -> Vec<String> {
+    let files = sources.list("pipelines");
+    let mut names: Vec<String> = files
+        .iter()
+        .filter_map(|file| file.strip_suffix(".ron"))
+        .map(Into::into)
+        .collect();
+    names.sort();
+    names.dedup();
+    names
+}
+
+/// The presets that a command is to take: those that its arguments name, else all.
+pub fn named_or_all(arguments: &[String], sources: &dyn Sources) -> Vec<String> {
+    match arguments {
+        [] => names(sources),
+        named => named.to_vec(),
+    }
+}
+
+/// A graph under the name that tables and file names give it.
+pub struct Preset {
+    /// The preset's name, or the graph's path as given.
+    pub name: String,
+    /// The graph.
+    pub graph: Graph,
+    /// Of the texts that it was read from.
+    pub fingerprint: Fingerprint,
+}
+
+impl Preset {
+    /// The param that the graph declares under this name.
+    pub fn param(&self, name: &str) -> Option<&Param> {
+        self.graph
+            .params()
+            .iter()
+            .find(|param| param.name.as_str() == name)
+    }
+
+    /// Plans the graph, and prints its warnings.
+    ///
+    /// # Errors
+    /// Its faults.
+    pub fn plan(&self, request: &PlanRequest) -> Result<Plan, CliError> {
+        let plan = self.graph.plan(request);
+        let plan = plan.map_err(|diagnostics| GraphFaults::of(&self.name, &diagnostics))?;
+        warn(&self.graph, plan.warnings());
+        Ok(plan)
+    }
+}
+
+/// The graphs of some presets.
+pub fn graphs(presets: &[Preset]) -> impl Iterator<Item = &Graph> {
+    presets.iter().map(|preset| &preset.graph)
+}
+
+/// Loads all arguments, each once.
+///
+/// # Errors
+/// Every fault of every graph together.
+pub fn load_all(arguments: &[String], sources: &dyn Sources) -> Result<Vec<Preset>, CliError> {
+    let registry = registry();
+    let mut presets: Vec<Preset> = Vec::new();
+    let mut faults = GraphFaults::default();
+    for argument in arguments {
+        if presets.iter().any(|preset| preset.name == *argument) {
+            continue;
+        }
+        let path = locate(argument, sources)?;
+        let recorded = RecordedSources::new(sources);
+        match Graph::load(&path, &registry, &recorded) {
+            Ok(graph) => presets.push(Preset {
+                name: argument.clone(),
+                graph,
+                fingerprint: recorded.fingerprint(),
+            }),
+            // What planning would find besides is shown in the same go.
+            Err(diagnostics) => {
+                let all = planning::check(&path, &registry, sources, None).err();
+                faults.add(argument, &all.unwrap_or(diagnostics));
+            }
+        }
+    }
+    faults.none_or_error().map(|()| presets)
+}
+
+/// The path of the graph that an argument names.
+///
+/// # Errors
+/// Names what is there instead.
+pub fn locate(argument: &str, sources: &dyn Sources) -> Result<String, CliError> {
+    let is_path = Path::new(argument)
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("ron"));
+    let path = match is_path {
+        true if cfg!(windows) => argument.replace('\\', "/"),
+        true => argument.into(),
+        false => format!("pipelines/{argument}.ron"),
+    };
+    let missing = match sources.read(&path) {
+        Ok(Some(_)) => return Ok(path),
+        Err(reason) => format!("cannot read `{path}`: {reason}"),
+        Ok(None) if is_path => format!("there is no file `{argument}`"),
+        Ok(None) if Path::new(argument).is_dir() => {
+            format!("`{argument}` is a folder; a graph is given as a path that ends in .ron")
+        }
+        Ok(None) if Path::new(argument).is_file() => {
+            format!("`{argument}` is no .ron file; a graph is given as a path that ends in .ron")
+        }
+        Ok(None) => {
+            let known = names(sources);
+            format!(
+                "there is no preset `{argument}`{}\n  presets: {}\n  a graph of your own is \
+                 given as a path that ends in .ron",
+                did_you_mean(argument, known.iter().map(String::as_str)),
+                known.join(", ")
+            )
+        }
+    };
+    Err(CliError::Input(missing))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn missing_presets_and_files_are_told_apart() {
+        let sources = sources();
+        let message = |argument| locate(argument, &sources).unwrap_err().to_string();
+        assert!(message("nowhere/a.ron").contains("no file `nowhere/a.ron`"));
+        assert!(message("zzzzzzzz").contains("no preset `zzzzzzzz`"));
+    }
+}

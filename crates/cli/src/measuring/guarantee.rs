@@ -1,0 +1,150 @@
+//! What methods guarantee, and on which casters a guarantee holds.
+
+use crate::error::CliError;
+use crate::graphs::faults::reasons;
+use crate::graphs::method::Method;
+use crate::records::stress::Guarantee;
+use crate::wording::did_you_mean;
+
+/// What a document may claim of its method, the stronger claim first. Graphs know no shadows; what
+/// the words mean is said here, and judged by `stress`.
+const CLAIMS: [Guarantee; 2] = [Guarantee::Exact, Guarantee::Certain];
+
+/// What a method guarantees with its params, and why; `exact` are the names of those that the user
+/// wants judged.
+///
+/// # Errors
+/// A claim that nobody judges, a condition without a value.
+pub fn of(method: &Method, exact: &[String]) -> Result<Option<(Guarantee, String)>, CliError> {
+    let preset = method.preset;
+    if exact.contains(&preset.name) {
+        return Ok(Some((Guarantee::Exact, "--exact".into())));
+    }
+    let claims = preset.graph.claims(&method.params, method.features);
+    let claims = claims.map_err(|faults| CliError::Input(reasons(&faults)))?;
+    let words = CLAIMS.map(Guarantee::word);
+    if let Some(unknown) = claims
+        .iter()
+        .find(|claim| !words.contains(&claim.name.as_str()))
+    {
+        return Err(CliError::Input(format!(
+            "`{}` claims `{}`, which nobody judges{}\n  a document claims {}",
+            preset.name,
+            unknown.name,
+            did_you_mean(&unknown.name, words.into_iter()),
+            words.join(" or ")
+        )));
+    }
+    let holds = |guarantee: Guarantee| {
+        let mut held = claims.iter().filter(|claim| claim.holds);
+        let claim = held.find(|claim| claim.name == guarantee.word())?;
+        Some((guarantee, claim.because.clone()))
+    };
+    Ok(CLAIMS.into_iter().find_map(holds))
+}
+
+/// The param that says which faces cast no shadow.
+const CULL: &str = "cull";
+/// Its value with which all do.
+const NONE: &str = "none";
+/// Both, as `--set` takes them.
+pub const WITHOUT_CULLING: &str = "cull=none";
+
+/// The same method with all faces as casters; `None` where it is that one already. A method that
+/// culls guarantees nothing of open casters: a sheet whose front faces the light would cast no
+/// shadow.
+pub fn without_culling<'a>(method: &Method<'a>) -> Option<Method<'a>> {
+    let none = method.preset.graph.parse_param(CULL, NONE).ok()?;
+    if method.all_params().get(CULL)? == NONE {
+        return None;
+    }
+    let mut params = method.params.clone();
+    params.insert(CULL.into(), none);
+    Some(Method::new(method.preset, params))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::values::Assignment;
+    use crate::graphs::method::param_values;
+    use crate::graphs::preset::{self, Preset};
+
+    fn presets() -> Vec<Preset> {
+        let built_in = skiagraph_passes::presets().into_iter();
+        let names: Vec<String> = built_in.map(|preset| preset.name).collect();
+        preset::load_all(&names, &skiagraph_passes::EmbeddedSources).unwrap()
+    }
+
+    fn method<'a>(presets: &'a [Preset], name: &str, set: &str) -> Method<'a> {
+        let preset = presets.iter().find(|preset| preset.name == name).unwrap();
+        let set: Vec<Assignment> = set
+            .split_whitespace()
+            .map(|set| set.parse().unwrap())
+            .collect();
+        Method::new(preset, param_values(preset, &set, None).unwrap())
+    }
+
+    #[test]
+    fn a_guarantee_ends_where_its_proof_does() {
+        let presets = presets();
+        for (name, set, guaranteed) in [
+            ("crsm", "n=0.51", true),
+            ("crsm", "n=0.5", false),
+            ("crsm", "depth=plane", false),
+            ("crsma_full", "map_size=7 cull=back", true),
+            ("crsm_single", "n=0.2", false),
+            ("rt", "", true),
+            ("crsm_depth", "", true),
+            ("crsm_single", "", true),
+            ("crsma", "", false),
+            ("crsm_hw", "", false),
+            ("nsm", "", false),
+        ] {
+            let method = method(&presets, name, set);
+            let found = of(&method, &[]).unwrap();
+            assert_eq!(found.is_some(), guaranteed, "{name} {set}");
+            let word = found.map(|(guarantee, _)| guarantee.word());
+            assert!(word.is_none_or(|word| (word == "certain") == (name == "crsm_single")));
+            let asked = of(&method, &[name.into()]).unwrap();
+            assert_eq!(
+                asked.map(|(guarantee, _)| guarantee),
+                Some(Guarantee::Exact)
+            );
+        }
+    }
+
+    #[test]
+    fn only_a_method_that_culls_has_another_without_culling() {
+        let presets = presets();
+        for (name, set, culls) in [
+            ("crsm", "", true),
+            ("crsm", "cull=back", true),
+            ("crsm", "cull=none", false),
+            ("rt", "", false),
+        ] {
+            let method = method(&presets, name, set);
+            let other = without_culling(&method);
+            assert_eq!(other.is_some(), culls, "{name} {set}");
+            if let Some(other) = other {
+                let params = other.all_params();
+                assert_eq!(params["cull"], "none");
+                assert!(of(&other, &[]).unwrap().is_some());
+            }
+        }
+    }
+
+    #[test]
+    fn a_claim_that_nobody_judges_is_an_error_with_the_nearest_word() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("claims.ron");
+        let text = "(format: 2, extends: \"rt.ron\", claims: {\"exakt\": (because: \"\")})";
+        std::fs::write(&file, text).unwrap();
+        let name = file.to_str().unwrap().to_owned();
+        let presets = preset::load_all(&[name], &preset::sources()).unwrap();
+        let method = Method::new(&presets[0], Default::default());
+        let message = of(&method, &[]).unwrap_err().to_string();
+        assert!(message.contains("claims `exakt`"), "{message}");
+        assert!(message.contains("did you mean `exact`?"), "{message}");
+    }
+}

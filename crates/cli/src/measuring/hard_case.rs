@@ -1,0 +1,322 @@
+//! One case with every method.
+
+use crate::error::{CliError, is_fatal, with_causes};
+use crate::graphs::contract::{Outputs, judged};
+use crate::graphs::faults::reasons;
+use crate::graphs::method::Method;
+use crate::graphs::planning::Capabilities;
+use crate::measuring::frame;
+use crate::measuring::guarantee::{self, WITHOUT_CULLING};
+use crate::measuring::reference::{PrimaryVisibility, own_counts, shade};
+use crate::pictures::run_pictures::{save_pictures, save_reference, stem};
+use crate::records::stress::{Case, Casters, Cell, Column, Counts, Guarantee, Verdict};
+use crate::terminal::interrupt;
+use skiagraph_cases::HardCase;
+use skiagraph_gpu::device::Gpu;
+use skiagraph_passes::SceneProvider;
+use skiagraph_reference::{Class, Oracle, OracleMode, PixelCounts, Reference, Statistics};
+use skiagraph_scene::{Scene, View};
+use std::{path::Path, sync::Arc};
+
+/// A method and what is guaranteed of it.
+pub struct MethodRun<'a> {
+    /// As the user wants it.
+    pub method: Method<'a>,
+    /// Which pixels must be right, and why they will be.
+    pub guarantee: Option<(Guarantee, String)>,
+    /// The same with all faces as casters, if it is not that one already.
+    pub without_culling: Option<Method<'a>>,
+    /// Why it cannot run on this adapter.
+    pub unavailable: Option<String>,
+}
+
+impl<'a> MethodRun<'a> {
+    /// Of a method that can run; `exact` are the names of those that the user wants judged.
+    ///
+    /// # Errors
+    /// Those of [`guarantee::of`].
+    pub fn new(method: Method<'a>, exact: &[String]) -> Result<Self, CliError> {
+        Ok(Self {
+            guarantee: guarantee::of(&method, exact)?,
+            without_culling: guarantee::without_culling(&method),
+            method,
+            unavailable: None,
+        })
+    }
+
+    /// As a column of the report.
+    pub fn column(&self) -> Column {
+        Column {
+            preset: self.method.preset.name.clone(),
+            map_size: self.method.map_size,
+            params: self.method.all_params(),
+            guarantee: self.guarantee.as_ref().map(|(guarantee, _)| *guarantee),
+            because: self.guarantee.as_ref().map(|(_, reason)| reason.clone()),
+            unavailable: self.unavailable.clone(),
+        }
+    }
+
+    /// The ways in which it runs on such casters.
+    fn variants(&self, casters: Casters) -> Vec<Variant<'_>> {
+        let as_it_is = Variant {
+            method: &self.method,
+            set: None,
+            culls: self.without_culling.is_some(),
+        };
+        let is_judged = casters == Casters::Open && self.guarantee.is_some();
+        let judged = self.without_culling.iter().filter(|_| is_judged);
+        let judged = judged.map(|method| Variant {
+            method,
+            set: Some(WITHOUT_CULLING),
+            culls: false,
+        });
+        [as_it_is].into_iter().chain(judged).collect()
+    }
+
+    /// What the names of its pictures of a case begin with, and whose they are.
+    pub fn stems(&self, case: &HardCase, viewport: [u32; 2]) -> Vec<(String, String)> {
+        let variants = self.variants(casters(case)).into_iter();
+        let owner = format!("`{}` on `{}`", self.method.preset.name, case.name);
+        variants
+            .map(|variant| (variant.stem(case, viewport), owner.clone()))
+            .collect()
+    }
+}
+
+/// A way to run a method on a case.
+struct Variant<'a> {
+    method: &'a Method<'a>,
+    /// What is set for it besides.
+    set: Option<&'static str>,
+    /// Whether not all faces cast shadows.
+    culls: bool,
+}
+
+impl Variant<'_> {
+    /// What the names of its pictures begin with.
+    fn stem(&self, case: &HardCase, viewport: [u32; 2]) -> String {
+        let with_set = |set| format!("{} {set}", case.name);
+        let place = self.set.map_or(case.name.into(), with_set);
+        stem(self.method, &place, viewport)
+    }
+}
+
+fn casters(case: &HardCase) -> Casters {
+    match case.casters {
+        skiagraph_cases::Casters::Closed => Casters::Closed,
+        skiagraph_cases::Casters::Open => Casters::Open,
+    }
+}
+
+/// What all cases share.
+pub struct HardCaseContext<'a> {
+    /// Where they run.
+    pub gpu: &'a Gpu,
+    /// Finds the visible triangles.
+    pub primary: &'a PrimaryVisibility,
+    /// The methods.
+    pub methods: &'a [MethodRun<'a>],
+    /// Width and height in pixels.
+    pub viewport: [u32; 2],
+    /// Folder for pictures, if there are to be any.
+    pub pictures: Option<&'a Path>,
+}
+
+impl HardCaseContext<'_> {
+    /// Runs every method on a case.
+    ///
+    /// # Errors
+    /// Ctrl-C, a lost device, a picture that cannot be written. All else is part of the result.
+    pub fn run(&self, hard: &HardCase) -> Result<Case, CliError> {
+        let scene = Arc::new(hard.scene());
+        let mut provider = SceneProvider::new(scene.clone());
+        let mut case = Case {
+            name: hard.name.into(),
+            reason: hard.reason.into(),
+            casters: casters(hard),
+            band_cap: hard.indeterminate_cap,
+            verdict: Verdict::Fail,
+            failed: None,
+            pixels: PixelCounts::default(),
+            band: 0,
+            cells: Vec::new(),
+        };
+        let reference = match self.reference(&scene, &mut provider) {
+            Ok(reference) => reference,
+            Err(error) if ends_all(&error) => return Err(error),
+            Err(error) => {
+                case.failed = Some(with_causes(&error));
+                return Ok(case);
+            }
+        };
+        if let Some(folder) = self.pictures {
+            save_reference(folder, hard.name, &reference)?;
+        }
+        let counts = own_counts(&reference);
+        (case.pixels, case.band) = (counts.pixels, counts.band);
+        if !case.exceeds_cap() {
+            case.verdict = Verdict::Pass;
+        }
+        let can_run = |run: &&MethodRun| run.unavailable.is_none();
+        for run in self.methods.iter().filter(can_run) {
+            for variant in run.variants(case.casters) {
+                if interrupt::raised() {
+                    return Err(CliError::interrupted());
+                }
+                let mut cell = Cell {
+                    preset: variant.method.preset.name.clone(),
+                    map_size: variant.method.map_size,
+                    set: variant.set.map(Into::into),
+                    verdict: Verdict::Fail,
+                    counts: None,
+                    failed: None,
+                    images: None,
+                };
+                match self.count(variant.method, &mut provider, &reference) {
+                    Ok((outputs, whole, counts)) => {
+                        let guarantee = run.guarantee.as_ref().map(|(guarantee, _)| *guarantee);
+                        let certain = case.pixels.facing_light.saturating_sub(counts.uncertain);
+                        let (culls, outside) = (variant.culls, &counts.outside_band);
+                        cell.verdict =
+                            Verdict::of(guarantee, culls, case.casters, certain, outside);
+                        cell.counts = Some(counts);
+                        let images = self.pictures.map(|folder| {
+                            let stem = variant.stem(hard, self.viewport);
+                            save_pictures(folder, &stem, &reference, &outputs, &whole)
+                        });
+                        cell.images = images.transpose()?;
+                    }
+                    Err(error) if ends_all(&error) => return Err(error),
+                    Err(error) => cell.failed = Some(with_causes(&error)),
+                }
+                case.cells.push(cell);
+            }
+        }
+        Ok(case)
+    }
+
+    /// The right answer.
+    fn reference(
+        &self,
+        scene: &Scene,
+        provider: &mut SceneProvider,
+    ) -> Result<Reference, CliError> {
+        let [view] = &scene.views[..] else {
+            return Err(CliError::Input(format!(
+                "{} has no single view",
+                scene.name
+            )));
+        };
+        let view: &View = view;
+        provider.set_view(view, self.viewport);
+        let ids = self.primary.ids(self.gpu, self.viewport, provider)?;
+        let oracle = Oracle::new(&scene.mesh);
+        shade(
+            &oracle,
+            &view.camera(self.viewport),
+            &scene.light,
+            &ids,
+            OracleMode::Exact,
+            &|_| (),
+            &scene.name,
+        )
+    }
+
+    /// One frame of a method, counted.
+    fn count(
+        &self,
+        method: &Method,
+        provider: &mut SceneProvider,
+        reference: &Reference,
+    ) -> Result<(Outputs, Statistics, Counts), CliError> {
+        let preset = method.preset;
+        let plan = method.plan(self.viewport, Capabilities::of(self.gpu), provider);
+        let plan = plan.map_err(|faults| CliError::Input(reasons(&faults)))?;
+        let names = Outputs::names(preset);
+        let contents = frame::render(self.gpu, &preset.name, plan, provider, &names)?;
+        let (outputs, whole) = judged(preset, Outputs::decode(&contents), reference)?;
+        let right_in_band = right_in_band(&outputs.visibility, reference);
+        let outside = Statistics::judged(&right_in_band, &outputs.status, reference)
+            .map_err(|error| CliError::Contract(error.to_string()))?;
+        let counts = Counts::new(&whole, &outside, outputs.rays);
+        Ok((outputs, whole, counts))
+    }
+}
+
+/// The picture with the reference's answer wherever that is in the band.
+fn right_in_band(visibility: &[u32], reference: &Reference) -> Vec<u32> {
+    let answers = reference.classes.iter().zip(&reference.indeterminate);
+    let pixels = visibility.iter().zip(answers);
+    pixels
+        .map(|(&shown, (&class, &in_band))| match in_band {
+            true => u32::from(class == Class::Lit),
+            false => shown,
+        })
+        .collect()
+}
+
+/// Whether no other method or case can run either.
+fn ends_all(error: &CliError) -> bool {
+    match error {
+        CliError::Interrupted { .. } => true,
+        CliError::Gpu { source, .. } => is_fatal(source.as_ref()),
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graphs::preset;
+    use crate::records::stress::OutsideBand;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn only_a_guarantee_and_open_casters_make_a_second_run() {
+        let names = ["crsm".into(), "nsm".into(), "rt".into()];
+        let presets = preset::load_all(&names, &skiagraph_passes::EmbeddedSources).unwrap();
+        let runs = |index: usize, casters, exact: &[String]| {
+            let method = Method::new(&presets[index], BTreeMap::new());
+            let run = MethodRun::new(method, exact).unwrap();
+            let variants = run.variants(casters).into_iter();
+            let keys = variants.map(|variant| (variant.set, variant.culls));
+            keys.collect::<Vec<_>>()
+        };
+        let again = vec![(None, true), (Some("cull=none"), false)];
+        assert_eq!(runs(0, Casters::Closed, &[]), [(None, true)]);
+        assert_eq!(runs(0, Casters::Open, &[]), again);
+        assert_eq!(runs(1, Casters::Open, &[]), [(None, true)]);
+        assert_eq!(runs(1, Casters::Open, &names), again);
+        assert_eq!(runs(2, Casters::Open, &[]), [(None, false)]);
+    }
+
+    #[test]
+    fn pixels_in_the_band_are_settled_by_the_reference_and_no_others() {
+        use Class::{Background, FacingAway, Lit, Shadow};
+        let reference = Reference {
+            viewport: [6, 1],
+            classes: vec![Background, FacingAway, Lit, Lit, Shadow, Shadow],
+            indeterminate: vec![false, true, true, false, true, false],
+            n_dot_l: vec![0.5; 6],
+        };
+        let wrong = [0, 1, 0, 0, 1, 1];
+        assert_eq!(right_in_band(&wrong, &reference), [0, 0, 1, 0, 0, 1]);
+        let status = [0u32, 4, 3, 3, 2, 4];
+        let count = |visibility: &[u32]| Statistics::judged(visibility, &status, &reference);
+        let whole = count(&wrong).unwrap();
+        let counts = Counts::new(
+            &whole,
+            &count(&right_in_band(&wrong, &reference)).unwrap(),
+            None,
+        );
+        assert_eq!((counts.wrong.lit, counts.wrong.shadow), (3, 2));
+        assert_eq!(counts.wrong.in_band, 3);
+        let OutsideBand {
+            lit,
+            shadow,
+            certain,
+        } = counts.outside_band;
+        assert_eq!((lit, shadow, certain), (1, 1, 1));
+        assert_eq!(certain, counts.wrong.certain);
+    }
+}

@@ -1,0 +1,16 @@
+//! Runs graphs on a GPU, times them, and judges them against the reference. What comes out is
+//! plain data, in `records`.
+
+pub mod comparison;
+pub mod date;
+pub mod device;
+pub mod frame;
+pub mod guarantee;
+pub mod hard_case;
+pub mod poison;
+pub mod profiling;
+pub mod reference;
+pub mod resume;
+pub mod run;
+pub mod scene_selection;
+pub mod timing;

@@ -1,0 +1,83 @@
+//! `profile`: one method on one view, over many frames.
+
+use crate::args::commands::ProfileArgs;
+use crate::error::CliError;
+use crate::graphs::method::Method;
+use crate::graphs::planning::Capabilities;
+use crate::measuring::timing::{self, FrameMode};
+use crate::measuring::{date, device, frame};
+use crate::records::profile::{Conditions, Memory, Profile};
+use crate::records::results::PROGRAM;
+use crate::records::samples::{Samples, TimedFrame};
+use crate::terminal::interrupt;
+use crate::terminal::progress::Step;
+use skiagraph_gpu::device::Gpu;
+use skiagraph_graph::Plan;
+use skiagraph_passes::SceneProvider;
+use skiagraph_scene::{Scene, View};
+use std::{sync::Arc, time::SystemTime};
+
+/// Times a method. From the first frame on Ctrl-C ends it early, with what was timed until then.
+///
+/// # Errors
+/// The graph cannot be planned or run here; Ctrl-C before any frame was timed.
+pub fn profile(
+    args: &ProfileArgs,
+    gpu: &Gpu,
+    method: &Method,
+    scene: &Arc<Scene>,
+    view: &View,
+) -> Result<(Profile, Vec<TimedFrame>), CliError> {
+    let (preset, viewport) = (method.preset, args.method.size.0);
+    let mut provider = SceneProvider::new(scene.clone());
+    provider.set_view(view, viewport);
+    let mut request = Capabilities::of(gpu).request(viewport, &provider);
+    request.params = method.params.clone();
+    let plan = preset.plan(&request)?;
+    interrupt::install()?;
+
+    let conditions = Conditions {
+        program: PROGRAM.into(),
+        build: match cfg!(debug_assertions) {
+            true => "debug".into(),
+            false => "release".into(),
+        },
+        date: date::utc(SystemTime::now()),
+        adapter: device::describe(gpu, device::timestamp_trust(gpu)),
+        scene: (&**scene).into(),
+        preset: preset.name.clone(),
+        view: view.name.clone(),
+        viewport,
+        params: method.all_params(),
+        frames: args.frames,
+        warmup: args.warmup,
+    };
+    let (passes, memory) = (plan.passes(), memory(&plan));
+    let failed = |error| frame::failed(&preset.name, error);
+    let mut executor = frame::executor(gpu, plan, &mut provider).map_err(failed)?;
+    let step = Step::begin(
+        format!("{}, {} {}", preset.name, view.name, args.method.size),
+        u64::from(args.warmup) + u64::from(args.frames),
+        "frames",
+    );
+    let count = [args.warmup, args.frames];
+    let set_done = |frames| step.set_done(frames);
+    let timed = timing::sample(gpu, &mut executor, FrameMode::AllPasses, count, set_done)
+        .map_err(failed)?;
+    step.end();
+
+    match Profile::new(conditions, &passes, &Samples::of(&timed), memory) {
+        Some(profile) => Ok((profile, timed)),
+        None => Err(CliError::Interrupted {
+            kept: "no frame was timed".into(),
+        }),
+    }
+}
+
+fn memory(plan: &Plan) -> Memory {
+    Memory {
+        bytes: plan.memory_bytes(),
+        saved_bytes: plan.saved_bytes(),
+        materials: plan.memory().into_iter().map(Into::into).collect(),
+    }
+}

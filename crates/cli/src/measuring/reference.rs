@@ -1,0 +1,133 @@
+//! The right answer for one view and viewport: the GPU's primitive ids, judged by the oracle.
+
+use crate::error::CliError;
+use crate::files::fingerprint::{Fingerprint, RecordedSources};
+use crate::graphs::faults::GraphFaults;
+use crate::graphs::planning::Capabilities;
+use crate::measuring::frame;
+use crate::terminal::interrupt;
+use crate::terminal::progress::Step;
+use skiagraph_gpu::{Content, Provider, device::Gpu};
+use skiagraph_graph::{Graph, Plan, Sources};
+use skiagraph_passes::registry;
+use skiagraph_reference::{Error, Oracle, OracleMode, Progress, Reference, Statistics};
+use skiagraph_scene::{Camera, DirectionalLight};
+
+/// The graph that every comparison draws first, as far as its output `primitive` needs: which one
+/// does each pixel show?
+const GBUFFER: &str = "pipelines/shared/gbuffer.ron";
+
+/// Renders primitive ids as every method's G-buffer does, so that all are judged on the surface
+/// that they saw.
+pub struct PrimaryVisibility {
+    graph: Graph,
+    /// Of the texts that it was read from.
+    pub fingerprint: Fingerprint,
+}
+
+impl PrimaryVisibility {
+    /// Loads the graph.
+    ///
+    /// # Errors
+    /// It is faulty: it may be one on disk.
+    pub fn load(sources: &dyn Sources) -> Result<Self, CliError> {
+        let recorded = RecordedSources::new(sources);
+        let graph = Graph::load(GBUFFER, &registry(), &recorded)
+            .map_err(|diagnostics| GraphFaults::of(GBUFFER, &diagnostics))?;
+        Ok(Self {
+            graph,
+            fingerprint: recorded.fingerprint(),
+        })
+    }
+
+    /// The plan on a viewport.
+    ///
+    /// # Errors
+    /// The viewport is too large for this adapter.
+    pub fn plan(
+        &self,
+        gpu: &Gpu,
+        viewport: [u32; 2],
+        provider: &dyn Provider,
+    ) -> Result<Plan, CliError> {
+        let mut request = Capabilities::of(gpu).request(viewport, provider);
+        request.outputs = Some(vec!["primitive".to_owned()]);
+        self.graph
+            .plan(&request)
+            .map_err(|diagnostics| GraphFaults::of(GBUFFER, &diagnostics))
+    }
+
+    /// The primitive that each pixel shows.
+    ///
+    /// # Errors
+    /// The graph cannot run, or has no such output.
+    pub fn ids(
+        &self,
+        gpu: &Gpu,
+        viewport: [u32; 2],
+        provider: &mut dyn Provider,
+    ) -> Result<Vec<u32>, CliError> {
+        let plan = self.plan(gpu, viewport, provider)?;
+        let contents = frame::render(gpu, GBUFFER, plan, provider, &["primitive"])?;
+        contents
+            .get("primitive")
+            .and_then(Content::as_u32)
+            .ok_or_else(|| {
+                CliError::Input(format!("{GBUFFER} has no output `primitive` of integers"))
+            })
+    }
+}
+
+/// The reference's pixels, counted as a method's are.
+pub fn own_counts(reference: &Reference) -> Statistics {
+    let (visibility, status) = (reference.visibility(), reference.status());
+    // Its own buffers are as large as it is and hold the contract's values.
+    Statistics::judged(&visibility, &status, reference).unwrap_or_default()
+}
+
+/// Runs the oracle with a progress bar.
+///
+/// # Errors
+/// Those of [`shade`].
+pub fn shade_with_progress(
+    oracle: &Oracle,
+    camera: &Camera,
+    light: &DirectionalLight,
+    primitives: &[u32],
+    mode: OracleMode,
+    what: &str,
+) -> Result<Reference, CliError> {
+    let step = Step::begin(
+        format!("reference, {what}"),
+        camera.viewport[1].into(),
+        "rows",
+    );
+    let rows_done = |rows| step.set_done(rows);
+    let reference = shade(oracle, camera, light, primitives, mode, &rows_done, what)?;
+    step.end();
+    Ok(reference)
+}
+
+/// Runs the oracle; `rows_done` hears how far it is.
+///
+/// # Errors
+/// Ctrl-C, ids of another mesh, an impossible light.
+pub fn shade(
+    oracle: &Oracle,
+    camera: &Camera,
+    light: &DirectionalLight,
+    primitives: &[u32],
+    mode: OracleMode,
+    rows_done: &(dyn Fn(u64) + Sync),
+    what: &str,
+) -> Result<Reference, CliError> {
+    let progress = Progress {
+        rows_done,
+        interrupted: interrupt::flag(),
+    };
+    let reference = oracle.shade(camera, light, primitives, mode, progress);
+    reference.map_err(|error| match error {
+        Error::Interrupted => CliError::interrupted(),
+        error => CliError::Input(format!("no reference for {what}: {error}")),
+    })
+}

@@ -1,0 +1,225 @@
+//! `compare --resume`: what of an earlier comparison need not be measured again.
+
+use crate::error::CliError;
+use crate::records::read_back::{self, WITHOUT_RESULTS};
+use crate::records::results::{Results, Run};
+use crate::terminal::console::note;
+use serde_json::Value;
+use std::{collections::BTreeMap, path::Path};
+
+/// What tells a run from every other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunKey {
+    /// Name of the preset, or path of the graph.
+    pub preset: String,
+    /// Name of the view.
+    pub view: String,
+    /// Width and height in pixels.
+    pub viewport: [u32; 2],
+    /// Value of the param `map_size`.
+    pub map_size: Option<u32>,
+    /// All params.
+    pub params: BTreeMap<String, Value>,
+    /// Of everything else that the run depends on.
+    pub fingerprint: String,
+}
+
+impl RunKey {
+    /// Whether the run stands at this place of the comparison.
+    fn is_place_of(&self, run: &Run) -> bool {
+        (&self.preset, &self.view, self.viewport, self.map_size)
+            == (&run.preset, &run.view, run.viewport, run.map_size)
+    }
+
+    fn is_of(&self, run: &Run) -> bool {
+        self.is_place_of(run)
+            && (&self.params, &self.fingerprint) == (&run.params, &run.fingerprint)
+    }
+}
+
+/// The runs of an earlier comparison that are as this one would have them: one for each of
+/// `planned`, where there is one.
+///
+/// # Errors
+/// A file that cannot be read, is no results.json, was measured under other conditions than `now`,
+/// or holds runs that the new file would not.
+pub fn resume(
+    folder: &Path,
+    now: &Results,
+    planned: &[RunKey],
+) -> Result<Vec<Option<Run>>, CliError> {
+    let path = folder.join("results.json");
+    let name = path.display().to_string();
+    let Some(earlier) = read_back::results(&path)? else {
+        note(&format!(
+            "--resume: there is no {name} yet, so everything is measured"
+        ));
+        return Ok(planned.iter().map(|_| None).collect());
+    };
+    let differences = differences(&earlier, now);
+    refuse(&name, "was measured under other conditions", &differences)?;
+    let is_planned = |run: &&Run| planned.iter().any(|planned| planned.is_place_of(run));
+    let foreign = earlier.runs.iter().filter(|run| !is_planned(run));
+    let what = "holds runs that this comparison has not, and they would be lost";
+    refuse(&name, what, &foreign.map(Run::label).collect::<Vec<_>>())?;
+    let mut runs = earlier.runs;
+    let total = runs.len();
+    let kept: Vec<Option<Run>> = planned
+        .iter()
+        .map(|planned| {
+            let index = runs.iter().position(|run| planned.is_of(run))?;
+            Some(runs.swap_remove(index))
+        })
+        .collect();
+    let measured = kept.iter().flatten().filter(|run| run.measured.is_some());
+    note(&format!(
+        "--resume: {} of {} runs are kept from {name}",
+        measured.count(),
+        planned.len()
+    ));
+    if !runs.is_empty() {
+        note(&format!(
+            "--resume: {} of the {total} in it are measured again: params, graph, shaders or \
+             scene have changed since",
+            runs.len()
+        ));
+    }
+    Ok(kept)
+}
+
+/// An error if there is anything to list.
+fn refuse(name: &str, what: &str, lines: &[String]) -> Result<(), CliError> {
+    /// Nobody reads on to the end of a longer list.
+    const MOST_LINES: usize = 8;
+    if lines.is_empty() {
+        return Ok(());
+    }
+    let mut shown = lines[..lines.len().min(MOST_LINES)].join("\n  ");
+    if lines.len() > MOST_LINES {
+        shown += &format!("\n  and {} more", lines.len() - MOST_LINES);
+    }
+    Err(CliError::Input(format!(
+        "--resume: {name} {what}\n  {shown}\n  ask for the same, {WITHOUT_RESULTS}"
+    )))
+}
+
+/// Conditions in which both were not measured alike.
+fn differences(earlier: &Results, now: &Results) -> Vec<String> {
+    // Why timestamps are not trusted may hold figures of the check that found it out.
+    let trusted = |results: &Results| match results.adapter.gpu_unavailable {
+        None => "measured",
+        Some(_) => "not to be had",
+    };
+    let facts = |results: &Results| {
+        [
+            ("program", results.program.clone()),
+            ("adapter", results.adapter.to_string()),
+            ("GPU times", trusted(results).to_owned()),
+            ("scene", results.scene.to_string()),
+            ("oracle", results.oracle.clone()),
+            ("frames", results.frames.to_string()),
+            ("warmup", results.warmup.to_string()),
+            ("cached frames", results.cached_frames.to_string()),
+        ]
+    };
+    let pairs = facts(earlier).into_iter().zip(facts(now));
+    pairs
+        .filter(|((_, earlier), (_, now))| earlier != now)
+        .map(|((what, earlier), (_, now))| format!("{what}: there {earlier}, here {now}"))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::records::results::tests::sample;
+    use crate::reporting::results_csv::save;
+
+    fn run_keys(results: &Results) -> Vec<RunKey> {
+        let identity = |run: &Run| RunKey {
+            preset: run.preset.clone(),
+            view: run.view.clone(),
+            viewport: run.viewport,
+            map_size: run.map_size,
+            params: run.params.clone(),
+            fingerprint: run.fingerprint.clone(),
+        };
+        results.runs.iter().map(identity).collect()
+    }
+
+    /// What is kept of `sample()`, written to a file, by what `change` makes of it.
+    fn kept(change: impl Fn(&mut Results, &mut Vec<RunKey>)) -> Result<Vec<bool>, String> {
+        let folder = tempfile::tempdir().unwrap();
+        save(&sample(), folder.path()).unwrap();
+        let mut now = sample();
+        let mut planned = run_keys(&now);
+        change(&mut now, &mut planned);
+        resume(folder.path(), &now, &planned)
+            .map(|runs| runs.iter().map(Option::is_some).collect())
+            .map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_run_is_kept_unless_something_of_it_has_changed() {
+        assert_eq!(kept(|_, _| ()), Ok(vec![true; 3]));
+        type Change = fn(&mut RunKey);
+        let changes: [Change; 2] = [
+            |planned| planned.fingerprint = "0".into(),
+            |planned| drop(planned.params.insert("cull".into(), "back".into())),
+        ];
+        for change in changes {
+            let kept = kept(|_, planned| change(&mut planned[1]));
+            assert_eq!(kept, Ok(vec![true, false, true]));
+        }
+        let more = kept(|_, planned| {
+            let other = RunKey {
+                preset: "crsm".into(),
+                ..planned[0].clone()
+            };
+            planned.insert(1, other);
+        });
+        assert_eq!(more, Ok(vec![true, false, true, true]));
+    }
+
+    #[test]
+    fn other_conditions_are_named_with_the_way_out() {
+        type Change = fn(&mut Results);
+        let changes: [(Change, &str); 8] = [
+            (|now| now.program = "x".into(), "program: there"),
+            (|now| now.adapter.driver = "x".into(), "adapter: there"),
+            (
+                |now| now.adapter.gpu_unavailable = Some("x".into()),
+                "GPU times: there measured, here not to be had",
+            ),
+            (|now| now.scene.triangles = 1, "here park, 1 triangle"),
+            (|now| now.oracle = "offset:1".into(), "here offset:1"),
+            (|now| now.frames = 7, "frames: there 10, here 7"),
+            (|now| now.warmup = 0, "warmup: there 2, here 0"),
+            (
+                |now| now.cached_frames = 0,
+                "cached frames: there 10, here 0",
+            ),
+        ];
+        for (change, part) in changes {
+            let error = kept(|now, _| change(now)).unwrap_err();
+            assert!(error.contains(part), "no {part:?} in {error}");
+            assert!(
+                error.contains("another --out") && error.contains("leave out --resume"),
+                "{error}"
+            );
+        }
+    }
+
+    #[test]
+    fn runs_that_would_be_lost_are_named() {
+        let error = kept(|_, planned| drop(planned.remove(0))).unwrap_err();
+        assert!(error.contains("nsm on main 512x256, map 1024"), "{error}");
+    }
+
+    #[test]
+    fn no_file_keeps_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let kept = resume(folder.path(), &sample(), &run_keys(&sample())).unwrap();
+        assert_eq!(kept, [None, None, None]);
+    }
+}

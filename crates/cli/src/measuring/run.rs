@@ -1,0 +1,178 @@
+//! One run: a method on one view, executed, timed, judged and pictured.
+
+use crate::error::{CliError, explain, is_fatal};
+use crate::files::fingerprint::Fingerprint;
+use crate::graphs::contract::{Outputs, judged};
+use crate::graphs::faults::reasons;
+use crate::graphs::method::Method;
+use crate::graphs::planning::Capabilities;
+use crate::measuring::reference::own_counts;
+use crate::measuring::timing::{self, FrameMode, Times};
+use crate::measuring::{date, frame};
+use crate::pictures::run_pictures::{conditions, save_pictures, stem};
+use crate::records::results::{Cached, Measured, Run};
+use crate::terminal::progress::Step;
+use skiagraph_gpu::{ExecuteError, Provider, device::Gpu};
+use skiagraph_graph::Plan;
+use skiagraph_reference::Reference;
+use std::path::Path;
+
+/// What all methods on one view and viewport share.
+pub struct MeasureContext<'a> {
+    /// The GPU.
+    pub gpu: &'a Gpu,
+    /// Whether its timestamps are true.
+    pub timestamps: bool,
+    /// Name of the view.
+    pub view: &'a str,
+    /// Of mesh, light and view.
+    pub fingerprint: Fingerprint,
+    /// The right answer.
+    pub reference: &'a Reference,
+    /// Timed frames.
+    pub frames: u32,
+    /// Frames before them.
+    pub warmup: u32,
+    /// Timed frames in which only the camera moves.
+    pub cached_frames: u32,
+    /// Folder for pictures, if there are to be any.
+    pub pictures: Option<&'a Path>,
+}
+
+/// What came of a method's frames.
+struct Executed {
+    times: Times,
+    cached: Option<Cached>,
+    outputs: Result<Outputs, String>,
+    memory: (u64, u64),
+}
+
+impl MeasureContext<'_> {
+    /// Runs a method. One that this adapter cannot run yields a [`Run`] that says why.
+    ///
+    /// # Errors
+    /// Ctrl-C, a lost device, outputs that break the contract ([`CliError::Contract`]), a picture
+    /// that cannot be written.
+    pub fn measure(&self, method: &Method, provider: &mut dyn Provider) -> Result<Run, CliError> {
+        let viewport = self.reference.viewport;
+        let plan = match method.plan(viewport, Capabilities::of(self.gpu), provider) {
+            Ok(plan) => plan,
+            // The graph itself is sound: that was checked before anything ran.
+            Err(diagnostics) => return Ok(self.unavailable(method, reasons(&diagnostics))),
+        };
+        let name = &method.preset.name;
+        let step = Step::begin(
+            format!("{name}, {}", conditions(method, self.view, viewport)),
+            u64::from(self.warmup) + u64::from(self.frames),
+            "frames",
+        );
+        let run = match self.execute(method, plan, provider, &step) {
+            Ok(Some(executed)) => Run {
+                measured: Some(self.judge(method, executed)?),
+                ..self.empty(method)
+            },
+            Ok(None) => return Err(CliError::interrupted()),
+            Err(error) if is_fatal(&error) => return Err(frame::failed(name, error)),
+            Err(error) => self.unavailable(method, explain(&error)),
+        };
+        step.end();
+        Ok(run)
+    }
+
+    /// A run that says why there are no measurements.
+    pub fn unavailable(&self, method: &Method, reason: String) -> Run {
+        Run {
+            unavailable: Some(reason),
+            ..self.empty(method)
+        }
+    }
+
+    /// Runs and times the frames; `None` if Ctrl-C came first.
+    fn execute(
+        &self,
+        method: &Method,
+        plan: Plan,
+        provider: &mut dyn Provider,
+        step: &Step,
+    ) -> Result<Option<Executed>, ExecuteError> {
+        let memory = (plan.memory_bytes(), plan.saved_bytes());
+        let mut executor = frame::executor(self.gpu, plan, provider)?;
+        let count = [self.warmup, self.frames];
+        let set_done = |frames| step.set_done(frames);
+        let times = timing::times(
+            self.gpu,
+            &mut executor,
+            FrameMode::AllPasses,
+            count,
+            set_done,
+        )?;
+        let Some(times) = times else { return Ok(None) };
+        let cached = timing::cached(self.gpu, &mut executor, self.cached_frames)?;
+        let Some(cached) = cached else {
+            return Ok(None);
+        };
+        // Only now: a readback would be timed, too.
+        let contents = frame::read(self.gpu, &mut executor, &Outputs::names(method.preset))?;
+        Ok(Some(Executed {
+            times,
+            cached,
+            outputs: Outputs::decode(&contents),
+            memory,
+        }))
+    }
+
+    fn judge(&self, method: &Method, executed: Executed) -> Result<Measured, CliError> {
+        let Executed {
+            mut times,
+            mut cached,
+            outputs,
+            memory: (memory_bytes, saved_bytes),
+        } = executed;
+        let (outputs, counts) = judged(method.preset, outputs, self.reference)?;
+        if !self.timestamps {
+            times.frame.gpu_ms = None;
+            cached
+                .iter_mut()
+                .for_each(|cached| cached.frame.gpu_ms = None);
+            times.passes.iter_mut().for_each(|pass| pass.gpu_ms = None);
+        }
+        let images = self.pictures.map(|folder| {
+            let stem = stem(method, self.view, self.reference.viewport);
+            save_pictures(folder, &stem, self.reference, &outputs, &counts)
+        });
+        Ok(Measured {
+            certain: counts.certain,
+            uncertain: counts.uncertain,
+            split: counts.split,
+            rays: outputs.rays,
+            wrong: counts.wrong,
+            facing_mismatch: counts.facing_mismatch,
+            passes: times.passes,
+            frame: times.frame,
+            cached,
+            memory_bytes,
+            saved_bytes,
+            images: images.transpose()?,
+        })
+    }
+
+    /// The run with nothing measured.
+    fn empty(&self, method: &Method) -> Run {
+        let reference = self.reference;
+        let counts = own_counts(reference);
+        Run {
+            preset: method.preset.name.clone(),
+            view: self.view.into(),
+            viewport: reference.viewport,
+            map_size: method.map_size,
+            params: method.all_params(),
+            fingerprint: method.fingerprint(self.fingerprint),
+            date: date::today(),
+            pixels: counts.pixels,
+            band: counts.band,
+            measured: None,
+            unavailable: None,
+            published: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! A buffer as a table: a line per item, a column per scalar.
+
+use crate::files::csv;
+use skiagraph_graph::{Field, Item, ItemScalar};
+
+/// The lines of a buffer: with the items as a shader declares them, or, where none does, its words
+/// read in three ways. Bytes behind the last whole item are left out.
+pub fn to_csv(bytes: &[u8], item: Option<&Item>) -> Result<String, ::csv::Error> {
+    let words = || {
+        let field = |(name, scalar): (&str, _)| Field {
+            name: name.into(),
+            offset: 0,
+            scalar,
+        };
+        let readings = [
+            ("u32", ItemScalar::U32),
+            ("i32", ItemScalar::I32),
+            ("f32", ItemScalar::F32),
+        ];
+        Item {
+            stride: 4,
+            fields: readings.map(field).into(),
+        }
+    };
+    let Item { stride, fields } = &item.cloned().unwrap_or_else(words);
+    let names = fields.iter().map(|field| match field.name.as_str() {
+        "" => "value",
+        name => name,
+    });
+    let header: Vec<&str> = ["item"].into_iter().chain(names).collect();
+    let items = bytes.chunks_exact((*stride).max(1)).enumerate();
+    let records = items.map(|(index, bytes)| {
+        let cells = fields.iter().map(|field| cell(bytes, field));
+        [index.to_string()].into_iter().chain(cells).collect()
+    });
+    csv::to_text(&header, records)
+}
+
+/// A scalar in the shortest digits that read back as the same; empty if the bytes end before it.
+fn cell(bytes: &[u8], field: &Field) -> String {
+    let Some(Ok(word)) = bytes
+        .get(field.offset..field.offset + 4)
+        .map(<[u8; 4]>::try_from)
+    else {
+        return String::new();
+    };
+    match field.scalar {
+        ItemScalar::F32 => f32::from_le_bytes(word).to_string(),
+        ItemScalar::I32 => i32::from_le_bytes(word).to_string(),
+        ItemScalar::U32 => u32::from_le_bytes(word).to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text(bytes: &[u8], item: Option<&Item>) -> String {
+        to_csv(bytes, item).unwrap()
+    }
+
+    #[test]
+    fn items_have_a_line_each_and_padding_is_left_out() {
+        let field = |name: &str, offset, scalar| Field {
+            name: name.into(),
+            offset,
+            scalar,
+        };
+        let item = Item {
+            stride: 12,
+            fields: vec![
+                field("t", 0, ItemScalar::F32),
+                field("id", 8, ItemScalar::U32),
+            ],
+        };
+        let mut bytes = Vec::new();
+        for (t, id) in [(0.1f32, 7u32), (f32::INFINITY, u32::MAX)] {
+            bytes.extend(t.to_le_bytes());
+            bytes.extend([0xee; 4]);
+            bytes.extend(id.to_le_bytes());
+        }
+        assert_eq!(
+            text(&bytes, Some(&item)),
+            "item,t,id\n0,0.1,7\n1,inf,4294967295\n"
+        );
+    }
+
+    #[test]
+    fn words_of_unknown_meaning_are_read_in_three_ways() {
+        let bytes = [1065353216u32, u32::MAX].map(u32::to_le_bytes).concat();
+        let lines = "item,u32,i32,f32\n0,1065353216,1065353216,1\n1,4294967295,-1,NaN\n";
+        assert_eq!(text(&bytes, None), lines);
+    }
+}

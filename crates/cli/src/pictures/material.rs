@@ -1,0 +1,310 @@
+//! What any material of a graph looks like.
+
+use crate::pictures::colours::{ClipPlanes, EMPTY, depths, floats, fractions, integers};
+use skiagraph_gpu::Content;
+use skiagraph_reference::Image;
+
+/// A material as a picture.
+pub struct Picture {
+    /// The picture.
+    pub image: Image,
+    /// How values became colours, one sentence part.
+    pub legend: String,
+}
+
+impl Picture {
+    /// Shows what was read of the material `name`; the name tells `status` from other integers,
+    /// `planes` a camera's depths from others.
+    ///
+    /// # Errors
+    /// Why it has no picture.
+    pub fn of(name: &str, content: &Content, planes: Option<ClipPlanes>) -> Result<Self, String> {
+        let Content::Texture { format, parts, .. } = content else {
+            return Err("is a buffer and has no picture; save it as .csv or .bin".into());
+        };
+        let texels = parts
+            .iter()
+            .map(|size| size[0] as usize * size[1] as usize)
+            .sum::<usize>();
+        let (channels, aspects) = (
+            usize::from(format.components()),
+            format.is_depth_stencil_format(),
+        );
+        let is_whole = |length: usize| length == texels * channels;
+        let (rgb, legend) = match (content.as_u32(), content.as_i32(), content.as_f32()) {
+            (Some(values), ..) if channels == 1 && is_whole(values.len()) => {
+                integers(name, &values)
+            }
+            (Some(values), ..) if is_whole(values.len()) => floats(
+                &values.iter().map(|&value| value as f32).collect::<Vec<_>>(),
+                channels,
+            ),
+            (_, Some(values), _) if is_whole(values.len()) => floats(
+                &values.iter().map(|&value| value as f32).collect::<Vec<_>>(),
+                channels,
+            ),
+            (.., Some(values)) if aspects && is_whole(values.len()) => depths(&values, planes),
+            (.., Some(values)) if is_whole(values.len()) => match is_unorm(*format) {
+                true => fractions(&values, channels),
+                false => floats(&values, channels),
+            },
+            _ => {
+                return Err(format!(
+                    "has the format {format:?}, of which no picture can be made; save it as .bin"
+                ));
+            }
+        };
+        Ok(Self {
+            image: sheet(parts, rgb),
+            legend: match parts.len() {
+                1 => legend,
+                count => format!("{count} mips and layers one below the other, {legend}"),
+            },
+        })
+    }
+}
+
+/// The mips and layers of a texture, one below the other.
+fn sheet(parts: &[[u32; 2]], rgb: Vec<u8>) -> Image {
+    let width = parts.iter().map(|size| size[0]).max().unwrap_or(0);
+    let height = parts.iter().map(|size| size[1]).sum();
+    let size = [width, height];
+    if parts.iter().all(|size| size[0] == width) {
+        return Image { size, rgb };
+    }
+    let mut sheet = Vec::with_capacity(3 * width as usize * height as usize);
+    let mut rest = &rgb[..];
+    for [of_part, rows] in parts {
+        for _ in 0..*rows {
+            let (row, behind) = rest.split_at(3 * *of_part as usize);
+            sheet.extend_from_slice(row);
+            sheet.extend((*of_part..width).flat_map(|_| EMPTY));
+            rest = behind;
+        }
+    }
+    Image { size, rgb: sheet }
+}
+
+/// Whether the channels reach from 0 to 1 whatever they hold.
+fn is_unorm(format: wgpu::TextureFormat) -> bool {
+    use wgpu::TextureFormat as F;
+    matches!(
+        format.remove_srgb_suffix(),
+        F::R8Unorm
+            | F::Rg8Unorm
+            | F::Rgba8Unorm
+            | F::Bgra8Unorm
+            | F::R16Unorm
+            | F::Rg16Unorm
+            | F::Rgba16Unorm
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pictures::colours::*;
+    use skiagraph_reference::BACKGROUND;
+    use wgpu::TextureFormat as F;
+
+    fn texture(format: F, size: [u32; 2], bytes: Vec<u8>) -> Content {
+        Content::Texture {
+            format,
+            parts: vec![size],
+            bytes,
+        }
+    }
+
+    fn float_bytes(values: &[f32]) -> Vec<u8> {
+        values
+            .iter()
+            .flat_map(|value| value.to_le_bytes())
+            .collect()
+    }
+
+    #[test]
+    fn status_has_a_colour_per_value_and_strangers_show() {
+        let picture = Picture::of(
+            "status",
+            &texture(F::R8Uint, [3, 2], vec![0, 1, 2, 3, 4, 9]),
+            None,
+        )
+        .unwrap();
+        let colours = STATUS.map(|(colour, _)| colour);
+        assert_eq!(
+            picture.image.rgb,
+            [colours.as_flattened(), &INVALID].concat()
+        );
+        assert!(
+            picture
+                .legend
+                .ends_with("purple uncertain (1), magenta no status (1)")
+        );
+    }
+
+    #[test]
+    fn visibility_is_black_and_white() {
+        let picture =
+            Picture::of("visibility", &texture(F::R8Uint, [2, 1], vec![0, 1]), None).unwrap();
+        assert_eq!(picture.image.rgb, [0, 0, 0, 255, 255, 255]);
+        assert_eq!(picture.legend, "black 0 (1), white 1 (1)");
+    }
+
+    #[test]
+    fn ids_differ_from_their_neighbours_and_from_the_background() {
+        let colours: Vec<_> = (0..1000).chain([BACKGROUND]).map(id_colour).collect();
+        let distance =
+            |a: [u8; 3], b: [u8; 3]| (0..3).map(|i| a[i].abs_diff(b[i]) as u32).sum::<u32>();
+        let alike = colours
+            .windows(2)
+            .filter(|pair| distance(pair[0], pair[1]) < 24)
+            .count();
+        assert!(alike < 10, "{alike} neighbours of 1000 look alike");
+    }
+
+    #[test]
+    fn values_fill_their_range_and_odd_ones_are_marked_and_counted() {
+        let values = [0.5, 0.75, 1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
+        let bytes = float_bytes(&values);
+        let picture = Picture::of("height", &texture(F::R32Float, [6, 1], bytes), None).unwrap();
+        let texels: Vec<_> = picture.image.rgb.chunks(3).collect();
+        assert_eq!(
+            texels,
+            [
+                [0; 3],
+                [128; 3],
+                [255; 3],
+                INVALID,
+                POSITIVE_INFINITY,
+                NEGATIVE_INFINITY
+            ]
+        );
+        assert_eq!(
+            picture.legend,
+            "0.5 … 1, magenta NaN (1), orange +∞ (1), light blue -∞ (1)"
+        );
+    }
+
+    #[test]
+    fn a_cameras_depths_are_shown_as_distances_and_what_is_cleared_as_nothing() {
+        let planes = ClipPlanes {
+            near: 1.0,
+            far: 11.0,
+        };
+        // Depth of a distance z: far (z - near) / (z (far - near)).
+        let depth = |z: f32| 11.0 * (z - 1.0) / (z * 10.0);
+        let bytes = float_bytes(&[depth(2.0), depth(3.0), depth(7.0), 1.0]);
+        let content = texture(F::Depth32Float, [4, 1], bytes);
+        let grey = |planes| {
+            let Picture { image, legend } = Picture::of("depth", &content, planes).unwrap();
+            assert_eq!(image.rgb[9..], EMPTY);
+            ([image.rgb[0], image.rgb[3], image.rgb[6]], legend)
+        };
+        let (linear, legend) = grey(Some(planes));
+        assert_eq!(
+            linear,
+            [0, 51, 255],
+            "3 lies at a fifth of the way from 2 to 7"
+        );
+        assert!(
+            legend.starts_with("distance along the view, black to white 2"),
+            "{legend}"
+        );
+        assert!(legend.ends_with("grey 1, nothing there (1)"), "{legend}");
+        let (stored, legend) = grey(None);
+        assert_eq!(
+            stored,
+            [0, 119, 255],
+            "and nearly half way between their depths"
+        );
+        assert!(
+            legend.starts_with("stored depth, black to white 0.55 …"),
+            "{legend}"
+        );
+    }
+
+    #[test]
+    fn mips_and_layers_stand_below_each_other_in_one_range() {
+        let content = Content::Texture {
+            format: F::R8Unorm,
+            parts: vec![[2, 1], [2, 1], [1, 1], [1, 1]],
+            bytes: vec![0, 51, 102, 153, 204, 255],
+        };
+        let Picture { image, legend } = Picture::of("x", &content, None).unwrap();
+        assert_eq!(image.size, [2, 4]);
+        let grey = |value| [value; 3];
+        let rows = [
+            [grey(0), grey(51)],
+            [grey(102), grey(153)],
+            [grey(204), EMPTY],
+            [grey(255), EMPTY],
+        ];
+        assert_eq!(image.rgb, rows.as_flattened().as_flattened());
+        assert!(
+            legend.starts_with("4 mips and layers one below the other, "),
+            "{legend}"
+        );
+    }
+
+    #[test]
+    fn every_kind_of_channel_has_a_picture() {
+        for (format, bytes, rgb) in [
+            (F::R8Unorm, vec![51, 102], [51, 51, 51, 102, 102, 102]),
+            (F::Rg8Unorm, vec![0, 255, 255, 0], [0, 255, 0, 255, 0, 0]),
+            (
+                F::Bgra8Unorm,
+                vec![1, 2, 3, 4, 5, 6, 7, 8],
+                [3, 2, 1, 7, 6, 5],
+            ),
+            (F::R8Sint, vec![0xff, 1], [0, 0, 0, 255, 255, 255]),
+            (F::Rg8Uint, vec![4, 9, 6, 9], [0, 0, 0, 255, 0, 0]),
+            (
+                F::R16Float,
+                vec![0, 0x3c, 0, 0x40],
+                [0, 0, 0, 255, 255, 255],
+            ),
+        ] {
+            let picture = Picture::of("x", &texture(format, [2, 1], bytes), None).unwrap();
+            assert_eq!(picture.image.rgb, rgb, "{format:?}: {}", picture.legend);
+        }
+    }
+
+    #[test]
+    fn constant_and_huge_ranges_do_not_overflow() {
+        for values in [[3.0, 3.0], [f32::MIN, f32::MAX], [f32::NAN, f32::NAN]] {
+            Picture::of(
+                "x",
+                &texture(F::R32Float, [2, 1], float_bytes(&values)),
+                None,
+            )
+            .unwrap();
+        }
+    }
+
+    #[test]
+    fn positions_become_colours() {
+        let bytes = float_bytes(&[0.0, 10.0, -1.0, 1.0, 4.0, 20.0, 1.0, 1.0]);
+        let picture =
+            Picture::of("position", &texture(F::Rgba32Float, [2, 1], bytes), None).unwrap();
+        assert_eq!(picture.image.rgb, [0, 0, 0, 255, 255, 255]);
+        assert_eq!(
+            picture.legend,
+            "red 0 … 4, green 10 … 20, blue -1 … 1, alpha (not shown) 1 … 1"
+        );
+    }
+
+    #[test]
+    fn buffers_and_odd_formats_say_what_to_do() {
+        for content in [
+            Content::Buffer(vec![0; 4]),
+            texture(F::Rgb10a2Unorm, [1, 1], vec![0; 4]),
+        ] {
+            assert!(
+                Picture::of("x", &content, None)
+                    .err()
+                    .unwrap()
+                    .contains(".bin")
+            );
+        }
+    }
+}

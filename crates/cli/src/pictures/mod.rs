@@ -1,0 +1,9 @@
+//! What becomes of texels and items: the pictures of a run, and what `run --save` writes of any
+//! material.
+
+pub mod buffer_csv;
+pub mod colours;
+pub mod material;
+pub mod png;
+pub mod run_pictures;
+pub mod save;

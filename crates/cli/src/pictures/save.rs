@@ -1,0 +1,126 @@
+//! `run --save`: what of a graph is read back, and how it is written.
+
+use crate::args::values::{Encoding, Save};
+use crate::error::CliError;
+use crate::files::write::write_whole;
+use crate::pictures::colours::ClipPlanes;
+use crate::pictures::material::Picture;
+use crate::pictures::{buffer_csv, png};
+use crate::wording::{bytes, size, thousands};
+use skiagraph_gpu::Content;
+use skiagraph_graph::{Capture, Item, Plan};
+use skiagraph_passes::provider::{CAMERA, LIGHT};
+use skiagraph_scene::View;
+use std::collections::BTreeMap;
+
+/// What is read back for a save.
+pub fn capture(save: &Save) -> Capture {
+    Capture {
+        material: save.material.clone(),
+        after: save.after.clone(),
+    }
+}
+
+/// What of the saves the graph does not hand out anyway.
+pub fn captures(outputs: &[&str], saves: &[Save]) -> Vec<Capture> {
+    let wanted: BTreeMap<String, Capture> = saves
+        .iter()
+        .map(capture)
+        .map(|capture| (capture.name(), capture))
+        .collect();
+    wanted
+        .into_iter()
+        .filter(|(name, _)| !outputs.contains(&name.as_str()))
+        .map(|(_, capture)| capture)
+        .collect()
+}
+
+/// Refuses the picture of a buffer and the items of a texture before anything is rendered.
+///
+/// # Errors
+/// Names what it can be saved as.
+pub fn check_encodings(plan: &Plan, saves: &[Save]) -> Result<(), CliError> {
+    let outputs = plan.outputs();
+    for save in saves {
+        let name = capture(save).name();
+        let Some(output) = outputs.iter().find(|output| output.name == name) else {
+            continue;
+        };
+        let refused = match (save.encoding, output.format) {
+            (Encoding::Png, None) => "is a buffer and has no picture; save it as .csv or .bin",
+            (Encoding::Csv, Some(_)) => "is a texture and has no items; save it as .png or .bin",
+            _ => continue,
+        };
+        return Err(CliError::Input(format!("`{name}` {refused}")));
+    }
+    Ok(())
+}
+
+/// How the contents of one save are to be read.
+pub struct Decoding {
+    /// The camera whose depths they are, if they are depths.
+    planes: Option<ClipPlanes>,
+    /// The items of a buffer.
+    item: Option<Item>,
+}
+
+impl Decoding {
+    /// Of what this plan writes into the material.
+    pub fn of(plan: &Plan, save: &Save, view: &View) -> Self {
+        let name = capture(save).name();
+        let behind = plan.provided_behind(&name);
+        // A pass that also knows the light may well draw from there.
+        let is_camera = behind.contains(CAMERA) && !behind.contains(LIGHT);
+        let planes = || ClipPlanes {
+            near: view.near,
+            far: view.far,
+        };
+        Self {
+            planes: is_camera.then(planes),
+            item: plan.item(&name),
+        }
+    }
+}
+
+/// Writes the file; returns what to say about it.
+///
+/// # Errors
+/// There is no such picture, or the file cannot be written.
+pub fn write(save: &Save, content: &Content, reading: &Decoding) -> Result<String, CliError> {
+    let said = match save.encoding {
+        Encoding::Png => {
+            let picture = Picture::of(&save.material, content, reading.planes);
+            let Picture { image, legend } = picture.map_err(|reason| {
+                let name = &save.material;
+                CliError::Input(format!("--save {name}: `{name}` {reason}"))
+            })?;
+            png::save(&save.file, &image)?;
+            format!("{}, {legend}", size(image.size))
+        }
+        Encoding::Csv => {
+            let raw = content.bytes();
+            let table = buffer_csv::to_csv(raw, reading.item.as_ref())
+                .map_err(|error| CliError::write(&save.file, error))?;
+            write_whole(&save.file, table.as_bytes())?;
+            let (stride, what) = match &reading.item {
+                Some(item) => (item.stride, "items as the shader declares them"),
+                None => (4, "words, each read as u32, i32 and f32"),
+            };
+            let lines = thousands((raw.len() / stride.max(1)) as u64);
+            format!("{lines} {what}")
+        }
+        Encoding::Raw => {
+            let raw = content.bytes();
+            write_whole(&save.file, raw)?;
+            let what = match content {
+                Content::Texture { format, parts, .. } => {
+                    let sizes: Vec<String> = parts.iter().map(|part| size(*part)).collect();
+                    format!("{} texels of {format:?}", sizes.join(", "))
+                }
+                Content::Buffer(_) => "a buffer".into(),
+            };
+            format!("{}, {what}", bytes(raw.len() as u64))
+        }
+    };
+    Ok(format!("  saved {}: {said}\n", save.file.display()))
+}

@@ -1,0 +1,11 @@
+//! What was measured, as plain data. The types of the JSON files are their schemas: scripts rely
+//! on them, so fields are added and never renamed.
+
+pub mod baseline;
+pub mod check;
+pub mod profile;
+pub mod read_back;
+pub mod results;
+pub mod samples;
+pub mod statistics;
+pub mod stress;

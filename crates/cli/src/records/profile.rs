@@ -1,0 +1,415 @@
+//! The schema of `profile --json`, version 1. `--baseline` reads it: extend it, rename nothing.
+
+use crate::records::baseline::{Comparison, Difference, FrameRatio, PassRatio, Ratio};
+use crate::records::results::{Adapter, Scene};
+use crate::records::samples::{PassSamples, Samples};
+use crate::records::statistics::{Series, Spread};
+use crate::wording::size;
+use serde::{Deserialize, Serialize};
+use skiagraph_graph::{MemoryEntry, PassSummary};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+    time::Duration,
+};
+
+/// The value of [`Profile::kind`]; tells the file from the results of `compare`.
+pub const KIND: &str = "profile";
+
+/// Everything that one `profile` measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Profile {
+    /// Version of this schema: 1.
+    pub schema: u32,
+    /// [`KIND`].
+    pub kind: String,
+    /// Under which everything was measured.
+    pub conditions: Conditions,
+    /// The passes in the order in which they ran.
+    pub passes: Vec<PassProfile>,
+    /// Whole frames.
+    pub frame: FrameProfile,
+    /// The graph's own textures and buffers.
+    pub memory: Memory,
+    /// How it stands to an older profile; absent without `--baseline`. Not read back.
+    #[serde(default, skip_serializing_if = "Option::is_none", skip_deserializing)]
+    pub baseline: Option<Comparison>,
+}
+
+/// What a time is worth nothing without.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Conditions {
+    /// The program, `skiagraph 0.1.0`.
+    pub program: String,
+    /// `release`, or `debug`: then CPU times are those of unoptimised code.
+    pub build: String,
+    /// When, ISO 8601 in UTC.
+    pub date: String,
+    /// Where; `gpu_unavailable` says why GPU times are null.
+    pub adapter: Adapter,
+    /// What was drawn.
+    pub scene: Scene,
+    /// Name of the preset, or path of the graph.
+    pub preset: String,
+    /// Name of the view.
+    pub view: String,
+    /// Width and height in pixels.
+    pub viewport: [u32; 2],
+    /// All params of the graph with the values it ran with.
+    pub params: BTreeMap<String, serde_json::Value>,
+    /// Timed frames that were asked for; there are fewer samples if it was stopped early.
+    pub frames: u32,
+    /// Frames before the timed ones.
+    pub warmup: u32,
+}
+
+impl Conditions {
+    /// The params as `--set` takes them: `cull=front`.
+    pub fn params(&self) -> impl Iterator<Item = (&str, String)> {
+        self.params.iter().map(|(name, value)| {
+            let text = value
+                .as_str()
+                .map_or_else(|| value.to_string(), str::to_owned);
+            (name.as_str(), text)
+        })
+    }
+
+    /// What was not alike under older conditions.
+    fn differences(&self, old: &Self) -> Vec<Difference> {
+        let facts = |conditions: &Self| {
+            [
+                ("program", conditions.program.clone()),
+                ("build", conditions.build.clone()),
+                ("adapter", conditions.adapter.to_string()),
+                ("scene", conditions.scene.to_string()),
+                ("method", conditions.preset.clone()),
+                ("view", conditions.view.clone()),
+                ("viewport", size(conditions.viewport)),
+            ]
+        };
+        let names = old.params().chain(self.params()).map(|(name, _)| name);
+        let names: BTreeSet<&str> = names.collect();
+        let param = |conditions: &Self, name: &str| {
+            let value = conditions.params().find(|(known, _)| *known == name);
+            value.map_or_else(|| "–".to_owned(), |(_, value)| value)
+        };
+        let params = names
+            .into_iter()
+            .map(|name| (format!("param {name}"), param(old, name), param(self, name)));
+        let facts = facts(old).into_iter().zip(facts(self));
+        facts
+            .map(|((what, old), (_, new))| (what.to_owned(), old, new))
+            .chain(params)
+            .filter(|(_, old, new)| old != new)
+            .map(|(what, old, new)| Difference { what, old, new })
+            .collect()
+    }
+}
+
+/// One pass.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PassProfile {
+    /// Its name in the graph.
+    pub name: String,
+    /// Its kind, as the document writes it.
+    pub kind: String,
+    /// Between its GPU timestamps; null where they cannot be had or trusted.
+    pub gpu_ms: Option<Series>,
+    /// Median over the frames of its GPU time by that of its frame; passes may overlap, so the sum
+    /// need not be 1.
+    pub share: Option<f64>,
+    /// Encoding on the CPU.
+    pub cpu_ms: Series,
+}
+
+/// Whole frames.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrameProfile {
+    /// From the first pass's begin to the last one's end; null where timestamps cannot be had or
+    /// trusted.
+    pub gpu_ms: Option<Series>,
+    /// Encoding of all passes on the CPU.
+    pub cpu_ms: Series,
+    /// From the start of encoding until the GPU was done, by the CPU's clock.
+    pub wall_ms: Series,
+}
+
+/// The graph's own textures and buffers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Memory {
+    /// Of all of them.
+    pub bytes: u64,
+    /// Saved by letting materials share memory.
+    pub saved_bytes: u64,
+    /// One entry each, in the order of the document.
+    pub materials: Vec<Material>,
+}
+
+/// A texture or buffer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Material {
+    /// The material, or a pass's own buffer.
+    pub name: String,
+    /// Format of a texture; null for a buffer.
+    pub format: Option<String>,
+    /// Width and height of a texture's mip 0; `[bytes, 1]` of a buffer.
+    pub size: [u32; 2],
+    /// Mip levels.
+    pub mips: u32,
+    /// Array layers.
+    pub layers: u32,
+    /// What it takes.
+    pub bytes: u64,
+    /// Materials in the same memory.
+    pub shared_with: Vec<String>,
+}
+
+impl Profile {
+    /// Puts together what was measured; `None` if there is no frame.
+    pub fn new(
+        conditions: Conditions,
+        kinds: &[PassSummary],
+        samples: &Samples,
+        memory: Memory,
+    ) -> Option<Self> {
+        let is_trusted = conditions.adapter.gpu_unavailable.is_none();
+        let gpu = |times: &[Option<Duration>]| Series::of_all(times).filter(|_| is_trusted);
+        let frame = FrameProfile {
+            gpu_ms: gpu(&samples.gpu),
+            cpu_ms: Series::of(&samples.cpu)?,
+            wall_ms: Series::of(&samples.wall)?,
+        };
+        let pass = |pass: &PassSamples| {
+            let gpu_ms = gpu(&pass.gpu);
+            let kind = kinds.iter().find(|kind| kind.name == pass.name);
+            Some(PassProfile {
+                name: pass.name.clone(),
+                kind: kind.map_or_else(String::new, |kind| kind.kind.clone()),
+                share: share(gpu_ms.as_ref(), frame.gpu_ms.as_ref()),
+                gpu_ms,
+                cpu_ms: Series::of(&pass.cpu)?,
+            })
+        };
+        Some(Self {
+            schema: 1,
+            kind: KIND.into(),
+            passes: samples.passes.iter().map(pass).collect::<Option<_>>()?,
+            conditions,
+            frame,
+            memory,
+            baseline: None,
+        })
+    }
+
+    /// How it stands to an older profile, read from `file`.
+    pub fn against(&self, file: &Path, old: &Self) -> Comparison {
+        let missing = |from: &Self, other: &Self| {
+            let names = from.passes.iter().map(|pass| pass.name.clone());
+            names
+                .filter(|name| other.passes.iter().all(|pass| pass.name != *name))
+                .collect()
+        };
+        let passes = self.passes.iter().filter_map(|pass| {
+            let before = old.passes.iter().find(|old| old.name == pass.name)?;
+            Some(PassRatio {
+                name: pass.name.clone(),
+                gpu: Ratio::of_both(before.gpu_ms.as_ref(), pass.gpu_ms.as_ref()),
+                cpu: Ratio::of(&before.cpu_ms, &pass.cpu_ms),
+            })
+        });
+        let (before, frame) = (&old.frame, &self.frame);
+        Comparison {
+            file: file.display().to_string(),
+            date: old.conditions.date.clone(),
+            differences: self.conditions.differences(&old.conditions),
+            passes: passes.collect(),
+            frame: FrameRatio {
+                gpu: Ratio::of_both(before.gpu_ms.as_ref(), frame.gpu_ms.as_ref()),
+                cpu: Ratio::of(&before.cpu_ms, &frame.cpu_ms),
+                wall: Ratio::of(&before.wall_ms, &frame.wall_ms),
+            },
+            only_old: missing(old, self),
+            only_new: missing(self, old),
+        }
+    }
+
+    /// How many frames were timed.
+    pub fn timed(&self) -> usize {
+        self.frame.wall_ms.samples.len()
+    }
+}
+
+fn share(pass: Option<&Series>, frame: Option<&Series>) -> Option<f64> {
+    let frames = pass?.samples.iter().zip(&frame?.samples);
+    let shares = frames.filter(|(_, frame)| **frame > 0.0);
+    Some(Spread::of_ms(shares.map(|(pass, frame)| pass / frame))?.median)
+}
+
+impl From<MemoryEntry> for Material {
+    fn from(entry: MemoryEntry) -> Self {
+        Self {
+            name: entry.name,
+            format: entry.format.map(|format| format!("{format:?}")),
+            size: entry.size,
+            mips: entry.mips,
+            layers: entry.layers,
+            bytes: entry.bytes,
+            shared_with: entry.shared_with,
+        }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::files::json;
+    use crate::records::statistics::tests::series;
+
+    /// A profile with every field in use: one pass with all times, one without a GPU time.
+    pub(crate) fn sample() -> Profile {
+        let ms = |list: &[u64]| -> Vec<Duration> {
+            list.iter().map(|&us| Duration::from_micros(us)).collect()
+        };
+        let some = |list: &[u64]| ms(list).into_iter().map(Some).collect::<Vec<_>>();
+        let samples = Samples {
+            passes: vec![
+                PassSamples {
+                    name: "primitive".into(),
+                    gpu: some(&[2000, 2500, 1500]),
+                    cpu: ms(&[20, 30, 10]),
+                },
+                PassSamples {
+                    name: "clear".into(),
+                    gpu: vec![None; 3],
+                    cpu: ms(&[2, 3, 1]),
+                },
+            ],
+            gpu: some(&[4000, 5000, 4500]),
+            cpu: ms(&[22, 33, 11]),
+            wall: ms(&[4100, 5100, 4600]),
+        };
+        let conditions = Conditions {
+            program: "skiagraph 0.1.0".into(),
+            build: "release".into(),
+            date: "2026-11-21T04:30:12Z".into(),
+            adapter: Adapter {
+                name: "Some GPU".into(),
+                backend: "vulkan".into(),
+                driver: "driver 1.2".into(),
+                device_type: "DiscreteGpu".into(),
+                gpu_unavailable: None,
+            },
+            scene: Scene {
+                name: "park".into(),
+                triangles: 55_000,
+            },
+            preset: "nsm".into(),
+            view: "main".into(),
+            viewport: [512, 256],
+            params: BTreeMap::from([("map_size".into(), 1024.into())]),
+            frames: 3,
+            warmup: 1,
+        };
+        let kinds = ["primitive", "clear"].map(|name| PassSummary {
+            name: name.into(),
+            kind: "Raster".into(),
+        });
+        let memory = Memory {
+            bytes: 4 << 20,
+            saved_bytes: 1 << 20,
+            materials: vec![
+                Material {
+                    name: "shadow_map".into(),
+                    format: Some("Depth32Float".into()),
+                    size: [1024, 1024],
+                    mips: 1,
+                    layers: 1,
+                    bytes: 4 << 20,
+                    shared_with: vec!["rays".into()],
+                },
+                Material {
+                    name: "rays".into(),
+                    format: None,
+                    size: [1 << 20, 1],
+                    mips: 1,
+                    layers: 1,
+                    bytes: 1 << 20,
+                    shared_with: vec!["shadow_map".into()],
+                },
+            ],
+        };
+        Profile::new(conditions, &kinds, &samples, memory).unwrap()
+    }
+
+    #[test]
+    fn the_schema_is_pinned_and_reads_back() {
+        let json = json::to_text(&sample());
+        insta::assert_snapshot!(json);
+        assert_eq!(serde_json::from_str::<Profile>(&json).unwrap(), sample());
+    }
+
+    #[test]
+    fn a_share_is_taken_frame_by_frame() {
+        // 2000/4000, 2500/5000, 1500/4500.
+        assert_eq!(sample().passes[0].share, Some(0.5));
+        assert_eq!(sample().passes[1].share, None);
+        let zero = share(Some(&series(&[0.0])), Some(&series(&[0.0])));
+        assert_eq!(zero, None, "no share of nothing");
+    }
+
+    #[test]
+    fn untrusted_timestamps_leave_no_gpu_time() {
+        let mut conditions = sample().conditions;
+        conditions.adapter.gpu_unavailable = Some("they lie".into());
+        let samples = Samples {
+            gpu: vec![Some(Duration::from_millis(1))],
+            cpu: vec![Duration::ZERO],
+            wall: vec![Duration::ZERO],
+            passes: vec![PassSamples {
+                name: "primitive".into(),
+                gpu: vec![Some(Duration::from_millis(1))],
+                cpu: vec![Duration::ZERO],
+            }],
+        };
+        let profile = Profile::new(conditions, &[], &samples, sample().memory).unwrap();
+        assert_eq!(
+            (&profile.frame.gpu_ms, &profile.passes[0].gpu_ms),
+            (&None, &None)
+        );
+        assert_eq!(profile.passes[0].share, None);
+    }
+
+    #[test]
+    fn no_frames_make_no_profile() {
+        let none = Profile::new(
+            sample().conditions,
+            &[],
+            &Samples::default(),
+            sample().memory,
+        );
+        assert!(none.is_none());
+    }
+
+    #[test]
+    fn what_differs_and_what_stands_on_one_side_is_listed() {
+        let (old, mut new) = (sample(), sample());
+        new.conditions.viewport = [64, 64];
+        new.conditions.params.insert("bias".into(), 0.5.into());
+        new.conditions.date = "2027-01-01T00:00:00Z".into();
+        new.passes[1].name = "fill".into();
+        let comparison = new.against(Path::new("old.json"), &old);
+        let whats: Vec<_> = comparison
+            .differences
+            .iter()
+            .map(|d| d.what.as_str())
+            .collect();
+        assert_eq!(whats, ["viewport", "param bias"]);
+        assert_eq!(comparison.differences[1].old, "–");
+        assert_eq!(
+            (&comparison.only_old[..], &comparison.only_new[..]),
+            (&["clear".to_owned()][..], &["fill".to_owned()][..])
+        );
+        assert_eq!(comparison.passes.len(), 1);
+        assert_eq!(old.against(Path::new("old.json"), &old).differences, []);
+    }
+}

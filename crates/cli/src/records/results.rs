@@ -1,0 +1,386 @@
+//! The schema of `results.json` and `results.csv`, version 1. Scripts rely on it: extend it, rename
+//! nothing.
+
+use crate::records::statistics::Spread;
+use crate::wording::{size, thousands};
+use serde::{Deserialize, Serialize};
+use skiagraph_reference::{CertainCounts, PixelCounts, Split, WrongCounts};
+use std::{collections::BTreeMap, fmt};
+
+/// The program that measures, as files name it.
+pub const PROGRAM: &str = concat!("skiagraph ", env!("CARGO_PKG_VERSION"));
+
+/// Everything that one `compare` measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Results {
+    /// Version of this schema: 1.
+    pub schema: u32,
+    /// The program that measured, `skiagraph 0.1.0`.
+    pub program: String,
+    /// Where it ran.
+    pub adapter: Adapter,
+    /// What was drawn.
+    pub scene: Scene,
+    /// The oracle's mode, `exact` or `offset:LENGTH`.
+    pub oracle: String,
+    /// Timed frames per run.
+    pub frames: u32,
+    /// Frames before the timed ones.
+    pub warmup: u32,
+    /// Timed frames in which only the camera moves, per run.
+    pub cached_frames: u32,
+    /// One entry per view, viewport, preset and map size, in this order.
+    pub runs: Vec<Run>,
+}
+
+/// The GPU.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Adapter {
+    /// Name by its driver.
+    pub name: String,
+    /// vulkan, metal or dx12.
+    pub backend: String,
+    /// Driver and its version.
+    pub driver: String,
+    /// DiscreteGpu, IntegratedGpu, VirtualGpu, Cpu or Other.
+    pub device_type: String,
+    /// Why all `gpu_ms` are null; absent where they are not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gpu_unavailable: Option<String>,
+}
+
+/// The scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scene {
+    /// Its name.
+    pub name: String,
+    /// Triangles in its mesh.
+    pub triangles: u64,
+}
+
+impl From<&skiagraph_scene::Scene> for Scene {
+    fn from(scene: &skiagraph_scene::Scene) -> Self {
+        Self {
+            name: scene.name.clone(),
+            triangles: scene.mesh.triangles.len() as u64,
+        }
+    }
+}
+
+impl fmt::Display for Adapter {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{} · {} · {}", self.name, self.backend, self.driver)
+    }
+}
+
+impl fmt::Display for Scene {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let noun = if self.triangles == 1 {
+            "triangle"
+        } else {
+            "triangles"
+        };
+        write!(f, "{}, {} {noun}", self.name, thousands(self.triangles))
+    }
+}
+
+/// One preset on one view, viewport and map size.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// Name of the preset, or path of the graph.
+    pub preset: String,
+    /// Name of the view.
+    pub view: String,
+    /// Width and height in pixels.
+    pub viewport: [u32; 2],
+    /// Value of the param `map_size`; null where the graph has none.
+    pub map_size: Option<u32>,
+    /// All params of the graph with the values it ran with.
+    pub params: BTreeMap<String, serde_json::Value>,
+    /// Of all else that the run depends on: the texts of the graph, of what it includes and of
+    /// their shaders, the same of the graph that finds the visible triangles, mesh, light and view.
+    /// Empty in files of older programs.
+    #[serde(default)]
+    pub fingerprint: String,
+    /// The day on which it was measured, `2026-11-21` (UTC). Empty in files of older programs.
+    #[serde(default)]
+    pub date: String,
+    /// The reference's pixels.
+    pub pixels: PixelCounts,
+    /// Of those facing the light, the ones whose answer flips within the rounding error of receiver
+    /// and casters.
+    pub band: u64,
+    /// What was measured; absent where the preset is unavailable.
+    #[serde(flatten)]
+    pub measured: Option<Measured>,
+    /// Why the preset could not run on this adapter; absent where it did.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unavailable: Option<String>,
+    /// What others have published, with `--beside`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub published: Vec<Published>,
+}
+
+impl Run {
+    /// Method, view, viewport and map in words.
+    pub fn label(&self) -> String {
+        let map = self
+            .map_size
+            .map_or(String::new(), |n| format!(", map {n}"));
+        format!(
+            "{} on {} {}{map}",
+            self.preset,
+            self.view,
+            size(self.viewport)
+        )
+    }
+
+    /// Preset and map size, as a row's name.
+    pub fn method_label(&self) -> String {
+        let with_size = |size| format!("{} {size}", self.preset);
+        self.map_size.map_or(self.preset.clone(), with_size)
+    }
+}
+
+/// A figure that somebody else published about such a run or about its view and viewport.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Published {
+    /// Label of who did.
+    pub by: String,
+    /// What it is of: `wrong_percent`, `ms.trace_rays` …
+    pub quantity: String,
+    /// The figure.
+    pub value: f64,
+    /// Where it stands, `table 12`.
+    pub source: String,
+    /// What is wrong with it as it is printed there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+}
+
+/// What a run measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// Pixels that the method decided by its map alone.
+    pub certain: CertainCounts,
+    /// Pixels that it left to rays, or all that it traced.
+    pub uncertain: u64,
+    /// Both by the reference's class, with those that are wrong; absent in files of older programs.
+    #[serde(default)]
+    pub split: Split,
+    /// Rays traced per frame; null where the graph does not count them.
+    pub rays: Option<u64>,
+    /// Pixels facing the light on which method and reference disagree.
+    pub wrong: WrongCounts,
+    /// Pixels that face the light by the reference but not by the method, or the other way round.
+    pub facing_mismatch: u64,
+    /// Times of each pass, in the order in which they ran.
+    pub passes: Vec<Pass>,
+    /// Times of whole frames.
+    pub frame: FrameTimes,
+    /// Times of frames in which only the camera moved and unchanged passes were skipped; null where
+    /// nothing was.
+    pub cached: Option<Cached>,
+    /// Bytes of the graph's own materials.
+    pub memory_bytes: u64,
+    /// Bytes saved by letting materials share memory.
+    pub saved_bytes: u64,
+    /// The run's pictures, file names in the results' folder; absent with `--images none`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub images: Option<Images>,
+}
+
+/// Times of one pass.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pass {
+    /// Its name in the graph.
+    pub name: String,
+    /// Between its GPU timestamps; null where they cannot be had or trusted.
+    pub gpu_ms: Option<Spread>,
+    /// Encoding on the CPU.
+    pub cpu_ms: Spread,
+}
+
+/// Times of frames.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrameTimes {
+    /// From the first pass's begin to the last one's end; null where timestamps cannot be had or
+    /// trusted.
+    pub gpu_ms: Option<Spread>,
+    /// From the start of encoding until the GPU was done, by the CPU's clock.
+    pub wall_ms: Spread,
+}
+
+/// A frame in which unchanged passes did not run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Cached {
+    /// Its times.
+    pub frame: FrameTimes,
+    /// Names of the passes that did not run.
+    pub skipped: Vec<String>,
+}
+
+/// File names of a run's pictures.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Images {
+    /// The scene in the method's shadow.
+    pub shaded: String,
+    /// The output `visibility`.
+    pub visibility: String,
+    /// Blue where wrongly lit, red where wrongly in shadow.
+    pub error: String,
+    /// `shaded` with purple where uncertain; absent where the method calls no pixel certain or
+    /// uncertain.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uncertain: Option<String>,
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::files::json;
+    use skiagraph_reference::ClassSplit;
+
+    /// Results with every field in use: one full run, one without a map or GPU times, one
+    /// unavailable.
+    pub(crate) fn sample() -> Results {
+        let spread = |ms: f64| Spread {
+            min: ms,
+            median: ms * 1.5,
+            p95: ms * 2.0,
+        };
+        let run = |preset: &str, map_size| Run {
+            preset: preset.into(),
+            view: "main".into(),
+            viewport: [512, 256],
+            map_size,
+            params: BTreeMap::from([
+                ("slope_bias".into(), 1.5.into()),
+                ("cull".into(), "front".into()),
+            ]),
+            fingerprint: "85944171f73967e8".into(),
+            date: "2026-11-20".into(),
+            pixels: PixelCounts {
+                background: 72,
+                facing_away: 31_000,
+                facing_light: 100_000,
+                lit: 60_000,
+                shadow: 40_000,
+            },
+            band: 12,
+            measured: None,
+            unavailable: None,
+            published: Vec::new(),
+        };
+        let published = |quantity: &str, value, note: Option<&str>| Published {
+            by: "D".into(),
+            quantity: quantity.into(),
+            value,
+            source: "table 12".into(),
+            note: note.map(Into::into),
+        };
+        let measured = |name: &str, gpu: bool, rays| Measured {
+            certain: CertainCounts {
+                lit: 57_100,
+                shadow: 37_900,
+            },
+            uncertain: 5_000,
+            split: Split {
+                lit: ClassSplit {
+                    certain_right: 57_000,
+                    certain_wrong: 400,
+                    certain_wrong_outside_band: 396,
+                    uncertain: 2_600,
+                    uncertain_wrong: 1,
+                },
+                shadow: ClassSplit {
+                    certain_right: 37_500,
+                    certain_wrong: 100,
+                    certain_wrong_outside_band: 99,
+                    uncertain: 2_400,
+                    uncertain_wrong: 2,
+                },
+            },
+            rays,
+            wrong: WrongCounts {
+                lit: 102,
+                shadow: 401,
+                total: 503,
+                certain: 495,
+                in_band: 6,
+            },
+            facing_mismatch: 3,
+            passes: ["gbuffer", name]
+                .map(|name| Pass {
+                    name: name.into(),
+                    gpu_ms: gpu.then(|| spread(0.25)),
+                    cpu_ms: spread(0.01),
+                })
+                .into(),
+            frame: FrameTimes {
+                gpu_ms: gpu.then(|| spread(1.0)),
+                wall_ms: spread(2.0),
+            },
+            cached: gpu.then(|| Cached {
+                frame: FrameTimes {
+                    gpu_ms: Some(spread(0.5)),
+                    wall_ms: spread(1.0),
+                },
+                skipped: vec!["create_shadow_map".into()],
+            }),
+            memory_bytes: 12_582_912,
+            saved_bytes: 1_048_576,
+            images: gpu.then(|| Images {
+                shaded: format!("{name}-shaded.png"),
+                visibility: format!("{name}-visibility.png"),
+                error: format!("{name}-error.png"),
+                uncertain: Some(format!("{name}-uncertain.png")),
+            }),
+        };
+        Results {
+            schema: 1,
+            program: "skiagraph 0.1.0".into(),
+            adapter: Adapter {
+                name: "Some GPU".into(),
+                backend: "vulkan".into(),
+                driver: "driver 1.2".into(),
+                device_type: "Cpu".into(),
+                gpu_unavailable: None,
+            },
+            scene: Scene {
+                name: "park".into(),
+                triangles: 55_000,
+            },
+            oracle: "exact".into(),
+            frames: 10,
+            warmup: 2,
+            cached_frames: 10,
+            runs: vec![
+                Run {
+                    measured: Some(measured("create_shadow_map", true, None)),
+                    published: vec![
+                        published("lit", 60_001.0, None),
+                        published("wrong_percent", 0.5, Some("misprint: 5.0")),
+                        published("ms.trace_rays", 1.25, None),
+                    ],
+                    ..run("nsm", Some(1024))
+                },
+                Run {
+                    measured: Some(measured("trace_rays", false, Some(100_000))),
+                    ..run("rt", None)
+                },
+                Run {
+                    unavailable: Some("needs ray queries, \"not\" here".into()),
+                    ..run("rt_hw", None)
+                },
+            ],
+        }
+    }
+
+    #[test]
+    fn the_schema_is_pinned_and_reads_back() {
+        let json = json::to_text(&sample());
+        insta::assert_snapshot!(json);
+        assert_eq!(serde_json::from_str::<Results>(&json).unwrap(), sample());
+    }
+}

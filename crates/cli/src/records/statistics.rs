@@ -1,0 +1,153 @@
+//! Order statistics of times.
+
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
+
+/// Least, median and 95th percentile over frames, milliseconds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// Least.
+    pub min: f64,
+    /// Middle one, or the mean of the two in the middle.
+    pub median: f64,
+    /// The smallest sample that at least 95 % of the samples do not exceed.
+    pub p95: f64,
+}
+
+impl Spread {
+    /// Of some samples; `None` if there are none.
+    pub fn of(samples: &[Duration]) -> Option<Self> {
+        Self::of_ms(samples.iter().map(|sample| sample.as_secs_f64() * 1e3))
+    }
+
+    /// Of some samples in milliseconds; `None` if there are none.
+    pub fn of_ms(samples: impl Iterator<Item = f64>) -> Option<Self> {
+        let mut ms: Vec<f64> = samples.collect();
+        ms.sort_by(f64::total_cmp);
+        let last = ms.len().checked_sub(1)?;
+        let rank = (ms.len() as f64 * 0.95).ceil() as usize;
+        Some(Self {
+            min: ms[0],
+            median: (ms[last / 2] + ms[ms.len() / 2]) * 0.5,
+            p95: ms[rank.clamp(1, ms.len()) - 1],
+        })
+    }
+
+    /// Of samples of which any may be missing; `None` if one is.
+    pub fn of_all(samples: &[Option<Duration>]) -> Option<Self> {
+        Self::of(&all(samples)?)
+    }
+}
+
+fn all(samples: &[Option<Duration>]) -> Option<Vec<Duration>> {
+    samples.iter().copied().collect()
+}
+
+/// Times in milliseconds, one per frame, and their order statistics.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Series {
+    /// Least.
+    pub min: f64,
+    /// Middle one, or the mean of the two in the middle.
+    pub median: f64,
+    /// The smallest sample that at least 95 % of the samples do not exceed.
+    pub p95: f64,
+    /// Greatest.
+    pub max: f64,
+    /// One per frame, in the order of the frames.
+    pub samples: Vec<f64>,
+}
+
+impl Series {
+    /// Of some milliseconds; `None` if there are none.
+    pub fn new(samples: Vec<f64>) -> Option<Self> {
+        let Spread { min, median, p95 } = Spread::of_ms(samples.iter().copied())?;
+        Some(Self {
+            min,
+            median,
+            p95,
+            max: samples.iter().copied().reduce(f64::max)?,
+            samples,
+        })
+    }
+
+    /// Of some samples; `None` if there are none.
+    pub fn of(times: &[Duration]) -> Option<Self> {
+        // From whole nanoseconds, so that a sample has no more than six digits behind the point.
+        let ms = times.iter().map(|time| time.as_nanos() as f64 / 1e6);
+        Self::new(ms.collect())
+    }
+
+    /// Of samples of which any may be missing; `None` if one is.
+    pub fn of_all(times: &[Option<Duration>]) -> Option<Self> {
+        Self::of(&all(times)?)
+    }
+
+    /// First and third quartile, linear between the samples beside them.
+    pub fn quartiles(&self) -> [f64; 2] {
+        let mut sorted = self.samples.clone();
+        sorted.sort_by(f64::total_cmp);
+        [0.25, 0.75].map(|share| {
+            let place = share * sorted.len().saturating_sub(1) as f64;
+            let at = |index: f64| sorted.get(index as usize).copied().unwrap_or(f64::NAN);
+            let (below, above) = (at(place.floor()), at(place.ceil()));
+            below + (above - below) * place.fract()
+        })
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    pub(crate) fn series(samples: &[f64]) -> Series {
+        Series::new(samples.to_vec()).unwrap()
+    }
+
+    #[test]
+    fn spreads_are_order_statistics() {
+        let ms = |list: &[u64]| {
+            Spread::of(
+                &list
+                    .iter()
+                    .map(|&ms| Duration::from_millis(ms))
+                    .collect::<Vec<_>>(),
+            )
+        };
+        assert_eq!(ms(&[]), None);
+        assert_eq!(
+            ms(&[7]),
+            Some(Spread {
+                min: 7.0,
+                median: 7.0,
+                p95: 7.0
+            })
+        );
+        assert_eq!(
+            ms(&[4, 1, 2, 9]),
+            Some(Spread {
+                min: 1.0,
+                median: 3.0,
+                p95: 9.0
+            })
+        );
+        let hundred: Vec<u64> = (1..=100).rev().collect();
+        assert_eq!(
+            ms(&hundred),
+            Some(Spread {
+                min: 1.0,
+                median: 50.5,
+                p95: 95.0
+            })
+        );
+        assert_eq!(Spread::of_all(&[Some(Duration::ZERO), None]), None);
+    }
+
+    #[test]
+    fn quartiles_lie_between_the_samples_beside_them() {
+        let quartiles = |samples: &[f64]| series(samples).quartiles();
+        assert_eq!(quartiles(&[5.0, 1.0, 2.0, 4.0, 3.0]), [2.0, 4.0]);
+        assert_eq!(quartiles(&[1.0, 2.0]), [1.25, 1.75]);
+        assert_eq!(quartiles(&[7.0]), [7.0, 7.0]);
+    }
+}

@@ -1,0 +1,234 @@
+//! The columns of a comparison: for the terminal, for documents and for results.csv. Each figure
+//! is defined once; a table says in which order it shows which figures, and under which heads.
+
+use crate::records::results::{Measured, Results, Run};
+use crate::records::statistics::Spread;
+use crate::wording::{ms, thousands};
+use Source::{Always, Measure};
+use Value::{Count, Share, Text, Time, Unknown};
+
+/// A name, and where the figure of that name comes from.
+type Figure = (&'static str, Source);
+
+enum Source {
+    /// Known whatever came of the run.
+    Always(fn(&Results, &Run) -> Value),
+    /// Measured, if the method could run.
+    Measure(fn(&Measured) -> Value),
+}
+
+/// What stands in a cell.
+enum Value {
+    Unknown,
+    Text(String),
+    Count(u64),
+    /// A count of pixels; tables show it as a share of those that face the light.
+    Share(u64),
+    /// Milliseconds.
+    Time(f64),
+}
+
+/// The figures of results.csv in its order. Scripts rely on it: new ones stand at the end.
+#[rustfmt::skip] // A line each.
+const CSV: &[Figure] = &[
+    ("adapter", Always(|results, _| text(&results.adapter.name))),
+    ("scene", Always(|results, _| text(&results.scene.name))),
+    ("triangles", Always(|results, _| Count(results.scene.triangles))),
+    ("oracle", Always(|results, _| text(&results.oracle))),
+    ("preset", Always(|_, run| text(&run.preset))),
+    ("view", Always(|_, run| text(&run.view))),
+    ("width", Always(|_, run| Count(run.viewport[0].into()))),
+    ("height", Always(|_, run| Count(run.viewport[1].into()))),
+    (MAP_SIZE, Always(|_, run| run.map_size.map_or(Unknown, |size| text(&size.to_string())))),
+    ("background", Always(|_, run| Count(run.pixels.background))),
+    ("facing_away", Always(|_, run| Count(run.pixels.facing_away))),
+    ("facing_light", Always(|_, run| Count(run.pixels.facing_light))),
+    ("lit", Always(|_, run| Count(run.pixels.lit))),
+    ("shadow", Always(|_, run| Count(run.pixels.shadow))),
+    ("band", Always(|_, run| Count(run.band))),
+    ("certain_lit", Measure(|of| Count(of.certain.lit))),
+    ("certain_shadow", Measure(|of| Count(of.certain.shadow))),
+    ("uncertain", Measure(|of| Share(of.uncertain))),
+    ("rays", Measure(|of| of.rays.map_or(Unknown, Count))),
+    ("wrong_lit", Measure(|of| Count(of.wrong.lit))),
+    ("wrong_shadow", Measure(|of| Count(of.wrong.shadow))),
+    ("wrong_total", Measure(|of| Share(of.wrong.total))),
+    ("wrong_certain", Measure(|of| Count(of.wrong.certain))),
+    ("wrong_in_band", Measure(|of| Count(of.wrong.in_band))),
+    ("facing_mismatch", Measure(|of| Count(of.facing_mismatch))),
+    ("gpu_ms", Measure(|of| median(of.frame.gpu_ms))),
+    ("wall_ms", Measure(|of| median(Some(of.frame.wall_ms)))),
+    ("memory_bytes", Measure(|of| Count(of.memory_bytes))),
+    ("saved_bytes", Measure(|of| Count(of.saved_bytes))),
+    ("unavailable", Always(|_, run| run.unavailable.as_deref().map_or(Unknown, text))),
+    ("cached_gpu_ms", Measure(|of| median(of.cached.as_ref().and_then(|of| of.frame.gpu_ms)))),
+    ("lit_certain_right", Measure(|of| Count(of.split.lit.certain_right))),
+    ("lit_certain_wrong", Measure(|of| Count(of.split.lit.certain_wrong))),
+    ("lit_certain_wrong_outside_band",
+        Measure(|of| Count(of.split.lit.certain_wrong_outside_band))),
+    ("lit_uncertain", Measure(|of| Count(of.split.lit.uncertain))),
+    ("lit_uncertain_wrong", Measure(|of| Count(of.split.lit.uncertain_wrong))),
+    ("shadow_certain_right", Measure(|of| Count(of.split.shadow.certain_right))),
+    ("shadow_certain_wrong", Measure(|of| Count(of.split.shadow.certain_wrong))),
+    ("shadow_certain_wrong_outside_band",
+        Measure(|of| Count(of.split.shadow.certain_wrong_outside_band))),
+    ("shadow_uncertain", Measure(|of| Count(of.split.shadow.uncertain))),
+    ("shadow_uncertain_wrong", Measure(|of| Count(of.split.shadow.uncertain_wrong))),
+];
+
+/// Figures that only tables show.
+#[rustfmt::skip]
+const IN_TABLES: &[Figure] = &[
+    ("certain_right", Measure(|of| Share(of.split.certain_right()))),
+    ("certain_wrong", Measure(|of| Share(of.split.certain_wrong()))),
+    ("wrong_lit_shadow", Measure(|of| {
+        Text(format!("{} / {}", thousands(of.wrong.lit), thousands(of.wrong.shadow)))
+    })),
+];
+
+/// A column: its figure, its head, and what published figures of it are called, if there are any.
+type Entry = (&'static str, &'static str, &'static str);
+
+/// The terminal's table.
+const TERMINAL: [Entry; 11] = [
+    ("preset", "method", ""),
+    (MAP_SIZE, "map", ""),
+    ("gpu_ms", "GPU ms", ""),
+    ("wall_ms", "wall ms", ""),
+    ("wrong_total", "wrong", ""),
+    ("wrong_lit", "wrong lit", ""),
+    ("wrong_shadow", "wrong shadow", ""),
+    ("wrong_in_band", "in band", ""),
+    ("uncertain", "uncertain", ""),
+    ("certain_wrong", "certain wrong", ""),
+    ("rays", "rays", ""),
+];
+
+/// The column that only stands in the terminal's table if there are maps.
+const MAP_SIZE: &str = "map_size";
+
+/// A document's table, but for the times of steps, which stand before the last column.
+const DOCUMENT: [Entry; 9] = [
+    ("preset", "method", ""),
+    (MAP_SIZE, "map", ""),
+    ("certain_right", "certain right %", "certain_right_percent"),
+    ("uncertain", "uncertain %", "uncertain_percent"),
+    ("certain_wrong", "certain wrong %", "certain_wrong_percent"),
+    ("wrong_total", "wrong %", "wrong_percent"),
+    ("wrong_lit_shadow", "wrong lit / shadow", ""),
+    ("rays", "rays", "rays"),
+    ("gpu_ms", "frame ms", "ms.frame"),
+];
+
+/// The presets' steps and their heads; other steps stand under their own names.
+pub const STEPS: [(&str, &str); 5] = [
+    ("create_shadow_map", "map"),
+    ("detect_uncertain", "detect"),
+    ("fill_rays", "fill"),
+    ("trace_rays", "trace"),
+    ("fix_pixels", "fix"),
+];
+
+fn text(text: &str) -> Value {
+    Text(text.to_owned())
+}
+
+fn median(times: Option<Spread>) -> Value {
+    times.map_or(Unknown, |spread| Time(spread.median))
+}
+
+/// A column of a table.
+pub struct Column {
+    /// What stands above it.
+    pub head: &'static str,
+    /// What published figures of it are called; empty where there are none.
+    pub quantity: &'static str,
+    source: &'static Source,
+}
+
+impl Column {
+    fn of((name, head, quantity): Entry) -> Option<Self> {
+        let mut figures = CSV.iter().chain(IN_TABLES);
+        let (_, source) = figures.find(|(known, _)| *known == name)?;
+        Some(Self {
+            head,
+            quantity,
+            source,
+        })
+    }
+
+    /// Whether it is empty where the method could not run.
+    pub fn is_measured(&self) -> bool {
+        matches!(self.source, Measure(_))
+    }
+
+    fn value(&self, results: &Results, run: &Run) -> Value {
+        match self.source {
+            Always(value) => value(results, run),
+            Measure(value) => run.measured.as_ref().map_or(Unknown, value),
+        }
+    }
+
+    /// Its cell in a table, with shares as `share` writes them of a count and a whole.
+    pub fn cell(&self, results: &Results, run: &Run, share: fn(u64, u64) -> String) -> String {
+        match self.value(results, run) {
+            Unknown => "–".to_owned(),
+            Text(text) => text,
+            Count(count) => thousands(count),
+            Share(count) => share(count, run.pixels.facing_light),
+            Time(time) => ms(time),
+        }
+    }
+
+    /// Its cell in results.csv; empty for what is not known.
+    pub fn csv_cell(&self, results: &Results, run: &Run) -> String {
+        match self.value(results, run) {
+            Unknown => String::new(),
+            Text(text) => text,
+            Count(count) | Share(count) => count.to_string(),
+            Time(time) => format!("{time:.6}"),
+        }
+    }
+}
+
+/// The columns of results.csv.
+pub fn csv() -> Vec<Column> {
+    let entries = CSV.iter().map(|(name, _)| (*name, *name, ""));
+    entries.filter_map(Column::of).collect()
+}
+
+/// The columns of the terminal's table; that of map sizes only if there are any.
+pub fn terminal(has_maps: bool) -> Vec<Column> {
+    let shown = |(name, ..): &Entry| has_maps || *name != MAP_SIZE;
+    let entries = TERMINAL.into_iter().filter(shown);
+    entries.filter_map(Column::of).collect()
+}
+
+/// The columns of a document's table but for the times of steps, which stand before the last.
+pub fn document() -> Vec<Column> {
+    DOCUMENT.into_iter().filter_map(Column::of).collect()
+}
+
+/// What can be published about a run and stand beside its figures.
+pub fn quantities() -> Vec<String> {
+    let of_columns = DOCUMENT.iter().map(|(.., quantity)| quantity.to_string());
+    let of_steps = STEPS.iter().map(|(step, _)| format!("ms.{step}"));
+    let all = of_columns.chain(of_steps);
+    all.filter(|quantity| !quantity.is_empty()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_column_of_a_table_has_its_figure() {
+        assert_eq!(csv().len(), CSV.len());
+        assert_eq!(terminal(true).len(), TERMINAL.len());
+        assert_eq!(terminal(false).len(), TERMINAL.len() - 1);
+        assert_eq!(document().len(), DOCUMENT.len());
+        let mut names: Vec<_> = CSV.iter().chain(IN_TABLES).map(|(name, _)| name).collect();
+        names.sort();
+        assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");
+    }
+}

@@ -1,0 +1,329 @@
+//! Results as a document: a header, then for every view and viewport one table of errors and of the
+//! times of steps.
+
+use crate::args::values::PublishedFile;
+use crate::records::results::{Measured, Results, Run};
+use crate::reporting::columns::{self, Column, STEPS};
+use crate::reporting::notes::{band_warning, times_missing};
+use crate::wording::{command_line, frames, ms, share, thousands};
+use std::{collections::BTreeSet, env};
+
+/// The step that a pass belongs to: its name up to the first dot, so that `create_shadow_map.outer`
+/// and `create_shadow_map.inner` are one.
+fn step(pass: &str) -> &str {
+    pass.split_once('.').map_or(pass, |(step, _)| step)
+}
+
+/// What all tables have in common. `today` is the date of the runs that are still to be measured,
+/// if there are any.
+pub fn header(results: &Results, today: Option<&str>, published: &[PublishedFile]) -> String {
+    let dates = results.runs.iter().map(|run| run.date.as_str());
+    let dates: BTreeSet<&str> = dates.chain(today).filter(|date| !date.is_empty()).collect();
+    let date = match (dates.first(), dates.last()) {
+        (Some(first), Some(last)) if first != last => format!("{first} to {last}"),
+        (Some(first), _) => (*first).to_owned(),
+        _ => "unknown".to_owned(),
+    };
+    let heads: Vec<String> = STEPS
+        .iter()
+        .map(|(step, head)| format!("*{head}* is the step `{step}`"))
+        .collect();
+    let mut lines = vec![
+        format!("adapter: {}", results.adapter),
+        format!("date: {date} (UTC)"),
+        format!(
+            "times: on the GPU, medians of {} after {} to warm up; {}; *frame* is from the first \
+             pass's begin to the last one's end",
+            frames(results.frames),
+            results.warmup,
+            heads.join(", ")
+        ),
+        format!("oracle: {}", results.oracle),
+        "shares are of the pixels that face the light (PFL), in-band pixels included; *wrong* is \
+         the final picture"
+            .into(),
+    ];
+    lines.extend(published.iter().map(|PublishedFile { label, file }| {
+        let file = file.display().to_string().replace('\\', "/");
+        format!("in parentheses: {label}, published figures of `{file}`")
+    }));
+    if let Some(reason) = &results.adapter.gpu_unavailable {
+        lines.push(format!("no GPU times: {reason}"));
+    }
+    format!(
+        "## {}\n\n    {}\n\n{}",
+        results.scene,
+        command_line(env::args_os()),
+        list(&lines)
+    )
+}
+
+/// The heading of a view.
+pub fn view(name: &str) -> String {
+    format!("\n### {name}\n")
+}
+
+/// The runs of one view and viewport: the reference's pixels, a table, and what cannot stand in it.
+pub fn viewport(results: &Results, runs: &[Run]) -> String {
+    let Some(first) = runs.first() else {
+        return String::new();
+    };
+    let mut footnotes = Footnotes::default();
+    let mut text = format!("\n{}\n", pixels(first, &mut footnotes));
+    let measured: Vec<(&Run, &Measured)> = runs
+        .iter()
+        .filter_map(|run| Some((run, run.measured.as_ref()?)))
+        .collect();
+    if !measured.is_empty() {
+        let (columns, steps) = (columns::document(), steps(&measured));
+        text.push('\n');
+        text.push_str(&header_row(&columns, &steps));
+        for of in &measured {
+            let cells = cells(results, *of, &columns, &steps, &mut footnotes);
+            text.push_str(&line(&cells));
+        }
+    }
+    let mut notes: Vec<String> = band_warning(first).into_iter().collect();
+    if results.adapter.gpu_unavailable.is_none() {
+        notes.extend(runs.iter().filter_map(times_missing));
+    }
+    notes.extend(unavailable(runs));
+    notes.extend(footnotes.notes());
+    if !notes.is_empty() {
+        text += &format!("\n{}", list(&notes));
+    }
+    text
+}
+
+fn pixels<'a>(run: &'a Run, footnotes: &mut Footnotes<'a>) -> String {
+    let [width, height] = run.viewport;
+    let counts = &run.pixels;
+    let mut count = |count, quantity| footnotes.with_published(thousands(count), run, quantity);
+    let facing_light = count(counts.facing_light, "facing_light");
+    let (lit, shadow) = (count(counts.lit, "lit"), count(counts.shadow, "shadow"));
+    let facing_away = count(counts.facing_away, "facing_away");
+    format!(
+        "**{width}×{height}**: PFL {facing_light} = lit {lit} + shadow {shadow}; PnFL \
+         {facing_away}; background {}; in the band {} ({} % of PFL)",
+        thousands(counts.background),
+        thousands(run.band),
+        share(run.band, counts.facing_light),
+    )
+}
+
+/// The steps of all runs in the order of their first use, then those that only others have
+/// published.
+fn steps<'a>(runs: &[(&'a Run, &'a Measured)]) -> Vec<&'a str> {
+    let passes = runs.iter().flat_map(|(_, measured)| &measured.passes);
+    let published = runs.iter().flat_map(|(run, _)| &run.published);
+    let published = published.filter_map(|figure| figure.quantity.strip_prefix("ms."));
+    let mut steps = Vec::new();
+    for step in passes.map(|pass| step(&pass.name)).chain(published) {
+        if !steps.contains(&step) && step != "frame" {
+            steps.push(step);
+        }
+    }
+    steps
+}
+
+fn header_row(columns: &[Column], steps: &[&str]) -> String {
+    let head = |step: &&str| {
+        let short = STEPS.iter().find(|(name, _)| name == step);
+        format!("{} ms", short.map_or(*step, |(_, head)| head))
+    };
+    let heads = columns.iter().map(|column| column.head.to_owned());
+    let row = with_steps(heads, steps.iter().map(head));
+    format!("{}|---{}|\n", line(&row), "|---:".repeat(row.len() - 1))
+}
+
+/// A row with what belongs to the steps before its last cell.
+fn with_steps<T>(row: impl Iterator<Item = T>, steps: impl Iterator<Item = T>) -> Vec<T> {
+    let mut row: Vec<T> = row.collect();
+    let at = row.len().saturating_sub(1);
+    row.splice(at..at, steps);
+    row
+}
+
+fn cells<'a>(
+    results: &Results,
+    (run, measured): (&'a Run, &Measured),
+    columns: &[Column],
+    steps: &[&str],
+    footnotes: &mut Footnotes<'a>,
+) -> Vec<String> {
+    let figures = columns.iter().map(|column| {
+        let ours = column.cell(results, run, share);
+        (ours, column.quantity.to_owned())
+    });
+    let times = steps.iter().map(|step| {
+        let ours = step_ms(measured, step).map_or_else(|| "–".to_owned(), ms);
+        (ours, format!("ms.{step}"))
+    });
+    let cells = with_steps(figures, times).into_iter();
+    cells
+        .map(|(ours, quantity)| footnotes.with_published(ours, run, &quantity))
+        .collect()
+}
+
+/// Footnotes of published figures, each once per table.
+#[derive(Default)]
+struct Footnotes<'a>(Vec<(&'a str, &'a str, &'a str)>);
+
+impl<'a> Footnotes<'a> {
+    /// Our figure with the published ones in parentheses.
+    fn with_published(&mut self, mut ours: String, run: &'a Run, quantity: &str) -> String {
+        let figures = run.published.iter();
+        for figure in figures.filter(|figure| figure.quantity == quantity) {
+            let value = published(figure.value, quantity);
+            let mark = figure.note.as_deref().map_or_else(String::new, |note| {
+                let note = (figure.by.as_str(), figure.source.as_str(), note);
+                let known = self.0.iter().position(|known| *known == note);
+                let index = known.unwrap_or_else(|| {
+                    self.0.push(note);
+                    self.0.len() - 1
+                });
+                superscript(index + 1)
+            });
+            ours += &format!(" ({} {value}{mark})", figure.by);
+        }
+        ours
+    }
+
+    fn notes(self) -> impl Iterator<Item = String> {
+        let notes = self.0.into_iter().enumerate();
+        notes.map(|(index, (by, source, note))| {
+            format!("{} {by}, {source}: {note}", superscript(index + 1))
+        })
+    }
+}
+
+/// A published figure as it is usually printed: counts in thousands, shares with two decimals at
+/// least.
+fn published(value: f64, quantity: &str) -> String {
+    let text = value.to_string();
+    let decimals = text
+        .split_once('.')
+        .map_or(0, |(_, decimals)| decimals.len());
+    match quantity {
+        _ if quantity.starts_with("ms.") => text,
+        _ if quantity.ends_with("_percent") => format!("{value:.*}", decimals.max(2)),
+        _ => thousands(value as u64),
+    }
+}
+
+/// A number in small raised digits.
+fn superscript(number: usize) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let digits = number.to_string().into_bytes().into_iter();
+    digits
+        .map(|digit| DIGITS[usize::from(digit - b'0')])
+        .collect()
+}
+
+/// The sum of the medians of a step's passes; `None` if it has none, or one without a GPU time.
+fn step_ms(measured: &Measured, name: &str) -> Option<f64> {
+    let passes = measured.passes.iter();
+    let medians: Vec<f64> = passes
+        .filter(|pass| step(&pass.name) == name)
+        .map(|pass| Some(pass.gpu_ms?.median))
+        .collect::<Option<_>>()?;
+    (!medians.is_empty()).then(|| medians.iter().sum())
+}
+
+/// Which methods could not run, each reason once.
+fn unavailable(runs: &[Run]) -> Vec<String> {
+    let mut reasons: Vec<(&str, &str, Vec<String>)> = Vec::new();
+    for run in runs {
+        let Some(reason) = &run.unavailable else {
+            continue;
+        };
+        let maps = run.map_size.iter().map(u32::to_string);
+        match reasons
+            .iter_mut()
+            .find(|(preset, known, _)| *preset == run.preset && known == reason)
+        {
+            Some((.., known)) => known.extend(maps),
+            None => reasons.push((&run.preset, reason, maps.collect())),
+        }
+    }
+    let text = |(preset, reason, maps): (&str, &str, Vec<String>)| {
+        let maps = match maps.is_empty() {
+            true => String::new(),
+            false => format!(", map {},", maps.join(", ")),
+        };
+        format!("{preset}{maps} is unavailable: {reason}")
+    };
+    reasons.into_iter().map(text).collect()
+}
+
+fn line(cells: &[String]) -> String {
+    let cells: Vec<String> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
+    format!("| {} |\n", cells.join(" | "))
+}
+
+fn list(lines: &[String]) -> String {
+    lines.iter().map(|line| format!("- {line}\n")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::records::results::tests::sample;
+
+    #[test]
+    fn a_document_has_a_table_per_viewport() {
+        let results = sample();
+        let beside = ["D:docs/d.csv".parse().unwrap()];
+        let header = header(&results, None, &beside);
+        // The test runner's own arguments.
+        let command = command_line(env::args_os());
+        let text = [header, view("main"), viewport(&results, &results.runs)].concat();
+        insta::assert_snapshot!(text.replace(&command, "COMMAND"));
+    }
+
+    #[test]
+    fn dates_are_a_day_or_a_span() {
+        let mut results = sample();
+        assert!(header(&results, None, &[]).contains("date: 2026-11-20 (UTC)"));
+        let both = header(&results, Some("2026-11-21"), &[]);
+        assert!(both.contains("date: 2026-11-20 to 2026-11-21"), "{both}");
+        results.runs.clear();
+        assert!(header(&results, Some("2026-11-21"), &[]).contains("date: 2026-11-21"));
+    }
+
+    #[test]
+    fn a_step_is_the_sum_of_its_passes_or_unknown() {
+        let mut run = sample().runs.remove(0);
+        let measured = run.measured.as_mut().unwrap();
+        let mut more = measured.passes[0].clone();
+        more.name = "gbuffer.surface".into();
+        measured.passes.push(more);
+        assert_eq!(step_ms(measured, "gbuffer"), Some(0.75));
+        assert_eq!(step_ms(measured, "create_shadow_map"), Some(0.375));
+        measured.passes[0].gpu_ms = None;
+        assert_eq!(step_ms(measured, "gbuffer"), None);
+        assert_eq!(step_ms(measured, "trace_rays"), None);
+    }
+
+    #[test]
+    fn a_reason_stands_once_for_all_maps() {
+        let mut runs = vec![sample().runs.remove(2); 2];
+        runs[0].map_size = Some(512);
+        runs[1].map_size = Some(1024);
+        let reason = "needs ray queries, \"not\" here";
+        let expected = format!("rt_hw, map 512, 1024, is unavailable: {reason}");
+        assert_eq!(unavailable(&runs), [expected]);
+    }
+
+    #[test]
+    fn published_figures_keep_their_decimals() {
+        let texts = [
+            published(5.3, "wrong_percent"),
+            published(0.125, "wrong_percent"),
+            published(12.5, "ms.frame"),
+            published(829_652.0, "facing_light"),
+            superscript(120),
+        ];
+        assert_eq!(texts, ["5.30", "0.125", "12.5", "829,652", "¹²⁰"]);
+    }
+}

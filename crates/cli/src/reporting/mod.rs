@@ -1,0 +1,15 @@
+//! What was measured, as people and spreadsheets read it: tables, documents, CSV, traces. No
+//! figure is worked out here that `records` does not hold.
+
+pub mod columns;
+pub mod markdown;
+pub mod notes;
+pub mod profile_csv;
+pub mod profile_text;
+pub mod published;
+pub mod published_row;
+pub mod results_csv;
+pub mod results_table;
+pub mod stress_matrix;
+pub mod table;
+pub mod trace;

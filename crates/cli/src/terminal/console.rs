@@ -1,0 +1,68 @@
+//! Standard output, standard error and its colours.
+
+use crate::error::{CliError, advice, io_advice};
+use skiagraph_gpu::ExecuteError;
+use std::{
+    error::Error,
+    io::{self, IsTerminal, Write},
+    process::ExitCode,
+};
+
+/// Whether standard error takes colour: a terminal, and <https://no-color.org> not asked for.
+pub fn colour() -> bool {
+    io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+}
+
+/// `text` in an ANSI style where standard error takes it.
+fn style(text: &str, code: &str) -> String {
+    if colour() {
+        format!("\u{1b}[{code}m{text}\u{1b}[0m")
+    } else {
+        text.to_string()
+    }
+}
+
+/// A line on standard error that is not an error.
+pub fn note(text: &str) {
+    let _ = writeln!(io::stderr(), "{text}");
+}
+
+/// Prints on standard output.
+pub fn print(text: &str) -> Result<(), CliError> {
+    let mut stdout = io::stdout().lock();
+    stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush())
+        .map_err(CliError::Stdout)
+}
+
+/// Prints an error and its chain of causes on standard error and returns the exit code.
+pub fn report(error: &CliError) -> ExitCode {
+    let code = error.exit_code();
+    if code != 0 {
+        let mut text = match error {
+            CliError::Diagnostics { .. } | CliError::Interrupted { .. } => error.to_string(),
+            _ => format!("{} {error}", style("error:", "1;31")),
+        };
+        let mut line = |line: &str| text += &format!("\n  {}", line.replace('\n', "\n  "));
+        let mut cause = error.source();
+        while let Some(error) = cause {
+            line(&format!("because: {error}"));
+            if let Some(way_out) = error.downcast_ref().and_then(io_advice) {
+                line(way_out);
+            }
+            cause = error.source();
+        }
+        if let CliError::Gpu { source, .. } = error {
+            if let Some(way_out) = advice(source.as_ref()) {
+                line(way_out);
+            }
+            if let Some(ExecuteError::OutOfMemory { table, .. }) = source.downcast_ref() {
+                line(table);
+            }
+        }
+        // With standard error closed there is nobody left to tell.
+        note(&text);
+    }
+    ExitCode::from(code)
+}

@@ -1,0 +1,34 @@
+//! Ctrl-C: the first one asks for a clean stop, the second one stops at once.
+
+use crate::error::CliError;
+use crate::terminal::console::note;
+use std::{
+    process,
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+static RAISED: AtomicBool = AtomicBool::new(false);
+
+/// From here on Ctrl-C raises [`flag`].
+///
+/// # Errors
+/// The operating system refused the handler.
+pub fn install() -> Result<(), CliError> {
+    ctrlc::set_handler(|| {
+        if RAISED.swap(true, Ordering::Relaxed) {
+            process::exit(130);
+        }
+        note("\nstopping (once more to stop at once)");
+    })
+    .map_err(|error| CliError::Input(format!("cannot listen for Ctrl-C: {error}")))
+}
+
+/// Whether somebody wants the program to stop.
+pub fn flag() -> &'static AtomicBool {
+    &RAISED
+}
+
+/// Whether somebody wants the program to stop.
+pub fn raised() -> bool {
+    RAISED.load(Ordering::Relaxed)
+}

@@ -1,0 +1,159 @@
+//! Numbers, suggestions and command lines in words.
+
+use std::ffi::OsString;
+
+/// Three significant digits or milliseconds to the microsecond, whichever is shorter.
+pub fn ms(ms: f64) -> String {
+    match ms {
+        _ if ms >= 99.95 => format!("{ms:.0}"),
+        _ if ms >= 9.995 => format!("{ms:.1}"),
+        _ if ms >= 0.9995 => format!("{ms:.2}"),
+        _ => format!("{ms:.3}"),
+    }
+}
+
+/// A share in percent; a count that is not zero never shows as zero.
+pub fn percent(count: u64, whole: u64) -> String {
+    let share = count as f64 / whole as f64 * 100.0;
+    match (count, whole) {
+        (_, 0) => "–".into(),
+        (0, _) => "0 %".into(),
+        _ if share < 0.001 => "<0.001 %".into(),
+        _ => format!("{share:.3} %"),
+    }
+}
+
+/// A share in percent without its sign, as documents have it.
+pub fn share(count: u64, whole: u64) -> String {
+    let share = count as f64 / whole as f64 * 100.0;
+    match (count, whole) {
+        (_, 0) => "–".into(),
+        (0, _) => "0".into(),
+        _ if share < 0.001 => "<0.001".into(),
+        _ if share < 1.0 => format!("{share:.3}"),
+        _ => format!("{share:.2}"),
+    }
+}
+
+/// 1234567 as 1,234,567.
+pub fn thousands(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A number of bytes with a binary prefix.
+pub fn bytes(bytes: u64) -> String {
+    match bytes {
+        0..1024 => format!("{bytes} bytes"),
+        1024..1_048_576 => format!("{:.1} KiB", bytes as f64 / 1024.0),
+        1_048_576..1_073_741_824 => format!("{:.1} MiB", bytes as f64 / 1_048_576.0),
+        _ => format!("{:.2} GiB", bytes as f64 / 1_073_741_824.0),
+    }
+}
+
+/// So many things: `1 frame`, `2 frames`.
+pub fn plural(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// So many frames, in words.
+pub fn frames(count: u32) -> String {
+    plural(count as usize, "frame")
+}
+
+/// Width and height in pixels: `512x256`.
+pub fn size([width, height]: [u32; 2]) -> String {
+    format!("{width}x{height}")
+}
+
+/// The name most like `wanted`, if one is like it at all.
+pub fn closest<'a>(wanted: &str, names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    names
+        .map(|name| (strsim::damerau_levenshtein(wanted, name), name))
+        // A third of the letters wrong is a misspelling, more is another word.
+        .filter(|(distance, name)| *distance <= wanted.len().max(name.len()).div_ceil(3))
+        .min()
+        .map(|(_, name)| name)
+}
+
+/// What goes behind a message about a name that is not there: the [`closest`] one, if any.
+pub fn did_you_mean<'a>(wanted: &str, names: impl Iterator<Item = &'a str>) -> String {
+    let hint = |name| format!("; did you mean `{name}`?");
+    closest(wanted, names).map_or(String::new(), hint)
+}
+
+/// The command line as it was typed, but for the program's path.
+pub fn command_line(arguments: impl Iterator<Item = OsString>) -> String {
+    let quoted = |argument: OsString| {
+        let text = argument.to_string_lossy().into_owned();
+        let is_plain = |c: char| c.is_alphanumeric() || "-_=.,:/\\@+".contains(c);
+        match text.chars().all(is_plain) && !text.is_empty() {
+            true => text,
+            false => format!("'{}'", text.replace('\'', r"'\''")),
+        }
+    };
+    let words = arguments.skip(1).map(quoted);
+    let words: Vec<String> = ["skiagraph".into()].into_iter().chain(words).collect();
+    words.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_stay_readable_over_ten_orders_of_magnitude() {
+        assert_eq!(
+            [0.0, 0.00049, 1.234, 12.34, 123.4, 99999.0].map(ms),
+            ["0.000", "0.000", "1.23", "12.3", "123", "99999"]
+        );
+        assert_eq!(
+            [0, 999, 1000, 1_234_567].map(thousands),
+            ["0", "999", "1,000", "1,234,567"]
+        );
+        assert_eq!(
+            [512, 1536, 3 << 20].map(bytes),
+            ["512 bytes", "1.5 KiB", "3.0 MiB"]
+        );
+        assert_eq!(
+            [(0, 9), (1, 1_000_000), (1, 3), (0, 0)].map(|(n, d)| percent(n, d)),
+            ["0 %", "<0.001 %", "33.333 %", "–"]
+        );
+    }
+
+    #[test]
+    fn shares_keep_what_is_small() {
+        let shares = [(0, 9), (1, 1_000_000), (1, 1000), (1, 3), (0, 0)];
+        let texts = shares.map(|(count, whole)| share(count, whole));
+        assert_eq!(texts, ["0", "<0.001", "0.100", "33.33", "–"]);
+    }
+
+    #[test]
+    fn only_misspellings_get_a_suggestion() {
+        let names = ["rt", "nsm", "crsm", "certified"];
+        assert_eq!(closest("nms", names.into_iter()), Some("nsm"));
+        assert_eq!(closest("certifed", names.into_iter()), Some("certified"));
+        assert_eq!(closest("rtt", names.into_iter()), Some("rt"));
+        assert_eq!(closest("photon_map", names.into_iter()), None);
+    }
+
+    #[test]
+    fn a_command_line_can_be_typed_again() {
+        let words = [
+            "/some/where/skiagraph.exe",
+            "compare",
+            "my method.ron",
+            "--set",
+            "a=1",
+        ];
+        let text = command_line(words.into_iter().map(OsString::from));
+        assert_eq!(text, "skiagraph compare 'my method.ron' --set a=1");
+    }
+}

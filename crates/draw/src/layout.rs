@@ -1,0 +1,222 @@
+//! The grid of the chart: rows, columns, and how far apart they stand.
+
+use crate::{
+    chart::{Arc, Area, BESIDE, COLUMN, Chart, Column, MARGIN, Row, SLANT, numbers},
+    drawing::{Drawing, Edge, Material, Pass},
+    legend,
+    text::{self, SMALL},
+    words::{self, Label, MOST},
+};
+use skiagraph_graph::text::cut;
+use std::{
+    cmp::Reverse,
+    collections::{HashMap, HashSet},
+};
+
+const ROW: f64 = 26.0;
+const LINE: f64 = 14.0;
+/// Room between the last head and the first row.
+const NECK: f64 = 16.0;
+/// Top of the legend: heading and summary stand above.
+const LEGEND: f64 = 66.0;
+
+impl<'a> Chart<'a> {
+    pub fn new(drawing: &'a Drawing) -> Self {
+        let (rows, live) = rows(drawing);
+        let mut chart = Self {
+            title: &drawing.title,
+            summary: words::summary(drawing),
+            arcs: arcs(drawing, &rows[..live]),
+            rows,
+            live,
+            columns: columns(drawing),
+            ..Self::default()
+        };
+        chart.mark(&drawing.accesses);
+        chart.measure(drawing);
+        chart.place_rows();
+        chart.place_bars();
+        chart.reach();
+        chart.name_beginnings();
+        chart.group();
+        chart
+    }
+
+    /// Where names, lanes and columns begin, and how high the heads are.
+    fn measure(&mut self, drawing: &Drawing) {
+        let rows = &self.rows;
+        let number = text::width(&self.live.to_string(), SMALL);
+        self.spine = MARGIN + 8.0 + text::widest(self.arcs.iter().map(|arc| arc.swing));
+        self.names = self.spine + 8.0 + number + 6.0;
+        self.abouts = self.names + text::widest(rows.iter().map(|row| row.name.width())) + 12.0;
+        let about = |row: &Row<'_>| text::width(&row.about, SMALL);
+        self.lanes = self.abouts + text::widest(rows.iter().map(about)) + 14.0;
+        let (rise, run) = SLANT.to_radians().sin_cos();
+        let (mut right, mut tallest) = (self.lanes + 40.0, 0.0f64);
+        let mut x = self.lanes + COLUMN / 2.0;
+        for column in &mut self.columns {
+            let detail = text::width(&column.detail, SMALL);
+            let head = column.name.width().max(detail);
+            column.x = x;
+            x += COLUMN.max(column.notes + 2.0 * BESIDE);
+            right = right.max(column.x + head * run + SMALL).max(x);
+            tallest = tallest.max(head * rise);
+        }
+        self.width = (right + MARGIN).max(720.0);
+        let (legend, height) = legend::place(drawing, [MARGIN, LEGEND], self.width - 2.0 * MARGIN);
+        self.legend = legend;
+        self.top = LEGEND + height + tallest + 18.0;
+    }
+
+    fn place_rows(&mut self) {
+        let mut y = self.top + NECK;
+        for index in 0..self.live {
+            y = self.place_row(index, y);
+        }
+        self.bottom = y;
+        let outputs = || self.columns.iter().map(|column| column.material);
+        if outputs().any(|material| !material.outputs.is_empty()) {
+            let names = outputs().map(|material| text::width(&words::renamed(material), SMALL));
+            self.outputs = Some(y + 16.0);
+            y += 34.0 + text::widest(names) * SLANT.to_radians().sin();
+        }
+        if self.live < self.rows.len() {
+            self.culled = Some(y + 8.0);
+            y += 36.0;
+        }
+        for index in self.live..self.rows.len() {
+            y = self.place_row(index, y);
+        }
+        self.height = y + MARGIN;
+    }
+
+    /// Places a row at `y`; returns its bottom.
+    fn place_row(&mut self, index: usize, y: f64) -> f64 {
+        let row = &mut self.rows[index];
+        if let Some(reason) = &row.pass.culled {
+            row.reason = text::wrap(reason, SMALL, self.width - MARGIN - self.names);
+        }
+        let height = ROW + LINE * row.reason.len() as f64;
+        row.band = Area {
+            x: MARGIN / 2.0,
+            y,
+            width: self.width - MARGIN,
+            height,
+        };
+        row.label = Area {
+            x: self.names,
+            y: y + 4.0,
+            width: self.lanes - self.names,
+            height: height - 8.0,
+        };
+        row.middle = y + ROW / 2.0;
+        y + height
+    }
+
+    fn place_bars(&mut self) {
+        let live = &self.rows[..self.live];
+        for column in &mut self.columns {
+            let material = column.material;
+            column.bar = material.lifetime.and_then(|[first, last]| {
+                let from = match material.origin.is_given() {
+                    true => self.top + 4.0,
+                    false => live.get(first)?.middle,
+                };
+                let to = match self.outputs {
+                    Some(outputs) if !material.outputs.is_empty() => outputs - 6.0,
+                    _ => live.get(last)?.middle,
+                };
+                Some([from, to])
+            });
+            column.end = column.bar.map_or(self.top, |[_, end]| end);
+        }
+    }
+}
+
+impl<'a> Row<'a> {
+    fn of(pass: &'a Pass) -> Self {
+        Self {
+            pass,
+            name: Label::of(&pass.name),
+            about: words::about(pass),
+            reason: Vec::new(),
+            band: Area::default(),
+            label: Area::default(),
+            middle: 0.0,
+            reach: None,
+        }
+    }
+}
+
+impl<'a> Column<'a> {
+    fn of(material: &'a Material) -> Self {
+        Self {
+            material,
+            name: Label::of(&material.name),
+            detail: cut(&words::detail(material), 2 * MOST),
+            notes: 0.0,
+            x: 0.0,
+            bar: None,
+            end: 0.0,
+        }
+    }
+}
+
+/// The passes that run, in order, then the others, and how many run.
+fn rows(drawing: &Drawing) -> (Vec<Row<'_>>, usize) {
+    let mut passes: Vec<&Pass> = drawing.passes.iter().collect();
+    passes.sort_by_key(|pass| pass.position.unwrap_or(usize::MAX));
+    let live = passes.partition_point(|pass| pass.position.is_some());
+    (passes.into_iter().map(Row::of).collect(), live)
+}
+
+/// The materials that any pass touches: what is there before the frame, then by first use, those of
+/// one memory side by side, then those that only passes touch that do not run.
+fn columns(drawing: &Drawing) -> Vec<Column<'_>> {
+    let touched = drawing.accesses.iter();
+    let touched: HashSet<&str> = touched.map(|access| &*access.material).collect();
+    let first = |material: &Material| material.lifetime.map_or(usize::MAX, |[first, _]| first);
+    let mut opened: HashMap<usize, usize> = HashMap::new();
+    for material in &drawing.materials {
+        if let Some(memory) = material.memory {
+            let known = opened.entry(memory).or_insert(usize::MAX);
+            *known = first(material).min(*known);
+        }
+    }
+    let mut materials: Vec<&Material> = drawing.materials.iter().collect();
+    materials.retain(|material| touched.contains(&*material.name) || !material.outputs.is_empty());
+    materials.sort_by_key(|material| {
+        let opened = material.memory.and_then(|memory| opened.get(&memory));
+        (
+            material.lifetime.is_none(),
+            !material.origin.is_given(),
+            *opened.unwrap_or(&first(material)),
+            material.memory,
+            first(material),
+        )
+    });
+    materials.into_iter().map(Column::of).collect()
+}
+
+/// The edges between passes that run.
+fn arcs<'a>(drawing: &'a Drawing, live: &[Row<'_>]) -> Vec<Arc<'a>> {
+    let numbers = numbers(live.iter().map(|row| &*row.pass.name));
+    let arc = |edge: &'a Edge| {
+        let rows = [*numbers.get(&*edge.from)?, *numbers.get(&*edge.to)?];
+        Some(Arc {
+            edge,
+            hazard: edge.hazard()?,
+            rows,
+            swing: (rows[1].abs_diff(rows[0]) as f64).sqrt(),
+        })
+    };
+    let mut arcs: Vec<Arc<'_>> = drawing.edges.iter().filter_map(arc).collect();
+    // Swings grow with the root, so that short edges stay apart and long ones stay on the page.
+    let longest = arcs.iter().map(|arc| arc.swing).fold(1.0, f64::max);
+    for arc in &mut arcs {
+        arc.swing *= (150.0 / longest).min(13.0);
+    }
+    // The more telling ones on top: first the implied, last what is read.
+    arcs.sort_by_key(|arc| (!arc.edge.implied, Reverse(arc.hazard)));
+    arcs
+}

@@ -1,0 +1,293 @@
+//! What charts and graphs say about passes and materials.
+
+use crate::{
+    drawing::{Access, Aspect, Drawing, Edge, Kind, Material, Origin, Part, Pass, Reason},
+    text::{self, NAME, plural},
+};
+use skiagraph_graph::{
+    Hazard,
+    text::{bytes, cut},
+};
+use std::ops::Range;
+
+/// Characters of a name in a picture; longer ones are cut, and whole in their titles.
+pub(crate) const MOST: usize = 36;
+
+/// How the name of what a material held in the frame before ends.
+pub(crate) const PREVIOUS: &str = ".previous";
+
+/// What stands before a name, with its dot, and the name itself: `sample[3].` and `trace_rays`.
+/// Nothing stands before the two names of a capture (`rays@sample[3].trace_rays`).
+pub(crate) fn split(name: &str) -> (&str, &str) {
+    let latest = name.strip_suffix(PREVIOUS).unwrap_or(name);
+    let dot = latest.rfind('.').filter(|_| !name.contains('@'));
+    name.split_at(dot.map_or(0, |dot| dot + 1))
+}
+
+/// [`split`], cut to what a picture has room for: of what stands before the name first.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Label {
+    pub before: String,
+    pub own: String,
+}
+
+impl Label {
+    pub fn of(name: &str) -> Self {
+        let (before, own) = split(name);
+        let own = cut(own, MOST - before.chars().count().min(MOST / 3));
+        let before = cut(before, MOST - own.chars().count());
+        Self { before, own }
+    }
+
+    pub fn width(&self) -> f64 {
+        text::bold(&self.before, NAME) + text::bold(&self.own, NAME)
+    }
+}
+
+/// What a material is, in a few words.
+pub(crate) fn detail(material: &Material) -> String {
+    let mut words = vec![match (material.kind, &material.format, material.size) {
+        (Kind::Texture, Some(format), Some([width, height])) => {
+            format!("{format} {width}×{height}")
+        }
+        (Kind::Texture, ..) => "texture".to_owned(),
+        (Kind::Buffer, ..) => "buffer".to_owned(),
+        (Kind::Sampler, ..) => "sampler".to_owned(),
+    }];
+    if material.layers > 1 {
+        let layer = Unit::of_layers(material).word();
+        words[0].push_str(&format!(" × {} {}s", material.layers, layer));
+    }
+    let counts = [
+        (material.mips as usize, "mips"),
+        (material.samples as usize, "samples"),
+        (material.versions, "versions"),
+    ];
+    let several = counts.into_iter().filter(|(count, _)| *count > 1);
+    words.extend(several.map(|(count, what)| format!("{count} {what}")));
+    let origin = match material.origin {
+        Origin::Constant => "constant",
+        Origin::Provided => "provided",
+        Origin::Imported => "imported",
+        Origin::Frame => "the frame's number and time",
+        Origin::Previous => "of the frame before",
+        Origin::Declared | Origin::Scratch | Origin::Capture => "",
+    };
+    words.extend((!origin.is_empty()).then(|| origin.to_owned()));
+    if material.origin.is_made() {
+        words.extend(match material.lifetime {
+            Some(_) => material.bytes.map(bytes),
+            None => Some("not made".to_owned()),
+        });
+    }
+    words.join(", ")
+}
+
+/// What a material has parts of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Unit {
+    Mip,
+    Layer,
+    Slice,
+    Item,
+    Depth,
+    Stencil,
+}
+
+impl Unit {
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Mip => "mip",
+            Self::Layer => "layer",
+            Self::Slice => "slice",
+            Self::Item => "item",
+            Self::Depth => "depth",
+            Self::Stencil => "stencil",
+        }
+    }
+
+    /// The word where there is little room.
+    pub fn letter(self) -> &'static str {
+        match self {
+            Self::Slice => "z",
+            _ => &self.word()[..1],
+        }
+    }
+
+    /// What the layers of a material's parts are.
+    fn of_layers(material: &Material) -> Self {
+        match material.kind {
+            Kind::Buffer => Self::Item,
+            _ if material.is_3d => Self::Slice,
+            _ => Self::Layer,
+        }
+    }
+}
+
+/// What a pass does with a material.
+pub(crate) fn verb(access: &Access) -> &'static str {
+    match (access.reads, access.writes) {
+        (true, true) => "reads and writes",
+        (false, true) => "writes",
+        // A sampler is bound, and nobody calls that reading; but neither is it anything else.
+        _ => "reads",
+    }
+}
+
+/// The later pass's part in a sentence.
+pub(crate) fn consequence(hazard: Hazard) -> &'static str {
+    match hazard {
+        Hazard::ReadAfterWrite => "reads what it wrote",
+        Hazard::WriteAfterRead => "overwrites what it read",
+        Hazard::WriteAfterWrite => "overwrites what it wrote",
+    }
+}
+
+/// What a part is narrowed to: some mips, layers or items, or one aspect.
+pub(crate) fn narrowed<'a>(
+    part: &'a Part,
+    material: &Material,
+) -> impl Iterator<Item = (Unit, Option<&'a Range<u32>>)> {
+    let ranges = [
+        (Unit::Mip, &part.mips),
+        (Unit::of_layers(material), &part.layers),
+    ];
+    let ranges = ranges.into_iter().filter(|(_, range)| range.is_some());
+    let aspect = part.aspect.map(|aspect| match aspect {
+        Aspect::Depth => (Unit::Depth, None),
+        Aspect::Stencil => (Unit::Stencil, None),
+    });
+    ranges
+        .map(|(unit, range)| (unit, range.as_ref()))
+        .chain(aspect)
+}
+
+fn numbers(range: &Range<u32>) -> String {
+    match range.len() {
+        1 => range.start.to_string(),
+        _ => format!("{}–{}", range.start, range.end.saturating_sub(1)),
+    }
+}
+
+/// `mip 1, layers 0–3`.
+pub(crate) fn part(part: &Part, material: &Material) -> String {
+    let words = |(unit, range): (Unit, Option<&Range<u32>>)| match range {
+        None => unit.word().to_owned(),
+        Some(range) if range.len() == 1 => format!("{} {}", unit.word(), numbers(range)),
+        Some(range) => format!("{}s {}", unit.word(), numbers(range)),
+    };
+    let words: Vec<String> = narrowed(part, material).map(words).collect();
+    words.join(", ")
+}
+
+/// [`part`] where there is little room: `m1l0–3`.
+fn short(part: &Part, material: &Material) -> String {
+    let words = |(unit, range): (Unit, Option<&Range<u32>>)| {
+        format!("{}{}", unit.letter(), range.map_or(String::new(), numbers))
+    };
+    narrowed(part, material).map(words).collect()
+}
+
+/// `m0→m1` for a pass that reads one mip and writes the next.
+pub(crate) fn note(accesses: &[&Access], material: &Material) -> String {
+    let parts = |writes: bool| {
+        let of_kind = accesses.iter().filter(|access| access.writes == writes);
+        let parts = of_kind.filter_map(|access| Some(short(access.part.as_ref()?, material)));
+        match &parts.collect::<Vec<_>>()[..] {
+            [] => None,
+            [first, _, _, ..] => Some(format!("{first}…")),
+            few => Some(few.join(",")),
+        }
+    };
+    match (parts(false), parts(true)) {
+        (Some(read), Some(written)) => format!("{read}→{written}"),
+        (read, written) => read.or(written).unwrap_or_default(),
+    }
+}
+
+/// Kind, shaders and condition of a pass. A shader of the pass's own name is what everybody
+/// expects.
+pub(crate) fn about(pass: &Pass) -> String {
+    let stem = |path: &str| {
+        let file = path.rsplit('/').next().unwrap_or(path);
+        file.strip_suffix(".wgsl").unwrap_or(file).to_owned()
+    };
+    let own = split(&pass.name).1;
+    // Repetitions are numbered.
+    let own = own.split('[').next().unwrap_or(own);
+    let shaders = pass.shaders.iter().map(|path| stem(path));
+    let shaders: Vec<String> = shaders.filter(|shader| shader != own).collect();
+    let mut parts = vec![pass.kind.clone()];
+    if !shaders.is_empty() {
+        parts.push(cut(&shaders.join(", "), MOST));
+    }
+    let run = pass.run.as_ref();
+    parts.extend(run.map(|run| cut(&format!("run: {run}"), MOST)));
+    parts.join(" · ")
+}
+
+/// Name, kind, place in the document, shaders, and why it is culled.
+pub(crate) fn origin(pass: &Pass) -> String {
+    let Pass { name, kind, .. } = pass;
+    let mut words = format!("{name} ({kind}), {}:{}", pass.file, pass.line);
+    if !pass.shaders.is_empty() {
+        words.push_str(&format!("; shader {}", pass.shaders.join(", ")));
+    }
+    if let Some(why) = &pass.culled {
+        words.push_str(&format!("; culled: {why}"));
+    }
+    words
+}
+
+/// Which pass comes before which, and why.
+pub(crate) fn because(edge: &Edge) -> String {
+    let reason = |reason: &Reason| {
+        let verb = consequence(reason.hazard);
+        format!("{verb} ({})", reason.materials.join(", "))
+    };
+    let reasons: Vec<String> = edge.because.iter().map(reason).collect();
+    let implied = match edge.implied {
+        true => "; other edges imply it",
+        false => "",
+    };
+    format!(
+        "{} → {}: {}{implied}",
+        edge.from,
+        edge.to,
+        reasons.join("; ")
+    )
+}
+
+/// Names of the outputs that are not called like their material.
+pub(crate) fn renamed(material: &Material) -> String {
+    let names = material.outputs.iter().map(String::as_str);
+    let names: Vec<&str> = names.filter(|name| *name != material.name).collect();
+    cut(&names.join(", "), MOST)
+}
+
+/// How many passes run, and what memory they take.
+pub(crate) fn summary(drawing: &Drawing) -> String {
+    let live = drawing.passes.iter().filter(|pass| pass.position.is_some());
+    let live = live.count();
+    let made = drawing
+        .materials
+        .iter()
+        .filter(|material| material.lifetime.is_some() && material.origin.is_made());
+    let mut parts = vec![format!(
+        "{} in order of execution",
+        plural(live, "pass", "passes")
+    )];
+    let culled = drawing.passes.len() - live;
+    if culled > 0 {
+        parts.push(format!("{culled} culled"));
+    }
+    parts.push(format!(
+        "{}, {}",
+        plural(made.count(), "material", "materials"),
+        bytes(drawing.memory_bytes)
+    ));
+    if drawing.saved_bytes > 0 {
+        parts.push(format!("{} saved by sharing", bytes(drawing.saved_bytes)));
+    }
+    parts.join(" · ")
+}

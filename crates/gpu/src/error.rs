@@ -1,0 +1,241 @@
+//! What can go wrong on a device, and the scopes that bring it back as errors.
+
+use skiagraph_graph::{Diagnostics, Plan};
+use std::{
+    panic::{AssertUnwindSafe, catch_unwind},
+    time::Duration,
+};
+
+/// Why a plan could not be allocated or a frame not be run.
+#[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExecuteError {
+    /// wgpu refused something that a pass needs.
+    #[error("{place}: pass `{pass}` was refused by the device: {message}")]
+    Gpu {
+        /// The pass.
+        pass: String,
+        /// Its place in the document.
+        place: String,
+        /// wgpu's words.
+        message: String,
+    },
+    /// wgpu refused to make a resource.
+    #[error("`{name}` could not be made: {message}")]
+    Resource {
+        /// The resource.
+        name: String,
+        /// wgpu's words.
+        message: String,
+    },
+    /// The device has no memory for this.
+    #[error("the device has not enough memory for `{name}`")]
+    OutOfMemory {
+        /// The resource or pass.
+        name: String,
+        /// What of the graph takes the most: [`Plan::memory_table`].
+        table: String,
+    },
+    /// A provided resource could not be built.
+    #[error("the provided resource `{name}` could not be built: {why}")]
+    Provider {
+        /// The resource.
+        name: String,
+        /// The provider's words.
+        why: String,
+    },
+    /// An import that the plan does not know.
+    #[error("the plan has no import `{name}`; it has {known}")]
+    NoSuchImport {
+        /// The name.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+    /// What changed is neither an import nor a provided resource.
+    #[error(
+        "neither an import nor a provided resource is called `{name}`; live passes use {known}"
+    )]
+    NotOfHost {
+        /// The name.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+    /// An import is not what the plan was made for.
+    #[error(
+        "`{name}` cannot be imported where another was planned for: {why}; plan again with what \
+         it is"
+    )]
+    Import {
+        /// The name.
+        name: String,
+        /// How they differ.
+        why: String,
+    },
+    /// A pass uses an import that the host has not handed over.
+    #[error(
+        "{place}: pass `{pass}` uses the import `{name}`, which was not handed over: call \
+         `import_texture`, `import_buffer` or `import_sampler` first"
+    )]
+    NotImported {
+        /// The import.
+        name: String,
+        /// The first pass that uses it.
+        pass: String,
+        /// The pass's place in the document.
+        place: String,
+    },
+    /// What was asked for cannot be planned.
+    #[error("{0}")]
+    Plan(Box<Diagnostics>),
+    /// A readback that the plan does not know.
+    #[error("the plan has no output `{name}`; it has {known}")]
+    NoSuchOutput {
+        /// The name.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+    /// A readback of something that the host made for other purposes.
+    #[error("`{name}` cannot be read back: the host must make it with {usage}")]
+    NotReadable {
+        /// The output.
+        name: String,
+        /// What it lacks.
+        usage: &'static str,
+    },
+    /// A readback did not arrive.
+    #[error("the content of `{name}` could not be read back")]
+    Readback {
+        /// The output.
+        name: String,
+    },
+    /// The device was lost or did not answer.
+    #[error("the device was lost: {0}")]
+    DeviceLost(String),
+    /// The GPU had not finished a frame in the time that it was given, and may never do so.
+    #[error(
+        "the GPU was not done with the frame after {:.1} s; in it ran {passes}",
+        after.as_secs_f64()
+    )]
+    Unfinished {
+        /// How long it was waited for.
+        after: Duration,
+        /// The passes of the frame.
+        passes: String,
+    },
+    /// Timestamps could not be taken.
+    #[error("timestamps could not be taken: {0}")]
+    Timing(String),
+    /// A mistake of this crate.
+    #[error("internal error: {0}")]
+    Internal(&'static str),
+}
+
+/// Runs `make` inside error scopes, so that what wgpu finds wrong comes back as an error.
+pub(crate) fn scoped<T>(
+    device: &wgpu::Device,
+    name: &str,
+    make: impl FnOnce() -> T,
+) -> Result<T, ExecuteError> {
+    let scopes = [
+        wgpu::ErrorFilter::OutOfMemory,
+        wgpu::ErrorFilter::Internal,
+        wgpu::ErrorFilter::Validation,
+    ]
+    .map(|filter| device.push_error_scope(filter));
+    let made = make();
+    // Scopes are a stack: the last one pushed is popped first.
+    let errors: Vec<wgpu::Error> = scopes
+        .into_iter()
+        .rev()
+        .filter_map(|scope| pollster::block_on(scope.pop()))
+        .collect();
+    match errors.into_iter().next() {
+        None => Ok(made),
+        Some(wgpu::Error::OutOfMemory { .. }) => Err(ExecuteError::OutOfMemory {
+            name: name.to_owned(),
+            table: String::new(),
+        }),
+        Some(error) => Err(ExecuteError::Resource {
+            name: name.to_owned(),
+            message: chain(&error),
+        }),
+    }
+}
+
+/// The error of something that a pass needs.
+pub(crate) fn named(error: ExecuteError, pass: &str, place: &str) -> ExecuteError {
+    match error {
+        ExecuteError::Resource { message, .. } => ExecuteError::Gpu {
+            pass: pass.to_owned(),
+            place: place.to_owned(),
+            message,
+        },
+        other => other,
+    }
+}
+
+/// The error of making or running what a plan says; without memory it shows where the plan's went.
+pub(crate) fn with_table(error: ExecuteError, plan: &Plan) -> ExecuteError {
+    match error {
+        ExecuteError::OutOfMemory { name, .. } => ExecuteError::OutOfMemory {
+            name,
+            table: plan.memory_table(),
+        },
+        other => other,
+    }
+}
+
+impl From<Diagnostics> for ExecuteError {
+    fn from(diagnostics: Diagnostics) -> Self {
+        Self::Plan(Box::new(diagnostics))
+    }
+}
+
+/// An error if the device is lost. wgpu tells that only to the one callback that the host may have
+/// set, but a lost device maps no buffers. `MAP_WRITE` is memory that the host sees anyway; any
+/// other usage would cost a second buffer, to be copied from.
+pub(crate) fn check_device_lost(device: &wgpu::Device) -> Result<(), ExecuteError> {
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("is the device there"),
+        size: wgpu::MAP_ALIGNMENT,
+        usage: wgpu::BufferUsages::MAP_WRITE,
+        mapped_at_creation: true,
+    });
+    let mapped = buffer.get_mapped_range(..).is_ok();
+    match mapped {
+        true => Ok(()),
+        false => Err(ExecuteError::DeviceLost(
+            "it maps no buffers any more".to_owned(),
+        )),
+    }
+}
+
+/// Waits until all that was submitted is done; false if it is not after so long a time.
+pub(crate) fn wait(device: &wgpu::Device, timeout: Option<Duration>) -> Result<bool, ExecuteError> {
+    let all = wgpu::PollType::Wait {
+        submission_index: None,
+        timeout,
+    };
+    // wgpu panics where a device is lost while it is waited for.
+    let polled = catch_unwind(AssertUnwindSafe(|| device.poll(all)));
+    match polled {
+        Ok(Ok(_)) => Ok(true),
+        Ok(Err(wgpu::PollError::Timeout)) => Ok(false),
+        Ok(Err(error)) => Err(ExecuteError::DeviceLost(error.to_string())),
+        Err(_) => Err(ExecuteError::DeviceLost(
+            "it was lost while its work was waited for".to_owned(),
+        )),
+    }
+}
+
+fn chain(error: &wgpu::Error) -> String {
+    match error {
+        wgpu::Error::Validation { description, .. } | wgpu::Error::Internal { description, .. } => {
+            description.trim().to_owned()
+        }
+        wgpu::Error::OutOfMemory { .. } => "out of memory".to_owned(),
+    }
+}

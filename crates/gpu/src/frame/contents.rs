@@ -1,0 +1,204 @@
+//! Which passes run in a frame, by what changed since they ran last.
+//!
+//! A pass need not run again while everything that it reads is what it read the last time. Contents
+//! are not compared, that would cost more than most passes: every write and every word of the host
+//! that something has changed is a new number, and a pass remembers the numbers that it has seen.
+
+use super::pass::{GpuPass, Seen};
+use crate::memory::physical::{PingPong, Versions};
+use skiagraph_graph::{Origin, Plan, ResourceId, When};
+use std::collections::BTreeMap;
+
+/// What the resources of a plan hold, as far as it can be told without looking.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Contents {
+    /// Of every resource of the plan, by id.
+    versions: Vec<u64>,
+    clock: u64,
+    /// Which of its two allocations holds a resource that has two.
+    latest: BTreeMap<ResourceId, usize>,
+    /// Of each copy of a provided resource, as it was in the frame before: what it is a copy of.
+    copied: BTreeMap<ResourceId, u64>,
+}
+
+/// A provided resource, and the copy of it that the next frame reads.
+pub(super) type HostCopy = (ResourceId, ResourceId);
+
+impl Contents {
+    /// Contents of a plan of which nothing is known.
+    pub fn of(plan: &Plan, clock: u64) -> Self {
+        let mut contents = Self {
+            versions: vec![0; plan.resources().len()],
+            clock,
+            ..Self::default()
+        };
+        for &id in plan.schedule().lifetimes.keys() {
+            contents.touch(id);
+            if plan.versions(id) > 1 {
+                contents.latest.insert(id, 0);
+            }
+        }
+        contents
+    }
+
+    /// The number of the last change.
+    pub fn clock(&self) -> u64 {
+        self.clock
+    }
+
+    /// Another content.
+    pub fn touch(&mut self, id: ResourceId) {
+        self.clock += 1;
+        self.versions[id.index()] = self.clock;
+    }
+
+    /// The content is that which another resource had.
+    pub fn take_over(&mut self, id: ResourceId, other: &Self, of: ResourceId) {
+        self.versions[id.index()] = other.versions[of.index()];
+        if let Some(latest) = other.latest.get(&of) {
+            self.latest.insert(id, *latest);
+        }
+        if let Some(copied) = other.copied.get(&of) {
+            self.copied.insert(id, *copied);
+        }
+    }
+
+    /// Whether each pass of the schedule runs. A group runs if one of its passes has a reason to.
+    pub fn running(&self, plan: &Plan, passes: &[GpuPass], all: bool) -> Vec<bool> {
+        let conditions = &plan.schedule().conditions;
+        let groups = &conditions.group;
+        // All is what could run, not what a param forbids.
+        let mut runs = vec![false; passes.len()];
+        for (&group, when) in groups.iter().zip(&conditions.when) {
+            runs[group] |= all && !matches!(when, When::Never | When::Follows);
+        }
+        // A pass that runs can be the reason for one before it in its group, so this is repeated
+        // until nothing is added.
+        let mut added = !all;
+        while added {
+            added = false;
+            for at in 0..passes.len() {
+                if !runs[groups[at]] && self.has_reason(plan, &passes[at], at, &runs) {
+                    runs[groups[at]] = true;
+                    added = true;
+                }
+            }
+        }
+        (0..passes.len()).map(|at| runs[groups[at]]).collect()
+    }
+
+    fn has_reason(&self, plan: &Plan, pass: &GpuPass, at: usize, runs: &[bool]) -> bool {
+        let conditions = &plan.schedule().conditions;
+        match (conditions.when[at], &pass.seen.versions) {
+            (When::Always, _) => true,
+            (When::Never | When::Follows, _) => false,
+            (_, None) => true,
+            (When::Once, Some(_)) => false,
+            (When::OnChange, Some(seen)) => {
+                let inputs = pass.seen.inputs.iter().zip(seen);
+                let mut changed = inputs.map(|(id, seen)| {
+                    let now = self.versions[counted(plan, *id).unwrap_or(*id).index()];
+                    let writer = conditions.writers[id.index()];
+                    now != *seen || writer.is_some_and(|group| runs[group])
+                });
+                pass.seen.stale || changed.any(|changed| changed)
+            }
+        }
+    }
+
+    /// Whose turn it is in a frame in which these passes run.
+    pub fn ping_pong(&self, plan: &Plan, runs: &[bool]) -> PingPong {
+        let writers = &plan.schedule().conditions.writers;
+        let versions = |(&id, &latest): (&ResourceId, &usize)| {
+            let is_written = writers[id.index()].is_some_and(|group| runs[group]);
+            let current = if is_written { 1 - latest } else { latest };
+            let previous = latest;
+            (id, Versions { current, previous })
+        };
+        self.latest.iter().map(versions).collect()
+    }
+
+    /// Notes that these passes ran.
+    pub fn ran(
+        &mut self,
+        plan: &Plan,
+        passes: &mut [GpuPass],
+        runs: &[bool],
+        ping_pong: &PingPong,
+    ) {
+        let before = self.versions.clone();
+        let conditions = &plan.schedule().conditions;
+        for (_, id) in conditions.written.iter().filter(|(at, _)| runs[*at]) {
+            self.touch(*id);
+        }
+        // Only now: what a pass has read and another writes below is another part of the same
+        // resource, else they were one group.
+        for (at, pass) in passes.iter_mut().enumerate() {
+            let remembers = matches!(conditions.when[at], When::Once | When::OnChange);
+            if !(runs[at] && remembers) {
+                continue;
+            }
+            let Seen {
+                inputs,
+                versions,
+                stale,
+            } = &mut pass.seen;
+            let seen = versions.get_or_insert_default();
+            seen.clear();
+            // Of what two allocations take turns in, the pass saw what the frame began with.
+            seen.extend(inputs.iter().map(|id| match counted(plan, *id) {
+                Some(base) => before[base.index()],
+                None => self.versions[id.index()],
+            }));
+            *stale = false;
+        }
+        for (id, versions) in ping_pong {
+            self.latest.insert(*id, versions.current);
+        }
+    }
+
+    /// The copies that have to be made before a frame's first pass: there was no frame before, so
+    /// what it reads of that is what there is now.
+    pub fn first_copies(&mut self, plan: &Plan) -> Vec<HostCopy> {
+        let copies = host_copies(plan);
+        let first: Vec<HostCopy> = copies
+            .filter(|(_, copy)| !self.copied.contains_key(copy))
+            .collect();
+        for (base, copy) in &first {
+            self.copied.insert(*copy, self.versions[base.index()]);
+        }
+        first
+    }
+
+    /// The copies that have to be made behind a frame's last pass, of what is not what it was.
+    pub fn copies(&mut self, plan: &Plan) -> Vec<HostCopy> {
+        let version = |contents: &Self, base: ResourceId| contents.versions[base.index()];
+        let copies = host_copies(plan);
+        let changed: Vec<HostCopy> = copies
+            .filter(|(base, copy)| self.copied.get(copy) != Some(&version(self, *base)))
+            .collect();
+        for (base, copy) in &changed {
+            self.copied.insert(*copy, version(self, *base));
+            self.touch(*copy);
+        }
+        changed
+    }
+}
+
+/// What a resource is last frame's version of, if its content is counted there: two allocations
+/// take turns. Copies of what the host provides are counted by themselves.
+fn counted(plan: &Plan, id: ResourceId) -> Option<ResourceId> {
+    match plan.resource(id).origin {
+        Origin::Previous(base) if plan.resource(base).origin == Origin::Own => Some(base),
+        _ => None,
+    }
+}
+
+/// What the host provides and a live pass reads as it was in the frame before.
+fn host_copies(plan: &Plan) -> impl Iterator<Item = HostCopy> + '_ {
+    let copy = |id: &ResourceId| match plan.resource(*id).origin {
+        Origin::Previous(base) if plan.resource(base).origin == Origin::Host => Some((base, *id)),
+        _ => None,
+    };
+    plan.schedule().lifetimes.keys().filter_map(copy)
+}

@@ -1,0 +1,309 @@
+//! Steps become commands.
+
+use crate::{
+    pipelines::handles::{GpuAttachment, GpuOperand, GpuProgram, Handles, PipelineKind},
+    timing::timer::Timer,
+};
+use skiagraph_graph::step::{Dispatch, Draw, DrawCall, Groups, Step};
+
+/// Encodes the steps of a pass, under its name in captures. A single draw or dispatch bears it as
+/// the label of its render or compute pass; a debug group around that would say it twice, and costs
+/// more than all else that the graph adds.
+pub(super) fn encode_all(
+    steps: &[Step<Handles>],
+    name: &str,
+    encoder: &mut wgpu::CommandEncoder,
+    timer: Option<&Timer>,
+) {
+    let labelled = matches!(steps, [Step::Draw(_) | Step::Dispatch(_)]);
+    if !labelled {
+        encoder.push_debug_group(name);
+    }
+    for step in steps {
+        match step {
+            Step::Draw(draw) => encode_draw(draw, name, encoder, timer),
+            Step::Dispatch(dispatch) => encode_dispatch(dispatch, name, encoder, timer),
+            Step::Copy { from, to } => {
+                let query = timer.map(|timer| timer.profiler().begin_query(name, encoder));
+                copy(from, to, encoder);
+                end(timer, query, encoder);
+            }
+            Step::Clear { target, value } => clear(target, *value, name, encoder, timer),
+        }
+    }
+    if !labelled {
+        encoder.pop_debug_group();
+    }
+}
+
+fn encode_dispatch(
+    dispatch: &Dispatch<Handles>,
+    name: &str,
+    encoder: &mut wgpu::CommandEncoder,
+    timer: Option<&Timer>,
+) {
+    let GpuProgram {
+        pipeline: PipelineKind::Compute(pipeline),
+        groups,
+    } = &dispatch.program
+    else {
+        return;
+    };
+    let query = timer.map(|timer| timer.profiler().begin_pass_query(name, encoder));
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some(name),
+            timestamp_writes: query
+                .as_ref()
+                .and_then(|query| query.compute_pass_timestamp_writes()),
+        });
+        if let Some(timer) = timer {
+            timer.open_compute(&mut pass);
+        }
+        pass.set_pipeline(pipeline);
+        for (index, group) in groups {
+            pass.set_bind_group(*index, group, &[]);
+        }
+        match &dispatch.groups {
+            Groups::Direct([x, y, z]) => pass.dispatch_workgroups(*x, *y, *z),
+            Groups::Indirect((buffer, offset)) => {
+                pass.dispatch_workgroups_indirect(buffer, *offset);
+            }
+        }
+    }
+    end(timer, query, encoder);
+}
+
+fn copy(from: &GpuOperand, to: &GpuOperand, encoder: &mut wgpu::CommandEncoder) {
+    match (from, to) {
+        (
+            GpuOperand::Buffer { buffer, range },
+            GpuOperand::Buffer {
+                buffer: target,
+                range: place,
+            },
+        ) => {
+            let bytes = (range.end - range.start).min(place.end - place.start);
+            encoder.copy_buffer_to_buffer(buffer, range.start, target, place.start, bytes);
+        }
+        (
+            GpuOperand::Texture {
+                texture,
+                part,
+                mips,
+                ..
+            },
+            GpuOperand::Texture {
+                texture: target,
+                part: place,
+                ..
+            },
+        ) => {
+            let info = |texture, mip_level, layer| wgpu::TexelCopyTextureInfo {
+                texture,
+                mip_level,
+                origin: wgpu::Origin3d {
+                    x: 0,
+                    y: 0,
+                    z: layer,
+                },
+                aspect: wgpu::TextureAspect::All,
+            };
+            for (mip, extent) in (0u32..).zip(mips) {
+                encoder.copy_texture_to_texture(
+                    info(texture, part.mips.start + mip, part.layers.start),
+                    info(target, place.mips.start + mip, place.layers.start),
+                    *extent,
+                );
+            }
+        }
+        // Linking has seen to it that both are of one kind.
+        _ => {}
+    }
+}
+
+fn clear(
+    target: &GpuOperand,
+    value: [f64; 4],
+    name: &str,
+    encoder: &mut wgpu::CommandEncoder,
+    timer: Option<&Timer>,
+) {
+    match target {
+        GpuOperand::Buffer { buffer, range } => {
+            let query = timer.map(|timer| timer.profiler().begin_query(name, encoder));
+            encoder.clear_buffer(buffer, range.start, Some(range.end - range.start));
+            end(timer, query, encoder);
+        }
+        GpuOperand::Texture { texture, views, .. } => {
+            for view in views {
+                let query = timer.map(|timer| timer.profiler().begin_pass_query(name, encoder));
+                clear_view(view, texture.format(), value, name, encoder, query.as_ref());
+                end(timer, query, encoder);
+            }
+        }
+    }
+}
+
+/// Clears one mip of one layer.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a depth is f32, a stencil a small whole number"
+)]
+pub(super) fn clear_view(
+    target: &GpuAttachment,
+    format: wgpu::TextureFormat,
+    value: [f64; 4],
+    name: &str,
+    encoder: &mut wgpu::CommandEncoder,
+    query: Option<&wgpu_profiler::GpuProfilerQuery>,
+) {
+    let is_depth = format.is_depth_stencil_format();
+    let color = (!is_depth).then(|| color_attachment(target, None, Some(value)));
+    let depth = format.has_depth_aspect().then_some(Ops {
+        clear: Some(value[0] as f32),
+        write: true,
+    });
+    let stencil = format.has_stencil_aspect().then_some(Ops {
+        clear: Some(value[1] as u32),
+        write: true,
+    });
+    let depth_stencil = is_depth.then(|| depth_stencil_attachment(target, depth, stencil));
+    render_pass(name, encoder, color.as_slice(), depth_stencil, query);
+}
+
+fn end(
+    timer: Option<&Timer>,
+    query: Option<wgpu_profiler::GpuProfilerQuery>,
+    encoder: &mut wgpu::CommandEncoder,
+) {
+    if let (Some(timer), Some(query)) = (timer, query) {
+        timer.profiler().end_query(encoder, query);
+    }
+}
+
+fn color_attachment<'v>(
+    target: &'v GpuAttachment,
+    resolve: Option<&'v GpuAttachment>,
+    clear: Option<[f64; 4]>,
+) -> Option<wgpu::RenderPassColorAttachment<'v>> {
+    let load = match clear {
+        Some([r, g, b, a]) => wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a }),
+        None => wgpu::LoadOp::Load,
+    };
+    Some(wgpu::RenderPassColorAttachment {
+        view: &target.view,
+        depth_slice: target.slice,
+        resolve_target: resolve.map(|resolve| &resolve.view),
+        ops: wgpu::Operations {
+            load,
+            store: wgpu::StoreOp::Store,
+        },
+    })
+}
+
+/// What a draw does to depths or stencils.
+#[derive(Clone, Copy)]
+struct Ops<V> {
+    clear: Option<V>,
+    write: bool,
+}
+
+impl<V: Default> Ops<V> {
+    /// Without operations the attachment is read-only, and the pass may sample it too.
+    fn operations(self) -> Option<wgpu::Operations<V>> {
+        let is_written = self.write || self.clear.is_some();
+        is_written.then_some(wgpu::Operations {
+            load: self.clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear),
+            store: wgpu::StoreOp::Store,
+        })
+    }
+}
+
+fn depth_stencil_attachment(
+    target: &GpuAttachment,
+    depth: Option<Ops<f32>>,
+    stencil: Option<Ops<u32>>,
+) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    wgpu::RenderPassDepthStencilAttachment {
+        view: &target.view,
+        depth_ops: depth.and_then(Ops::operations),
+        stencil_ops: stencil.and_then(Ops::operations),
+    }
+}
+
+fn render_pass<'e>(
+    name: &str,
+    encoder: &'e mut wgpu::CommandEncoder,
+    colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+    depth: Option<wgpu::RenderPassDepthStencilAttachment<'_>>,
+    query: Option<&wgpu_profiler::GpuProfilerQuery>,
+) -> wgpu::RenderPass<'e> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(name),
+        color_attachments: colors,
+        depth_stencil_attachment: depth,
+        timestamp_writes: query.and_then(|query| query.render_pass_timestamp_writes()),
+        occlusion_query_set: None,
+        multiview_mask: None,
+    })
+}
+
+fn encode_draw(
+    draw: &Draw<Handles>,
+    name: &str,
+    encoder: &mut wgpu::CommandEncoder,
+    timer: Option<&Timer>,
+) {
+    let GpuProgram {
+        pipeline: PipelineKind::Render(pipeline),
+        groups,
+    } = &draw.program
+    else {
+        return;
+    };
+    let query = timer.map(|timer| timer.profiler().begin_pass_query(name, encoder));
+    let colors: Vec<_> = draw
+        .colors
+        .iter()
+        .map(|color| color_attachment(&color.target, color.resolve.as_ref(), color.clear))
+        .collect();
+    let depth = draw.depth.as_ref();
+    let stencil = draw.stencil.as_ref();
+    let target = depth
+        .map(|depth| &depth.target)
+        .or(stencil.map(|stencil| &stencil.target));
+    let depth_ops = depth.map(|depth| Ops {
+        clear: depth.clear,
+        write: depth.write,
+    });
+    let stencil_ops = stencil.map(|stencil| Ops {
+        clear: stencil.clear,
+        write: !stencil.state.is_read_only(draw.primitive.cull_mode),
+    });
+    let target = target.map(|target| depth_stencil_attachment(target, depth_ops, stencil_ops));
+    {
+        let mut pass = render_pass(name, encoder, &colors, target, query.as_ref());
+        pass.set_pipeline(pipeline);
+        if let Some(area) = draw.area {
+            let [x, y, width, height] = area.map(|edge| edge as f32);
+            pass.set_viewport(x, y, width, height, 0.0, 1.0);
+            pass.set_scissor_rect(area[0], area[1], area[2], area[3]);
+        }
+        if let Some(stencil) = stencil {
+            pass.set_stencil_reference(stencil.reference);
+        }
+        for (index, group) in groups {
+            pass.set_bind_group(*index, group, &[]);
+        }
+        match &draw.call {
+            DrawCall::Direct {
+                vertices,
+                instances,
+            } => pass.draw(0..*vertices, 0..*instances),
+            DrawCall::Indirect((buffer, offset)) => pass.draw_indirect(buffer, *offset),
+        }
+    }
+    end(timer, query, encoder);
+}

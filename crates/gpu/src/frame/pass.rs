@@ -1,0 +1,192 @@
+//! One pass on the device: pipelines, params, and what is bound whoever's turn it is.
+
+use super::encode::encode_all;
+use crate::{
+    error::{ExecuteError, named, scoped},
+    memory::{
+        memory::Memory,
+        physical::{PingPong, Versions},
+    },
+    pipelines::{
+        bind::{Binder, upload},
+        handles::Handles,
+        pipelines::{Pipeline, Pipelines, same_pipeline},
+    },
+};
+use skiagraph_graph::{LinkedPass, Origin, Plan, ResourceId, step::Step};
+use std::sync::Arc;
+
+/// A pass with everything it needs on the device.
+pub(super) struct GpuPass {
+    pub name: Arc<str>,
+    /// Of each step.
+    pipelines: Vec<Option<Pipeline>>,
+    /// Of each step: the uniform `params`.
+    params: Vec<Option<wgpu::Buffer>>,
+    /// The resources with two versions that it touches.
+    ping_pong: Vec<ResourceId>,
+    /// Its steps, bound, for each state of those that there was so far.
+    variants: Vec<(Vec<Versions>, Vec<Step<Handles>>)>,
+    /// What decides whether it runs again.
+    pub seen: Seen,
+}
+
+/// What a pass reads, and the versions of it when the pass ran last.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Seen {
+    pub inputs: Vec<ResourceId>,
+    /// `None` if it has not run, or what it made is lost.
+    pub versions: Option<Vec<u64>>,
+    /// Whether its params or state are others than when it ran.
+    pub stale: bool,
+}
+
+impl GpuPass {
+    /// Makes the pass at `at` in the schedule; pipelines and params of `old` serve again where they
+    /// fit.
+    pub fn new(
+        plan: &Plan,
+        at: usize,
+        old: Option<(&LinkedPass, &GpuPass)>,
+        pipelines: &mut Pipelines,
+        device: &wgpu::Device,
+    ) -> Result<Self, ExecuteError> {
+        let pass = plan.pass(plan.schedule().passes[at]);
+        let refused = |error| named(error, &pass.name, &pass.name.span.to_string());
+        let (mut made, mut params) = (Vec::new(), Vec::new());
+        for (index, step) in pass.steps.iter().enumerate() {
+            let before = old.and_then(|(linked, made)| {
+                let serves = same_pipeline(linked.steps.get(index)?, step);
+                serves.then_some(made)
+            });
+            let uniform = before.and_then(|made| made.params[index].clone());
+            let made_step = || match before {
+                Some(made) => made.pipelines[index].clone(),
+                None => pipelines.of(device, &pass.name, step),
+            };
+            let pipeline = scoped(device, &pass.name, made_step).map_err(refused)?;
+            made.push(pipeline);
+            params.push(match (uniform, step.params()) {
+                (Some(buffer), Some(bytes)) if buffer.size() == bytes.len() as u64 => Some(buffer),
+                _ => scoped(device, &pass.name, || upload(device, &pass.name, step))
+                    .map_err(refused)??,
+            });
+        }
+        Ok(Self {
+            name: pass.name.value.as_str().into(),
+            pipelines: made,
+            params,
+            ping_pong: two_versions(plan, pass),
+            variants: Vec::new(),
+            seen: Seen {
+                inputs: inputs(plan, at),
+                versions: None,
+                stale: false,
+            },
+        })
+    }
+
+    /// Whether the pass is bound for this state of the ping-pong.
+    pub fn is_bound(&self, ping_pong: &PingPong) -> bool {
+        self.steps(ping_pong).is_some()
+    }
+
+    /// The steps for a state of the ping-pong that it was bound for.
+    pub fn steps(&self, ping_pong: &PingPong) -> Option<&[Step<Handles>]> {
+        let is_state = |(state, _): &&(Vec<Versions>, _)| {
+            let mut known = self.ping_pong.iter().zip(state);
+            known.all(|(id, versions)| ping_pong.get(id) == Some(versions))
+        };
+        let (_, steps) = self.variants.iter().find(is_state)?;
+        Some(steps)
+    }
+
+    /// Binds the pass for a state of the ping-pong, and encodes it once into a throw-away encoder,
+    /// so that whatever the device refuses is refused here.
+    pub fn bind(
+        &mut self,
+        plan: &Plan,
+        at: usize,
+        memory: &Memory,
+        ping_pong: &PingPong,
+        device: &wgpu::Device,
+    ) -> Result<(), ExecuteError> {
+        let pass = plan.pass(plan.schedule().passes[at]);
+        let binder = Binder {
+            device,
+            plan,
+            memory,
+            ping_pong,
+        };
+        let refused = |error| named(error, &pass.name, &pass.name.span.to_string());
+        let steps = scoped(device, &pass.name, || {
+            let steps = pass.steps.iter().zip(&self.pipelines).zip(&self.params);
+            steps
+                .map(|((step, pipeline), params)| {
+                    binder.step(&pass.name, step, pipeline.as_ref(), params.as_ref())
+                })
+                .collect::<Result<Vec<_>, _>>()
+        })
+        .map_err(refused)??;
+        scoped(device, &pass.name, || {
+            let mut encoder =
+                device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            encode_all(&steps, &pass.name, &mut encoder, None);
+            encoder.finish()
+        })
+        .map_err(refused)?;
+        let states = self.ping_pong.iter();
+        let state = states
+            .map(|id| ping_pong.get(id).copied().unwrap_or_default())
+            .collect();
+        self.variants.push((state, steps));
+        Ok(())
+    }
+
+    /// Forgets what is bound: something that the pass uses is another than before.
+    pub fn unbind(&mut self) {
+        self.variants.clear();
+    }
+
+    /// Takes over what `old` had bound.
+    pub fn rebind_as(&mut self, old: &mut GpuPass) {
+        self.variants = std::mem::take(&mut old.variants);
+    }
+
+    /// The params of each step with their bytes.
+    pub fn uploads<'a>(
+        &'a self,
+        pass: &'a LinkedPass,
+    ) -> impl Iterator<Item = (&'a wgpu::Buffer, &'a [u8])> {
+        let steps = self.params.iter().zip(&pass.steps);
+        steps.filter_map(|(buffer, step)| Some((buffer.as_ref()?, step.params()?)))
+    }
+}
+
+/// The resources with two allocations that a pass touches either of.
+fn two_versions(plan: &Plan, pass: &LinkedPass) -> Vec<ResourceId> {
+    let base = |id: ResourceId| match plan.resource(id).origin {
+        Origin::Previous(base) => base,
+        _ => id,
+    };
+    let touched = pass.accesses.iter().map(|access| base(access.resource));
+    let mut touched: Vec<ResourceId> = touched.filter(|id| plan.versions(*id) > 1).collect();
+    touched.sort();
+    touched.dedup();
+    touched
+}
+
+/// What a pass reads that neither it nor the passes that run together with it write.
+fn inputs(plan: &Plan, at: usize) -> Vec<ResourceId> {
+    let conditions = &plan.schedule().conditions;
+    let group = Some(conditions.group[at]);
+    let accesses = plan.pass(plan.schedule().passes[at]).accesses.iter();
+    let mut inputs: Vec<ResourceId> = accesses
+        .filter(|access| access.reads || !access.covers)
+        .map(|access| access.resource)
+        .filter(|id| conditions.writers[id.index()] != group)
+        .collect();
+    inputs.sort();
+    inputs.dedup();
+    inputs
+}

@@ -1,0 +1,182 @@
+//! Memory filled with a pattern before a resource is first used in a frame. What then reads
+//! something that it has not written reads the pattern, and outputs differ between two patterns.
+
+use super::encode::clear_view;
+use crate::{
+    error::{ExecuteError, scoped},
+    memory::{
+        allocation::extent,
+        memory::Memory,
+        physical::{PingPong, Versions},
+    },
+    pipelines::{bind::Binder, handles::GpuAttachment},
+};
+use skiagraph_graph::{Origin, Plan, ResourceId, ResourceKind, SubresourceRange, Target, Texture};
+
+/// Fills by position in the schedule; of a resource with two allocations one for each of them.
+pub(super) struct Poison {
+    pattern: wgpu::Buffer,
+    fills: Vec<(usize, ResourceId, Vec<Fill>)>,
+}
+
+/// How a resource is filled.
+enum Fill {
+    Buffer(wgpu::Buffer),
+    /// A texture with bytes of a row and size of each mip, all layers.
+    Texture(wgpu::Texture, Vec<(u32, wgpu::Extent3d)>),
+    /// What nothing can be copied to is cleared: depths, and texels of several samples.
+    Views(Vec<GpuAttachment>, wgpu::TextureFormat, [f64; 4]),
+}
+
+impl Fill {
+    /// Bytes of the pattern that are needed.
+    fn bytes(&self) -> u64 {
+        match self {
+            Self::Buffer(buffer) => buffer.size(),
+            Self::Texture(_, mips) => {
+                let bytes = |(row, size): &(u32, wgpu::Extent3d)| {
+                    u64::from(*row) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
+                };
+                mips.iter().map(bytes).max().unwrap_or(0)
+            }
+            Self::Views(..) => 0,
+        }
+    }
+
+    fn encode(&self, pattern: &wgpu::Buffer, encoder: &mut wgpu::CommandEncoder) {
+        match self {
+            Self::Buffer(buffer) => {
+                encoder.copy_buffer_to_buffer(pattern, 0, buffer, 0, buffer.size());
+            }
+            Self::Texture(texture, mips) => {
+                for (mip_level, (row, size)) in (0u32..).zip(mips) {
+                    let layout = wgpu::TexelCopyBufferLayout {
+                        offset: 0,
+                        bytes_per_row: Some(*row),
+                        rows_per_image: Some(size.height),
+                    };
+                    let source = wgpu::TexelCopyBufferInfo {
+                        buffer: pattern,
+                        layout,
+                    };
+                    let mut target = texture.as_image_copy();
+                    target.mip_level = mip_level;
+                    encoder.copy_buffer_to_texture(source, target, *size);
+                }
+            }
+            Self::Views(views, format, value) => {
+                for view in views {
+                    clear_view(view, *format, *value, "pattern", encoder, None);
+                }
+            }
+        }
+    }
+}
+
+impl Poison {
+    /// `None` if the plan asks for none. What outlives the frame is not filled; of a resource with
+    /// two allocations that is last frame's, while the one that is written holds what is left of the
+    /// frame before that.
+    pub fn new(
+        plan: &Plan,
+        memory: &Memory,
+        device: &wgpu::Device,
+    ) -> Result<Option<Self>, ExecuteError> {
+        let Some(byte) = plan.poison() else {
+            return Ok(None);
+        };
+        let mut fills = Vec::new();
+        for (&id, lifetime) in &plan.schedule().lifetimes {
+            let is_kept = plan.schedule().conditions.kept.contains(&id);
+            let outlives = is_kept && plan.versions(id) == 1;
+            if plan.resource(id).origin != Origin::Own || outlives {
+                continue;
+            }
+            let versions = (0..plan.versions(id)).map(|current| {
+                let previous = current;
+                let ping_pong = PingPong::from([(id, Versions { current, previous })]);
+                let binder = Binder {
+                    device,
+                    plan,
+                    memory,
+                    ping_pong: &ping_pong,
+                };
+                fill(&binder, id, byte)
+            });
+            let versions: Vec<Option<Fill>> = versions.collect::<Result<_, _>>()?;
+            fills.push((lifetime.first, id, versions.into_iter().flatten().collect()));
+        }
+        let all = fills
+            .iter()
+            .flat_map(|(_, _, fills): &(_, _, Vec<Fill>)| fills);
+        let most = all.map(Fill::bytes).fold(4, u64::max);
+        let pattern = scoped(device, "pattern", || {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("pattern"),
+                size: most,
+                usage: wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: true,
+            })
+        })?;
+        match pattern.get_mapped_range_mut(..) {
+            Ok(mut mapped) => mapped.copy_from_slice(&vec![byte; most as usize]),
+            Err(_) => return Err(ExecuteError::Internal("the pattern could not be uploaded")),
+        }
+        pattern.unmap();
+        Ok(Some(Self { pattern, fills }))
+    }
+
+    /// Fills what the pass at `at` is the first to use.
+    pub fn fill(&self, at: usize, ping_pong: &PingPong, encoder: &mut wgpu::CommandEncoder) {
+        for (_, id, fills) in self.fills.iter().filter(|(first, ..)| *first == at) {
+            let current = ping_pong.get(id).map_or(0, |versions| versions.current);
+            if let Some(fill) = fills.get(current) {
+                fill.encode(&self.pattern, encoder);
+            }
+        }
+    }
+}
+
+/// How a resource is filled with a byte; `None` for what has no bytes.
+fn fill(binder: &Binder<'_>, id: ResourceId, byte: u8) -> Result<Option<Fill>, ExecuteError> {
+    Ok(Some(match &binder.plan.resource(id).kind {
+        ResourceKind::Buffer(_) => {
+            Fill::Buffer(binder.memory.buffer(id, binder.ping_pong)?.clone())
+        }
+        ResourceKind::Texture(texture)
+            if texture.format.is_depth_stencil_format() || texture.samples > 1 =>
+        {
+            let part = SubresourceRange {
+                mips: 0..texture.mips,
+                layers: 0..texture.layers,
+                aspect: wgpu::TextureAspect::All,
+            };
+            let views = binder.single_views(&Target { id, part })?;
+            Fill::Views(views, texture.format, cleared_to(texture, byte))
+        }
+        ResourceKind::Texture(texture) => {
+            let texel = texture.format.block_copy_size(None).unwrap_or(4);
+            let mip = |mip: u32| {
+                let size = extent(texture, mip, texture.mip_layers(mip));
+                let row = size.width * texel;
+                (
+                    row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT),
+                    size,
+                )
+            };
+            let made = binder.memory.texture(id, binder.ping_pong)?.clone();
+            Fill::Texture(made, (0..texture.mips).map(mip).collect())
+        }
+        _ => return Ok(None),
+    }))
+}
+
+/// The value that stands for a byte where bytes cannot be written; of a stencil the second one.
+fn cleared_to(texture: &Texture, byte: u8) -> [f64; 4] {
+    let (whole, share) = (f64::from(byte), f64::from(byte) / 255.0);
+    match texture.format.sample_type(None, None) {
+        _ if texture.format.is_depth_stencil_format() => [share, whole, 0.0, 0.0],
+        Some(wgpu::TextureSampleType::Uint | wgpu::TextureSampleType::Sint) => [whole; 4],
+        _ => [share; 4],
+    }
+}

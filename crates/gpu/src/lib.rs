@@ -1,0 +1,19 @@
+//! Plans of [`skiagraph_graph`] on a wgpu device: what the live passes touch is made, frames are
+//! encoded into the host's encoder, timed and read back.
+//!
+//! [`Executor`] is a plan on a device; [`Provider`] makes what the graph does not make itself.
+
+pub mod device;
+mod error;
+mod frame;
+mod memory;
+mod pipelines;
+mod provider;
+mod readback;
+pub mod timing;
+
+pub use error::ExecuteError;
+pub use frame::{Executor, Frame, FrameReport, ReplanReport};
+pub use provider::{Provider, ProviderError};
+pub use readback::{Content, Readback};
+pub use timing::{FrameTiming, PassTiming};

@@ -1,0 +1,170 @@
+//! Textures and buffers that resources of a plan take turns in.
+
+use super::physical::Physical;
+use crate::error::{ExecuteError, scoped};
+use skiagraph_graph::{Origin, Plan, Resource, ResourceId, ResourceKind, Texture};
+use std::collections::HashMap;
+
+/// One allocation that resources take turns in, or two of one that is also read as it was in the
+/// frame before.
+pub(crate) struct GpuAllocation {
+    pub label: String,
+    usage: (wgpu::TextureUsages, wgpu::BufferUsages),
+    pub versions: Vec<Physical>,
+}
+
+/// Allocations of another plan by their labels.
+pub(super) type Known<'a> = HashMap<&'a str, (&'a Plan, &'a GpuAllocation)>;
+
+impl GpuAllocation {
+    /// Makes what resources take turns in, or takes it from what is known by label.
+    pub fn new(
+        plan: &Plan,
+        aliases: &[ResourceId],
+        known: &mut Known<'_>,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<Self, ExecuteError> {
+        let id = aliases[0];
+        let resource = plan.resource(id);
+        let lifetime = &plan.schedule().lifetimes[&id];
+        let names: Vec<&str> = aliases
+            .iter()
+            .map(|id| plan.resource(*id).name.as_str())
+            .collect();
+        let label = names.join(" / ");
+        let usage = (lifetime.textures, lifetime.buffers);
+        let count = plan.versions(id);
+        let kept = known.remove(label.as_str()).filter(|(of, allocation)| {
+            allocation.usage == usage
+                && allocation.versions.len() == count
+                && allocation
+                    .versions
+                    .iter()
+                    .all(|version| is_made(version, resource))
+                && (resource.origin != Origin::Constant || holds_the_same(of, resource))
+        });
+        if let Some((_, allocation)) = kept {
+            let versions = allocation.versions.clone();
+            return Ok(Self {
+                label,
+                usage,
+                versions,
+            });
+        }
+        let make = || make(resource, &label, usage, device);
+        let versions = (0..count)
+            .map(|_| scoped(device, &label, make)?)
+            .collect::<Result<Vec<_>, ExecuteError>>()?;
+        for version in &versions {
+            fill(version, resource, queue);
+        }
+        Ok(Self {
+            label,
+            usage,
+            versions,
+        })
+    }
+}
+
+fn make(
+    resource: &Resource,
+    label: &str,
+    (textures, buffers): (wgpu::TextureUsages, wgpu::BufferUsages),
+    device: &wgpu::Device,
+) -> Result<Physical, ExecuteError> {
+    match &resource.kind {
+        ResourceKind::Texture(texture) => {
+            let descriptor = wgpu::TextureDescriptor {
+                label: Some(label),
+                size: extent(texture, 0, texture.layers),
+                mip_level_count: texture.mips,
+                sample_count: texture.samples,
+                dimension: match texture.is_3d {
+                    true => wgpu::TextureDimension::D3,
+                    false => wgpu::TextureDimension::D2,
+                },
+                format: texture.format,
+                usage: textures,
+                view_formats: &[],
+            };
+            Ok(Physical::Texture(device.create_texture(&descriptor)))
+        }
+        ResourceKind::Buffer(buffer) => {
+            let descriptor = wgpu::BufferDescriptor {
+                label: Some(label),
+                size: buffer.bytes,
+                usage: buffers,
+                mapped_at_creation: false,
+            };
+            Ok(Physical::Buffer(device.create_buffer(&descriptor)))
+        }
+        _ => Err(ExecuteError::Internal(
+            "only textures and buffers have allocations",
+        )),
+    }
+}
+
+/// The size of some layers of a mip.
+pub(crate) fn extent(texture: &Texture, mip: u32, layers: u32) -> wgpu::Extent3d {
+    let [width, height] = texture.mip_size(mip);
+    wgpu::Extent3d {
+        width,
+        height,
+        depth_or_array_layers: layers,
+    }
+}
+
+/// Writes what stands in the document into a resource that holds just that.
+fn fill(version: &Physical, resource: &Resource, queue: &wgpu::Queue) {
+    match (version, &resource.kind) {
+        (Physical::Texture(made), ResourceKind::Texture(texture)) => {
+            let picture = texture.picture.as_ref();
+            let Some(bytes) = picture.and_then(|picture| picture.bytes(texture.format)) else {
+                return;
+            };
+            let texel = texture.format.block_copy_size(None).unwrap_or(4);
+            let layout = wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(texture.size[0] * texel),
+                rows_per_image: None,
+            };
+            queue.write_texture(made.as_image_copy(), &bytes, layout, extent(texture, 0, 1));
+        }
+        (Physical::Buffer(made), ResourceKind::Buffer(buffer)) => {
+            if let Some(content) = &buffer.content {
+                queue.write_buffer(made, 0, content);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Whether another plan's resource of the same name holds the same content.
+fn holds_the_same(of: &Plan, resource: &Resource) -> bool {
+    let known = of
+        .resources()
+        .iter()
+        .find(|known| known.name == resource.name);
+    match known.map(|known| (&known.kind, &resource.kind)) {
+        Some((ResourceKind::Texture(a), ResourceKind::Texture(b))) => a == b,
+        Some((ResourceKind::Buffer(a), ResourceKind::Buffer(b))) => a == b,
+        _ => false,
+    }
+}
+
+/// Whether a texture or buffer is what a plan says of a resource.
+fn is_made(physical: &Physical, resource: &Resource) -> bool {
+    match (physical, &resource.kind) {
+        (Physical::Texture(made), ResourceKind::Texture(wanted)) => {
+            made.format() == wanted.format
+                && [made.width(), made.height()] == wanted.size
+                && made.mip_level_count() == wanted.mips
+                && made.depth_or_array_layers() == wanted.layers
+                && made.sample_count() == wanted.samples
+                && (made.dimension() == wgpu::TextureDimension::D3) == wanted.is_3d
+        }
+        (Physical::Buffer(buffer), ResourceKind::Buffer(wanted)) => buffer.size() == wanted.bytes,
+        _ => false,
+    }
+}

@@ -1,0 +1,64 @@
+//! What the host hands over, held against what it said that it would.
+
+use super::physical::Physical;
+use skiagraph_graph::Import;
+
+/// Why a texture or buffer is not what the host said that it would import; it may have been made
+/// for more besides.
+pub(crate) fn differs(physical: &Physical, described: &Import) -> Option<String> {
+    fn unless<T: PartialEq + std::fmt::Debug>(what: &str, planned: T, given: T) -> Option<String> {
+        (planned != given).then(|| format!("{what} is {given:?}, not {planned:?}"))
+    }
+    let differences = match (physical, *described) {
+        (
+            Physical::Texture(texture),
+            Import::Texture {
+                format,
+                size,
+                mips,
+                layers,
+                is_3d,
+                samples,
+                usage,
+            },
+        ) => {
+            let dimension = match is_3d {
+                true => wgpu::TextureDimension::D3,
+                false => wgpu::TextureDimension::D2,
+            };
+            vec![
+                unless("its format", format, texture.format()),
+                unless("its size", size, [texture.width(), texture.height()]),
+                unless("its number of mips", mips, texture.mip_level_count()),
+                unless(
+                    "its number of layers",
+                    layers,
+                    texture.depth_or_array_layers(),
+                ),
+                unless("its dimension", dimension, texture.dimension()),
+                unless("its number of samples", samples, texture.sample_count()),
+                unless("its usage", usage, texture.usage() & usage),
+            ]
+        }
+        (Physical::Buffer(buffer), Import::Buffer { bytes, usage, .. }) => vec![
+            unless("its size in bytes", bytes, buffer.size()),
+            unless("its usage", usage, buffer.usage() & usage),
+        ],
+        (Physical::Sampler(_), Import::Sampler { .. }) => Vec::new(),
+        (physical, described) => {
+            let is = match physical {
+                Physical::Texture(_) => "a texture",
+                Physical::Buffer(_) => "a buffer",
+                Physical::Sampler(_) => "a sampler",
+            };
+            let planned = match described {
+                Import::Texture { .. } => "a texture",
+                Import::Buffer { .. } => "a buffer",
+                Import::Sampler { .. } => "a sampler",
+            };
+            vec![Some(format!("it is {is}, not {planned}"))]
+        }
+    };
+    let differences: Vec<String> = differences.into_iter().flatten().collect();
+    (!differences.is_empty()).then(|| differences.join("; "))
+}

@@ -1,0 +1,367 @@
+//! All memory of a plan: made here, built by the provider, or handed over by the host.
+
+use super::{
+    allocation::{GpuAllocation, Known},
+    physical::{Physical, PingPong},
+};
+use crate::{
+    error::{ExecuteError, scoped},
+    provider::Provider,
+};
+use skiagraph_graph::{
+    Address, FRAME_BYTES, Filter, Origin, Plan, Resource, ResourceId, ResourceKind, Sampler,
+    SubresourceRange, Target,
+};
+use std::{collections::BTreeMap, ops::Range};
+
+/// Textures, buffers and samplers of a plan.
+#[derive(Default)]
+pub(crate) struct Memory {
+    allocations: Vec<GpuAllocation>,
+    of: BTreeMap<ResourceId, usize>,
+    /// What a resource is last frame's version of, where two allocations take turns.
+    bases: BTreeMap<ResourceId, ResourceId>,
+    /// Provided resources, copies of them from the frame before, the uniform `frame`, and imports;
+    /// the latter from when the host has handed them over.
+    host: BTreeMap<ResourceId, Physical>,
+    /// Imports that no live pass uses, for plans in which one does.
+    spare: BTreeMap<String, Physical>,
+    samplers: BTreeMap<ResourceId, wgpu::Sampler>,
+    /// Versions of the provided resources.
+    provided: BTreeMap<ResourceId, u64>,
+}
+
+/// Who makes memory.
+pub(crate) struct Maker<'a> {
+    pub device: &'a wgpu::Device,
+    pub queue: &'a wgpu::Queue,
+    pub provider: &'a mut dyn Provider,
+}
+
+impl Memory {
+    /// Makes every resource with a lifetime; provided ones are asked of the provider, and only here.
+    /// What `old` has of the same name and make is taken over with its content.
+    pub fn new(
+        plan: &Plan,
+        old: Option<(&Plan, &Memory)>,
+        maker: &mut Maker<'_>,
+    ) -> Result<Self, ExecuteError> {
+        let mut memory = Self {
+            of: plan.schedule().aliases.of.clone(),
+            ..Self::default()
+        };
+        let mut known = Known::new();
+        if let Some((plan, old)) = old {
+            known.extend(
+                old.allocations
+                    .iter()
+                    .map(|made| (made.label.as_str(), (plan, made))),
+            );
+        }
+        for allocation in &plan.schedule().aliases.list {
+            let aliases = &allocation.aliases;
+            let made = GpuAllocation::new(plan, aliases, &mut known, maker.device, maker.queue)?;
+            memory.allocations.push(made);
+        }
+        for &id in plan.schedule().lifetimes.keys() {
+            memory.enter(plan, id, old, maker)?;
+        }
+        let used = |name: &String| {
+            let mut live = plan.schedule().lifetimes.keys();
+            live.any(|id| plan.resource(*id).name == *name)
+        };
+        for name in plan.imports().keys().filter(|name| !used(name)) {
+            if let Some(import) = old.and_then(|old| kept_import(plan, name, old)) {
+                memory.spare.insert(name.clone(), import);
+            }
+        }
+        Ok(memory)
+    }
+
+    /// Makes what no allocation of the plan holds.
+    fn enter(
+        &mut self,
+        plan: &Plan,
+        id: ResourceId,
+        old: Option<(&Plan, &Memory)>,
+        maker: &mut Maker<'_>,
+    ) -> Result<(), ExecuteError> {
+        let resource = plan.resource(id);
+        match (&resource.kind, resource.origin) {
+            // The base has the smaller number, so it is there.
+            (ResourceKind::Provided(provided), Origin::Previous(base)) => {
+                let base = self.buffer(base, &PingPong::new())?;
+                if !base.usage().contains(wgpu::BufferUsages::COPY_SRC) {
+                    return Err(ExecuteError::Provider {
+                        name: resource.name.trim_end_matches(".previous").to_owned(),
+                        why: "it is read as it was in the frame before, so it must be made with \
+                              BufferUsages::COPY_SRC"
+                            .to_owned(),
+                    });
+                }
+                let usage = provided.binding.usages();
+                let size = base.size();
+                self.own_buffer(id, &resource.name, (size, usage), old, maker.device)?;
+            }
+            (_, Origin::Previous(base)) => {
+                self.bases.insert(id, base);
+            }
+            (ResourceKind::Provided(_), _) => self.refresh(id, resource, old, maker)?,
+            (ResourceKind::Frame, _) => {
+                let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_SRC;
+                self.own_buffer(id, &resource.name, (FRAME_BYTES, usage), old, maker.device)?;
+            }
+            (_, Origin::Host) => {
+                if let Some(import) = old.and_then(|old| kept_import(plan, &resource.name, old)) {
+                    self.host.insert(id, import);
+                }
+            }
+            (ResourceKind::Sampler(entry), _) => {
+                let made = sampler(maker.device, &resource.name, entry);
+                self.samplers.insert(id, made);
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// A buffer that is copied to, or the one of the same name and size that is there.
+    fn own_buffer(
+        &mut self,
+        id: ResourceId,
+        name: &str,
+        (size, usage): (u64, wgpu::BufferUsages),
+        old: Option<(&Plan, &Memory)>,
+        device: &wgpu::Device,
+    ) -> Result<(), ExecuteError> {
+        let known = old.and_then(|(plan, memory)| memory.host_by_name(plan, name));
+        let usage = usage | wgpu::BufferUsages::COPY_DST;
+        let buffer = match known {
+            Some((_, Physical::Buffer(known)))
+                if known.size() == size && known.usage() == usage =>
+            {
+                known.clone()
+            }
+            _ => scoped(device, name, || {
+                device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some(name),
+                    size,
+                    usage,
+                    mapped_at_creation: false,
+                })
+            })?,
+        };
+        self.host.insert(id, Physical::Buffer(buffer));
+        Ok(())
+    }
+
+    /// What stands behind a name of the host's.
+    fn host_by_name(&self, plan: &Plan, name: &str) -> Option<(ResourceId, &Physical)> {
+        let mut host = self.host.iter();
+        let known = host.find(|(id, _)| plan.resource(**id).name == name);
+        known.map(|(id, physical)| (*id, physical))
+    }
+
+    /// What is behind a resource in a frame; `None` for an import that is not there yet.
+    fn find(&self, id: ResourceId, ping_pong: &PingPong) -> Option<&Physical> {
+        if let Some(host) = self.host.get(&id) {
+            return Some(host);
+        }
+        let (base, version) = match self.bases.get(&id) {
+            Some(base) => (*base, ping_pong.get(base)?.previous),
+            None => (id, ping_pong.get(&id).map_or(0, |version| version.current)),
+        };
+        self.allocations
+            .get(*self.of.get(&base)?)?
+            .versions
+            .get(version)
+    }
+
+    pub fn texture(
+        &self,
+        id: ResourceId,
+        ping_pong: &PingPong,
+    ) -> Result<&wgpu::Texture, ExecuteError> {
+        match self.find(id, ping_pong) {
+            Some(Physical::Texture(texture)) => Ok(texture),
+            _ => Err(ExecuteError::Internal(
+                "a texture that a live pass uses was not made",
+            )),
+        }
+    }
+
+    pub fn buffer(
+        &self,
+        id: ResourceId,
+        ping_pong: &PingPong,
+    ) -> Result<&wgpu::Buffer, ExecuteError> {
+        match self.find(id, ping_pong) {
+            Some(Physical::Buffer(buffer)) => Ok(buffer),
+            _ => Err(ExecuteError::Internal(
+                "a buffer that a live pass uses was not made",
+            )),
+        }
+    }
+
+    pub fn sampler(&self, id: ResourceId) -> Result<&wgpu::Sampler, ExecuteError> {
+        match self.host.get(&id) {
+            Some(Physical::Sampler(sampler)) => Ok(sampler),
+            _ => self.samplers.get(&id).ok_or(ExecuteError::Internal(
+                "a sampler that a live pass uses was not made",
+            )),
+        }
+    }
+
+    /// A view of one part, of the dimension that a shader or an attachment sees.
+    pub fn view(
+        &self,
+        target: &Target,
+        dimension: wgpu::TextureViewDimension,
+        ping_pong: &PingPong,
+    ) -> Result<wgpu::TextureView, ExecuteError> {
+        let texture = self.texture(target.id, ping_pong)?;
+        let SubresourceRange {
+            mips,
+            layers,
+            aspect,
+        } = &target.part;
+        // Slices of a 3D texture are no layers of a view.
+        let is_3d = texture.dimension() == wgpu::TextureDimension::D3;
+        let descriptor = wgpu::TextureViewDescriptor {
+            dimension: Some(dimension),
+            aspect: *aspect,
+            base_mip_level: mips.start,
+            mip_level_count: Some(mips.len() as u32),
+            base_array_layer: if is_3d { 0 } else { layers.start },
+            array_layer_count: (!is_3d).then_some(layers.len() as u32),
+            ..wgpu::TextureViewDescriptor::default()
+        };
+        Ok(texture.create_view(&descriptor))
+    }
+
+    /// Asks the provider for a resource if it has another version than the one that is there.
+    pub fn refresh(
+        &mut self,
+        id: ResourceId,
+        resource: &Resource,
+        old: Option<(&Plan, &Memory)>,
+        maker: &mut Maker<'_>,
+    ) -> Result<(), ExecuteError> {
+        let (provider, device) = (&mut *maker.provider, maker.device);
+        let version = provider.version(&resource.name);
+        if let Some((plan, memory)) = old {
+            if let Some((known, physical)) = memory.host_by_name(plan, &resource.name)
+                && memory.provided.get(&known) == Some(&version)
+            {
+                self.host.insert(id, physical.clone());
+                self.provided.insert(id, version);
+                return Ok(());
+            }
+        }
+        // The plan has counted items and sized buffers by what was described to it.
+        if let (ResourceKind::Provided(planned), Some(now)) =
+            (&resource.kind, provider.describe(&resource.name))
+            && now != *planned
+        {
+            return Err(ExecuteError::Provider {
+                name: resource.name.clone(),
+                why: format!(
+                    "it is {now:?} now, and was planned as {planned:?}: plan the graph anew"
+                ),
+            });
+        }
+        let built = scoped(device, &resource.name, || {
+            provider.build(&resource.name, device, maker.queue)
+        })?;
+        let buffer = built.map_err(|why| ExecuteError::Provider {
+            name: resource.name.clone(),
+            why: why.0,
+        })?;
+        // Only now: what could not be built is asked for again.
+        self.host.insert(id, Physical::Buffer(buffer));
+        self.provided.insert(id, version);
+        Ok(())
+    }
+
+    /// The provided resources with the versions that are there.
+    pub fn provided(&self) -> impl Iterator<Item = (ResourceId, u64)> + '_ {
+        self.provided.iter().map(|(id, version)| (*id, *version))
+    }
+
+    /// The version that a provided resource was built of.
+    pub fn version(&self, id: ResourceId) -> Option<u64> {
+        self.provided.get(&id).copied()
+    }
+
+    /// What the host gave for a provided resource or an import.
+    pub fn host(&self, id: ResourceId) -> Option<&Physical> {
+        self.host.get(&id)
+    }
+
+    /// Sets an import; whether it is another one than before.
+    pub fn import(&mut self, id: ResourceId, physical: Physical) -> bool {
+        self.host.insert(id, physical.clone()) != Some(physical)
+    }
+
+    /// Keeps an import that no live pass uses.
+    pub fn spare(&mut self, name: &str, physical: Physical) {
+        self.spare.insert(name.to_owned(), physical);
+    }
+
+    /// Whether a resource has the very memory in two states of an executor, and so its content.
+    pub fn same(&self, id: ResourceId, other: &Memory, of_other: ResourceId) -> bool {
+        let versions = |memory: &Memory, id: ResourceId| -> Option<Vec<Physical>> {
+            if let Some(host) = memory.host.get(&id) {
+                return Some(vec![host.clone()]);
+            }
+            let base = memory.bases.get(&id).unwrap_or(&id);
+            Some(memory.allocations[*memory.of.get(base)?].versions.clone())
+        };
+        let (a, b) = (versions(self, id), versions(other, of_other));
+        a.is_some() && a == b
+    }
+}
+
+/// The bytes of a buffer that a part of a resource is.
+pub(crate) fn bytes(resource: &Resource, part: &SubresourceRange, whole: u64) -> Range<u64> {
+    let stride = match &resource.kind {
+        ResourceKind::Buffer(buffer) => buffer.stride,
+        ResourceKind::Provided(provided) => provided.stride,
+        _ => 0,
+    };
+    let range = |items: Range<u32>| u64::from(items.start) * stride..u64::from(items.end) * stride;
+    part.items().map_or(0..whole, range)
+}
+
+/// An import that was handed over before, if it is still described the same way.
+fn kept_import(plan: &Plan, name: &str, (of, memory): (&Plan, &Memory)) -> Option<Physical> {
+    let described = |plan: &Plan| plan.imports().get(name).copied();
+    if described(plan) != described(of) {
+        return None;
+    }
+    let live = memory.host_by_name(of, name).map(|(_, physical)| physical);
+    live.or_else(|| memory.spare.get(name)).cloned()
+}
+
+fn sampler(device: &wgpu::Device, name: &str, entry: &Sampler) -> wgpu::Sampler {
+    let address = match entry.address {
+        Address::ClampToEdge => wgpu::AddressMode::ClampToEdge,
+        Address::Repeat => wgpu::AddressMode::Repeat,
+        Address::MirrorRepeat => wgpu::AddressMode::MirrorRepeat,
+    };
+    let (filter, mip) = match entry.filter {
+        Filter::Nearest => (wgpu::FilterMode::Nearest, wgpu::MipmapFilterMode::Nearest),
+        Filter::Linear => (wgpu::FilterMode::Linear, wgpu::MipmapFilterMode::Linear),
+    };
+    device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some(name),
+        address_mode_u: address,
+        address_mode_v: address,
+        address_mode_w: address,
+        mag_filter: filter,
+        min_filter: filter,
+        mipmap_filter: mip,
+        compare: entry.compare,
+        ..wgpu::SamplerDescriptor::default()
+    })
+}

@@ -1,0 +1,292 @@
+//! What is bound to the pipelines: bind groups, attachments, sources and targets of copies.
+
+use super::{
+    handles::{GpuAttachment, GpuOperand, GpuProgram, Handles},
+    pipelines::Pipeline,
+};
+use crate::{
+    error::ExecuteError,
+    memory::{
+        allocation::extent,
+        memory::{Memory, bytes},
+        physical::PingPong,
+    },
+};
+use skiagraph_graph::{
+    Attachment, BindTarget, Ids, LinkedProgram, Plan, ResourceKind, SubresourceRange, Target,
+    step::{ColorTarget, DepthTarget, Dispatch, Draw, DrawCall, Groups, StencilTarget, Step},
+};
+
+/// The uniform buffer of a step's `params`, if its shader has one.
+pub(crate) fn upload(
+    device: &wgpu::Device,
+    label: &str,
+    step: &Step<Ids>,
+) -> Result<Option<wgpu::Buffer>, ExecuteError> {
+    let Some(bytes) = step.params() else {
+        return Ok(None);
+    };
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(&format!("{label} params")),
+        size: bytes.len() as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: true,
+    });
+    match buffer.get_mapped_range_mut(..) {
+        Ok(mut mapped) => mapped.copy_from_slice(bytes),
+        Err(_) => {
+            return Err(ExecuteError::Internal(
+                "the params of a pass could not be uploaded",
+            ));
+        }
+    }
+    buffer.unmap();
+    Ok(Some(buffer))
+}
+
+/// Binds steps to the memory of one state of the ping-pong.
+pub(crate) struct Binder<'a> {
+    pub device: &'a wgpu::Device,
+    pub plan: &'a Plan,
+    pub memory: &'a Memory,
+    pub ping_pong: &'a PingPong,
+}
+
+impl Binder<'_> {
+    pub fn step(
+        &self,
+        label: &str,
+        step: &Step<Ids>,
+        pipeline: Option<&Pipeline>,
+        params: Option<&wgpu::Buffer>,
+    ) -> Result<Step<Handles>, ExecuteError> {
+        let program = |program: &LinkedProgram| {
+            let missing = ExecuteError::Internal("a draw or dispatch has no pipeline");
+            let pipeline = pipeline.ok_or(missing)?;
+            Ok::<_, ExecuteError>(GpuProgram {
+                pipeline: pipeline.kind.clone(),
+                groups: self.groups(label, program, &pipeline.layouts, params)?,
+            })
+        };
+        Ok(match step {
+            Step::Draw(draw) => Step::Draw(self.draw(draw, program(&draw.program)?)?),
+            Step::Dispatch(dispatch) => Step::Dispatch(Dispatch {
+                program: program(&dispatch.program)?,
+                groups: match &dispatch.groups {
+                    Groups::Direct(groups) => Groups::Direct(*groups),
+                    Groups::Indirect(target) => Groups::Indirect(self.arguments(target)?),
+                },
+            }),
+            Step::Copy { from, to } => Step::Copy {
+                from: self.operand(from, false)?,
+                to: self.operand(to, false)?,
+            },
+            Step::Clear { target, value } => Step::Clear {
+                target: self.operand(target, true)?,
+                value: *value,
+            },
+        })
+    }
+
+    /// Each mip of each layer of a part.
+    pub fn single_views(&self, target: &Target) -> Result<Vec<GpuAttachment>, ExecuteError> {
+        let id = target.id;
+        let ResourceKind::Texture(texture) = &self.plan.resource(id).kind else {
+            return Err(ExecuteError::Internal("only textures have views"));
+        };
+        let mut views = Vec::new();
+        for mip in target.part.mips.clone() {
+            let layers = target.part.layers.clone();
+            for layer in layers.take_while(|layer| *layer < texture.mip_layers(mip)) {
+                let part = SubresourceRange {
+                    mips: mip..mip + 1,
+                    layers: layer..layer + 1,
+                    aspect: wgpu::TextureAspect::All,
+                };
+                views.push(self.attachment(&Target { id, part })?);
+            }
+        }
+        Ok(views)
+    }
+
+    fn attachment(&self, target: &Target) -> Result<GpuAttachment, ExecuteError> {
+        let is_3d = matches!(
+            &self.plan.resource(target.id).kind,
+            ResourceKind::Texture(texture) if texture.is_3d
+        );
+        let dimension = match is_3d {
+            true => wgpu::TextureViewDimension::D3,
+            false => wgpu::TextureViewDimension::D2,
+        };
+        // An attachment has all aspects of its texture.
+        let mut whole = target.clone();
+        whole.part.aspect = wgpu::TextureAspect::All;
+        Ok(GpuAttachment {
+            view: self.memory.view(&whole, dimension, self.ping_pong)?,
+            slice: is_3d.then_some(target.part.layers.start),
+        })
+    }
+
+    fn arguments(&self, target: &Target) -> Result<(wgpu::Buffer, u64), ExecuteError> {
+        let buffer = self.memory.buffer(target.id, self.ping_pong)?.clone();
+        let range = bytes(self.plan.resource(target.id), &target.part, buffer.size());
+        Ok((buffer, range.start))
+    }
+
+    fn operand(&self, target: &Target, is_cleared: bool) -> Result<GpuOperand, ExecuteError> {
+        let resource = self.plan.resource(target.id);
+        let ResourceKind::Texture(texture) = &resource.kind else {
+            let buffer = self.memory.buffer(target.id, self.ping_pong)?.clone();
+            let range = bytes(resource, &target.part, buffer.size());
+            return Ok(GpuOperand::Buffer { buffer, range });
+        };
+        let layers = target.part.layers.len() as u32;
+        let mips = target.part.mips.clone();
+        let mips = mips.map(|mip| extent(texture, mip, layers.min(texture.mip_layers(mip))));
+        Ok(GpuOperand::Texture {
+            texture: self.memory.texture(target.id, self.ping_pong)?.clone(),
+            part: target.part.clone(),
+            mips: mips.collect(),
+            views: match is_cleared {
+                true => self.single_views(target)?,
+                false => Vec::new(),
+            },
+        })
+    }
+
+    fn draw(&self, draw: &Draw<Ids>, program: GpuProgram) -> Result<Draw<Handles>, ExecuteError> {
+        let attachment = |attachment: &Attachment| self.attachment(&attachment.target);
+        let color = |color: &ColorTarget<Ids>| {
+            Ok(ColorTarget {
+                target: attachment(&color.target)?,
+                resolve: color.resolve.as_ref().map(attachment).transpose()?,
+                clear: color.clear,
+                blend: color.blend,
+                write: color.write,
+            })
+        };
+        let depth = |depth: &DepthTarget<Ids>| {
+            Ok::<_, ExecuteError>(DepthTarget {
+                target: attachment(&depth.target)?,
+                clear: depth.clear,
+                compare: depth.compare,
+                write: depth.write,
+                bias: depth.bias,
+            })
+        };
+        let stencil = |stencil: &StencilTarget<Ids>| {
+            Ok::<_, ExecuteError>(StencilTarget {
+                target: attachment(&stencil.target)?,
+                clear: stencil.clear,
+                state: stencil.state.clone(),
+                reference: stencil.reference,
+            })
+        };
+        Ok(Draw {
+            program,
+            fullscreen: draw.fullscreen,
+            colors: draw
+                .colors
+                .iter()
+                .map(color)
+                .collect::<Result<_, ExecuteError>>()?,
+            depth: draw.depth.as_ref().map(depth).transpose()?,
+            stencil: draw.stencil.as_ref().map(stencil).transpose()?,
+            area: draw.area,
+            call: match &draw.call {
+                DrawCall::Direct {
+                    vertices,
+                    instances,
+                } => DrawCall::Direct {
+                    vertices: *vertices,
+                    instances: *instances,
+                },
+                DrawCall::Indirect(target) => DrawCall::Indirect(self.arguments(target)?),
+            },
+            primitive: draw.primitive,
+        })
+    }
+
+    /// The bind groups of a program, one for each of the layouts.
+    fn groups(
+        &self,
+        label: &str,
+        program: &LinkedProgram,
+        layouts: &[Option<wgpu::BindGroupLayout>],
+        params: Option<&wgpu::Buffer>,
+    ) -> Result<Vec<(u32, wgpu::BindGroup)>, ExecuteError> {
+        let mut groups = Vec::new();
+        for (group, layout) in (0u32..).zip(layouts) {
+            let Some(layout) = layout else {
+                continue;
+            };
+            let bound: Vec<(u32, Bound)> = program
+                .bindings
+                .iter()
+                .filter(|binding| binding.group == group)
+                .map(|binding| Ok((binding.binding, self.bound(&binding.target, params)?)))
+                .collect::<Result<_, ExecuteError>>()?;
+            let entries: Vec<wgpu::BindGroupEntry<'_>> = bound
+                .iter()
+                .map(|(binding, bound)| wgpu::BindGroupEntry {
+                    binding: *binding,
+                    resource: bound.resource(),
+                })
+                .collect();
+            let made = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some(label),
+                layout,
+                entries: &entries,
+            });
+            groups.push((group, made));
+        }
+        Ok(groups)
+    }
+
+    fn bound(
+        &self,
+        target: &BindTarget,
+        params: Option<&wgpu::Buffer>,
+    ) -> Result<Bound, ExecuteError> {
+        Ok(match target {
+            BindTarget::Buffer(target) => {
+                let buffer = self.memory.buffer(target.id, self.ping_pong)?.clone();
+                let range = bytes(self.plan.resource(target.id), &target.part, buffer.size());
+                Bound::Buffer(buffer, range)
+            }
+            BindTarget::Texture { target, dimension } => {
+                Bound::View(self.memory.view(target, *dimension, self.ping_pong)?)
+            }
+            BindTarget::Sampler(id) => Bound::Sampler(self.memory.sampler(*id)?.clone()),
+            BindTarget::Params(_) => {
+                let missing = ExecuteError::Internal("the params of a pass were not uploaded");
+                let buffer = params.ok_or(missing)?.clone();
+                let size = buffer.size();
+                Bound::Buffer(buffer, 0..size)
+            }
+        })
+    }
+}
+
+enum Bound {
+    Buffer(wgpu::Buffer, std::ops::Range<u64>),
+    View(wgpu::TextureView),
+    Sampler(wgpu::Sampler),
+}
+
+impl Bound {
+    fn resource(&self) -> wgpu::BindingResource<'_> {
+        match self {
+            Self::Buffer(buffer, range) => {
+                let size = std::num::NonZeroU64::new(range.end - range.start);
+                wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                    buffer,
+                    offset: range.start,
+                    size: size.filter(|size| size.get() < buffer.size()),
+                })
+            }
+            Self::View(view) => wgpu::BindingResource::TextureView(view),
+            Self::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
+        }
+    }
+}

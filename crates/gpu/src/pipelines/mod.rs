@@ -1,0 +1,9 @@
+//! Pipelines of the live passes, and what is bound to them.
+
+pub(crate) mod bind;
+pub(crate) mod handles;
+#[expect(
+    clippy::module_inception,
+    reason = "the folder is named after what it makes"
+)]
+pub(crate) mod pipelines;

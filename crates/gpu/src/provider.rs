@@ -1,0 +1,52 @@
+//! What a graph does not make itself, built when a live pass binds it.
+
+use skiagraph_graph::{Describe, NoProvider};
+
+/// Gives what a graph does not make itself: scene buffers, camera and light uniforms, acceleration
+/// structures. What they are is described by [`Describe`], which needs no device.
+pub trait Provider: Describe {
+    /// Counts the changes of what stands behind a name.
+    /// [`Executor::refresh`](crate::Executor::refresh) builds anew what has another version than
+    /// before.
+    fn version(&self, name: &str) -> u64 {
+        let _ = name;
+        0
+    }
+
+    /// Builds the buffer, or hands out the one built before. Called only for names that a live pass
+    /// binds. The buffer needs the [usages](skiagraph_graph::ProvidedBinding::usages) that it is
+    /// described with; `COPY_SRC` where it may be saved, or read as it was in the frame before.
+    ///
+    /// # Errors
+    /// Why it cannot be built.
+    fn build(
+        &mut self,
+        name: &str,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<wgpu::Buffer, ProviderError>;
+}
+
+/// Why a provided resource could not be built.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct ProviderError(pub String);
+
+impl From<String> for ProviderError {
+    fn from(why: String) -> Self {
+        Self(why)
+    }
+}
+
+impl Provider for NoProvider {
+    fn build(
+        &mut self,
+        name: &str,
+        _: &wgpu::Device,
+        _: &wgpu::Queue,
+    ) -> Result<wgpu::Buffer, ProviderError> {
+        Err(ProviderError(format!(
+            "nothing is provided under the name `{name}`"
+        )))
+    }
+}

@@ -1,0 +1,187 @@
+//! Whether an adapter's timestamps are true.
+
+use crate::{
+    error::ExecuteError,
+    frame::{Executor, Frame},
+};
+use skiagraph_graph::{Graph, NoProvider, ParamValue, PlanRequest, Registry, Sources};
+use std::{
+    collections::BTreeMap,
+    sync::Arc,
+    time::{Duration, Instant},
+};
+
+/// Whether an adapter's timestamps can be believed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Trust {
+    /// They agree with wall time.
+    Trusted,
+    /// They do not, or there are none.
+    Untrusted {
+        /// Why.
+        reason: String,
+    },
+}
+
+/// The shortest dispatch, in wall time, that is compared: long against the cost of submitting and
+/// waiting.
+const LONG: Duration = Duration::from_millis(30);
+
+/// Frames that are compared, one to warm up included.
+const FRAMES: usize = 5;
+
+/// Compares the GPU time of a long dispatch that follows a raster pass with wall time, by the very
+/// means that time frames.
+///
+/// # Errors
+/// If the little graph that it runs fails on this device.
+pub fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, ExecuteError> {
+    if !device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
+        return Ok(Trust::Untrusted {
+            reason: "the adapter has no timestamp queries".to_owned(),
+        });
+    }
+    let internal = |_| ExecuteError::Internal("the timestamp check's own graph is broken");
+    let graph = Graph::load("check.ron", &Registry::standard(), &CheckSources).map_err(internal)?;
+    let mut rounds = 64u32;
+    let mut was_long = false;
+    loop {
+        let mut request = PlanRequest::new([64, 64], &NoProvider);
+        request.params = BTreeMap::from([("rounds".to_owned(), ParamValue::U32(rounds))]);
+        let mut executor = Executor::new(
+            device,
+            queue,
+            graph.plan(&request).map_err(internal)?,
+            &mut NoProvider,
+        )?;
+        let mut frames = Vec::new();
+        for _ in 0..FRAMES {
+            let mut encoder =
+                device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            let frame = Frame {
+                timing: true,
+                ..Frame::default()
+            };
+            executor.encode(&mut encoder, &frame)?;
+            let start = Instant::now();
+            queue.submit([encoder.finish()]);
+            executor.submitted()?;
+            let report = executor.finish()?;
+            let gpu = report
+                .timing
+                .and_then(|timing| timing.passes.last().and_then(|pass| pass.gpu));
+            frames.push((start.elapsed(), gpu));
+        }
+        // The first frame compiles shaders on some drivers.
+        let shortest = frames[1..]
+            .iter()
+            .map(|(wall, _)| *wall)
+            .min()
+            .unwrap_or_default();
+        let is_long = shortest >= LONG || rounds >= 1 << 30;
+        let trust = judge(&frames[1..]);
+        if is_long && (was_long || trust == Trust::Trusted) {
+            return Ok(trust);
+        }
+        // Once more, four times as long: other load may have been most of the wall time.
+        was_long = is_long;
+        rounds = rounds.saturating_mul(4);
+    }
+}
+
+/// Waiting and other load add to wall time, so the GPU's share of it may be small in some frames,
+/// but not in all of them; it is never above 1 but for the clocks' grain.
+fn judge(frames: &[(Duration, Option<Duration>)]) -> Trust {
+    let mut best: Option<(f64, f64)> = None;
+    for (wall, gpu) in frames {
+        let Some(gpu) = gpu else {
+            return Trust::Untrusted {
+                reason: "the adapter gave no timestamps for a timed pass".to_owned(),
+            };
+        };
+        let (wall, gpu) = (wall.as_secs_f64(), gpu.as_secs_f64());
+        if best.is_none_or(|(best_wall, best_gpu)| gpu / wall > best_gpu / best_wall) {
+            best = Some((wall, gpu));
+        }
+    }
+    match best {
+        Some((wall, gpu)) if (0.5..=1.1).contains(&(gpu / wall)) => Trust::Trusted,
+        Some((wall, gpu)) => Trust::Untrusted {
+            reason: format!(
+                "a dispatch that took {:.1} ms of wall time after a raster pass was timed as \
+                 {:.1} ms",
+                wall * 1e3,
+                gpu * 1e3
+            ),
+        },
+        None => Trust::Untrusted {
+            reason: "no frame was timed".to_owned(),
+        },
+    }
+}
+
+/// A raster pass and a long dispatch after it.
+struct CheckSources;
+
+impl Sources for CheckSources {
+    fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
+        let text = match path {
+            "check.ron" => include_str!("check.ron"),
+            "draw.wgsl" => include_str!("draw.wgsl"),
+            "work.wgsl" => include_str!("work.wgsl"),
+            _ => return Ok(None),
+        };
+        Ok(Some(text.into()))
+    }
+
+    fn list(&self, _: &str) -> Vec<String> {
+        Vec::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frames(frames: &[(u64, Option<u64>)]) -> Vec<(Duration, Option<Duration>)> {
+        frames
+            .iter()
+            .map(|(wall, gpu)| (Duration::from_millis(*wall), gpu.map(Duration::from_millis)))
+            .collect()
+    }
+
+    #[test]
+    fn a_loaded_machine_does_not_make_true_timestamps_false() {
+        assert_eq!(
+            judge(&frames(&[(300, Some(35)), (40, Some(36)), (90, Some(30))])),
+            Trust::Trusted
+        );
+    }
+
+    #[test]
+    fn timestamps_that_miss_the_dispatch_in_every_frame_are_not_believed() {
+        let Trust::Untrusted { reason } = judge(&frames(&[(40, Some(0)), (41, Some(1))])) else {
+            panic!("believed")
+        };
+        assert_eq!(
+            reason,
+            "a dispatch that took 41.0 ms of wall time after a raster pass was timed as 1.0 ms"
+        );
+    }
+
+    #[test]
+    fn more_gpu_time_than_wall_time_is_not_believed() {
+        assert!(matches!(
+            judge(&frames(&[(40, Some(39)), (40, Some(80))])),
+            Trust::Untrusted { .. }
+        ));
+    }
+
+    #[test]
+    fn a_frame_without_timestamps_is_no_measurement() {
+        assert!(matches!(
+            judge(&frames(&[(40, Some(39)), (40, None)])),
+            Trust::Untrusted { .. }
+        ));
+    }
+}

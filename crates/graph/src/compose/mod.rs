@@ -1,0 +1,4 @@
+//! Phase 1, second half: the documents that a document extends and includes are read, each once.
+
+pub(crate) mod reader;
+pub(crate) mod unique;

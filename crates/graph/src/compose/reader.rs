@@ -1,0 +1,358 @@
+//! Reads a document with all that it extends and includes.
+
+use super::unique;
+use crate::{
+    diagnostics::{
+        diagnostic::{Diagnostic, Label},
+        reports::{Reported, Reports},
+        suggest::likeness,
+    },
+    document::{
+        entries::{Entry, Include, What},
+        extend::extend,
+        params::Param,
+        raw::{self, Broken, RawDocument},
+        typed::{self, Document},
+    },
+    errors::compose::ComposeError,
+    kinds::registry::Registry,
+    source::{
+        paths::{escapes, folder_of, include_candidates},
+        sources::{self, Sources},
+        span::{Located, SourceFile, Span},
+    },
+};
+use std::{collections::HashMap, sync::Arc};
+
+/// Deepest chain of includes or extended documents; far above any sensible house, far below the
+/// stack.
+const DEEPEST: usize = 64;
+
+/// Where a document is asked for: by an include or by `extends`.
+#[derive(Clone, Debug)]
+pub(crate) struct Asked {
+    /// The path of the document.
+    pub path: String,
+    pub span: Span,
+    pub is_extended: bool,
+}
+
+/// Reads documents.
+pub(crate) struct Reader<'a> {
+    registry: &'a Registry,
+    sources: &'a dyn Sources,
+    pub reports: &'a mut Reports,
+    /// By path.
+    read: HashMap<String, Result<Arc<Document>, Reported>>,
+    /// The documents that are being read, outermost first, with the include that asks for each.
+    open: Vec<(String, Option<Span>)>,
+    /// Every place where a document is asked for.
+    pub asked: Vec<Asked>,
+}
+
+impl<'a> Reader<'a> {
+    pub fn new(registry: &'a Registry, sources: &'a dyn Sources, reports: &'a mut Reports) -> Self {
+        Self {
+            registry,
+            sources,
+            reports,
+            read: HashMap::new(),
+            open: Vec::new(),
+            asked: Vec::new(),
+        }
+    }
+
+    /// The included documents, each once.
+    pub fn documents(&self) -> impl Iterator<Item = &Arc<Document>> {
+        self.read.values().flatten()
+    }
+
+    /// Reads the document at `path` with all that it includes.
+    pub fn root(&mut self, path: &str) -> Result<Document, Reported> {
+        let file = self.file(path)?;
+        self.document(file, None)
+    }
+
+    /// Reads the document at `path` with all that it extends.
+    pub fn flat(&mut self, path: &str) -> Result<RawDocument, Reported> {
+        let file = self.file(path)?;
+        self.raw(file, &mut Vec::new())
+    }
+
+    fn file(&mut self, path: &str) -> Result<SourceFile, Reported> {
+        let text = match sources::read(self.sources, path) {
+            Ok(Some(text)) => text,
+            Ok(None) => {
+                let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
+                let known = self.documents_in(folder);
+                let error = ComposeError::NoDocument(path.to_owned(), likeness(name, known));
+                return Err(self.reports.report(error));
+            }
+            Err(why) => {
+                let error = ComposeError::Unreadable(path.to_owned(), why);
+                return Err(self.reports.report(error));
+            }
+        };
+        Ok(SourceFile::new(path, text))
+    }
+
+    fn documents_in(&self, folder: &str) -> Vec<String> {
+        let mut files = self.sources.list(folder);
+        files.retain(|name| name.ends_with(".ron"));
+        files
+    }
+
+    /// Reads a document, which is asked for at `by`.
+    fn document(&mut self, file: SourceFile, by: Option<Span>) -> Result<Document, Reported> {
+        self.open.push((file.name.to_string(), by));
+        let raw = self.raw(file, &mut Vec::new());
+        let document = raw.map(|raw| {
+            let mut document = typed::read(raw, self.registry, self.reports);
+            document.include_depth = self.attach(&mut document.entries);
+            self.expose(&mut document);
+            unique::check(&document, self.reports);
+            document
+        });
+        self.open.pop();
+        document
+    }
+
+    /// The sections of a document with those of the documents that it extends; `chain` are the ones
+    /// that extend it.
+    fn raw(&mut self, file: SourceFile, chain: &mut Vec<String>) -> Result<RawDocument, Reported> {
+        let mut own = raw::split(file, self.reports)?;
+        let Some(node) = own.extends.take() else {
+            return Ok(own);
+        };
+        let name: Result<String, Diagnostic> = node.parse();
+        let name = name.map_err(|error| self.reports.tell(error))?;
+        let name = Located::new(name, node.span.clone());
+        let base = self.find(&name)?;
+        let path = base.name.to_string();
+        chain.push(own.file.name.to_string());
+        if let Some(first) = chain.iter().position(|open| *open == path) {
+            let mut cycle = chain[first..].to_vec();
+            cycle.push(path);
+            let error = crate::errors::edit::EditError::Cycle(name.span, cycle);
+            return Err(self.reports.report(error));
+        }
+        if chain.len() > DEEPEST {
+            return Err(self.reports.report(ComposeError::TooDeep(name, DEEPEST)));
+        }
+        self.asked.push(Asked {
+            path,
+            span: name.span,
+            is_extended: true,
+        });
+        let base = self.raw(base, chain)?;
+        Ok(extend(base, own, self.reports))
+    }
+
+    /// Reads what the entries of the innermost open document include. Returns the depth of includes
+    /// below it.
+    fn attach(&mut self, entries: &mut [Result<Entry, Broken>]) -> usize {
+        let mut depth = 0;
+        for entry in entries.iter_mut().flatten() {
+            let below = match &mut entry.what {
+                What::Include(include) => {
+                    include.document = Some(self.include(include));
+                    let document = include.document();
+                    document.map_or(1, |document| document.include_depth + 1)
+                }
+                What::Group(entries) => self.attach(entries),
+                What::Pass(_) => 0,
+            };
+            depth = depth.max(below);
+        }
+        depth
+    }
+
+    fn include(&mut self, include: &Include) -> Result<Arc<Document>, Reported> {
+        let file = self.find(&include.graph)?;
+        let path = file.name.to_string();
+        let span = include.graph.span.clone();
+        if let Some(first) = self.open.iter().position(|(open, _)| *open == path) {
+            let error = ComposeError::Cycle {
+                graph: include.graph.clone(),
+                open: self.open[first..].to_vec(),
+            };
+            return Err(self.reports.report(error));
+        }
+        self.asked.push(Asked {
+            path: path.clone(),
+            span: span.clone(),
+            is_extended: false,
+        });
+        if self.open.len() > DEEPEST {
+            let graph = include.graph.clone();
+            return Err(self.reports.report(ComposeError::TooDeep(graph, DEEPEST)));
+        }
+        if !self.read.contains_key(&path) {
+            // Without its params nothing of the document has a size.
+            let document = self
+                .document(file, Some(span))
+                .and_then(|document| document.broken_params.map_or(Ok(Arc::new(document)), Err));
+            self.read.insert(path.clone(), document);
+        }
+        let document = self.read[&path].clone()?;
+        if self.open.len() + document.include_depth > DEEPEST {
+            let graph = include.graph.clone();
+            return Err(self.reports.report(ComposeError::TooDeep(graph, DEEPEST)));
+        }
+        Ok(document)
+    }
+
+    /// The file of a document, beside the one in which its name is written or in `pipelines/`.
+    fn find(&mut self, graph: &Located<String>) -> Result<SourceFile, Reported> {
+        if escapes(graph) {
+            return Err(self.reports.report(ComposeError::Outside(graph.clone())));
+        }
+        let candidates = include_candidates(&graph.span.file.name, graph);
+        for path in &candidates {
+            match sources::read(self.sources, path) {
+                Ok(Some(text)) => return Ok(SourceFile::new(path.as_str(), text)),
+                Ok(None) => {}
+                Err(why) => {
+                    let path = Located::new(path.clone(), graph.span.clone());
+                    return Err(self
+                        .reports
+                        .report(ComposeError::UnreadableInclude(path, why)));
+                }
+            }
+        }
+        let below = folder_of(graph);
+        let folders = candidates.iter().map(|path| folder_of(path));
+        let known = folders
+            .flat_map(|folder| self.documents_in(folder))
+            .map(|name| match below {
+                "" => name,
+                _ => format!("{below}/{name}"),
+            });
+        let likeness = likeness(graph, known.collect::<Vec<_>>());
+        let error = ComposeError::NoInclude(graph.clone(), candidates, likeness);
+        Err(self.reports.report(error))
+    }
+
+    /// Adds the params of included documents that a document makes its own.
+    fn expose(&mut self, document: &mut Document) {
+        let mut exposed: Vec<(Param, Span)> = Vec::new();
+        collect(&document.entries, &mut |entry, include| {
+            let Some(inner) = include.document() else {
+                return;
+            };
+            for name in &include.expose {
+                let Some(param) = inner
+                    .params
+                    .iter()
+                    .find(|param| *param.name.value == **name)
+                else {
+                    let known = inner.params.iter().map(|param| param.name.value.clone());
+                    self.reports.report(ComposeError::NoParam {
+                        name: name.clone(),
+                        document: inner.file.name.to_string(),
+                        known: known.collect(),
+                    });
+                    continue;
+                };
+                let mut param = param.clone();
+                if include.is_named {
+                    param.name.value = format!("{}.{}", *entry.name, **name);
+                }
+                let mut is_constant = true;
+                if let Some(default) = &param.default {
+                    default.visit(&mut |leaf| {
+                        is_constant &= !matches!(leaf, crate::language::syntax::Leaf::Param(_));
+                    });
+                }
+                if !is_constant {
+                    self.reports
+                        .report(ComposeError::ExposedDefault(name.clone()));
+                    continue;
+                }
+                exposed.push((param, name.span.clone()));
+            }
+        });
+        for (param, span) in exposed {
+            let known = document
+                .params
+                .iter()
+                .find(|known| known.name.value == param.name.value);
+            if let Some(known) = known {
+                let error = ComposeError::ExposedTwice {
+                    name: Located::new(param.name.value, span),
+                    first: known.name.span.clone(),
+                };
+                self.reports.report(error);
+                continue;
+            }
+            document.params.push(param);
+        }
+        for (name, value) in std::mem::take(&mut document.defaults) {
+            let mut params = document.params.iter_mut();
+            match params.find(|param| *param.name.value == *name) {
+                Some(param) => param.default = Some(value),
+                None => {
+                    let known = document.params.iter().map(|param| param.name.value.clone());
+                    let error = ComposeError::NoParam {
+                        name,
+                        document: document.file.name.to_string(),
+                        known: known.collect(),
+                    };
+                    if document.broken_params.is_none() {
+                        self.reports.report(error);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Calls `each` with every include, those in groups, too.
+fn collect<'e>(entries: &'e [Result<Entry, Broken>], each: &mut dyn FnMut(&'e Entry, &'e Include)) {
+    for entry in entries.iter().flatten() {
+        match &entry.what {
+            What::Include(include) => each(entry, include),
+            What::Group(inner) => collect(inner, each),
+            What::Pass(_) => {}
+        }
+    }
+}
+
+/// Says for mistakes in other documents where these are asked for.
+pub(crate) fn label(diagnostics: &mut [Diagnostic], root: &str, asked: &[Asked]) {
+    /// More includes of one document say nothing new.
+    const SHOWN: usize = 4;
+    for diagnostic in diagnostics {
+        // The mistake is the root's own, and what it includes is only named.
+        let own = diagnostic.labels.first().map(|label| &label.span.file.name);
+        if own.is_none_or(|own| **own == *root) {
+            continue;
+        }
+        let mut at = 0;
+        // A document may be included by one that is included itself.
+        while let Some(label) = diagnostic.labels.get(at) {
+            let file = label.span.file.name.clone();
+            let asking = asked
+                .iter()
+                .filter(|asked| *asked.path == *file)
+                .take(SHOWN);
+            for asked in asking {
+                if diagnostic
+                    .labels
+                    .iter()
+                    .all(|label| label.span != asked.span)
+                {
+                    let text = match asked.is_extended {
+                        true => "extended here",
+                        false => "included here",
+                    };
+                    diagnostic.labels.push(Label {
+                        span: asked.span.clone(),
+                        text: text.to_owned(),
+                    });
+                }
+            }
+            at += 1;
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Names that must be free: of materials, groups, includes and what these give, of passes, of
+//! outputs.
+
+use crate::{
+    diagnostics::reports::Reports,
+    document::{
+        entries::{Entry, What},
+        raw::Broken,
+        typed::Document,
+    },
+    errors::compose::ComposeError,
+    language::name::wgsl_identifier,
+    source::span::Span,
+};
+use std::collections::HashMap;
+
+/// Reports every second one of a name. Conditions do not count: names are unique whatever they are.
+pub(super) fn check(document: &Document, reports: &mut Reports) {
+    let mut materials = Names::new("material");
+    for input in &document.inputs {
+        materials.add(&input.name.value, &input.name.span, reports);
+    }
+    for material in &document.materials {
+        let name = material.name();
+        materials.add(&name.value, &name.span, reports);
+    }
+    check_entries(
+        &document.entries,
+        &mut materials,
+        &mut Names::new("pass"),
+        "",
+        reports,
+    );
+    let mut outputs = Names::new("output");
+    for output in &document.outputs {
+        outputs.add(&output.name.value, &output.name.span, reports);
+    }
+}
+
+fn check_entries(
+    entries: &[Result<Entry, Broken>],
+    materials: &mut Names,
+    passes: &mut Names,
+    prefix: &str,
+    reports: &mut Reports,
+) {
+    for entry in entries.iter().flatten() {
+        let (name, span) = (&entry.name.value, &entry.name.span);
+        match &entry.what {
+            What::Pass(_) => passes.add(&format!("{prefix}{name}"), span, reports),
+            What::Group(inner) => {
+                let prefix = format!("{prefix}{name}.");
+                materials.add(name, span, reports);
+                match entry.repeat {
+                    // What is made in a repetition has a name of its own outside.
+                    Some(_) => {
+                        let mut inside = Names::new("material");
+                        check_entries(inner, &mut inside, passes, &prefix, reports);
+                    }
+                    None => check_entries(inner, materials, passes, &prefix, reports),
+                }
+            }
+            What::Include(include) => {
+                materials.add(name, span, reports);
+                if include.is_named || entry.repeat.is_some() {
+                    continue;
+                }
+                let Some(document) = include.document() else {
+                    continue;
+                };
+                for output in &document.outputs {
+                    let is_own = |input: &crate::document::materials::Input| {
+                        input.name.value == output.name.value
+                    };
+                    let bound = entry
+                        .bind
+                        .iter()
+                        .any(|(name, _)| name.value == output.name.as_str());
+                    if !bound && !document.inputs.iter().any(is_own) {
+                        materials.add(&output.name.value, &include.graph.span, reports);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The names of one namespace, each with the place of the first one.
+struct Names {
+    what: &'static str,
+    seen: HashMap<String, (String, Span)>,
+}
+
+impl Names {
+    fn new(what: &'static str) -> Self {
+        Self {
+            what,
+            seen: HashMap::new(),
+        }
+    }
+
+    fn add(&mut self, name: &str, span: &Span, reports: &mut Reports) {
+        let spelling = match self.what {
+            "material" => wgsl_identifier(name),
+            _ => name.to_owned(),
+        };
+        if let Some((known, first)) = self.seen.get(&spelling) {
+            reports.report(ComposeError::Clash {
+                what: self.what,
+                name: name.to_owned(),
+                known: known.clone(),
+                span: span.clone(),
+                first: first.clone(),
+            });
+            return;
+        }
+        self.seen.insert(spelling, (name.to_owned(), span.clone()));
+    }
+}

@@ -1,0 +1,157 @@
+//! Kinds of mistakes.
+
+macro_rules! codes {
+    ($($(#[doc = $doc:literal])+ $name:ident = $text:literal, $remedy:literal;)+) => {
+        /// What kind of mistake a [`Diagnostic`] is about; stable names for scripts.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[non_exhaustive]
+        pub enum Code { $($(#[doc = $doc])+ $name,)+ }
+
+        impl Code {
+            /// Every kind there is.
+            pub const ALL: &[Self] = &[$(Self::$name),+];
+
+            /// The kebab-case name that is printed and written to machine-readable output.
+            pub fn as_str(self) -> &'static str {
+                match self { $(Code::$name => $text,)+ }
+            }
+
+            /// What kind of mistake it is, in a sentence.
+            pub fn description(self) -> &'static str {
+                match self { $(Code::$name => concat!($($doc),+).trim_ascii(),)+ }
+            }
+
+            /// The usual way out, in a sentence; a diagnostic's own help is more exact.
+            pub fn remedy(self) -> &'static str {
+                match self { $(Code::$name => $remedy,)+ }
+            }
+        }
+    };
+}
+
+codes! {
+    /// A document, shader or imported file is missing or unreadable.
+    MissingFile = "missing-file",
+        "Check the name and where it is looked for: beside the document, in `shaders/` or \
+         `pipelines/`, among the built-in ones. Paths cannot lead out of these folders.";
+    /// Documents that include each other.
+    IncludeCycle = "include-cycle",
+        "Move what both need into a third document that includes neither.";
+    /// The RON text is not well-formed, or a value has the wrong type.
+    Syntax = "syntax",
+        "Mend the RON at the place that is underlined: a comma, a bracket, a value of another \
+         type.";
+    /// A field that the document format does not know.
+    UnknownField = "unknown-field",
+        "Check the spelling; the help lists the fields that may stand there.";
+    /// A field that must be given is missing.
+    MissingField = "missing-field",
+        "Add the field.";
+    /// A pass kind, enum variant or format that is not known.
+    UnknownVariant = "unknown-variant",
+        "Check the spelling; the help lists the words that may stand there. A pass kind of a host \
+         program must be registered.";
+    /// The document's `format` is not one this version reads.
+    FormatVersion = "format-version",
+        "Write the document in format 2 (docs/authoring.md), or use a newer Skiagraph.";
+    /// A name outside the grammar, reserved, or spelt in WGSL like another.
+    Name = "name",
+        "Names begin with a small letter and go on with small letters, digits and single \
+         underscores; some words of the language are taken.";
+    /// An expression or reference outside the grammar, of the wrong type, or without a value.
+    Expression = "expression",
+        "Mend the expression at the place that is underlined; docs/authoring.md has the grammar.";
+    /// Two things of one name.
+    DuplicateName = "duplicate-name",
+        "Rename one of the two; an include can be given a `name`.";
+    /// A name that no material, input or provided resource has in this document.
+    UnknownResource = "unknown-resource",
+        "Check the spelling, declare the material, or `bind` the shader's global to the one that \
+         is meant.";
+    /// A param that the document does not declare.
+    UnknownParam = "unknown-param",
+        "Check the spelling, or declare the param.";
+    /// A param's value has the wrong type or is out of range.
+    ParamValue = "param-value",
+        "Give a value of the param's type between its `min` and `max`.";
+    /// An input that is missing, of another kind or format, or written without being an output.
+    Input = "input",
+        "Give the included document what it asks for, by name or by `bind`; the host imports what \
+         the root document asks for.";
+    /// A `bind` or `set` of what the shader or the included document does not ask for.
+    Unasked = "unasked",
+        "Check the spelling, or take it out.";
+    /// An edit of an extended document that has no place there.
+    Edit = "edit",
+        "Name an entry of the extended document; `skiagraph show FILE --flat` prints what it has.";
+    /// A graph that is wrong for one value of a param that decides an `if`.
+    Condition = "condition",
+        "Give the pass that reads and the pass that writes conditions that agree.";
+    /// A word of a `Choice` and a constant of the shader that do not agree.
+    ChoiceConstant = "choice-constant",
+        "Leave the constant out of the shader: the document's words bring it.";
+    /// A mip, layer or item that is not there.
+    Range = "range",
+        "Name a part that there is; parts are counted from 0.";
+    /// An item of a buffer that cannot be bound by itself.
+    Alignment = "alignment",
+        "Let items be a multiple of the device's offset alignment apart: 256 bytes always are.";
+    /// A size or count that is zero, absurd, or above the adapter's limits.
+    Size = "size",
+        "Give a size or count of one at least that the adapter can hold; shards of a large buffer \
+         are materials of their own.";
+    /// A resource that is not of the kind needed here (a buffer where a texture must stand, …).
+    ResourceKind = "resource-kind",
+        "Name a material of the kind that is needed, or change what the shader declares.";
+    /// A texture's format does not fit the shader, the attachment or the copy.
+    FormatMismatch = "format-mismatch",
+        "Change the material's format or the shader's type; `skiagraph doctor` lists what the \
+         adapter can do.";
+    /// Two shaders see one buffer with different item layouts, or a layout does not fit the buffer.
+    LayoutMismatch = "layout-mismatch",
+        "Declare the item's type once, in a module that both shaders import.";
+    /// The WGSL does not parse or validate.
+    Shader = "shader",
+        "Mend the WGSL at the place that is underlined.";
+    /// A shader without the entry point that the pass needs.
+    EntryPoint = "entry-point",
+        "Give the shader one entry point of the stage, or name one of several in the pass.";
+    /// A shader's binding cannot be satisfied (unsupported type, clashing numbers).
+    Binding = "binding",
+        "Leave `@group` and `@binding` out: the graph numbers globals. Bind what shaders have, to \
+         materials that there are.";
+    /// A material is read before any pass has written it.
+    ReadBeforeWrite = "read-before-write",
+        "Move the writer above the reader, clear the material first, or read `….previous` if \
+         last frame's content is meant.";
+    /// Passes that need each other's results.
+    Cycle = "cycle",
+        "Write a second material, read `….previous`, or move the read into a pass below.";
+    /// A pass samples a texture that it draws to.
+    FeedbackLoop = "feedback-loop",
+        "Read a copy, another mip or layer, or `….previous`.";
+    /// Passes that must run or be skipped together have different run conditions.
+    RunCondition = "run-condition",
+        "Give the passes the same `run`, or one of them another material.";
+    /// What the host imports does not serve what passes do with it.
+    Import = "import",
+        "Make the texture or buffer with the usages that the help names.";
+    /// A limit of the adapter.
+    Limit = "limit",
+        "Use less: fewer or smaller targets, bindings, workgroups; or run on an adapter that has \
+         more.";
+    /// Materials that take more memory together than the graph may have.
+    Memory = "memory",
+        "Use a smaller viewport or shadow map, fewer layers, a format with fewer bytes; or allow \
+         more memory where there is more.";
+    /// A feature that the document requires and the device does not have, or that wgpu does not
+    /// know.
+    Feature = "feature",
+        "Run on an adapter that has the feature, or ask `has(FEATURE)` in an `if`.";
+    /// A material or param that nothing uses.
+    Unused = "unused",
+        "Remove it, or check the names of what should use it.";
+    /// A document without outputs, or an output asked for that is not declared.
+    Output = "output",
+        "Declare the output, or name one that there is.";
+}

@@ -1,0 +1,98 @@
+//! One mistake: what is wrong, where, and the way out.
+
+use super::{code::Code, suggest::suggestion};
+use crate::source::span::Span;
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The document cannot be used.
+    Error,
+    /// The document can be used, but something in it has no effect or is likely a mistake.
+    Warning,
+}
+
+/// A place and what is to be said about it.
+#[derive(Clone, Debug)]
+pub struct Label {
+    /// The place.
+    pub span: Span,
+    /// What is to be said; may be empty.
+    pub text: String,
+}
+
+/// One mistake.
+#[derive(Clone, Debug)]
+pub struct Diagnostic {
+    /// Its kind.
+    pub code: Code,
+    /// Error or warning.
+    pub severity: Severity,
+    /// What is wrong, naming the thing.
+    pub message: String,
+    /// Where; the first label is the place itself, others explain.
+    pub labels: Vec<Label>,
+    /// What to do about it.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// An error without a place yet.
+    pub fn error(code: Code, message: impl Into<String>) -> Self {
+        Self {
+            code,
+            severity: Severity::Error,
+            message: message.into(),
+            labels: Vec::new(),
+            help: None,
+        }
+    }
+
+    /// A warning without a place yet.
+    pub fn warning(code: Code, message: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Warning,
+            ..Self::error(code, message)
+        }
+    }
+
+    /// Adds a place; the first one added is the mistake's own.
+    #[must_use]
+    pub fn at(mut self, span: Span, text: impl Into<String>) -> Self {
+        self.labels.push(Label {
+            span,
+            text: text.into(),
+        });
+        self
+    }
+
+    /// Says what to do, after what was said before.
+    #[must_use]
+    pub fn help(mut self, text: impl Into<String>) -> Self {
+        let text = text.into();
+        self.help = Some(match self.help {
+            Some(before) => format!("{before}\n{text}"),
+            None => text,
+        });
+        self
+    }
+
+    /// Adds "did you mean …" if one of `known` is close to `word`, else a list of what there is.
+    #[must_use]
+    pub fn suggest<S: AsRef<str>>(self, word: &str, known: impl IntoIterator<Item = S>) -> Self {
+        match suggestion(word, known) {
+            Some(text) => self.help(text),
+            None => self,
+        }
+    }
+
+    /// What diagnostics are sorted by: errors first, then the place.
+    pub(super) fn key(&self) -> (Severity, &str, usize) {
+        let first = self.labels.first();
+        (
+            self.severity,
+            first.map_or("", |label| &label.span.file.name),
+            first.map_or(0, |label| label.span.range.start),
+        )
+    }
+}

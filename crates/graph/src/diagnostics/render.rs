@@ -1,0 +1,183 @@
+//! Mistakes with the lines that they are about, for a terminal (feature `render`).
+
+use super::diagnostic::{Diagnostic, Label, Severity};
+use crate::source::span::{SourceFile, Span};
+use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource};
+use std::{fmt, ops::Range};
+
+/// Longest line of which a piece is printed, in bytes: there is no pointing at a word in one that
+/// fills a screen, and miette cannot count beyond 65,535 columns.
+const LONGEST_LINE: usize = 2000;
+/// Renders a list of diagnostics, one after the other.
+pub fn render(list: &[Diagnostic], colour: bool) -> String {
+    let theme = if colour {
+        GraphicalTheme::unicode()
+    } else {
+        GraphicalTheme::unicode_nocolor()
+    };
+    let handler = GraphicalReportHandler::new_themed(theme)
+        .with_width(110)
+        .with_links(false);
+    let mut text = String::new();
+    for diagnostic in list {
+        // Rendering into a String fails only if a Display implementation does; then the bare
+        // message must do.
+        if handler
+            .render_report(&mut text, &Report::new(diagnostic))
+            .is_err()
+        {
+            text.push_str(&diagnostic.message);
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// One diagnostic as miette sees it: labels of the first file on the report itself, those of other
+/// files as related notes.
+#[derive(Debug)]
+struct Report<'a> {
+    diagnostic: &'a Diagnostic,
+    message: String,
+    source: Option<NamedSource<String>>,
+    labels: Vec<LabeledSpan>,
+    related: Vec<Report<'a>>,
+    /// Says only where else to look: code and help stand in the main report.
+    is_note: bool,
+}
+
+impl<'a> Report<'a> {
+    fn new(diagnostic: &'a Diagnostic) -> Self {
+        let first = diagnostic
+            .labels
+            .first()
+            .map(|label| label.span.file.clone());
+        let mut report = Self::of_file(diagnostic, diagnostic.message.clone(), first.as_ref());
+        let mut files: Vec<_> = diagnostic
+            .labels
+            .iter()
+            .map(|label| label.span.file.clone())
+            .collect();
+        files.sort_by(|a, b| a.name.cmp(&b.name));
+        files.dedup();
+        for file in files
+            .into_iter()
+            .filter(|file| Some(file) != first.as_ref())
+        {
+            let note = Self::of_file(diagnostic, format!("and in {}", file.name), Some(&file));
+            report.related.push(Self {
+                is_note: true,
+                ..note
+            });
+        }
+        report
+    }
+
+    fn of_file(diagnostic: &'a Diagnostic, mut message: String, file: Option<&SourceFile>) -> Self {
+        let labels = diagnostic.labels.iter();
+        let mut labels: Vec<&Label> = labels
+            .filter(|label| Some(&label.span.file) == file)
+            .collect();
+        let mut file = file;
+        if labels.iter().any(|label| is_too_wide(&label.span)) {
+            // The places in words.
+            for label in std::mem::take(&mut labels) {
+                message.push_str(&format!("\n{}: {}", label.span, label.text));
+            }
+            file = None;
+        }
+        let labels = labels
+            .into_iter()
+            .map(|label| {
+                let text = (!label.text.is_empty()).then(|| label.text.clone());
+                let range = clamp(&label.span);
+                LabeledSpan::new(text, range.start, range.len())
+            })
+            .collect();
+        let source = file.map(|file| NamedSource::new(&*file.name, file.text.to_string()));
+        Self {
+            diagnostic,
+            message,
+            source,
+            labels,
+            related: Vec::new(),
+            is_note: false,
+        }
+    }
+}
+
+/// A span that miette can show: inside the text, on character borders.
+fn clamp(span: &Span) -> Range<usize> {
+    let text = &span.file.text;
+    let border = |mut at: usize| {
+        at = at.min(text.len());
+        while !text.is_char_boundary(at) {
+            at -= 1;
+        }
+        at
+    };
+    let start = border(span.range.start);
+    start..border(span.range.end).max(start)
+}
+
+/// Whether miette would have to print a line that is too long, or too many of them. It shows a line
+/// before and after a label.
+fn is_too_wide(span: &Span) -> bool {
+    let text = &span.file.text;
+    let Range { start, end } = clamp(span);
+    let before = text[..start].rsplit('\n').take(2).map(str::len).max();
+    let after = text[end..].split('\n').take(2).map(str::len).max();
+    let within = end - start;
+    [before, Some(within), after]
+        .into_iter()
+        .flatten()
+        .any(|length| length > LONGEST_LINE)
+}
+
+impl fmt::Display for Report<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Report<'_> {}
+
+impl miette::Diagnostic for Report<'_> {
+    fn code<'b>(&'b self) -> Option<Box<dyn fmt::Display + 'b>> {
+        (!self.is_note).then(|| Box::new(self.diagnostic.code.as_str()) as Box<dyn fmt::Display>)
+    }
+
+    fn severity(&self) -> Option<miette::Severity> {
+        Some(match self.diagnostic.severity {
+            _ if self.is_note => miette::Severity::Advice,
+            Severity::Error => miette::Severity::Error,
+            Severity::Warning => miette::Severity::Warning,
+        })
+    }
+
+    fn help<'b>(&'b self) -> Option<Box<dyn fmt::Display + 'b>> {
+        self.diagnostic
+            .help
+            .as_ref()
+            .filter(|_| !self.is_note)
+            .map(|help| Box::new(help) as Box<dyn fmt::Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
+        self.source
+            .as_ref()
+            .map(|source| source as &dyn miette::SourceCode)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        Some(Box::new(self.labels.iter().cloned()))
+    }
+
+    fn related<'b>(&'b self) -> Option<Box<dyn Iterator<Item = &'b dyn miette::Diagnostic> + 'b>> {
+        Some(Box::new(
+            self.related
+                .iter()
+                .map(|report| report as &dyn miette::Diagnostic),
+        ))
+    }
+}

@@ -1,0 +1,102 @@
+//! Where the phases report mistakes.
+
+use super::{
+    code::Code,
+    diagnostic::{Diagnostic, Severity},
+};
+use std::fmt::Display;
+
+/// With so many mistakes nobody misses those further down.
+const ENOUGH: usize = 1000;
+
+/// Mistakes for which a document's names are searched: it may hold as many misspelt names as names,
+/// and to compare all with all takes minutes.
+const HINTED: usize = 50;
+
+/// A mistake of one phase: typed where it is found, put into words in `errors/`.
+pub(crate) trait Mistake: Display {
+    /// Its kind.
+    fn code(&self) -> Code;
+
+    /// Adds places and the way out to what is told of it.
+    fn explain(self, told: Diagnostic) -> Diagnostic;
+
+    /// The whole of what is told.
+    fn diagnostic(self) -> Diagnostic
+    where
+        Self: Sized,
+    {
+        let told = Diagnostic::error(self.code(), self.to_string());
+        self.explain(told)
+    }
+}
+
+/// The proof that something is wrong and was reported: who has one need not report it again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Reported(());
+
+/// The mistakes found so far.
+#[derive(Debug, Default)]
+pub(crate) struct Reports {
+    list: Vec<Diagnostic>,
+    errors: usize,
+    /// What the adapter is asked for beyond its limits is told as a warning: it is not known which
+    /// adapter that will be.
+    pub any_adapter: bool,
+}
+
+impl Reports {
+    pub fn report(&mut self, mistake: impl Mistake) -> Reported {
+        self.tell(mistake.diagnostic())
+    }
+
+    /// A mistake that was put into words before.
+    pub fn tell(&mut self, diagnostic: Diagnostic) -> Reported {
+        self.errors += usize::from(diagnostic.severity == Severity::Error);
+        self.list.push(diagnostic);
+        Reported(())
+    }
+
+    pub fn warn(&mut self, mistake: impl Mistake) {
+        self.tell(Diagnostic {
+            severity: Severity::Warning,
+            ..mistake.diagnostic()
+        });
+    }
+
+    /// Something that this adapter cannot do, and another one might.
+    pub fn beyond(&mut self, mistake: impl Mistake) -> Result<(), Reported> {
+        if self.any_adapter {
+            self.warn(mistake);
+            return Ok(());
+        }
+        Err(self.report(mistake))
+    }
+
+    /// The names that a misspelt one is compared with; none once there are too many mistakes.
+    pub fn known<S: Into<String>>(&self, names: impl IntoIterator<Item = S>) -> Vec<String> {
+        match self.list.len() < HINTED {
+            true => names.into_iter().map(Into::into).collect(),
+            false => Vec::new(),
+        }
+    }
+
+    /// How many errors there are; warnings do not count.
+    pub fn errors(&self) -> usize {
+        self.errors
+    }
+
+    pub fn has_enough(&self) -> bool {
+        self.list.len() > ENOUGH
+    }
+
+    /// What was reported so far.
+    pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
+        self.list.iter()
+    }
+
+    /// Errors and warnings.
+    pub fn into_list(self) -> Vec<Diagnostic> {
+        self.list
+    }
+}

@@ -1,0 +1,245 @@
+//! `extends`: a document is another one with edits, as if the result had been written out.
+
+use super::{
+    raw::{Broken, RawDocument, RawEntry, RawItem},
+    ron::Field,
+};
+use crate::{diagnostics::reports::Reports, errors::edit::EditError, source::span::Located};
+use std::collections::HashMap;
+
+type Entries = Vec<Result<RawEntry, Broken>>;
+
+/// Where an entry that is no edit comes to stand.
+const PLACES: [&str; 3] = ["before", "after", "instead"];
+
+/// `base` with the edits of `own`. What cannot be done is reported and left out.
+pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports) -> RawDocument {
+    let mut document = RawDocument {
+        file: own.file,
+        description: own.description.or(base.description),
+        extends: None,
+        requires: [base.requires, own.requires].concat(),
+        params: merge(base.params, own.params),
+        inputs: merge(base.inputs, own.inputs),
+        materials: merge(base.materials, own.materials),
+        passes: base.passes,
+        outputs: match own.outputs.is_empty() {
+            true => base.outputs,
+            false => own.outputs,
+        },
+        set: base.set,
+        // What a method promises holds of it as it is written, not of what others make of it.
+        claims: own.claims,
+        broken_params: base.broken_params.or(own.broken_params),
+    };
+    for (name, value) in own.set {
+        let known = |item: &&mut RawItem| item.name().is_some_and(|own| *own == *name);
+        match document.params.iter_mut().find(known) {
+            Some(param) => put(&mut param.fields, default_field(&name, value)),
+            None => {
+                document.set.retain(|(known, _)| **known != *name);
+                document.set.push((name, value));
+            }
+        }
+    }
+    let mut edits = Edits {
+        ends: HashMap::new(),
+        reports,
+    };
+    for edit in own.passes {
+        match edit {
+            Ok(edit) => {
+                if let Err(error) = edits.apply(&mut document.passes, edit) {
+                    edits.reports.report(error);
+                }
+            }
+            Err(broken) => document.passes.push(Err(broken)),
+        }
+    }
+    document
+}
+
+fn default_field(name: &Located<String>, node: super::ron::Node) -> Field {
+    Field {
+        name: Located::new("default".to_owned(), name.span.clone()),
+        node,
+    }
+}
+
+/// What has the same name is replaced, the rest is added.
+fn merge(base: Vec<RawItem>, own: Vec<RawItem>) -> Vec<RawItem> {
+    let mut merged = base;
+    for item in own {
+        let name = item.name().map(|name| name.value);
+        let mut known = merged.iter_mut();
+        let known = known.find(|other| name.is_some() && other.name().map(|n| n.value) == name);
+        match known {
+            Some(known) => *known = item,
+            None => merged.push(item),
+        }
+    }
+    merged
+}
+
+/// Puts a field into the place of the one of its name, or behind the others.
+fn put(fields: &mut Vec<Field>, field: Field) {
+    match fields.iter_mut().find(|known| *known.name == *field.name) {
+        Some(known) => *known = field,
+        None => fields.push(field),
+    }
+}
+
+/// Edits of a list of entries.
+struct Edits<'r> {
+    /// By the path after which entries were put: the name of the last of them.
+    ends: HashMap<String, String>,
+    reports: &'r mut Reports,
+}
+
+impl Edits<'_> {
+    fn apply(&mut self, entries: &mut Entries, mut edit: RawEntry) -> Result<(), EditError> {
+        match edit.tag.as_str() {
+            "Change" => self.change(entries, edit),
+            "Remove" => {
+                let path = path_of(&mut edit, "pass")?;
+                if let Some(field) = edit.fields.first() {
+                    return Err(EditError::Field(field.name.clone(), "Remove"));
+                }
+                let (list, at) = find(entries, &path)?;
+                drop(list.remove(at));
+                Ok(())
+            }
+            _ => self.insert(entries, edit),
+        }
+    }
+
+    fn change(&mut self, entries: &mut Entries, mut edit: RawEntry) -> Result<(), EditError> {
+        let path = path_of(&mut edit, "pass")?;
+        let (list, at) = find(entries, &path)?;
+        let Ok(entry) = &mut list[at] else {
+            return Ok(());
+        };
+        if edit.passes.is_some() {
+            return Err(EditError::Passes(edit.tag.span));
+        }
+        for field in edit.fields {
+            put(&mut entry.fields, field);
+        }
+        for (map, own) in [(&mut entry.bind, edit.bind), (&mut entry.set, edit.set)] {
+            for (key, value) in own {
+                match map.iter_mut().find(|(known, _)| **known == *key) {
+                    Some(known) => *known = (key, value),
+                    None => map.push((key, value)),
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn insert(&mut self, entries: &mut Entries, mut entry: RawEntry) -> Result<(), EditError> {
+        let given: Vec<&str> = PLACES
+            .into_iter()
+            .filter(|place| entry.field(place).is_some())
+            .collect();
+        let place = match given[..] {
+            [place] => place,
+            [] => return Err(EditError::NoPlace(entry.tag.clone())),
+            _ => return Err(EditError::TwoPlaces(entry.tag.clone())),
+        };
+        let mut path = path_of(&mut entry, place)?;
+        let name = entry.name().unwrap_or_default();
+        if place == "after" {
+            // Several after one entry stand in the order in which they are written.
+            let end = self.ends.insert(path.value.clone(), name.clone());
+            if let Some(end) = end {
+                let group = path.rsplit_once('.').map(|(group, _)| group.to_owned());
+                path.value = group.map_or(end.clone(), |group| format!("{group}.{end}"));
+            }
+        }
+        let (list, at) = find(entries, &path)?;
+        match place {
+            "before" => list.insert(at, Ok(entry)),
+            "after" => list.insert(at + 1, Ok(entry)),
+            _ => list[at] = Ok(entry),
+        }
+        Ok(())
+    }
+}
+
+/// The path of an entry that a field of an edit names; the field is taken out.
+fn path_of(edit: &mut RawEntry, field: &'static str) -> Result<Located<String>, EditError> {
+    let found = edit.take(field);
+    let found = found.ok_or_else(|| EditError::NoPath(edit.tag.clone(), field))?;
+    let path: Result<String, _> = found.node.parse();
+    let span = found.node.span;
+    path.map(|path| Located::new(path, span.clone()))
+        .map_err(|_| EditError::NoString(span))
+}
+
+/// The list that holds the entry of a path, and its place there.
+fn find<'e>(
+    entries: &'e mut Entries,
+    path: &Located<String>,
+) -> Result<(&'e mut Entries, usize), EditError> {
+    let mut list = entries;
+    let mut names = path.split('.').peekable();
+    let mut walked: Vec<&str> = Vec::new();
+    while let Some(name) = names.next() {
+        let named = |entry: &Result<RawEntry, Broken>| {
+            entry
+                .as_ref()
+                .is_ok_and(|entry| entry.name().as_deref() == Some(name))
+        };
+        let Some(at) = list.iter().position(named) else {
+            let known = list.iter().flatten().filter_map(RawEntry::name).collect();
+            return Err(EditError::NoSuchEntry {
+                path: path.clone(),
+                name: name.to_owned(),
+                known,
+            });
+        };
+        if names.peek().is_none() {
+            return Ok((list, at));
+        }
+        walked.push(name);
+        let inside = list[at]
+            .as_mut()
+            .ok()
+            .and_then(|entry| entry.passes.as_mut());
+        list = inside.ok_or_else(|| EditError::Behind {
+            path: path.clone(),
+            entry: walked.join("."),
+        })?;
+    }
+    Err(EditError::NoString(path.span.clone()))
+}
+
+/// Reports edits in a document that extends none.
+pub(crate) fn no_edits(entries: &mut Entries, reports: &mut Reports) {
+    for slot in entries {
+        let Ok(entry) = slot else {
+            continue;
+        };
+        let place = entry
+            .fields
+            .iter()
+            .find(|field| PLACES.contains(&field.name.as_str()));
+        let mistake = match (entry.tag.as_str(), place) {
+            ("Change" | "Remove", _) => Some(EditError::NotExtending(entry.tag.clone())),
+            (_, Some(place)) => Some(EditError::NotExtending(place.name.clone())),
+            _ => None,
+        };
+        if let Some(mistake) = mistake {
+            let is_include = *entry.tag == "Include";
+            let reported = reports.report(mistake);
+            *slot = Err(Broken {
+                is_include,
+                reported,
+            });
+            continue;
+        }
+        if let Some(inside) = &mut entry.passes {
+            no_edits(inside, reports);
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! What may stand in a field: names, expressions, references, words of the language.
+
+use super::ron::{Node, raw, read, refuse};
+use crate::{
+    errors::{document::DocumentError, language::SyntaxFault},
+    language::{
+        name::Name,
+        parser,
+        syntax::{Expr, ExprKind, Reference},
+        value::{Scalar, Value},
+    },
+    source::span::{SourceFile, Span},
+};
+use serde::{Deserialize, Deserializer, de::DeserializeOwned};
+use std::{cell::RefCell, ops::Range};
+
+/// The range between the quotes of a string, which must have no escapes.
+fn quoted(text: &str, span: &Span) -> Option<Result<Range<usize>, SyntaxFault>> {
+    let inner = text.strip_prefix('"')?.strip_suffix('"')?;
+    let start = span.range.start + 1;
+    Some(match inner.find('\\') {
+        Some(at) => Err(SyntaxFault::Escape(
+            span.file.span(start + at..start + at + 1),
+        )),
+        None => Ok(start..start + inner.len()),
+    })
+}
+
+/// Reads a string of the language by its grammar.
+fn parse<T, E: serde::de::Error>(
+    (text, span): (&str, &Span),
+    parse: impl FnOnce(&SourceFile, Range<usize>) -> Result<T, SyntaxFault>,
+) -> Result<T, E> {
+    let parsed = match quoted(text, span) {
+        Some(range) => range.and_then(|range| parse(&span.file, range)),
+        None => return Err(refuse(DocumentError::NoString(span.clone()))),
+    };
+    parsed.map_err(refuse)
+}
+
+impl<'de> Deserialize<'de> for Name {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (text, span) = raw(deserializer)?;
+        // The words of a `Choice` have no quotes.
+        let name = match text.starts_with('"') {
+            true => read::<String, D::Error>(text)?,
+            false => text.to_owned(),
+        };
+        Name::new(&name).map_err(|fault| refuse(DocumentError::Name(span, name, fault)))
+    }
+}
+
+/// Expressions and references of a body that only its kind understands.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Mentions {
+    pub exprs: Vec<Expr>,
+    pub references: Vec<Reference>,
+}
+
+thread_local! {
+    static MENTIONS: RefCell<Mentions> = RefCell::default();
+}
+
+impl Mentions {
+    /// Those that were read on this thread since this was last asked.
+    pub fn take() -> Self {
+        MENTIONS.take()
+    }
+}
+
+impl<'de> Deserialize<'de> for Reference {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (text, span) = raw(deserializer)?;
+        let reference: Self = parse((text, &span), parser::reference)?;
+        MENTIONS.with_borrow_mut(|mentions| mentions.references.push(reference.clone()));
+        Ok(reference)
+    }
+}
+
+impl<'de> Deserialize<'de> for Expr {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (text, span) = raw(deserializer)?;
+        let literal = |value, span| Ok(Expr::new(ExprKind::Literal(value), span));
+        match text.chars().next() {
+            Some('"') => {
+                let expr: Self = parse((text, &span), parser::expression)?;
+                MENTIONS.with_borrow_mut(|mentions| mentions.exprs.push(expr.clone()));
+                Ok(expr)
+            }
+            Some('(') => {
+                let parts = Node { span: span.clone() }.list();
+                let parts = parts.map_err(|_| refuse(DocumentError::NoTuple(span.clone())))?;
+                let parts = parts.iter().map(|part| read(part.text()));
+                Ok(Expr::new(
+                    ExprKind::Tuple(parts.collect::<Result<_, _>>()?),
+                    span,
+                ))
+            }
+            _ if matches!(text, "true" | "false") => literal(Value::Bool(text == "true"), span),
+            Some(first) if first.is_alphabetic() => match Name::new(text) {
+                Ok(word) => Ok(Expr::new(ExprKind::Word(word), span)),
+                Err(_) => Err(refuse(DocumentError::BareWord(span, text.to_owned()))),
+            },
+            _ => {
+                let whole = text.replace('_', "").parse();
+                let scalar = match whole {
+                    Ok(whole) => Scalar::Whole(whole),
+                    Err(_) => Scalar::Number(read(text)?),
+                };
+                literal(Value::Scalar(scalar), span)
+            }
+        }
+    }
+}
+
+/// A word of the language, or an expression that comes to a word.
+#[derive(Clone, Debug)]
+pub(crate) enum Chosen<T> {
+    /// Written out.
+    Word(T),
+    /// A `Choice` param, in quotes.
+    Expr(Expr),
+}
+
+impl<'de, T: DeserializeOwned> Deserialize<'de> for Chosen<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (text, _) = raw(deserializer)?;
+        match text.starts_with('"') {
+            true => read(text).map(Self::Expr),
+            false => read(text).map(Self::Word),
+        }
+    }
+}
+
+/// An entry of which a string alone is the most important field: `color: ["image"]`.
+pub(crate) fn short_or_long<'de, D, T, L>(
+    deserializer: D,
+    long: impl FnOnce(L) -> T,
+    short: impl FnOnce(Reference) -> T,
+) -> Result<T, D::Error>
+where
+    D: Deserializer<'de>,
+    L: DeserializeOwned,
+{
+    let (text, _) = raw(deserializer)?;
+    match text.starts_with('"') {
+        true => read(text).map(short),
+        false => read(text).map(long),
+    }
+}
+
+/// What is done to an attachment before the first draw: `Load`, `Clear(v)` for all channels,
+/// `Clear(r, g, b, a)`.
+#[derive(Clone, Debug)]
+pub(crate) enum Load {
+    Clear(Vec<Expr>),
+    Load,
+}
+
+impl<'de> Deserialize<'de> for Load {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (text, span) = raw(deserializer)?;
+        let unknown = || refuse(DocumentError::Load(span.clone()));
+        let node = Node { span: span.clone() };
+        let (tag, body) = node.variant().ok_or_else(unknown)?;
+        match (tag.as_str(), text.len() == tag.len()) {
+            ("Load", true) => Ok(Self::Load),
+            ("Clear", false) => {
+                let values = body.list().map_err(|_| unknown())?;
+                if !matches!(values.len(), 1 | 4) {
+                    return Err(unknown());
+                }
+                let values = values.iter().map(|value| read(value.text()));
+                Ok(Self::Clear(values.collect::<Result<_, _>>()?))
+            }
+            _ => Err(unknown()),
+        }
+    }
+}
+
+/// A comparison, true where the new value stands in this relation to the stored one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub(crate) enum Compare {
+    Never,
+    #[default]
+    Less,
+    Equal,
+    LessEqual,
+    Greater,
+    NotEqual,
+    GreaterEqual,
+    Always,
+}
+
+impl From<Compare> for wgt::CompareFunction {
+    fn from(compare: Compare) -> Self {
+        match compare {
+            Compare::Never => Self::Never,
+            Compare::Less => Self::Less,
+            Compare::Equal => Self::Equal,
+            Compare::LessEqual => Self::LessEqual,
+            Compare::Greater => Self::Greater,
+            Compare::NotEqual => Self::NotEqual,
+            Compare::GreaterEqual => Self::GreaterEqual,
+            Compare::Always => Self::Always,
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! A document with all that it extends written out, each line with its origin.
+
+use super::{
+    raw::{Broken, RawDocument, RawEntry, RawItem, RawMap},
+    ron::{Field, Node},
+};
+use crate::source::span::Span;
+
+/// The document as text in format 2, which reads as it does.
+pub(crate) fn flat(document: &RawDocument) -> String {
+    let mut flat = Flat::default();
+    flat.line(0, "(", &[]);
+    flat.line(1, "format: 2,", &[]);
+    if let Some(node) = &document.description {
+        flat.line(1, &format!("description: {},", node.text()), &[&node.span]);
+    }
+    flat.nodes("requires", &document.requires);
+    flat.items("params", &document.params);
+    flat.map(1, "set", &document.set);
+    flat.items("inputs", &document.inputs);
+    flat.items("materials", &document.materials);
+    if !document.passes.is_empty() {
+        flat.line(1, "passes: [", &[]);
+        flat.entries(2, &document.passes);
+        flat.line(1, "],", &[]);
+    }
+    flat.nodes("outputs", &document.outputs);
+    flat.map(1, "claims", &document.claims);
+    flat.line(0, ")", &[]);
+    flat.text
+}
+
+#[derive(Default)]
+struct Flat {
+    text: String,
+}
+
+impl Flat {
+    /// A line, or several where the source has several, and where it comes from.
+    fn line(&mut self, depth: usize, content: &str, origins: &[&Span]) {
+        let mut places: Vec<String> = Vec::new();
+        for origin in origins {
+            let place = format!("{}:{}", origin.file.name, origin.line_column().0);
+            if !places.contains(&place) {
+                places.push(place);
+            }
+        }
+        self.text.push_str(&"    ".repeat(depth));
+        self.text.push_str(content);
+        if !places.is_empty() {
+            self.text.push_str(&format!(" // {}", places.join(", ")));
+        }
+        self.text.push('\n');
+    }
+
+    fn nodes(&mut self, section: &str, nodes: &[Node]) {
+        if nodes.is_empty() {
+            return;
+        }
+        self.line(1, &format!("{section}: ["), &[]);
+        for node in nodes {
+            self.line(2, &format!("{},", node.text()), &[&node.span]);
+        }
+        self.line(1, "],", &[]);
+    }
+
+    fn items(&mut self, section: &str, items: &[RawItem]) {
+        if items.is_empty() {
+            return;
+        }
+        self.line(1, &format!("{section}: ["), &[]);
+        for item in items {
+            let content = format!("{}({}),", *item.tag, fields(&item.fields));
+            self.line(2, &content, &origins(&item.tag.span, &item.fields));
+        }
+        self.line(1, "],", &[]);
+    }
+
+    fn map(&mut self, depth: usize, section: &str, map: &RawMap) {
+        if map.is_empty() {
+            return;
+        }
+        self.line(depth, &format!("{section}: {{"), &[]);
+        for (key, value) in map {
+            let content = format!("{}: {},", Node::at(&key.span).text(), value.text());
+            self.line(depth + 1, &content, &[&key.span]);
+        }
+        self.line(depth, "},", &[]);
+    }
+
+    fn entries(&mut self, depth: usize, entries: &[Result<RawEntry, Broken>]) {
+        for entry in entries.iter().flatten() {
+            self.entry(depth, entry);
+        }
+    }
+
+    fn entry(&mut self, depth: usize, entry: &RawEntry) {
+        let origins = origins(&entry.tag.span, &entry.fields);
+        let head = format!("{}({}", *entry.tag, fields(&entry.fields));
+        if entry.bind.is_empty() && entry.set.is_empty() && entry.passes.is_none() {
+            self.line(depth, &format!("{head}),"), &origins);
+            return;
+        }
+        let comma = if entry.fields.is_empty() { "" } else { "," };
+        self.line(depth, &format!("{head}{comma}"), &origins);
+        self.map(depth + 1, "bind", &entry.bind);
+        self.map(depth + 1, "set", &entry.set);
+        if let Some(passes) = &entry.passes {
+            self.line(depth + 1, "passes: [", &[]);
+            self.entries(depth + 2, passes);
+            self.line(depth + 1, "],", &[]);
+        }
+        self.line(depth, "),", &[]);
+    }
+}
+
+fn fields(fields: &[Field]) -> String {
+    let field = |field: &Field| format!("{}: {}", *field.name, field.node.text());
+    fields.iter().map(field).collect::<Vec<_>>().join(", ")
+}
+
+/// The lines that an entry comes from.
+fn origins<'a>(tag: &'a Span, fields: &'a [Field]) -> Vec<&'a Span> {
+    let mut origins = vec![tag];
+    // Lines of one file are one entry; a field of another file is an edit.
+    let edited = fields.iter().map(|field| &field.name.span);
+    origins.extend(edited.filter(|span| span.file.name != tag.file.name));
+    origins
+}

@@ -1,0 +1,324 @@
+//! A document as sections of raw pieces: what [`extend`](super::extend) edits, and
+//! [`typed`](super::typed) reads.
+
+use super::ron::{Field, Node};
+use crate::{
+    diagnostics::reports::{Mistake, Reported, Reports},
+    errors::document::DocumentError,
+    source::span::{Located, SourceFile, Span},
+};
+use std::collections::{HashMap, HashSet};
+
+/// Most entries of a list or map as it is written; each may name all others, so time may grow with
+/// the square.
+const MOST_ENTRIES: usize = 4096;
+
+/// The document format that is read.
+const FORMAT: u32 = 2;
+
+/// A map as it is written, each key once.
+pub(crate) type RawMap = Vec<(Located<String>, Node)>;
+
+/// The sections of a document.
+#[derive(Debug)]
+pub(crate) struct RawDocument {
+    pub file: SourceFile,
+    pub description: Option<Node>,
+    pub extends: Option<Node>,
+    pub requires: Vec<Node>,
+    pub params: Vec<RawItem>,
+    pub inputs: Vec<RawItem>,
+    pub materials: Vec<RawItem>,
+    pub passes: Vec<Result<RawEntry, Broken>>,
+    pub outputs: Vec<Node>,
+    pub set: RawMap,
+    pub claims: RawMap,
+    /// A param could not be read: nothing of the document has a size then.
+    pub broken_params: Option<Reported>,
+}
+
+/// `Kind(name: …, …)`, a param, an input or a material.
+#[derive(Clone, Debug)]
+pub(crate) struct RawItem {
+    pub tag: Located<String>,
+    pub fields: Vec<Field>,
+}
+
+/// An entry of `passes`.
+#[derive(Clone, Debug)]
+pub(crate) struct RawEntry {
+    pub tag: Located<String>,
+    pub fields: Vec<Field>,
+    pub bind: RawMap,
+    pub set: RawMap,
+    /// The entries of a group.
+    pub passes: Option<Vec<Result<RawEntry, Broken>>>,
+}
+
+/// An entry that could not be read, which was reported: what it would have written is not known,
+/// nor, of an include, what it would have brought.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Broken {
+    pub is_include: bool,
+    pub reported: Reported,
+}
+
+/// The text of a field `name` in quotes.
+fn name_of(fields: &[Field]) -> Option<Located<String>> {
+    let field = fields.iter().find(|field| *field.name == "name")?;
+    let name: String = field.node.parse().ok()?;
+    Some(Located::new(name, field.node.span.clone()))
+}
+
+impl RawItem {
+    pub fn name(&self) -> Option<Located<String>> {
+        name_of(&self.fields)
+    }
+}
+
+impl RawEntry {
+    /// The name, or that of the file that an include without one names.
+    pub fn name(&self) -> Option<String> {
+        if let Some(name) = name_of(&self.fields) {
+            return Some(name.value);
+        }
+        let graph = self.field("graph").filter(|_| *self.tag == "Include")?;
+        let graph: String = graph.node.parse().ok()?;
+        Some(stem(&graph).to_owned())
+    }
+
+    pub fn field(&self, name: &str) -> Option<&Field> {
+        self.fields.iter().find(|field| *field.name == name)
+    }
+
+    pub fn take(&mut self, name: &str) -> Option<Field> {
+        let at = self.fields.iter().position(|field| *field.name == name)?;
+        Some(self.fields.remove(at))
+    }
+}
+
+/// The name of a file without folder and ending.
+pub(crate) fn stem(path: &str) -> &str {
+    let file = path.rsplit('/').next().unwrap_or(path);
+    file.strip_suffix(".ron").unwrap_or(file)
+}
+
+const SECTIONS: [&str; 11] = [
+    "format",
+    "extends",
+    "description",
+    "requires",
+    "params",
+    "set",
+    "inputs",
+    "materials",
+    "passes",
+    "outputs",
+    "claims",
+];
+
+/// Splits a document into its sections. What is wrong with some of them is reported.
+pub(crate) fn split(file: SourceFile, reports: &mut Reports) -> Result<RawDocument, Reported> {
+    if !file.text.contains('(') {
+        return Err(reports.report(DocumentError::NoDocument(file)));
+    }
+    let fields = Node::root(&file).fields();
+    let fields = fields.map_err(|error| reports.tell(error))?;
+    let mut sections = Sections {
+        nodes: sections(fields, reports),
+        reports,
+    };
+    sections.format(&file)?;
+    let passes = sections.list("passes");
+    let mut document = RawDocument {
+        description: sections.nodes.remove("description"),
+        extends: sections.nodes.remove("extends"),
+        requires: sections.list("requires"),
+        params: Vec::new(),
+        inputs: sections.items("inputs").0,
+        materials: sections.items("materials").0,
+        outputs: sections.list("outputs"),
+        set: sections.map("set"),
+        claims: sections.map("claims"),
+        passes: entries(passes, sections.reports),
+        broken_params: None,
+        file,
+    };
+    (document.params, document.broken_params) = sections.items("params");
+    Ok(document)
+}
+
+fn sections(fields: Vec<Field>, reports: &mut Reports) -> HashMap<String, Node> {
+    let mut sections = HashMap::new();
+    for field in fields {
+        if !SECTIONS.contains(&field.name.as_str()) {
+            let known = SECTIONS.map(str::to_owned).to_vec();
+            reports.report(DocumentError::UnknownField(field.name, known));
+            continue;
+        }
+        let name = field.name.value.clone();
+        if sections.insert(name.clone(), field.node).is_some() {
+            reports.report(DocumentError::FieldTwice(field.name.span, name));
+        }
+    }
+    sections
+}
+
+struct Sections<'r> {
+    nodes: HashMap<String, Node>,
+    reports: &'r mut Reports,
+}
+
+impl Sections<'_> {
+    fn format(&mut self, file: &SourceFile) -> Result<(), Reported> {
+        let Some(node) = self.nodes.get("format") else {
+            let begin = file.span(0..1.min(file.text.len()));
+            self.reports.report(DocumentError::NoFormat(begin));
+            return Ok(());
+        };
+        match node.parse::<u32>() {
+            Ok(FORMAT) => Ok(()),
+            // Everything else in it would be a mistake, too.
+            Ok(other) => {
+                let place = node.span.clone();
+                Err(self.reports.report(DocumentError::Format(place, other)))
+            }
+            Err(error) => {
+                self.reports.tell(error);
+                Ok(())
+            }
+        }
+    }
+
+    fn list(&mut self, section: &str) -> Vec<Node> {
+        let node = self.nodes.remove(section);
+        node.map_or_else(Vec::new, |node| list(&node, self.reports))
+    }
+
+    fn map(&mut self, section: &str) -> RawMap {
+        let node = self.nodes.remove(section);
+        node.map_or_else(Vec::new, |node| map(&node, self.reports))
+    }
+
+    /// The items of a section, and the proof if some could not be read.
+    fn items(&mut self, section: &'static str) -> (Vec<RawItem>, Option<Reported>) {
+        let (mut items, mut broken) = (Vec::new(), None);
+        for node in self.list(section) {
+            match item(&node, section) {
+                Ok(item) => items.push(item),
+                Err(error) => broken = Some(self.reports.tell(error)),
+            }
+        }
+        let mut seen: HashMap<String, Span> = HashMap::new();
+        // The first of two is the one that counts, so that the second raises no more complaints.
+        items.retain(|item: &RawItem| {
+            let Some(Located { value: name, span }) = item.name() else {
+                return true;
+            };
+            let Some(first) = seen.get(&name) else {
+                seen.insert(name, span);
+                return true;
+            };
+            let what = section.strip_suffix('s').unwrap_or(section);
+            let first = first.clone();
+            self.reports.report(DocumentError::Twice {
+                what,
+                name,
+                span,
+                first,
+            });
+            false
+        });
+        (items, broken)
+    }
+}
+
+fn item(node: &Node, section: &'static str) -> Result<RawItem, crate::diagnostics::Diagnostic> {
+    let untagged = || DocumentError::Untagged {
+        span: node.span.clone(),
+        section,
+    };
+    let (tag, body) = node.variant().ok_or_else(|| untagged().diagnostic())?;
+    let fields = body.fields()?;
+    Ok(RawItem { tag, fields })
+}
+
+fn list(node: &Node, reports: &mut Reports) -> Vec<Node> {
+    let nodes = node.list().map_err(|error| reports.tell(error));
+    let nodes = nodes.unwrap_or_default();
+    if let Some(first) = nodes.get(MOST_ENTRIES) {
+        let span = first.span.clone();
+        let count = nodes.len();
+        reports.report(DocumentError::TooMany {
+            what: "list",
+            span,
+            count,
+            most: MOST_ENTRIES,
+        });
+        return Vec::new();
+    }
+    nodes
+}
+
+fn map(node: &Node, reports: &mut Reports) -> RawMap {
+    let entries = node.map().map_err(|error| reports.tell(error));
+    let entries = entries.unwrap_or_default();
+    if let Some((first, _)) = entries.get(MOST_ENTRIES) {
+        let span = first.span.clone();
+        let count = entries.len();
+        reports.report(DocumentError::TooMany {
+            what: "map",
+            span,
+            count,
+            most: MOST_ENTRIES,
+        });
+        return Vec::new();
+    }
+    let mut seen = HashSet::new();
+    let mut once = Vec::new();
+    for (key, value) in entries {
+        match seen.insert(key.value.clone()) {
+            true => once.push((key, value)),
+            false => drop(reports.report(DocumentError::KeyTwice(key))),
+        }
+    }
+    once
+}
+
+fn entries(nodes: Vec<Node>, reports: &mut Reports) -> Vec<Result<RawEntry, Broken>> {
+    nodes.iter().map(|node| entry(node, reports)).collect()
+}
+
+fn entry(node: &Node, reports: &mut Reports) -> Result<RawEntry, Broken> {
+    let item = item(node, "passes").map_err(|error| {
+        let tag = node.variant().map(|(tag, _)| tag.value);
+        Broken {
+            is_include: tag.is_some_and(|tag| tag == "Include"),
+            reported: reports.tell(error),
+        }
+    })?;
+    let mut entry = RawEntry {
+        tag: item.tag,
+        fields: Vec::new(),
+        bind: Vec::new(),
+        set: Vec::new(),
+        passes: None,
+    };
+    let mut seen = HashSet::new();
+    for field in item.fields {
+        let name = field.name.value.clone();
+        match name.as_str() {
+            "bind" | "set" | "passes" if !seen.insert(name.clone()) => {
+                reports.report(DocumentError::FieldTwice(field.name.span, name));
+            }
+            "bind" => entry.bind = map(&field.node, reports),
+            "set" => entry.set = map(&field.node, reports),
+            "passes" => {
+                let nodes = list(&field.node, reports);
+                entry.passes = Some(entries(nodes, reports));
+            }
+            _ => entry.fields.push(field),
+        }
+    }
+    Ok(entry)
+}

@@ -1,0 +1,491 @@
+//! Reading RON piece by piece, so that every error of a document is found and every name keeps its
+//! place.
+//!
+//! ron stops at its first error, so each list entry and each field of a pass is deserialised by
+//! itself from its raw text. A raw value borrows the source, hence the difference of pointers is
+//! the byte offset.
+
+use crate::{
+    diagnostics::{diagnostic::Diagnostic, reports::Mistake},
+    errors::document::DocumentError,
+    source::span::{Located, SourceFile, Span},
+};
+use ron::value::RawValue;
+use serde::{
+    Deserialize, Deserializer,
+    de::{
+        DeserializeOwned, DeserializeSeed, Error as _, IntoDeserializer, MapAccess, SeqAccess,
+        Visitor,
+    },
+};
+use std::{cell::RefCell, collections::HashSet, fmt, ops::Range};
+
+/// The text that is being deserialised on this thread, and the innermost place where it went wrong
+/// with what is to be told (outer levels only see a text).
+struct Reading {
+    file: SourceFile,
+    failed: Option<Diagnostic>,
+}
+
+/// Remembers a failure, unless one further inside is remembered already.
+fn fail(told: impl FnOnce(&SourceFile) -> Option<Diagnostic>) {
+    READING.with_borrow_mut(|reading| {
+        if let Some(reading) = reading
+            && reading.failed.is_none()
+        {
+            reading.failed = told(&reading.file);
+        }
+    });
+}
+
+/// An error of serde's that is told as this mistake.
+pub(crate) fn refuse<E: serde::de::Error>(mistake: impl Mistake) -> E {
+    let told = mistake.diagnostic();
+    let message = told.message.clone();
+    fail(|_| Some(told));
+    E::custom(message)
+}
+
+thread_local! {
+    // serde hands a `Deserialize` implementation no context; this is the context.
+    static READING: RefCell<Option<Reading>> = const { RefCell::new(None) };
+}
+
+fn options() -> ron::Options {
+    ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
+}
+
+/// The text of a value without the white space and comments around it. A line comment that lost its
+/// newline would not end.
+fn bare(raw: &RawValue) -> &str {
+    raw.trim().get_ron()
+}
+
+/// Byte range of `part` in the text being read, if it is part of it.
+fn range_in(text: &str, part: &str) -> Option<Range<usize>> {
+    let start = (part.as_ptr() as usize).checked_sub(text.as_ptr() as usize)?;
+    (start + part.len() <= text.len()).then(|| start..start + part.len())
+}
+
+/// Deserialises `text`, a part of the file being read, and remembers the innermost place of a
+/// failure.
+fn read_part<T: DeserializeOwned>(text: &str) -> Result<T, ron::Error> {
+    options().from_str(text).map_err(|error| {
+        fail(|file| {
+            let whole = range_in(&file.text, text)?;
+            let place = place_of(text, &error, whole.start);
+            Some(explain(&error.code, file.span(place)))
+        });
+        error.code
+    })
+}
+
+/// What a ron error is about, in bytes: `text` begins at `base`.
+fn place_of(text: &str, error: &ron::error::SpannedError, base: usize) -> Range<usize> {
+    let start = offset(text, error.span.start.line, error.span.start.col);
+    let end = offset(text, error.span.end.line, error.span.end.col).max(start);
+    // ron reports the end of a bad word as its place; a word is what the reader wants to see.
+    word_around(text, start, end, base)
+}
+
+fn offset(text: &str, line: usize, column: usize) -> usize {
+    let start: usize = text
+        .split_inclusive('\n')
+        .take(line.saturating_sub(1))
+        .map(str::len)
+        .sum();
+    let rest = text.get(start..).unwrap_or("");
+    start
+        + rest
+            .chars()
+            .take(column.saturating_sub(1))
+            .map(char::len_utf8)
+            .sum::<usize>()
+}
+
+fn word_around(text: &str, start: usize, end: usize, base: usize) -> Range<usize> {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_' || c == '"';
+    let mut low = start.min(text.len());
+    if low == end {
+        low -= text[..low]
+            .chars()
+            .rev()
+            .take_while(|&c| is_word(c))
+            .map(char::len_utf8)
+            .sum::<usize>();
+    }
+    let mut high = end.min(text.len()).max(low);
+    high += text[high..]
+        .chars()
+        .take_while(|&c| is_word(c))
+        .map(char::len_utf8)
+        .sum::<usize>();
+    base + low..base + high
+}
+
+/// The raw text of a value and its place in the file that is being read.
+pub(crate) fn raw<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<(&'de str, Span), D::Error> {
+    let text = bare(<&RawValue>::deserialize(deserializer)?);
+    let span = READING.with_borrow(|reading| {
+        let reading = reading.as_ref()?;
+        Some(reading.file.span(range_in(&reading.file.text, text)?))
+    });
+    let outside = || D::Error::custom("a value with a place outside a document");
+    Ok((text, span.ok_or_else(outside)?))
+}
+
+/// Deserialises a value from its raw text.
+pub(crate) fn read<T: DeserializeOwned, E: serde::de::Error>(text: &str) -> Result<T, E> {
+    read_part(text).map_err(E::custom)
+}
+
+impl<'de, T: DeserializeOwned> Deserialize<'de> for Located<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (text, span) = raw(deserializer)?;
+        let value = read(text)?;
+        Ok(Self { value, span })
+    }
+}
+
+/// A piece of a document: raw RON with its place.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// A named field of a [`Node`].
+#[derive(Clone, Debug)]
+pub struct Field {
+    /// The field's name.
+    pub name: Located<String>,
+    /// Its value.
+    pub node: Node,
+}
+
+impl Node {
+    /// The whole file, without what stands before its opening bracket.
+    pub fn root(file: &SourceFile) -> Self {
+        // Some editors begin UTF-8 with a byte order mark.
+        let start = file.text.len() - file.text.trim_start_matches('\u{feff}').len();
+        Self {
+            span: file.span(start..file.text.len()),
+        }
+    }
+
+    /// What stands in a place.
+    pub fn at(span: &Span) -> Self {
+        Self { span: span.clone() }
+    }
+
+    /// The raw text.
+    pub fn text(&self) -> &str {
+        self.span
+            .file
+            .text
+            .get(self.span.range.clone())
+            .unwrap_or("")
+    }
+
+    fn sub(&self, part: &str) -> Node {
+        let range = range_in(&self.span.file.text, part).unwrap_or(self.span.range.clone());
+        Node {
+            span: self.span.file.span(range),
+        }
+    }
+
+    /// Deserialises the piece.
+    ///
+    /// # Errors
+    /// One diagnostic at the innermost place that failed.
+    pub fn parse<T: DeserializeOwned>(&self) -> Result<T, Diagnostic> {
+        self.reading(|| read_part(self.text()))
+    }
+
+    fn reading<T>(&self, read: impl FnOnce() -> Result<T, ron::Error>) -> Result<T, Diagnostic> {
+        READING.set(Some(Reading {
+            file: self.span.file.clone(),
+            failed: None,
+        }));
+        let result = read();
+        let failed = READING.take().and_then(|reading| reading.failed);
+        result.map_err(|error| failed.unwrap_or_else(|| explain(&error, self.span.clone())))
+    }
+
+    /// The entries of a list, `[…]`, or of a tuple, `(…)`.
+    ///
+    /// # Errors
+    /// If the piece is neither or is not well-formed.
+    pub fn list(&self) -> Result<Vec<Node>, Diagnostic> {
+        struct Raw<'a>(Vec<&'a str>);
+        impl<'de> Deserialize<'de> for Raw<'de> {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                struct Entries;
+                impl<'de> Visitor<'de> for Entries {
+                    type Value = Raw<'de>;
+                    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                        f.write_str("a list, `[a, b]`")
+                    }
+                    fn visit_seq<A: SeqAccess<'de>>(
+                        self,
+                        mut seq: A,
+                    ) -> Result<Raw<'de>, A::Error> {
+                        let mut entries = Vec::new();
+                        while let Some(entry) = seq.next_element::<&RawValue>()? {
+                            entries.push(bare(entry));
+                        }
+                        Ok(Raw(entries))
+                    }
+                }
+                deserializer.deserialize_any(Entries)
+            }
+        }
+        // A tuple of one name looks like a struct to ron.
+        let raw: Raw<'_> = self.borrowed()?;
+        Ok(raw.0.into_iter().map(|part| self.sub(part)).collect())
+    }
+
+    /// The entries of a map, `{"name": value}`, in order; duplicates are the caller's to find.
+    ///
+    /// # Errors
+    /// If the piece is no map of names or is not well-formed.
+    pub fn map(&self) -> Result<Vec<(Located<String>, Node)>, Diagnostic> {
+        struct Raw<'a>(Vec<(&'a str, &'a str)>);
+        impl<'de> Deserialize<'de> for Raw<'de> {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                struct Entries;
+                impl<'de> Visitor<'de> for Entries {
+                    type Value = Raw<'de>;
+                    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                        f.write_str("a map of names, `{\"a\": …}`")
+                    }
+                    fn visit_map<A: MapAccess<'de>>(
+                        self,
+                        mut map: A,
+                    ) -> Result<Raw<'de>, A::Error> {
+                        let mut entries = Vec::new();
+                        while let Some((key, value)) = map.next_entry::<&RawValue, &RawValue>()? {
+                            entries.push((bare(key), bare(value)));
+                        }
+                        Ok(Raw(entries))
+                    }
+                }
+                deserializer.deserialize_map(Entries)
+            }
+        }
+        let raw: Raw<'_> = self.borrowed()?;
+        let entry = |(key, value)| {
+            let key = self.sub(key);
+            let name: String = key.parse()?;
+            Ok((Located::new(name, key.span), self.sub(value)))
+        };
+        raw.0.into_iter().map(entry).collect()
+    }
+
+    /// The fields of a struct, `(name: value, …)`, in order; duplicates are the caller's to find.
+    ///
+    /// # Errors
+    /// If the piece is no struct with named fields or is not well-formed.
+    pub fn fields(&self) -> Result<Vec<Field>, Diagnostic> {
+        struct Raw<'a>(Vec<(String, &'a str)>);
+        impl<'de> Deserialize<'de> for Raw<'de> {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                struct Fields;
+                impl<'de> Visitor<'de> for Fields {
+                    type Value = Raw<'de>;
+                    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                        f.write_str("a struct with named fields, `(name: value, …)`")
+                    }
+                    fn visit_unit<E: serde::de::Error>(self) -> Result<Raw<'de>, E> {
+                        Ok(Raw(Vec::new()))
+                    }
+                    fn visit_map<A: MapAccess<'de>>(
+                        self,
+                        mut map: A,
+                    ) -> Result<Raw<'de>, A::Error> {
+                        let mut fields = Vec::new();
+                        while let Some(Word(key)) = map.next_key()? {
+                            fields.push((key, bare(map.next_value::<&RawValue>()?)));
+                        }
+                        Ok(Raw(fields))
+                    }
+                }
+                deserializer.deserialize_any(Fields)
+            }
+        }
+        let raw: Raw<'_> = self.borrowed()?;
+        Ok(raw
+            .0
+            .into_iter()
+            .map(|(name, value)| {
+                let node = self.sub(value);
+                Field {
+                    name: Located::new(name.clone(), self.key_span(&name, &node)),
+                    node,
+                }
+            })
+            .collect())
+    }
+
+    /// The place of the field name that stands before `value`.
+    fn key_span(&self, name: &str, value: &Node) -> Span {
+        let before = &self.span.file.text[self.span.range.start..value.span.range.start];
+        match before.rfind(name) {
+            Some(at) => {
+                let start = self.span.range.start + at;
+                self.span.file.span(start..start + name.len())
+            }
+            None => value.span.clone(),
+        }
+    }
+
+    /// Splits `Tag(…)` into the tag and its body; a bare `Tag` has an empty body.
+    pub fn variant(&self) -> Option<(Located<String>, Node)> {
+        let text = self.text();
+        let length: usize = text
+            .chars()
+            .take_while(|c| c.is_alphanumeric() || *c == '_')
+            .map(char::len_utf8)
+            .sum();
+        if length == 0 || !text.starts_with(|c: char| c.is_alphabetic()) {
+            return None;
+        }
+        let start = self.span.range.start;
+        let tag = Located::new(
+            text[..length].to_owned(),
+            self.span.file.span(start..start + length),
+        );
+        Some((
+            tag,
+            Node {
+                span: self.span.file.span(start + length..self.span.range.end),
+            },
+        ))
+    }
+
+    fn borrowed<'a, T: Deserialize<'a>>(&'a self) -> Result<T, Diagnostic> {
+        options().from_str(self.text()).map_err(|error| {
+            let range = place_of(self.text(), &error, self.span.range.start);
+            explain(&error.code, self.span.file.span(range))
+        })
+    }
+}
+
+/// A key of a struct or a map, identifier or string.
+struct Word(String);
+impl<'de> Deserialize<'de> for Word {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Identifier;
+        impl Visitor<'_> for Identifier {
+            type Value = Word;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a field name")
+            }
+            fn visit_str<E>(self, name: &str) -> Result<Word, E> {
+                Ok(Word(name.to_owned()))
+            }
+        }
+        deserializer.deserialize_identifier(Identifier)
+    }
+}
+
+/// Deserialises a struct from fields that were split before, each from its own text.
+///
+/// # Errors
+/// One diagnostic: an unknown, missing or duplicate field, or a value of the wrong type, at its
+/// place.
+pub fn from_fields<T: DeserializeOwned>(fields: &[Field], whole: &Span) -> Result<T, Diagnostic> {
+    struct Access<'a> {
+        fields: std::slice::Iter<'a, Field>,
+        value: Option<&'a Field>,
+    }
+    impl<'de> MapAccess<'de> for Access<'de> {
+        type Error = ron::Error;
+        fn next_key_seed<K: DeserializeSeed<'de>>(
+            &mut self,
+            seed: K,
+        ) -> Result<Option<K::Value>, ron::Error> {
+            let Some(field) = self.fields.next() else {
+                return Ok(None);
+            };
+            self.value = Some(field);
+            let name: &str = &field.name.value;
+            seed.deserialize(IntoDeserializer::<ron::Error>::into_deserializer(name))
+                .map(Some)
+                .inspect_err(|error| fail(|_| Some(explain(error, field.name.span.clone()))))
+        }
+        fn next_value_seed<V: DeserializeSeed<'de>>(
+            &mut self,
+            seed: V,
+        ) -> Result<V::Value, ron::Error> {
+            let field = self
+                .value
+                .take()
+                .ok_or_else(|| ron::Error::custom("a value without its key"))?;
+            // An extended document's field stands in that one's file.
+            let text = field.node.text();
+            let file = field.node.span.file.clone();
+            READING.with_borrow_mut(|reading| {
+                if let Some(reading) = reading {
+                    reading.file = file;
+                }
+            });
+            options().from_str_seed(text, seed).map_err(|error| {
+                fail(|file| {
+                    let place = place_of(text, &error, field.node.span.range.start);
+                    Some(explain(&error.code, file.span(place)))
+                });
+                error.code
+            })
+        }
+    }
+    // ron would report it before it has the place of the second one.
+    let mut seen = HashSet::new();
+    if let Some(field) = fields
+        .iter()
+        .find(|field| !seen.insert(field.name.as_str()))
+    {
+        let place = field.name.span.clone();
+        return Err(DocumentError::FieldTwice(place, field.name.value.clone()).diagnostic());
+    }
+    let node = Node {
+        span: whole.clone(),
+    };
+    node.reading(|| {
+        let access = Access {
+            fields: fields.iter(),
+            value: None,
+        };
+        T::deserialize(serde::de::value::MapAccessDeserializer::new(access))
+    })
+}
+
+/// A ron error in our words.
+fn explain(error: &ron::Error, span: Span) -> Diagnostic {
+    use ron::Error as R;
+    let names = |list: &[&str]| list.iter().map(|&name| name.to_owned()).collect();
+    match error {
+        R::NoSuchStructField {
+            expected, found, ..
+        } => DocumentError::UnknownField(Located::new(found.clone(), span), names(expected)),
+        R::NoSuchEnumVariant {
+            expected, found, ..
+        } => DocumentError::UnknownWord(Located::new(found.clone(), span), names(expected)),
+        R::MissingStructField { field, .. } => DocumentError::MissingField(span, field.to_string()),
+        R::DuplicateStructField { field, .. } => DocumentError::FieldTwice(span, field.to_string()),
+        R::Eof => DocumentError::Ends(span),
+        R::ExceededRecursionLimit => DocumentError::Nested(span),
+        other => DocumentError::Syntax(span, lower_first(&other.to_string())),
+    }
+    .diagnostic()
+}
+
+fn lower_first(text: &str) -> String {
+    let mut characters = text.chars();
+    match characters.next() {
+        Some(first) => first.to_lowercase().chain(characters).collect(),
+        None => String::new(),
+    }
+}

@@ -1,0 +1,139 @@
+//! Documents that cannot be found, or do not go together.
+
+use crate::{
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    source::span::{Located, Span},
+};
+
+#[derive(Clone, Debug, thiserror::Error)]
+pub(crate) enum ComposeError {
+    #[error("there is no document `{0}`")]
+    NoDocument(String, Option<String>),
+    #[error("the document `{0}` cannot be read: {1}")]
+    Unreadable(String, String),
+    #[error("the document `{}` lies outside the folders of documents", **.0)]
+    Outside(Located<String>),
+    /// Where it was looked for, and what it may have been meant to be.
+    #[error("there is no document `{}`", **.0)]
+    NoInclude(Located<String>, Vec<String>, Option<String>),
+    #[error("the document `{}` cannot be read", **.0)]
+    UnreadableInclude(Located<String>, String),
+    #[error("the document `{}` includes itself", open.first().map_or("", |(path, _)| path))]
+    Cycle {
+        graph: Located<String>,
+        open: Vec<(String, Option<Span>)>,
+    },
+    #[error("documents include or extend each other more than {1} deep")]
+    TooDeep(Located<String>, usize),
+    #[error("two of the name `{name}`: every {what} needs its own")]
+    Clash {
+        what: &'static str,
+        name: String,
+        known: String,
+        span: Span,
+        first: Span,
+    },
+    #[error("`{document}` has no param `{}`", **name)]
+    NoParam {
+        name: Located<String>,
+        document: String,
+        known: Vec<String>,
+    },
+    #[error("`{}` is a param here already", **name)]
+    ExposedTwice { name: Located<String>, first: Span },
+    #[error("`{}` cannot be exposed: its default is made of other params", **.0)]
+    ExposedDefault(Located<String>),
+    #[error("the document has no outputs, so none of its passes is needed")]
+    NoOutputs(Span),
+    #[error("nothing uses the material `{}`", **.0)]
+    UnusedMaterial(Located<String>),
+    #[error("nothing uses the param `{}`", **.0)]
+    UnusedParam(Located<String>),
+}
+
+impl Mistake for ComposeError {
+    fn code(&self) -> Code {
+        match self {
+            Self::Cycle { .. } => Code::IncludeCycle,
+            Self::TooDeep(..) => Code::Size,
+            Self::Clash { name, known, .. } if name != known => Code::Name,
+            Self::Clash { .. } => Code::DuplicateName,
+            Self::NoParam { .. } => Code::UnknownParam,
+            Self::ExposedTwice { .. } | Self::ExposedDefault(_) => Code::ParamValue,
+            Self::NoOutputs(_) => Code::Output,
+            Self::UnusedMaterial(_) | Self::UnusedParam(_) => Code::Unused,
+            _ => Code::MissingFile,
+        }
+    }
+
+    fn explain(self, told: Diagnostic) -> Diagnostic {
+        match self {
+            Self::NoDocument(_, None) | Self::Unreadable(..) => told,
+            Self::NoDocument(_, Some(likeness)) => told.help(likeness),
+            Self::Outside(graph) => told.at(graph.span, "asked for here").help(
+                "documents stand beside the one that asks for them, in a folder below it, or in \
+                 pipelines/, and are named without folder signs like `..`",
+            ),
+            Self::NoInclude(graph, candidates, likeness) => {
+                let likeness = likeness.map_or(String::new(), |likeness| format!("; {likeness}"));
+                let looked = format!("looked for {}{likeness}", candidates.join(", "));
+                told.at(graph.span, "asked for here").help(looked)
+            }
+            Self::UnreadableInclude(path, why) => told.at(path.span, "asked for here").help(why),
+            Self::Cycle { graph, open } => {
+                let mut told = told.at(graph.span, "includes it again");
+                for (path, place) in open.iter().skip(1) {
+                    if let Some(place) = place {
+                        told = told.at(place.clone(), format!("includes `{path}`"));
+                    }
+                }
+                let path: Vec<&str> = open.iter().map(|(path, _)| path.as_str()).collect();
+                told.help(format!(
+                    "the cycle is {} → {}: take one of these includes out",
+                    path.join(" → "),
+                    path.first().unwrap_or(&"")
+                ))
+            }
+            Self::TooDeep(graph, _) => told.at(graph.span, "").help("use fewer levels"),
+            Self::Clash {
+                name,
+                known,
+                span,
+                first,
+                ..
+            } => clash(told, [name, known], [span, first]),
+            Self::NoParam { name, known, .. } => {
+                told.at(name.span.clone(), "").suggest(&name, known)
+            }
+            Self::ExposedTwice { name, first } => told
+                .at(name.span.clone(), "exposed here")
+                .at(first, "and declared here")
+                .help(format!(
+                    "give the include a name, or `set` it to the one that is here: \
+                     `set: {{\"{0}\": \"{0}\"}}`",
+                    *name
+                )),
+            Self::ExposedDefault(name) => told
+                .at(name.span, "")
+                .help("declare a param here, and `set` it to that"),
+            Self::NoOutputs(span) => told.at(span, "").help("add `outputs: [\"…\"]`"),
+            Self::UnusedMaterial(name) => told
+                .at(name.span, "")
+                .help("remove it, or check the names of the shader globals that should be it"),
+            Self::UnusedParam(name) => told.at(name.span, "").help(
+                "remove it, or check the names in `params` of the shaders and in expressions",
+            ),
+        }
+    }
+}
+
+fn clash(told: Diagnostic, [name, known]: [String; 2], [span, first]: [Span; 2]) -> Diagnostic {
+    if name != known {
+        return told
+            .at(span, format!("a shader spells it like `{known}`"))
+            .at(first, "which is declared here")
+            .help("rename one of them");
+    }
+    let told = told.at(span, "the second one").at(first, "the first one");
+    told.help("an include can be given a name: `name: \"left\"` makes `left.x` of its output `x`")
+}

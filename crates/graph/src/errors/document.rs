@@ -1,0 +1,212 @@
+//! Documents that cannot be read.
+
+use crate::{
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    language::name::{Name, NameFault, RESERVED},
+    source::span::{Located, SourceFile, Span},
+};
+
+/// What is wrong with the text of a document.
+#[derive(Clone, Debug, thiserror::Error)]
+pub(crate) enum DocumentError {
+    #[error("the file `{}` holds no document", .0.name)]
+    NoDocument(SourceFile),
+    #[error("the document does not say its format")]
+    NoFormat(Span),
+    #[error("documents of format {1} are not read")]
+    Format(Span, u32),
+    #[error("{1}")]
+    Syntax(Span, String),
+    #[error("the text ends too early")]
+    Ends(Span),
+    #[error("values are nested too deep")]
+    Nested(Span),
+    #[error("unknown field `{}`", **.0)]
+    UnknownField(Located<String>, Vec<String>),
+    #[error("unknown word `{}`", **.0)]
+    UnknownWord(Located<String>, Vec<String>),
+    #[error("unknown pass kind `{}`", **.0)]
+    UnknownKind(Located<String>, Vec<String>),
+    #[error("unknown type of param `{}`", **.0)]
+    UnknownParamType(Located<String>),
+    #[error("unknown kind of material `{}`", **.0)]
+    UnknownMaterial(Located<String>),
+    #[error("the field `{1}` is missing")]
+    MissingField(Span, String),
+    #[error("the field `{1}` is given twice")]
+    FieldTwice(Span, String),
+    #[error("`{}` is given twice", **.0)]
+    KeyTwice(Located<String>),
+    #[error("two of the name `{name}`: every {what} needs its own")]
+    Twice {
+        what: &'static str,
+        name: String,
+        span: Span,
+        first: Span,
+    },
+    #[error("an entry begins with its kind")]
+    Untagged { span: Span, section: &'static str },
+    #[error("the {what} has {count} entries, {most} is the most")]
+    TooMany {
+        what: &'static str,
+        span: Span,
+        count: usize,
+        most: usize,
+    },
+    #[error("`{1}` is no name: {2}")]
+    Name(Span, String, NameFault),
+    #[error("`{}` is a word of the language and names no material, group or include", **.0)]
+    Reserved(Located<Name>),
+    #[error("`{1}` is no name: give the include one, `name: \"…\"`")]
+    Unnamed(Span, String),
+    #[error("`{1}` stands in quotes, or is a word of a Choice in small letters")]
+    BareWord(Span, String),
+    #[error("a name in quotes is needed here")]
+    NoString(Span),
+    #[error("this is no tuple of numbers")]
+    NoTuple(Span),
+    #[error("this is no `load`")]
+    Load(Span),
+    #[error("this is no write mask")]
+    WriteMask(Span),
+    #[error("an area is four whole numbers: `(x, y, width, height)`")]
+    Area(Span),
+    #[error("clearing knows no area")]
+    ClearInArea { clear: Span, area: Span },
+    #[error("this is no list of items")]
+    Data(Span),
+    #[error("an input's format is written out")]
+    InputFormat(Span),
+    #[error("the param `{}` cannot be: {why}", **name)]
+    Param { name: Located<Name>, why: String },
+}
+
+/// What an entry of a section looks like, and the kinds that there are.
+fn kinds(section: &str) -> (&'static str, &'static [&'static str]) {
+    match section {
+        "params" => (
+            "for example `U32(name: \"…\", default: 1)`",
+            &[
+                "F32", "I32", "U32", "Bool", "Vec2", "Vec3", "Vec4", "Choice",
+            ],
+        ),
+        "passes" => ("for example `Compute(name: \"…\", …)`", &[]),
+        _ => (
+            "for example `Texture(name: \"…\", …)`",
+            &["Texture", "Buffer", "Sampler"],
+        ),
+    }
+}
+
+impl Mistake for DocumentError {
+    fn code(&self) -> Code {
+        match self {
+            Self::Format(..) => Code::FormatVersion,
+            Self::UnknownField(..) => Code::UnknownField,
+            Self::UnknownWord(..)
+            | Self::UnknownKind(..)
+            | Self::UnknownParamType(_)
+            | Self::UnknownMaterial(_) => Code::UnknownVariant,
+            Self::MissingField(..) | Self::NoFormat(_) => Code::MissingField,
+            Self::FieldTwice(..) | Self::KeyTwice(_) | Self::Twice { .. } => Code::DuplicateName,
+            Self::TooMany { .. } => Code::Size,
+            Self::Name(..) | Self::Reserved(_) | Self::Unnamed(..) => Code::Name,
+            Self::Param { .. } => Code::ParamValue,
+            _ => Code::Syntax,
+        }
+    }
+
+    fn explain(self, told: Diagnostic) -> Diagnostic {
+        match self {
+            Self::NoDocument(file) => {
+                let line = file.text.lines().next().map_or(0, str::len);
+                told.at(file.span(0..line), "")
+                    .help("begin with `(format: 2, …)`")
+            }
+            Self::NoFormat(span) => told.at(span, "").help("begin with `format: 2,`"),
+            Self::Format(span, 1) => told.at(span, "").help(FORMAT_1),
+            Self::Format(span, _) => told
+                .at(span, "")
+                .help("this version of Skiagraph reads `format: 2`"),
+            Self::Ends(span) => told
+                .at(span, "something is not closed")
+                .help("check that every bracket and quote is closed"),
+            Self::Nested(span) => told.at(span, "").help(
+                "no document needs so many brackets in brackets: is one of them never closed?",
+            ),
+            Self::UnknownField(name, known) => told
+                .at(name.span.clone(), "not a field of this")
+                .suggest(&name, known),
+            Self::UnknownWord(word, known) => told
+                .at(
+                    word.span.clone(),
+                    "not one of the words that may stand here",
+                )
+                .suggest(&word, known),
+            Self::UnknownKind(tag, known) => told
+                .at(tag.span.clone(), "no pass kind of this name is registered")
+                .suggest(&tag, known),
+            Self::UnknownParamType(tag) => told
+                .at(tag.span.clone(), "")
+                .suggest(&tag, kinds("params").1),
+            Self::UnknownMaterial(tag) => told
+                .at(tag.span.clone(), "")
+                .suggest(&tag, kinds("materials").1),
+            Self::Untagged { span, section } => {
+                let (example, known) = kinds(section);
+                told.at(span, example).suggest("", known)
+            }
+            other => other.explain_value(told),
+        }
+    }
+}
+
+/// What changed since format 1, for its authors.
+const FORMAT_1: &str = "this is format 2 (docs/authoring.md): a param is `U32(name: …)`, an \
+    expression stands in quotes (`size: \"map_size\"`, `count: \"scene.indices.count\"`), \
+    `\"x.previous\"` and `\"x.mip[1]\"` are references, included documents state `inputs` and \
+    `outputs`, and `Include` has `name`, `bind`, `set` and `expose`";
+
+impl DocumentError {
+    /// Mistakes in a value.
+    fn explain_value(self, told: Diagnostic) -> Diagnostic {
+        match self {
+            Self::Syntax(span, _) => told.at(span, "here"),
+            Self::MissingField(span, _) => told.at(span, "it must be given here"),
+            Self::FieldTwice(span, _) => told.at(span, "the second one"),
+            Self::KeyTwice(key) => told.at(key.span, "the second one"),
+            Self::Twice { span, first, .. } => {
+                told.at(span, "the second one").at(first, "the first one")
+            }
+            Self::TooMany { span, .. } => told.at(span, "this one is too many").help(
+                "let `repeat` say what is alike, or split the document and `Include` its parts",
+            ),
+            Self::Name(span, ..) => told.at(span, ""),
+            Self::Reserved(name) => told.at(name.span, "").help(format!(
+                "these words have a meaning of their own: {}",
+                RESERVED.join(", ")
+            )),
+            Self::Unnamed(span, _) => told.at(span, "the include would be called so"),
+            Self::BareWord(span, _) => told.at(span, ""),
+            Self::NoString(span) => told.at(span, "for example `\"maps[2]\"`"),
+            Self::NoTuple(span) => told.at(span, "for example `(1, 0)`"),
+            Self::Load(span) => told
+                .at(span, "")
+                .help("write `Load`, `Clear(0)` or `Clear(r, g, b, a)`"),
+            Self::WriteMask(span) => told.at(span, "").help("write `rgb`, `true` or `false`"),
+            Self::Area(span) => told.at(span, ""),
+            Self::ClearInArea { clear, area } => told
+                .at(clear, "this would clear the whole target")
+                .at(area, "and this is a part of it")
+                .help("leave `load` out here, and put a `Clear` above this pass"),
+            Self::Data(span) => told
+                .at(span, "")
+                .help("write `[0.2, 0.6]` or `[(1, 0), (0, 1)]`"),
+            Self::InputFormat(span) => told
+                .at(span, "")
+                .help("leave `format` out where any will do"),
+            Self::Param { name, .. } => told.at(name.span, ""),
+            _ => told,
+        }
+    }
+}

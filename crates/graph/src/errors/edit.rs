@@ -1,0 +1,69 @@
+//! Edits of an extended document that cannot be made.
+
+use crate::{
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    source::span::{Located, Span},
+};
+
+#[derive(Clone, Debug, thiserror::Error)]
+pub(crate) enum EditError {
+    #[error("the extended document has no entry `{}`", **path)]
+    NoSuchEntry {
+        path: Located<String>,
+        name: String,
+        known: Vec<String>,
+    },
+    #[error("`{}` stands behind the interface of `{entry}`", **path)]
+    Behind {
+        path: Located<String>,
+        entry: String,
+    },
+    #[error("a new `{}` needs a place", **.0)]
+    NoPlace(Located<String>),
+    #[error("a new `{}` has several places", **.0)]
+    TwoPlaces(Located<String>),
+    #[error("`{}` does not say which entry it is about", **.0)]
+    NoPath(Located<String>, &'static str),
+    #[error("an entry is named in quotes")]
+    NoString(Span),
+    #[error("`{1}` has no such field")]
+    Field(Located<String>, &'static str),
+    #[error("the entries of a group are changed one by one")]
+    Passes(Span),
+    #[error("`{}` edits an extended document, and this one extends none", **.0)]
+    NotExtending(Located<String>),
+    #[error("the document extends itself")]
+    Cycle(Span, Vec<String>),
+}
+
+impl Mistake for EditError {
+    fn code(&self) -> Code {
+        match self {
+            Self::Cycle(..) => Code::IncludeCycle,
+            _ => Code::Edit,
+        }
+    }
+
+    fn explain(self, told: Diagnostic) -> Diagnostic {
+        const PLACES: &str = "say `before`, `after` or `instead: \"entry\"`";
+        match self {
+            Self::NoSuchEntry { path, name, known } => told.at(path.span, "").suggest(&name, known),
+            Self::Behind { path, entry } => told.at(path.span, "").help(format!(
+                "change the `graph` of `{entry}`; the new document may extend the old one"
+            )),
+            Self::NoPlace(tag) | Self::TwoPlaces(tag) => told.at(tag.span, "").help(PLACES),
+            Self::NoPath(tag, field) => told.at(tag.span, format!("give it `{field}: \"entry\"`")),
+            Self::NoString(span) => told.at(span, "for example `\"group.pass\"`"),
+            Self::Field(name, _) => told.at(name.span, "not a field of this"),
+            Self::Passes(span) => told
+                .at(span, "")
+                .help("name them by their paths: `pass: \"group.pass\"`"),
+            Self::NotExtending(word) => told
+                .at(word.span, "")
+                .help("begin the document with `extends: \"other.ron\"`"),
+            Self::Cycle(span, files) => told
+                .at(span, "extends it again")
+                .help(format!("the cycle is {}", files.join(" → "))),
+        }
+    }
+}

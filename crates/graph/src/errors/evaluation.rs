@@ -1,0 +1,136 @@
+//! Expressions that have no value.
+
+use super::language::attributes;
+use crate::{
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    language::{name::Name, value::Value},
+    source::span::{Located, Span},
+};
+
+/// An expression without a value, or with one of the wrong type.
+#[derive(Clone, Debug, thiserror::Error)]
+pub(crate) enum EvaluationError {
+    #[error("{expected} is needed here, not {}", found.describe())]
+    Type {
+        span: Span,
+        expected: &'static str,
+        found: Value,
+    },
+    #[error("{1} is less than nothing")]
+    Negative(Span, i64),
+    #[error("{1} is more than 32 bits hold")]
+    Large(Span, u64),
+    #[error("this divides by zero")]
+    DivisionByZero(Span),
+    #[error("the result is larger than a number can be")]
+    Overflow(Span),
+    #[error("`{word}` is none of the words")]
+    NoSuchWord {
+        span: Span,
+        word: String,
+        words: Vec<Name>,
+    },
+    #[error("a word is needed here, not {}", found.describe())]
+    Words {
+        span: Span,
+        expected: Vec<String>,
+        found: Value,
+    },
+    #[error("{of} has no such attribute")]
+    NoAttribute { span: Span, of: String },
+    #[error("`{}` has no number of items", **.0)]
+    NoCount(Located<String>),
+    #[error("`{}`: its size is that of itself", **.0)]
+    Circular(Located<String>),
+    /// An index where nothing is repeated; of a group or include, if one is named.
+    #[error("nothing is repeated here")]
+    NoIndex(Span, Option<Name>),
+    #[error("`{1}` has no size here: only params and features have values")]
+    NoSizes(Span, String),
+    #[error("no shader's constant can stand here")]
+    NoShader(Span),
+    #[error("`{file}` has no scalar constant `{name}`")]
+    NoConstant {
+        span: Span,
+        file: String,
+        name: String,
+        known: Vec<String>,
+    },
+    #[error("{what}")]
+    Unknown {
+        span: Span,
+        what: String,
+        word: String,
+        known: Vec<String>,
+    },
+}
+
+impl EvaluationError {
+    /// A name in an expression that is no param.
+    pub fn param(name: &str, span: &Span, is_material: bool, known: Vec<String>) -> Self {
+        Self::Unknown {
+            span: span.clone(),
+            what: match is_material {
+                true => format!("`{name}` is a material, whose attributes have values"),
+                false => format!("no param is called `{name}`"),
+            },
+            word: name.to_owned(),
+            known,
+        }
+    }
+}
+
+impl Mistake for EvaluationError {
+    fn code(&self) -> Code {
+        match self {
+            Self::Unknown { .. } => Code::UnknownParam,
+            Self::Circular(_) | Self::NoCount(_) => Code::Size,
+            _ => Code::Expression,
+        }
+    }
+
+    fn explain(self, told: Diagnostic) -> Diagnostic {
+        match self {
+            Self::Type { span, found, .. } => told.at(span, format!("this is {found}")),
+            Self::Negative(span, _)
+            | Self::Large(span, _)
+            | Self::DivisionByZero(span)
+            | Self::Overflow(span)
+            | Self::NoSizes(span, _) => told.at(span, "here"),
+            Self::NoSuchWord { span, word, words } => told.at(span, "").suggest(&word, words),
+            Self::Words {
+                span,
+                expected,
+                found,
+            } => told.at(span, format!("this is {found}")).help(format!(
+                "a Choice of these words may stand here, all of its words being among them: {}",
+                expected.join(", ")
+            )),
+            Self::NoAttribute { span, .. } => told
+                .at(span, "")
+                .help(format!("attributes are {}", attributes())),
+            Self::NoCount(name) => told
+                .at(name.span, "its shaders see a fixed size")
+                .help("give the buffer a `count`, and its shaders an array of any length"),
+            Self::Circular(name) => told
+                .at(name.span, "")
+                .help("give one of these materials a size of its own"),
+            Self::NoIndex(span, None) => told
+                .at(span, "`index` is that of a repetition")
+                .help("write a number, or `repeat: …`"),
+            Self::NoIndex(span, Some(name)) => told.at(
+                span,
+                format!("no repeated entry around this is called `{name}`"),
+            ),
+            Self::NoShader(span) => told
+                .at(span, "names in capitals are constants of a pass's shader")
+                .help("use a param, which is written in small letters"),
+            Self::NoConstant {
+                span, name, known, ..
+            } => told.at(span, "").suggest(&name, known),
+            Self::Unknown {
+                span, word, known, ..
+            } => told.at(span, "").suggest(&word, known),
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Orders of passes that cannot be.
+
+use crate::{
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    source::span::{Located, Span},
+};
+
+#[derive(Clone, Debug, thiserror::Error)]
+pub(crate) enum OrderError {
+    #[error("`{name}` cannot be read back: nothing has written it yet")]
+    Capture { name: String, first: Option<String> },
+    #[error("pass `{}` {} `{name}` that no pass has written", **pass, verb(*changes, *partly))]
+    Unwritten {
+        name: String,
+        pass: Located<String>,
+        read: Span,
+        /// The pass writes it, too.
+        changes: bool,
+        /// Something above has written some of it.
+        partly: bool,
+    },
+    #[error("passes need each other's results: {} → {}", path.join(" → "), **pass)]
+    Cycle {
+        name: String,
+        pass: Located<String>,
+        writer: Located<String>,
+        path: Vec<String>,
+    },
+    #[error("pass `{}` reads `{name}` before it is written", **pass)]
+    WrittenBelow {
+        name: String,
+        pass: Located<String>,
+        read: Span,
+        writer: Located<String>,
+    },
+    #[error("pass `{}` reads `{name}` of the frame before, but no pass writes it", **pass)]
+    NeverWritten {
+        name: String,
+        pass: Located<String>,
+        read: Span,
+    },
+    #[error(
+        "passes `{}` and `{}` must run or be skipped together, for the sake of `{name}`",
+        *passes[0], *passes[1]
+    )]
+    RunConditions {
+        name: String,
+        passes: [Located<String>; 2],
+        runs: [String; 2],
+    },
+}
+
+fn verb(changes: bool, partly: bool) -> &'static str {
+    match (changes, partly) {
+        (true, true) => "reads and changes a part of",
+        (true, false) => "reads and changes",
+        (false, true) => "reads a part of",
+        (false, false) => "reads",
+    }
+}
+
+impl Mistake for OrderError {
+    fn code(&self) -> Code {
+        match self {
+            Self::Capture { .. } => Code::Output,
+            Self::Cycle { .. } => Code::Cycle,
+            Self::RunConditions { .. } => Code::RunCondition,
+            _ => Code::ReadBeforeWrite,
+        }
+    }
+
+    fn explain(self, told: Diagnostic) -> Diagnostic {
+        match self {
+            Self::Capture { first, .. } => {
+                told.help(first.map_or("no pass writes it".to_owned(), |first| {
+                    format!("it is first written by `{first}`")
+                }))
+            }
+            Self::Unwritten {
+                name,
+                pass,
+                read,
+                changes,
+                ..
+            } => {
+                let told = told.at(read, "read here").at(pass.span, "by this pass");
+                match changes {
+                    true => told.help(format!(
+                        "put `Clear(name: \"clear\", target: \"{name}\")` above it: it starts \
+                         from what was there before"
+                    )),
+                    false => told.help("let a pass above write it, or name another material"),
+                }
+            }
+            Self::Cycle {
+                name, pass, writer, ..
+            } => told
+                .at(pass.span, format!("reads `{name}`"))
+                .at(
+                    writer.span,
+                    format!("writes `{name}`, and needs what `{}` made", pass.value),
+                )
+                .help(
+                    "break the cycle: write a second material, or move the read into a pass below",
+                ),
+            Self::WrittenBelow {
+                pass, read, writer, ..
+            } => told
+                .at(read, "read here")
+                .at(pass.span, "by this pass")
+                .at(writer.span.clone(), "written only here, below")
+                .help(format!(
+                    "move `{}` above `{}`: the file reads as a sequential program",
+                    *writer, pass.value
+                )),
+            Self::NeverWritten { name, pass, read } => told
+                .at(read, "read here")
+                .at(pass.span, "by this pass")
+                .help(format!("let a pass write `{name}`")),
+            Self::RunConditions {
+                name,
+                passes: [a, b],
+                runs: [run_a, run_b],
+            } => told
+                .at(b.span, format!("`run: {run_b}`"))
+                .at(a.span, format!("`run: {run_a}`"))
+                .help(format!(
+                    "both write it, or one reads what the other overwrites: give both the same \
+                     `run`, or one of them another material than `{name}`"
+                )),
+        }
+    }
+}

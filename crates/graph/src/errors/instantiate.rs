@@ -1,0 +1,283 @@
+//! What is wrong between documents: params, inputs, outputs, names.
+
+use crate::{
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    document::params::{Param, ParamFault, ParamValue},
+    source::span::{Located, Span},
+};
+
+/// A param that has no value, or a wrong one.
+#[derive(Clone, Debug, thiserror::Error)]
+pub(crate) enum ParamError {
+    #[error("{0}")]
+    Unknown(String),
+    #[error("param `{}` = {value}: {why}", **name)]
+    Asked {
+        name: Located<String>,
+        value: ParamValue,
+        why: ParamFault,
+    },
+    #[error("the default of param `{}` does not fit", **param)]
+    Default {
+        param: Located<String>,
+        why: ParamFault,
+    },
+    #[error("the value for param `{}` does not fit", **name)]
+    Set {
+        name: Located<String>,
+        declared: Span,
+        why: ParamFault,
+    },
+    #[error("`{}` here may be what `{}` there may not", *outer.name, **name)]
+    Misfit {
+        name: Located<String>,
+        outer: Box<Param>,
+        param: Box<Param>,
+    },
+    #[error("`{document}` asks for the param `{name}`")]
+    Required {
+        name: String,
+        document: String,
+        span: Span,
+        declared: Span,
+    },
+}
+
+/// Type and range of a param.
+fn range(param: &Param) -> String {
+    let ty = &param.ty;
+    match (param.min, param.max) {
+        (Some(min), Some(max)) => format!("{ty}, {min} to {max}"),
+        (Some(min), None) => format!("{ty}, {min} at least"),
+        (None, Some(max)) => format!("{ty}, {max} at most"),
+        (None, None) => ty.to_string(),
+    }
+}
+
+impl Mistake for ParamError {
+    fn code(&self) -> Code {
+        match self {
+            Self::Unknown(_) => Code::UnknownParam,
+            _ => Code::ParamValue,
+        }
+    }
+
+    fn explain(self, told: Diagnostic) -> Diagnostic {
+        match self {
+            Self::Unknown(_) => told,
+            Self::Asked { name, .. } => told.at(name.span, "declared here"),
+            Self::Default { param, why } => told.at(param.span, why.to_string()),
+            Self::Set {
+                name,
+                declared,
+                why,
+            } => told
+                .at(name.span, why.to_string())
+                .at(declared, "declared here"),
+            Self::Misfit { name, outer, param } => told
+                .at(name.span, "given here")
+                .at(outer.name.span.clone(), range(&outer))
+                .at(param.name.span.clone(), range(&param))
+                .help("narrow the first one, or `set` the other to an expression that fits"),
+            Self::Required {
+                name,
+                span,
+                declared,
+                ..
+            } => told
+                .at(span, "no param here is called so")
+                .at(declared, "it has no default")
+                .help(format!(
+                    "declare one, or give it a value: `set: {{\"{name}\": …}}`"
+                )),
+        }
+    }
+}
+
+/// What does not pass between two documents.
+#[derive(Clone, Debug, thiserror::Error)]
+pub(crate) enum BorderError {
+    #[error("`{document}` asks for `{name}`, {kind}")]
+    NoInput {
+        document: String,
+        name: String,
+        kind: String,
+        span: Span,
+        declared: Span,
+        known: Vec<String>,
+    },
+    #[error("the host imports no `{}`, which the document asks for", **.0)]
+    NoImport(Located<String>),
+    #[error("`{document}` asks for `{name}`, {expected}; here it is {found}")]
+    WrongInput {
+        document: String,
+        name: String,
+        expected: String,
+        found: String,
+        span: Span,
+        declared: Span,
+    },
+    #[error("the input `{}` is written, and is no output", **.0)]
+    WrittenInput(Located<String>, Span),
+    #[error("`{document}` has no input, output or param `{}`", **name)]
+    Unasked {
+        document: String,
+        name: Located<String>,
+        known: Vec<String>,
+    },
+    #[error("nothing in the group `{group}` asks for `{}`", **name)]
+    UnaskedInGroup {
+        group: String,
+        name: Located<String>,
+    },
+    #[error("no pass writes the output `{}`", **.0)]
+    UnwrittenOutput(Located<String>),
+    #[error("the output `{}` cannot be written into a material here", **name)]
+    BoundOutput {
+        name: Located<String>,
+        why: String,
+        declared: Span,
+    },
+    #[error("nothing is called `{}`", **name)]
+    Unknown {
+        name: Located<String>,
+        /// What the file gives that holds the name, where it is a document that was included.
+        document: String,
+        known: Vec<String>,
+    },
+    #[error("`{entry}` gives no `{}`", **name)]
+    Private {
+        entry: String,
+        name: Located<String>,
+        known: Vec<String>,
+    },
+    #[error("`{}` is repeated, and has no content of its own", **.0)]
+    Namespace(Located<String>),
+    #[error("there is no `{text}`")]
+    Range {
+        text: String,
+        span: Span,
+        what: String,
+        declared: Option<Span>,
+    },
+    #[error("`{text}` has no such part")]
+    NoPart {
+        text: String,
+        span: Span,
+        what: &'static str,
+    },
+    #[error("`{name}` has no version of the frame before")]
+    NoPrevious {
+        name: String,
+        span: Span,
+        what: String,
+    },
+    #[error("the graph has more than {most} {what}")]
+    TooMany {
+        most: usize,
+        what: &'static str,
+        at: Span,
+    },
+    #[error("`{document}` cannot run without the feature `{}`", **feature)]
+    Feature {
+        document: String,
+        feature: Located<String>,
+    },
+}
+
+impl Mistake for BorderError {
+    fn code(&self) -> Code {
+        match self {
+            Self::NoInput { .. }
+            | Self::NoImport(_)
+            | Self::WrongInput { .. }
+            | Self::WrittenInput(..) => Code::Input,
+            Self::Unasked { .. } | Self::UnaskedInGroup { .. } => Code::Unasked,
+            Self::UnwrittenOutput(_) | Self::BoundOutput { .. } => Code::Output,
+            Self::Unknown { .. } | Self::Private { .. } => Code::UnknownResource,
+            Self::Namespace(_) | Self::NoPart { .. } | Self::NoPrevious { .. } => {
+                Code::ResourceKind
+            }
+            Self::Range { .. } => Code::Range,
+            Self::TooMany { .. } => Code::Size,
+            Self::Feature { .. } => Code::Feature,
+        }
+    }
+
+    fn explain(self, told: Diagnostic) -> Diagnostic {
+        match self {
+            Self::NoInput {
+                name,
+                span,
+                declared,
+                known,
+                ..
+            } => told
+                .at(span, "nothing here is called so")
+                .at(declared, "asked for here")
+                .suggest(&name, known)
+                .help(format!("or bind it: `bind: {{\"{name}\": \"…\"}}`")),
+            Self::NoImport(name) => told
+                .at(
+                    name.span,
+                    "an input of the root document is the host's import",
+                )
+                .help("include the document in one that has it, or let the host import it"),
+            Self::WrongInput { span, declared, .. } => {
+                told.at(span, "given here").at(declared, "asked for here")
+            }
+            Self::WrittenInput(name, by) => told
+                .at(name.span, "an input")
+                .at(by, "written here")
+                .help("name it among the `outputs`, so that who includes it knows"),
+            Self::Unasked { name, known, .. } => {
+                told.at(name.span.clone(), "").suggest(&name, known)
+            }
+            Self::UnaskedInGroup { name, .. } => told
+                .at(name.span, "")
+                .help("one of its passes or includes must have this name free; check its spelling"),
+            Self::UnwrittenOutput(name) => told
+                .at(name.span, "")
+                .help("let a pass write it, or name another `material`"),
+            Self::BoundOutput {
+                name,
+                why,
+                declared,
+            } => told.at(name.span, why).at(declared, "declared here"),
+            Self::Unknown {
+                name,
+                document,
+                known,
+            } => {
+                let label = format!("`{document}` declares no material or input of this name");
+                told.at(name.span.clone(), label).suggest(&name, known)
+            }
+            Self::Private { name, known, .. } => told
+                .at(name.span.clone(), "only its outputs are seen from here")
+                .suggest(&name, known),
+            Self::Namespace(name) => told.at(name.span, "name one of what it gives, `x[0].y`"),
+            Self::Range {
+                span,
+                what,
+                declared,
+                ..
+            } => {
+                let told = told.at(span, what);
+                match declared {
+                    Some(declared) => told.at(declared, "declared here"),
+                    None => told,
+                }
+            }
+            Self::NoPart { span, what, .. } => told.at(span, what),
+            Self::NoPrevious { span, what, .. } => told
+                .at(span, format!("it is {what}"))
+                .help("textures and buffers that the graph writes have one; copy it into one"),
+            Self::TooMany { at, .. } => told
+                .at(at, "counted up to here")
+                .help("repeat or include less"),
+            Self::Feature { feature, .. } => told
+                .at(feature.span, "the device does not have this feature")
+                .help("run it on an adapter that has the feature, or ask `has(…)` in an `if`"),
+        }
+    }
+}

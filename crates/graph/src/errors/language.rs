@@ -1,0 +1,102 @@
+//! Mistakes in expressions and references.
+
+use crate::{
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    language::{
+        name::NameFault,
+        syntax::{Attribute, Function},
+    },
+    source::span::{Located, Span},
+};
+
+/// An expression or reference that cannot be read.
+#[derive(Clone, Debug, thiserror::Error)]
+pub(crate) enum SyntaxFault {
+    #[error("`{1}` has no meaning in an expression")]
+    Sign(Span, char),
+    #[error("this is no number")]
+    Number(Span),
+    #[error("the expression is too long")]
+    TooLong(Span, usize),
+    #[error("{expected} is expected, not {found}")]
+    Unexpected {
+        span: Span,
+        found: String,
+        expected: String,
+    },
+    #[error("`{}` is no name", text(.0))]
+    Name(Span, NameFault),
+    #[error("no function is called `{}`", **.0)]
+    Function(Located<String>),
+    #[error("wgpu has no feature `{}`", **.0)]
+    Feature(Located<String>),
+    #[error("`{function}` takes {expected} arguments, not {found}")]
+    Arguments {
+        span: Span,
+        function: &'static str,
+        expected: usize,
+        found: usize,
+    },
+    /// What stands at the end of a reference stands elsewhere, or in an expression.
+    #[error("`{}` does not stand here", text(.0))]
+    Part(Span, &'static str),
+    #[error("strings of the language have no escapes")]
+    Escape(Span),
+}
+
+fn text(span: &Span) -> &str {
+    span.file.text.get(span.range.clone()).unwrap_or("")
+}
+
+impl Mistake for SyntaxFault {
+    fn code(&self) -> Code {
+        match self {
+            Self::Name(..) => Code::Name,
+            Self::Feature(_) => Code::Feature,
+            _ => Code::Expression,
+        }
+    }
+
+    fn explain(self, told: Diagnostic) -> Diagnostic {
+        match self {
+            Self::Sign(span, _) | Self::Number(span) => told.at(span, "here"),
+            Self::TooLong(span, most) => told
+                .at(span, "")
+                .help(format!("an expression has at most {most} words and signs")),
+            Self::Unexpected { span, .. } | Self::Arguments { span, .. } => told.at(span, "here"),
+            Self::Name(span, fault) => told.at(span, fault.to_string()),
+            Self::Function(name) => {
+                let known = Function::ALL.iter().map(|(name, ..)| *name).chain(["has"]);
+                told.at(name.span.clone(), "").suggest(&name, known)
+            }
+            Self::Feature(name) => {
+                let known = wgt::Features::all();
+                let known = known.iter_names().map(|(name, _)| name);
+                told.at(name.span.clone(), "").suggest(&name, known)
+            }
+            Self::Part(span, "number") => told
+                .at(span, "a part of a material is no number")
+                .help(format!("ask for an attribute of it: {}", attributes())),
+            Self::Part(span, "attribute") => {
+                told.at(span, "an attribute, where a material is named")
+            }
+            Self::Part(span, "mip") => told.at(span, "a mip of what?"),
+            Self::Part(span, _) => told.at(
+                span,
+                "`.previous` and `.mip[…]` end a reference, in this order",
+            ),
+            Self::Escape(span) => told
+                .at(span, "`\\` here")
+                .help("write the signs themselves"),
+        }
+    }
+}
+
+/// The attributes in a sentence.
+pub(crate) fn attributes() -> String {
+    let names: Vec<String> = Attribute::ALL
+        .iter()
+        .map(|(name, _)| format!("`.{name}`"))
+        .collect();
+    names.join(", ")
+}

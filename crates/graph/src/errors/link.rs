@@ -1,0 +1,706 @@
+//! Passes whose shaders, attachments, copies or dispatches do not fit.
+
+use crate::{
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    document::params::Param,
+    shader::class::ScalarClass,
+    source::span::{Located, Span},
+};
+use wgt::TextureFormat;
+
+#[derive(Clone, Debug, thiserror::Error)]
+pub(crate) enum LinkError {
+    #[error("a step of this pass has no shader")]
+    NoShader,
+    #[error("the shader `{}` was not loaded with the document", **.0)]
+    ShaderNotLoaded(Located<String>),
+    #[error("last frame's version of `{of}` cannot be written")]
+    WritesPrevious { of: String, span: Span },
+    #[error("`{name}` holds what stands in the document, and is never written")]
+    WritesConstant { name: String, span: Span },
+    #[error("`{name}` belongs to the host and cannot be written")]
+    WritesProvided { name: String, span: Span },
+    #[error("the vertex shader writes `{global}`, which most devices cannot")]
+    VertexWrites { global: String, span: Span },
+    #[error("pass `{pass}` uses `{name}` twice at once, and writes it")]
+    Feedback {
+        pass: String,
+        name: String,
+        reader: Span,
+        reads: bool,
+        writer: Span,
+    },
+    #[error("pass `{pass}` does not write `{}`", **name)]
+    Overwrites { pass: String, name: Located<String> },
+    #[error("`{shader}` asks for no `{}`", **name)]
+    UnaskedSet {
+        shader: String,
+        name: Located<String>,
+        known: Vec<String>,
+    },
+    #[error("`{shader}` has no global `{}` to bind", **name)]
+    UnaskedBind {
+        shader: String,
+        name: Located<String>,
+        known: Vec<String>,
+    },
+    #[error("`{global}` is in @group({group}), which the adapter does not have")]
+    BindGroup {
+        global: String,
+        group: u32,
+        most: u32,
+        span: Span,
+    },
+    #[error("pass `{}` binds {number} {what}", **pass)]
+    TooManyBindings {
+        pass: Located<String>,
+        what: &'static str,
+        number: usize,
+        most: u32,
+    },
+    #[error("`{global}` is {what}, which a graph cannot bind")]
+    Unsupported {
+        global: String,
+        what: &'static str,
+        span: Span,
+    },
+    #[error("the uniform `params` {what}")]
+    ParamsUniform {
+        what: &'static str,
+        size: u64,
+        span: Span,
+    },
+    #[error("pass `{}` binds `{global}`, but nothing is called so", **pass)]
+    UnknownGlobal {
+        global: String,
+        span: Span,
+        pass: Located<String>,
+        known: Vec<String>,
+    },
+    #[error("the shader's `{global}` needs {needed}, but `{name}` is {found}")]
+    WrongKind {
+        global: String,
+        span: Span,
+        needed: &'static str,
+        name: String,
+        found: &'static str,
+        declared: Option<Span>,
+    },
+    #[error("`{name}` has {have} bytes, the shader's type {size}")]
+    UniformSize {
+        name: String,
+        have: u64,
+        size: u64,
+        span: Span,
+    },
+    #[error("the uniform `{global}` has {size} bytes, more than the adapter can bind")]
+    UniformLimit {
+        global: String,
+        size: u64,
+        most: u64,
+        span: Span,
+    },
+    #[error("items of `{name}` are {stride} bytes apart, and cannot be bound alone")]
+    Alignment {
+        name: String,
+        stride: u64,
+        alignment: u64,
+        span: Span,
+    },
+    #[error(
+        "the texture `{name}` has the format {format:?}, which the shader's `{global}` cannot use"
+    )]
+    Texture {
+        name: String,
+        format: TextureFormat,
+        global: String,
+        span: Span,
+        declared: Option<Span>,
+        misfit: Box<TextureMisfit>,
+    },
+    #[error("the override `{}` has no value", **.0)]
+    OverrideWithout(Located<String>),
+    #[error("`{word}` is no word of `{name}`")]
+    UnknownWord {
+        name: String,
+        word: String,
+        constant: String,
+        span: Span,
+    },
+    #[error("`{name}` takes {expected}")]
+    SetValue {
+        name: String,
+        expected: String,
+        found: String,
+        span: Span,
+    },
+    #[error("no param is called `{member}`, which the shader's `params` holds")]
+    UnknownMember {
+        member: String,
+        span: Span,
+        known: Vec<String>,
+    },
+    #[error("`params.index` is the number of the repetition, a u32")]
+    IndexMember(Span),
+    #[error("`params.{member}` is no number and no vector, and cannot be set")]
+    MemberIsNoVector { member: String, span: Span },
+    #[error(
+        "param `{}` is {width} × {scalar} in a shader, `params.{member}` is not", *param.name
+    )]
+    MemberType {
+        param: Box<Param>,
+        member: String,
+        scalar: ScalarClass,
+        width: u32,
+        span: Span,
+    },
+    #[error("`{}` cannot hold indirect arguments", **name)]
+    NoArguments {
+        name: Located<String>,
+        found: &'static str,
+    },
+    #[error("a workgroup size that is an override is not supported")]
+    WorkgroupOverride { at: Span, pass: Located<String> },
+    #[error(
+        "a workgroup of {}×{}×{} is more than the adapter can run", size[0], size[1], size[2]
+    )]
+    WorkgroupSize {
+        size: [u32; 3],
+        most: [u32; 3],
+        threads: u32,
+        at: Span,
+        pass: Located<String>,
+    },
+    #[error("{}×{}×{} workgroups are more than the adapter can run", groups[0], groups[1], groups[2])]
+    Workgroups {
+        groups: [u64; 3],
+        most: u32,
+        pass: Located<String>,
+    },
+    #[error("`{}` cannot be copied onto `{}`", **from, **to)]
+    CopyFormat {
+        from: Located<String>,
+        to: Located<String>,
+        formats: [TextureFormat; 2],
+    },
+    /// Width, height, layers and mips.
+    #[error("`{}` cannot be copied onto `{}`", **from, **to)]
+    CopySize {
+        from: Located<String>,
+        to: Located<String>,
+        extents: [[usize; 4]; 2],
+    },
+    #[error("`{}` cannot be copied onto `{}`", **from, **to)]
+    CopyKinds {
+        from: Located<String>,
+        to: Located<String>,
+        kinds: [&'static str; 2],
+    },
+    #[error("a texture of format {format:?} cannot be cleared")]
+    ClearFormat {
+        name: Located<String>,
+        format: TextureFormat,
+    },
+    #[error("the buffer `{}` can only be cleared to zero", **.0)]
+    ClearBufferValue(Located<String>),
+    #[error("`{}` cannot be cleared", **name)]
+    ClearKind {
+        name: Located<String>,
+        found: &'static str,
+    },
+    #[error("`{}` cannot be cleared to {wrong}", **name)]
+    ClearValue {
+        name: Located<String>,
+        wrong: f64,
+        format: TextureFormat,
+        expected: &'static str,
+    },
+    #[error("this adapter does not draw with `{field}`")]
+    DrawFeature {
+        pass: Located<String>,
+        field: &'static str,
+        feature: &'static str,
+    },
+    #[error("{count} colour targets are more than the adapter can draw to")]
+    TooManyTargets {
+        pass: Located<String>,
+        count: usize,
+        most: u32,
+    },
+    #[error("the colour targets of `{}` take {bytes} bytes per pixel", **pass)]
+    BytesPerPixel {
+        pass: Located<String>,
+        bytes: u32,
+        most: u32,
+    },
+    #[error("a texture of format {format:?} cannot be a colour target")]
+    NotDrawable {
+        name: Located<String>,
+        format: TextureFormat,
+    },
+    #[error("a target of format {format:?} cannot be blended")]
+    NotBlendable {
+        name: Located<String>,
+        format: TextureFormat,
+    },
+    #[error("nothing can be resolved into `{}`", **name)]
+    Resolve {
+        name: Located<String>,
+        why: &'static str,
+    },
+    #[error("the fragment shader writes nothing to `{}`", **name)]
+    NoFragmentOutput {
+        name: Located<String>,
+        location: u32,
+        entry: Span,
+    },
+    #[error("`{}` has the format {format:?}, the shader writes {written}", **name)]
+    FragmentOutput {
+        name: Located<String>,
+        format: TextureFormat,
+        expected: String,
+        needed: u32,
+        written: String,
+        location: u32,
+        entry: Span,
+    },
+    #[error("a texture of format {format:?} cannot be a depth target")]
+    NoDepth {
+        name: Located<String>,
+        format: TextureFormat,
+    },
+    #[error("a texture of format {format:?} cannot be a stencil target")]
+    NoStencil {
+        name: Located<String>,
+        format: TextureFormat,
+    },
+    #[error("pass `{pass}` cannot draw to `{}`", **name)]
+    NoTexture {
+        pass: String,
+        name: Located<String>,
+        found: &'static str,
+    },
+    #[error("`{}` has several mips or layers", **.0)]
+    SeveralLayers(Located<String>),
+    #[error("pass `{}` draws to nothing", **.0)]
+    NoTargets(Located<String>),
+    #[error("depth and stencil of pass `{}` are two textures", **.0)]
+    TwoDepthStencils(Located<String>),
+    #[error("the targets of pass `{}` differ in size", **pass)]
+    TargetSizes {
+        pass: Located<String>,
+        names: [String; 2],
+        sizes: [[u32; 2]; 2],
+    },
+    #[error("the targets of pass `{}` differ in samples", **pass)]
+    TargetSamples {
+        pass: Located<String>,
+        names: [String; 2],
+        samples: [u32; 2],
+    },
+    #[error("the area of pass `{}` does not lie in its targets", **pass)]
+    AreaOutside {
+        pass: Located<String>,
+        area: [u32; 4],
+        whole: [u32; 2],
+    },
+}
+
+/// Why a texture cannot be what a shader declares.
+#[derive(Clone, Debug, thiserror::Error)]
+pub(crate) enum TextureMisfit {
+    #[error("{}", scalars(*reads, *holds, *depth))]
+    Scalar {
+        reads: ScalarClass,
+        holds: Option<ScalarClass>,
+        depth: bool,
+    },
+    #[error("sampled through `{0}`, but the format cannot be filtered")]
+    Filtered(String),
+    #[error("it has {0} samples: declare a multisampled texture where these are more than one")]
+    Samples(u32),
+    #[error("the shader declares {0}")]
+    StorageFormat(String),
+    #[error("the adapter offers no storage access of this kind")]
+    NoStorage,
+    #[error("it has several mips, a storage texture is one")]
+    StorageMips,
+    #[error("it is no 3D texture")]
+    Flat,
+    #[error("it is a 3D texture")]
+    Solid,
+    #[error("a slice of a 3D texture can be drawn to, not bound")]
+    Slice,
+    #[error("it has {0} layers, the shader sees one")]
+    Layers(usize),
+    #[error("it has {0} layers, a cube has six")]
+    Cube(usize),
+}
+
+fn scalars(reads: ScalarClass, holds: Option<ScalarClass>, depth: bool) -> String {
+    match holds {
+        _ if depth => "the shader declares a depth texture".to_owned(),
+        Some(holds) => format!("the shader reads {reads}, the texture holds {holds}"),
+        None => format!("the shader reads {reads}"),
+    }
+}
+
+impl TextureMisfit {
+    fn code(&self) -> Code {
+        match self {
+            Self::Flat | Self::Solid | Self::Slice | Self::Layers(_) | Self::Cube(_) => {
+                Code::ResourceKind
+            }
+            Self::StorageMips | Self::Samples(_) => Code::ResourceKind,
+            _ => Code::FormatMismatch,
+        }
+    }
+
+    fn help(&self) -> Option<&'static str> {
+        match self {
+            Self::Filtered(_) => {
+                Some("use a sampler with `filter: Nearest`, textureLoad, or a filterable format")
+            }
+            Self::NoStorage => Some(
+                "R32Uint, R32Float and the Rgba formats of 8, 16 and 32 bits can be written by \
+                 every adapter",
+            ),
+            Self::Layers(_) => Some("declare an array texture, or bind one layer: `x[0]`"),
+            Self::StorageMips => Some("bind one of them: `x.mip[0]`"),
+            _ => None,
+        }
+    }
+}
+
+impl LinkError {
+    fn kind(&self) -> Code {
+        match self {
+            Self::ShaderNotLoaded(_) => Code::MissingFile,
+            Self::NoShader | Self::WorkgroupOverride { .. } => Code::Shader,
+            Self::VertexWrites { .. } | Self::DrawFeature { .. } => Code::Feature,
+            Self::Feedback { .. } => Code::FeedbackLoop,
+            Self::UnaskedSet { .. } | Self::UnaskedBind { .. } => Code::Unasked,
+            Self::BindGroup { .. }
+            | Self::TooManyBindings { .. }
+            | Self::UniformLimit { .. }
+            | Self::WorkgroupSize { .. }
+            | Self::Workgroups { .. }
+            | Self::TooManyTargets { .. }
+            | Self::BytesPerPixel { .. } => Code::Limit,
+            Self::Unsupported { .. } | Self::ParamsUniform { .. } => Code::Binding,
+            Self::UnknownGlobal { .. } => Code::UnknownResource,
+            Self::UniformSize { .. } | Self::IndexMember(_) => Code::LayoutMismatch,
+            Self::MemberIsNoVector { .. } | Self::MemberType { .. } => Code::LayoutMismatch,
+            Self::Alignment { .. } => Code::Alignment,
+            Self::Texture { misfit, .. } => misfit.code(),
+            Self::OverrideWithout(_) | Self::UnknownMember { .. } => Code::UnknownParam,
+            Self::UnknownWord { .. } | Self::SetValue { .. } => Code::ParamValue,
+            Self::CopyFormat { .. }
+            | Self::CopySize { .. }
+            | Self::ClearFormat { .. }
+            | Self::ClearValue { .. }
+            | Self::NotDrawable { .. }
+            | Self::NotBlendable { .. }
+            | Self::NoFragmentOutput { .. }
+            | Self::FragmentOutput { .. }
+            | Self::NoDepth { .. }
+            | Self::NoStencil { .. } => Code::FormatMismatch,
+            Self::NoTargets(_) => Code::MissingField,
+            Self::TargetSizes { .. } | Self::TargetSamples { .. } | Self::AreaOutside { .. } => {
+                Code::Size
+            }
+            _ => Code::ResourceKind,
+        }
+    }
+}
+
+impl Mistake for LinkError {
+    fn code(&self) -> Code {
+        self.kind()
+    }
+
+    fn explain(self, told: Diagnostic) -> Diagnostic {
+        match self {
+            Self::NoShader => told,
+            Self::ShaderNotLoaded(name) => told.at(
+                name.span,
+                "a pass kind must not choose its shaders by values",
+            ),
+            Self::WritesPrevious { of, span } => told.at(span, "written here").help(format!(
+                "write `{of}`: the next frame finds it as `{of}.previous`"
+            )),
+            Self::WritesConstant { span, .. } => told.at(span, "written here"),
+            Self::WritesProvided { span, .. } => told.at(span, "declare it `var<storage, read>`"),
+            Self::VertexWrites { span, .. } => told
+                .at(span, "")
+                .help("say `requires: [\"VERTEX_WRITABLE_STORAGE\"]`, or write it elsewhere"),
+            Self::Feedback {
+                reader,
+                reads,
+                writer,
+                ..
+            } => told
+                .at(reader, if reads { "read here" } else { "written here" })
+                .at(writer, "written here")
+                .help("read a copy, or a part that this pass does not write"),
+            Self::Overwrites { name, .. } => told.at(name.span, "said to be overwritten"),
+            Self::UnaskedSet { name, known, .. } | Self::UnaskedBind { name, known, .. } => {
+                told.at(name.span.clone(), "").suggest(&name, known)
+            }
+            Self::OverrideWithout(name) => told
+                .at(name.span.clone(), "no param of the document is called so")
+                .help(format!(
+                    "declare a param `{0}` with a single number, `set` it, or write \
+                     `override {0}: … = …;`",
+                    *name
+                )),
+            Self::UnknownWord { constant, span, .. } => told.at(span, "").help(format!(
+                "a word is one of a Choice param of that name, or a constant of the shader: \
+                 `{constant}`"
+            )),
+            Self::SetValue { found, span, .. } => told.at(span, format!("this is {found}")),
+            Self::WorkgroupOverride { at, pass } => told
+                .at(at, "")
+                .at(pass.span, "run by this pass")
+                .help("write the size as a number or `const`"),
+            Self::WorkgroupSize {
+                most,
+                threads,
+                at,
+                pass,
+                ..
+            } => told
+                .at(at, "")
+                .at(pass.span, "run by this pass")
+                .help(format!(
+                    "its limits are {}×{}×{} and {threads} invocations in all",
+                    most[0], most[1], most[2]
+                )),
+            Self::Workgroups { most, pass, .. } => told
+                .at(pass.span, "dispatched by this pass")
+                .help(format!("its limit is {most} in each direction")),
+            other => other.explain_binding(told),
+        }
+    }
+}
+
+impl LinkError {
+    fn explain_binding(self, told: Diagnostic) -> Diagnostic {
+        match self {
+            Self::BindGroup { most, span, .. } => told
+                .at(
+                    span,
+                    format!("its groups are 0 to {}", most.saturating_sub(1)),
+                )
+                .help("leave the numbers out: the graph gives them"),
+            Self::TooManyBindings { pass, most, .. } => told.at(pass.span, "").help(format!(
+                "the adapter's limit is {most} per shader stage: split the pass or pack what it \
+                 binds"
+            )),
+            Self::Unsupported { span, .. } => told.at(span, ""),
+            Self::ParamsUniform { size, span, .. } => told.at(span, format!("{size} bytes")).help(
+                "write `struct Params { … }` with the params that the shader reads, and \
+                     `var<uniform> params: Params;`",
+            ),
+            Self::UnknownGlobal {
+                global,
+                span,
+                pass,
+                known,
+            } => told
+                .at(
+                    span,
+                    "no material, input or provided resource has this name",
+                )
+                .at(pass.span, "bound by this pass")
+                .suggest(&global, known)
+                .help(format!("or bind it: `bind: {{\"{global}\": \"…\"}}`")),
+            Self::WrongKind {
+                span,
+                needed,
+                found,
+                declared,
+                ..
+            } => {
+                let told = told.at(span, format!("the shader declares {needed}"));
+                match declared {
+                    Some(declared) => told.at(declared, found),
+                    None => told,
+                }
+            }
+            Self::UniformSize { span, .. } => {
+                told.at(span, "import its type from the module that declares it")
+            }
+            Self::UniformLimit { most, span, .. } => told
+                .at(span, "")
+                .help(format!("its limit is {most}: use a storage buffer")),
+            Self::Alignment {
+                alignment, span, ..
+            } => told.at(span, "bound here").help(format!(
+                "the device binds at multiples of {alignment} bytes"
+            )),
+            Self::Texture {
+                span,
+                declared,
+                misfit,
+                format,
+                ..
+            } => {
+                let mut told = told.at(span, misfit.to_string());
+                if let Some(declared) = declared {
+                    told = told.at(declared, format!("{format:?}"));
+                }
+                match misfit.help() {
+                    Some(help) => told.help(help),
+                    None => told,
+                }
+            }
+            Self::UnknownMember {
+                member,
+                span,
+                known,
+            } => told.at(span, "").suggest(&member, known).help(format!(
+                "or declare it, `params: [U32(name: \"{member}\", default: …)]`, or `set` it"
+            )),
+            Self::IndexMember(span) | Self::MemberIsNoVector { span, .. } => {
+                told.at(span, "in this uniform")
+            }
+            Self::MemberType { param, span, .. } => told.at(span, "in this uniform").at(
+                param.name.span.clone(),
+                format!("declared {} here", param.ty),
+            ),
+            other => other.explain_target(told),
+        }
+    }
+
+    fn explain_target(self, told: Diagnostic) -> Diagnostic {
+        match self {
+            Self::NoArguments { name, found } => told.at(
+                name.span,
+                format!("this is {found}, a buffer of the document is needed"),
+            ),
+            Self::CopyFormat { from, to, formats } => told
+                .at(from.span, format!("{:?}", formats[0]))
+                .at(to.span, format!("{:?}", formats[1]))
+                .help("format, samples and dimension must be the same"),
+            Self::CopySize { from, to, extents } => told
+                .at(from.span, extent(extents[0]))
+                .at(to.span, extent(extents[1]))
+                .help("both must be equally large"),
+            Self::CopyKinds { from, to, kinds } => {
+                told.at(from.span, kinds[0]).at(to.span, kinds[1])
+            }
+            Self::ClearFormat { name, .. } => told
+                .at(name.span, "wgpu clears what can be drawn to")
+                .help("write it whole by a Compute pass instead"),
+            Self::ClearBufferValue(name) => told
+                .at(name.span, "")
+                .help("leave `value` out, or write the buffer by a Compute pass"),
+            Self::ClearKind { name, found } => told.at(name.span, format!("this is {found}")),
+            Self::ClearValue {
+                name,
+                format,
+                expected,
+                ..
+            } => told.at(
+                name.span,
+                format!("a texture of format {format:?}, which takes {expected}"),
+            ),
+            Self::DrawFeature {
+                pass,
+                field,
+                feature,
+            } => told.at(pass.span, format!("`{field}`")).help(format!(
+                "list it in `requires: [\"{feature}\"]`, so that devices that have it are opened \
+                 with it"
+            )),
+            Self::TooManyTargets { pass, most, .. } => {
+                told.at(pass.span, "").help(format!("its limit is {most}"))
+            }
+            Self::BytesPerPixel { pass, most, .. } => told.at(pass.span, "").help(format!(
+                "the adapter's limit is {most}: use smaller formats or two passes"
+            )),
+            Self::NotDrawable { name, .. } => told
+                .at(name.span, "")
+                .help("use a colour format that can be drawn to, or `depth: \"…\"`"),
+            Self::NotBlendable { name, .. } => told.at(name.span, ""),
+            Self::Resolve { name, why } => told.at(name.span, why),
+            other => other.explain_attachment(told),
+        }
+    }
+
+    fn explain_attachment(self, told: Diagnostic) -> Diagnostic {
+        match self {
+            Self::NoFragmentOutput {
+                name,
+                location,
+                entry,
+            } => told
+                .at(name.span, format!("this target has location {location}"))
+                .at(entry, format!("no output @location({location}) here")),
+            Self::FragmentOutput {
+                name,
+                expected,
+                needed,
+                written,
+                location,
+                entry,
+                ..
+            } => told
+                .at(name.span, format!("needs {needed} × {expected}"))
+                .at(entry, format!("writes {written} at @location({location})")),
+            Self::NoDepth { name, .. } => told
+                .at(name.span, "")
+                .help("use Depth32Float, Depth24Plus, Depth16Unorm, or one of them with Stencil8"),
+            Self::NoStencil { name, .. } => told
+                .at(name.span, "")
+                .help("use Depth24PlusStencil8, Depth32FloatStencil8 or Stencil8"),
+            Self::NoTexture { name, found, .. } => {
+                told.at(name.span, format!("this is {found}, a texture is needed"))
+            }
+            Self::SeveralLayers(name) => told
+                .at(name.span, "a pass draws to one mip of one layer")
+                .help("name one: `x[0]`, `x.mip[0]`, `x[0].mip[0]`"),
+            Self::NoTargets(pass) => told.at(
+                pass.span,
+                "give it `color: […]`, `depth: …` or `stencil: (…)`",
+            ),
+            Self::TwoDepthStencils(pass) => told
+                .at(pass.span, "")
+                .help("a stencil is that of the depth: one texture with both"),
+            Self::TargetSizes { pass, names, sizes } => told.at(
+                pass.span,
+                format!(
+                    "`{}` has {}×{} texels, `{}` {}×{}",
+                    names[0], sizes[0][0], sizes[0][1], names[1], sizes[1][0], sizes[1][1]
+                ),
+            ),
+            Self::TargetSamples {
+                pass,
+                names,
+                samples,
+            } => told.at(
+                pass.span,
+                format!(
+                    "`{}` has {}, `{}` {}",
+                    names[0], samples[0], names[1], samples[1]
+                ),
+            ),
+            Self::AreaOutside { pass, area, whole } => told.at(
+                pass.span,
+                format!(
+                    "{}×{} texels at ({}, {}), of {}×{}",
+                    area[2], area[3], area[0], area[1], whole[0], whole[1]
+                ),
+            ),
+            _ => told,
+        }
+    }
+}
+
+fn extent([width, height, layers, mips]: [usize; 4]) -> String {
+    match (layers, mips) {
+        (1, 1) => format!("{width}×{height} texels"),
+        _ => format!("{width}×{height} texels, layers: {layers}, mips: {mips}"),
+    }
+}

@@ -1,0 +1,114 @@
+//! Sizes and contents that a material cannot have.
+
+use crate::{
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    source::span::Located,
+};
+
+#[derive(Clone, Debug, thiserror::Error)]
+pub(crate) enum SizeError {
+    #[error("`{}`: no texture has so many texels", **name)]
+    Absurd { name: Located<String> },
+    #[error(
+        "`{}`: {}×{} texels, layers: {layers}, mips: {mips}, samples: {samples}: a texture of no \
+         texels",
+        **name, size[0], size[1]
+    )]
+    NoTexels {
+        name: Located<String>,
+        size: [u32; 2],
+        layers: u32,
+        mips: u32,
+        samples: u32,
+    },
+    #[error(
+        "`{}`: {}×{} texels are more than the adapter can hold",
+        **name, size[0], size[1]
+    )]
+    Texels {
+        name: Located<String>,
+        size: [u32; 2],
+        most: u32,
+    },
+    #[error("`{}`: {layers} layers or slices are more than the adapter can hold", **name)]
+    Layers {
+        name: Located<String>,
+        layers: u32,
+        most: u32,
+    },
+    #[error("`{}`: {mips} mips are too many", **name)]
+    Mips {
+        name: Located<String>,
+        mips: u32,
+        full: u32,
+    },
+    #[error("`{}`: a texture of {format:?} cannot have {samples} samples", **name)]
+    Samples {
+        name: Located<String>,
+        format: wgt::TextureFormat,
+        samples: u32,
+        known: Vec<u32>,
+    },
+    #[error("`{}`: a texture of several samples has one mip and one layer", **.0)]
+    SamplesOfMany(Located<String>),
+    #[error("`{}`: a 3D texture has slices, not layers", **.0)]
+    LayersOf3d(Located<String>),
+    #[error("the file brings its {1}")]
+    FileHas(Located<String>, &'static str),
+    #[error("there is no picture `{}`", **.0)]
+    NoPicture(Located<String>, Vec<String>),
+    #[error("the picture `{}` cannot be read", **.0)]
+    Picture(Located<String>, String),
+    #[error("a texture of {} cannot hold a picture", **.0)]
+    PictureFormat(Located<String>),
+    #[error("`{}` is as many items as its `data`", **.0)]
+    DataHas(Located<String>),
+    #[error("`{}`: a buffer of no items", **.0)]
+    NoItems(Located<String>),
+}
+
+impl Mistake for SizeError {
+    fn code(&self) -> Code {
+        match self {
+            Self::NoPicture(..) | Self::Picture(..) => Code::MissingFile,
+            Self::PictureFormat(_) | Self::Samples { .. } => Code::FormatMismatch,
+            _ => Code::Size,
+        }
+    }
+
+    fn explain(self, told: Diagnostic) -> Diagnostic {
+        match self {
+            Self::Absurd { name } => told.at(name.span, ""),
+            Self::NoTexels { name, .. } | Self::NoItems(name) => {
+                told.at(name.span, "").help("give it one at least")
+            }
+            Self::Texels { name, most, .. } => told
+                .at(name.span, "")
+                .help(format!("its limit is {most} in each direction")),
+            Self::Layers { name, most, .. } => {
+                told.at(name.span, "").help(format!("its limit is {most}"))
+            }
+            Self::Mips { name, full, .. } => told
+                .at(name.span, "")
+                .help(format!("it can have {full}: `mips: All`")),
+            Self::Samples { name, known, .. } => {
+                let known: Vec<String> = known.iter().map(u32::to_string).collect();
+                told.at(name.span, "")
+                    .help(format!("it can have {}", known.join(", ")))
+            }
+            Self::SamplesOfMany(name) | Self::LayersOf3d(name) => told.at(name.span, ""),
+            Self::FileHas(file, field) => {
+                told.at(file.span, "").help(format!("leave `{field}` out"))
+            }
+            Self::NoPicture(file, candidates) => told
+                .at(file.span, "asked for here")
+                .help(format!("looked for {}", candidates.join(", "))),
+            Self::Picture(file, why) => told.at(file.span, "asked for here").help(why),
+            Self::PictureFormat(place) => told.at(place.span, "").help(
+                "use R8Unorm, Rg8Unorm, Rgba8Unorm, Rgba8UnormSrgb, or a format of 16- or 32-bit \
+                 floats",
+            ),
+            Self::DataHas(name) => told.at(name.span, "").help("leave `count` out"),
+        }
+    }
+}

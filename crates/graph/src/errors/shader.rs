@@ -1,0 +1,192 @@
+//! Shaders that cannot be read, or are not valid.
+
+use crate::{
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    source::span::{Located, Span},
+};
+
+/// A shader or an import that is not there.
+#[derive(Clone, Debug, thiserror::Error)]
+pub(crate) enum ImportError {
+    #[error("the shader `{}` lies outside the shader folders", **.0)]
+    Outside(Located<String>),
+    /// Where it was looked for, and what it may have been meant to be.
+    #[error("there is no shader `{}.wgsl`", **.0)]
+    NoShader(Located<String>, Vec<String>, Option<String>),
+    #[error("the shader `{}.wgsl` cannot be read", **.0)]
+    Unreadable(Located<String>, String),
+    #[error("an import names a file in quotes")]
+    Unquoted(Span),
+    #[error("the import `{}` leaves the shader folder", **.0)]
+    Leaves(Located<String>),
+    #[error("there is no file `{}` to import", **.0)]
+    NoFile(Located<String>, Vec<String>),
+    #[error("`{}` cannot be read", **.0)]
+    UnreadableFile(Located<String>, String),
+    #[error("imports are nested too deep")]
+    TooDeep(Span),
+}
+
+impl Mistake for ImportError {
+    fn code(&self) -> Code {
+        match self {
+            Self::Unquoted(_) | Self::Leaves(_) | Self::TooDeep(_) => Code::Shader,
+            _ => Code::MissingFile,
+        }
+    }
+
+    fn explain(self, told: Diagnostic) -> Diagnostic {
+        match self {
+            Self::Outside(name) => told.at(name.span, "asked for here").help(
+                "shaders stand beside the document or in shaders/, and are named without folder \
+                 signs like `..`",
+            ),
+            Self::NoShader(name, candidates, likeness) => {
+                let likeness = likeness.map_or(String::new(), |likeness| format!("; {likeness}"));
+                let looked = format!("looked for {}{likeness}", candidates.join(", "));
+                told.at(name.span, "asked for here").help(looked)
+            }
+            Self::Unreadable(name, why) => told.at(name.span, "asked for here").help(why),
+            Self::Unquoted(span) => told
+                .at(span, "")
+                .help("write #import \"shared/camera.wgsl\"; only a `//` comment may follow"),
+            Self::Leaves(path) => told
+                .at(path.span, "")
+                .help("imports name files in the importing file's folder or in shaders/"),
+            Self::NoFile(path, candidates) => told
+                .at(path.span, "")
+                .help(format!("looked for {}", candidates.join(", "))),
+            Self::UnreadableFile(path, why) => told.at(path.span, "").help(why),
+            Self::TooDeep(span) => told.at(span, ""),
+        }
+    }
+}
+
+/// A shader that is not valid, or not what a pass needs.
+#[derive(Clone, Debug, thiserror::Error)]
+pub(crate) enum ShaderError {
+    #[error("`{file}` is longer than {most} KiB")]
+    TooLong { file: String, most: usize, at: Span },
+    #[error("`{file}` holds an expression or a chain of `else if` that is nested too deep")]
+    TooDeep { file: String, most: usize, at: Span },
+    #[error("`{file}` has more than {most} declarations, those of its imports included")]
+    TooManyDeclarations { file: String, most: usize, at: Span },
+    /// What naga says, with its places.
+    #[error("`{file}` {what}")]
+    Naga {
+        file: String,
+        what: String,
+        places: Vec<(Span, String)>,
+        notes: Vec<String>,
+    },
+    #[error("a type has no layout: {what}")]
+    NoLayout { what: String, at: Span },
+    #[error("`{global}` of `{file}` has a binding number that is taken: {number}")]
+    Collision {
+        file: String,
+        global: String,
+        number: String,
+        at: Span,
+        others: Vec<(Span, String)>,
+    },
+    #[error("`{constant}` is {found} in the shader, and {word} of `{param}` is {number}")]
+    Choice {
+        constant: String,
+        found: String,
+        word: String,
+        param: String,
+        number: u32,
+        at: Span,
+        declared: Span,
+    },
+    #[error("two words give the constant `{constant}`")]
+    TwoWords {
+        constant: String,
+        first: Span,
+        second: Span,
+    },
+    #[error("`{file}` has no {stage} entry point `{}`", **name)]
+    NoSuchEntry {
+        file: String,
+        stage: String,
+        name: Located<String>,
+        known: Vec<String>,
+    },
+    #[error("`{file}` has no {stage} entry point")]
+    NoEntry {
+        file: String,
+        stage: String,
+        at: Span,
+    },
+    #[error("`{file}` has several {stage} entry points")]
+    SeveralEntries {
+        file: String,
+        stage: String,
+        at: Span,
+        known: Vec<String>,
+    },
+}
+
+impl Mistake for ShaderError {
+    fn code(&self) -> Code {
+        match self {
+            Self::Collision { .. } => Code::Binding,
+            Self::Choice { .. } | Self::TwoWords { .. } => Code::ChoiceConstant,
+            Self::NoSuchEntry { .. } | Self::NoEntry { .. } | Self::SeveralEntries { .. } => {
+                Code::EntryPoint
+            }
+            _ => Code::Shader,
+        }
+    }
+
+    fn explain(self, told: Diagnostic) -> Diagnostic {
+        match self {
+            Self::TooLong { at, .. } => told
+                .at(at, "")
+                .help("split it into several shaders; large tables belong into buffers"),
+            Self::TooDeep { at, most, .. } => told
+                .at(at, format!("more than {most} operators up to here"))
+                .help(
+                    "split it: give parts of it a name with `let`, turn the chain into a \
+                     `switch` or a loop",
+                ),
+            Self::TooManyDeclarations { at, .. } => told
+                .at(at, "counted up to here")
+                .help("split it into several shaders, or import less"),
+            Self::Naga { places, notes, .. } => {
+                let told = places
+                    .into_iter()
+                    .fold(told, |told, (span, text)| told.at(span, text));
+                match notes.is_empty() {
+                    true => told,
+                    false => told.help(notes.join("\n")),
+                }
+            }
+            Self::NoLayout { at, .. } => told.at(at, ""),
+            Self::Collision { at, others, .. } => {
+                let told = others
+                    .into_iter()
+                    .fold(told.at(at, "this one"), |told, (span, name)| {
+                        told.at(span, format!("`{name}` has it too"))
+                    });
+                told.help("leave the numbers out: the graph gives them")
+            }
+            Self::Choice { at, declared, .. } => told
+                .at(at, "declared here")
+                .at(declared, "the words in their order")
+                .help("leave the constant out: the words of a Choice bring it"),
+            Self::TwoWords { first, second, .. } => told.at(second, "").at(first, ""),
+            Self::NoSuchEntry { name, known, .. } => {
+                told.at(name.span.clone(), "").suggest(&name, known)
+            }
+            Self::NoEntry { stage, at, .. } => told
+                .at(at, "this pass needs one")
+                .help(format!("write a function with the attribute @{stage}")),
+            Self::SeveralEntries { at, known, .. } => {
+                let names: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
+                told.at(at, "it is not clear which one this pass runs")
+                    .help(format!("name one of {}", names.join(", ")))
+            }
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Which resources share memory. Two that have equal descriptors, and of which one is not needed any
+//! more when the other is first written, take turns in one allocation.
+
+use super::{
+    lifetimes::{Lifetime, Lifetimes},
+    work::Work,
+};
+use crate::{
+    link::pass::{LinkedPass, PassId},
+    resource::{Origin, Resource, ResourceId, ResourceKind},
+};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// One allocation and the resources that take turns in it, in the order in which they are written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Allocation {
+    /// The resources, in the order in which they are first used.
+    pub aliases: Vec<ResourceId>,
+    /// Position in the schedule of the last use of the last of them.
+    until: usize,
+}
+
+/// All allocations of a plan.
+#[derive(Clone, Debug, Default)]
+pub struct Aliases {
+    /// The allocations.
+    pub list: Vec<Allocation>,
+    /// The number of the allocation of each resource.
+    pub of: BTreeMap<ResourceId, usize>,
+}
+
+/// Gives every own texture and buffer with a lifetime its allocation.
+///
+/// Memory is handed on only to a resource whose first use provably overwrites all of it: what is
+/// left of another's content can then not be read. `kept` ones are needed beyond the frame and have
+/// memory of their own.
+pub(crate) fn aliases(
+    work: Work<'_>,
+    sequence: &[PassId],
+    lifetimes: &Lifetimes,
+    kept: &BTreeSet<ResourceId>,
+) -> Aliases {
+    let mut found = Aliases::default();
+    // In the order of first uses; resources that start together in the order of the file.
+    let mut starts: Vec<(usize, ResourceId)> = lifetimes
+        .iter()
+        .filter(|(id, _)| {
+            let resource = work.resource(**id);
+            matches!(resource.origin, Origin::Own | Origin::Constant)
+                && matches!(
+                    resource.kind,
+                    ResourceKind::Texture(_) | ResourceKind::Buffer(_)
+                )
+        })
+        .map(|(id, lifetime)| (lifetime.first, *id))
+        .collect();
+    starts.sort();
+    let mut shared: BTreeSet<usize> = BTreeSet::new();
+    for (first, id) in starts {
+        let lifetime = &lifetimes[&id];
+        let shares =
+            !kept.contains(&id) && overwritten(work.pass(sequence[first]), work.resource(id), id);
+        let free = shared.iter().copied().find(|&slot| {
+            let slot: &Allocation = &found.list[slot];
+            let other = slot.aliases[0];
+            shares
+                && slot.until < first
+                && alike(
+                    work.resource(other),
+                    &lifetimes[&other],
+                    work.resource(id),
+                    lifetime,
+                )
+        });
+        let slot = free.unwrap_or_else(|| {
+            found.list.push(Allocation {
+                aliases: Vec::new(),
+                until: 0,
+            });
+            found.list.len() - 1
+        });
+        if shares {
+            shared.insert(slot);
+        }
+        found.list[slot].aliases.push(id);
+        found.list[slot].until = lifetime.last;
+        found.of.insert(id, slot);
+    }
+    found
+}
+
+/// Whether a pass overwrites everything of a resource before it reads any of it.
+fn overwritten(pass: &LinkedPass, resource: &Resource, id: ResourceId) -> bool {
+    let uses = || {
+        pass.accesses
+            .iter()
+            .filter(move |access| access.resource == id)
+    };
+    let covers_first = |uses: &mut dyn Iterator<Item = &crate::link::pass::Access>| {
+        uses.next()
+            .is_some_and(|first| first.covers && !first.reads)
+    };
+    let texture = match &resource.kind {
+        ResourceKind::Texture(texture) => texture,
+        // Of items by themselves nobody knows whether they are all there are.
+        _ => {
+            let whole = uses().all(|access| access.part.items().is_none());
+            return whole && covers_first(&mut uses());
+        }
+    };
+    let aspects = [
+        wgt::TextureAspect::DepthOnly,
+        wgt::TextureAspect::StencilOnly,
+    ];
+    let aspects = match texture.format.is_combined_depth_stencil_format() {
+        true => &aspects[..],
+        false => &aspects[..1],
+    };
+    let covers = |mip: u32, layer: u32| {
+        aspects.iter().all(|aspect| {
+            let part = crate::resource::SubresourceRange {
+                mips: mip..mip + 1,
+                layers: layer..layer + 1,
+                aspect: *aspect,
+            };
+            covers_first(&mut uses().filter(|access| access.part.overlaps(&part)))
+        })
+    };
+    (0..texture.mips).all(|mip| (0..texture.mip_layers(mip)).all(|layer| covers(mip, layer)))
+}
+
+/// Whether two resources would be made the same way.
+fn alike(a: &Resource, of_a: &Lifetime, b: &Resource, of_b: &Lifetime) -> bool {
+    let same = match (&a.kind, &b.kind) {
+        (ResourceKind::Texture(a), ResourceKind::Texture(b)) => a == b,
+        (ResourceKind::Buffer(a), ResourceKind::Buffer(b)) => a.bytes == b.bytes,
+        _ => false,
+    };
+    same && of_a.textures == of_b.textures && of_a.buffers == of_b.buffers
+}

@@ -1,0 +1,144 @@
+//! Which passes run or are skipped together, and what a skipped pass leaves behind.
+
+use super::work::Work;
+use crate::{
+    diagnostics::reports::Reports,
+    errors::flow::OrderError,
+    instantiate::build::Run,
+    link::pass::{Access, LinkedPass, PassId},
+    resource::{Origin, ResourceId},
+};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// When a pass runs in this plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum When {
+    /// In every frame.
+    Always,
+    /// In no frame: its condition is false.
+    Never,
+    /// In the first frame.
+    Once,
+    /// When something that it reads has changed.
+    OnChange,
+    /// When its group does: a capture between two writes.
+    Follows,
+}
+
+/// What the run conditions of a schedule come to. Every frame reads it, hence it is flat.
+#[derive(Clone, Debug, Default)]
+pub struct Conditions {
+    /// For every position in the schedule, the first position of its group. A group runs or is
+    /// skipped as a whole.
+    pub group: Vec<usize>,
+    /// For every position in the schedule.
+    pub when: Vec<When>,
+    /// Every position in the schedule with every resource that is written there.
+    pub written: Vec<(usize, ResourceId)>,
+    /// For every resource, by id, the group of the passes that write it.
+    pub writers: Vec<Option<usize>>,
+    /// The resources that must outlive the frame because a pass that writes them may be skipped.
+    pub kept: BTreeSet<ResourceId>,
+}
+
+/// Joins all writers of one resource, and with them whoever reads a version that is overwritten
+/// later in the frame: were the writers skipped, only the last version would be there. A group of
+/// several conditions is reported.
+pub(crate) fn conditions(work: Work<'_>, schedule: &[PassId], reports: &mut Reports) -> Conditions {
+    let mut uses: BTreeMap<ResourceId, Vec<(usize, &Access)>> = BTreeMap::new();
+    for (at, &pass) in schedule.iter().enumerate() {
+        for access in &work.pass(pass).accesses {
+            uses.entry(access.resource).or_default().push((at, access));
+        }
+    }
+    let mut group: Vec<usize> = (0..schedule.len()).collect();
+    for (id, uses) in &uses {
+        if matches!(work.resource(*id).origin, Origin::Previous(_)) {
+            continue;
+        }
+        let writers: Vec<_> = uses.iter().filter(|(_, access)| access.writes).collect();
+        let is_overwritten = |(at, access): &&(usize, &Access)| {
+            access.writes
+                || writers
+                    .iter()
+                    .any(|(later, other)| later > at && other.part.overlaps(&access.part))
+        };
+        let mut joined = uses.iter().filter(is_overwritten);
+        let Some((first, _)) = joined.next() else {
+            continue;
+        };
+        for (other, _) in joined {
+            check(
+                [first, other].map(|at| work.pass(schedule[*at])),
+                &work.resource(*id).name,
+                reports,
+            );
+            join(&mut group, *first, *other);
+        }
+    }
+    let group: Vec<usize> = (0..group.len()).map(|at| root(&group, at)).collect();
+    let mut writers = vec![None; work.resources.len()];
+    for (id, uses) in &uses {
+        let writer = uses.iter().find(|(_, access)| access.writes);
+        writers[id.index()] = writer.map(|(at, _)| group[*at]);
+    }
+    let kept = uses
+        .iter()
+        .filter(|(_, uses)| {
+            uses.iter()
+                .any(|(at, access)| access.writes && work.pass(schedule[*at]).run != Run::Always)
+        })
+        .map(|(id, _)| *id)
+        .collect();
+    let mut leads = vec![false; schedule.len()];
+    for (&group, &pass) in group.iter().zip(schedule) {
+        leads[group] |= !work.pass(pass).is_capture();
+    }
+    let when = |(&group, &pass): (&usize, &PassId)| match &work.pass(pass).run {
+        _ if work.pass(pass).is_capture() && leads[group] => When::Follows,
+        Run::Always => When::Always,
+        Run::When(_) if work.pass(pass).enabled => When::Always,
+        Run::When(_) => When::Never,
+        Run::Once => When::Once,
+        Run::OnChange => When::OnChange,
+    };
+    let mut written: Vec<(usize, ResourceId)> = uses
+        .iter()
+        .flat_map(|(id, uses)| uses.iter().map(|(at, access)| (*at, *id, access.writes)))
+        .filter_map(|(at, id, writes)| writes.then_some((at, id)))
+        .collect();
+    written.sort();
+    let when = group.iter().zip(schedule).map(when).collect();
+    Conditions {
+        group,
+        when,
+        written,
+        writers,
+        kept,
+    }
+}
+
+/// The first position of a group.
+fn root(group: &[usize], mut at: usize) -> usize {
+    while group[at] != at {
+        at = group[at];
+    }
+    at
+}
+
+fn join(group: &mut [usize], a: usize, b: usize) {
+    let (a, b) = (root(group, a), root(group, b));
+    group[a.max(b)] = a.min(b);
+}
+
+fn check([a, b]: [&LinkedPass; 2], name: &str, reports: &mut Reports) {
+    // What is captured between two writes runs when these do.
+    if a.run == b.run || [a, b].iter().any(|pass| pass.is_capture()) {
+        return;
+    }
+    reports.report(OrderError::RunConditions {
+        name: name.to_owned(),
+        passes: [a, b].map(|pass| pass.name.clone()),
+        runs: [a, b].map(|pass| pass.run.to_string()),
+    });
+}

@@ -1,0 +1,31 @@
+//! A pass that no output needs does not run.
+
+use super::order::{Hazard, Order};
+use crate::link::pass::PassId;
+use petgraph::{Direction, graph::NodeIndex, visit::EdgeRef};
+
+/// Whether each pass is live: it makes one of the `roots`, or something that a live pass reads in
+/// this frame or, by `keeps`, in the next one.
+pub(crate) fn live<K: IntoIterator<Item = PassId>>(
+    order: &Order,
+    roots: impl IntoIterator<Item = PassId>,
+    keeps: impl Fn(PassId) -> K,
+) -> Vec<bool> {
+    let mut live = vec![false; order.edges.node_count()];
+    let mut open: Vec<PassId> = roots.into_iter().collect();
+    while let Some(pass) = open.pop() {
+        if std::mem::replace(&mut live[pass.0], true) {
+            continue;
+        }
+        let needed = order
+            .edges
+            .edges_directed(NodeIndex::new(pass.0), Direction::Incoming);
+        open.extend(
+            needed
+                .filter(|edge| *edge.weight() == Hazard::ReadAfterWrite)
+                .map(|edge| PassId(edge.source().index())),
+        );
+        open.extend(keeps(pass));
+    }
+    live
+}

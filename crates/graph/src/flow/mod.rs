@@ -1,0 +1,25 @@
+//! Phase 5: what must come before what, which passes run, in which order, and which resources share
+//! memory. Each file is one step, in this order.
+
+pub(crate) mod work;
+
+pub(crate) mod order;
+
+pub(crate) mod cull;
+
+pub(crate) mod schedule;
+
+pub(crate) mod lifetimes;
+
+pub(crate) mod conditions;
+
+pub(crate) mod aliases;
+
+#[cfg(test)]
+mod tests;
+
+pub use aliases::{Aliases, Allocation};
+pub use conditions::{Conditions, When};
+pub use lifetimes::{Lifetime, Lifetimes};
+pub use order::{Dependences, Hazard};
+pub use schedule::Schedule;

@@ -1,0 +1,216 @@
+//! The file reads as a sequential program. Every access gets the version it means, and with it the
+//! edges.
+
+use super::work::{Subresources, Work};
+use crate::{
+    diagnostics::reports::Reports,
+    errors::flow::OrderError,
+    link::pass::{Access, LinkedPass, PassId},
+    resource::{Origin, ResourceId, ResourceKind, Target},
+};
+use petgraph::{
+    graph::{DiGraph, NodeIndex},
+    visit::EdgeFiltered,
+};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Why one pass comes before another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Hazard {
+    /// The later one reads what the earlier one wrote.
+    ReadAfterWrite,
+    /// The later one overwrites what the earlier one reads.
+    WriteAfterRead,
+    /// The later one overwrites what the earlier one wrote.
+    WriteAfterWrite,
+}
+
+/// Earlier pass, later pass and why, with the resources that it comes through.
+pub type Dependences = BTreeMap<(PassId, PassId, Hazard), BTreeSet<ResourceId>>;
+
+/// The dependency graph: node i is pass i of the file, an edge runs from the earlier to the later
+/// pass.
+#[derive(Debug)]
+pub(crate) struct Order {
+    pub edges: DiGraph<(), Hazard>,
+    /// The same edges, with the resources behind them; drawings show both.
+    pub dependences: Dependences,
+    /// The pass that writes each subresource last.
+    last: BTreeMap<(ResourceId, [u32; 3]), PassId>,
+    subresources: Subresources,
+}
+
+impl Order {
+    /// The passes whose versions of a part of a resource are final.
+    pub fn final_writers(&self, target: &Target) -> BTreeSet<PassId> {
+        let parts = self.subresources.of(target.id, &target.part);
+        parts
+            .filter_map(|part| self.last.get(&(target.id, part)).copied())
+            .collect()
+    }
+}
+
+#[derive(Default)]
+struct State {
+    writer: Option<PassId>,
+    readers: BTreeSet<PassId>,
+}
+
+/// The order of all passes, from which follows which of them are live. Reads of what nobody wrote are
+/// reported for the passes of the valid prefix: below it a pass is missing that might have written
+/// it.
+pub(crate) fn order(work: Work<'_>, valid_prefix: usize, reports: &mut Reports) -> Order {
+    let (order, uninitialized) = walk(work, |_| true);
+    for (pass, access) in uninitialized
+        .into_iter()
+        .filter(|(pass, _)| pass.0 < valid_prefix)
+    {
+        reports.report(explain(pass, access, work, &order));
+    }
+    order
+}
+
+/// The order among the live passes alone. A chain of overwrites that led through a culled pass is
+/// closed here: first, culled, last would else leave nothing that keeps the first before the last.
+pub(crate) fn order_of_live(work: Work<'_>, live: &[bool]) -> Order {
+    walk(work, |pass| live[pass.0]).0
+}
+
+/// What the passes that run depend on, and through which resources.
+pub(crate) fn dependences(work: Work<'_>, runs: impl Fn(PassId) -> bool) -> Dependences {
+    walk(work, runs).0.dependences
+}
+
+/// Runs through the file as a sequential program and notes what depends on what, and the reads of
+/// what nobody wrote.
+fn walk<'p>(work: Work<'p>, runs: impl Fn(PassId) -> bool) -> (Order, Vec<(PassId, &'p Access)>) {
+    let subresources = Subresources::new(work);
+    let mut dependences = Dependences::new();
+    let mut states: BTreeMap<(ResourceId, [u32; 3]), State> = BTreeMap::new();
+    let mut uninitialized: Vec<(PassId, &Access)> = Vec::new();
+    for (index, pass) in work.ids().filter(|(index, _)| runs(*index)) {
+        for access in &pass.accesses {
+            let resource = work.resource(access.resource);
+            let has_content =
+                resource.origin != Origin::Own || matches!(resource.kind, ResourceKind::Sampler(_));
+            for part in subresources.of(access.resource, &access.part) {
+                let state = states.entry((access.resource, part)).or_default();
+                let mut edge = |from: PassId, hazard| {
+                    if from != index {
+                        let between = dependences.entry((from, index, hazard)).or_default();
+                        between.insert(access.resource);
+                    }
+                };
+                match state.writer {
+                    Some(writer) if access.reads => edge(writer, Hazard::ReadAfterWrite),
+                    // A write that does not cover keeps some of the old version, so it reads it.
+                    Some(writer) if access.writes && !access.covers => {
+                        edge(writer, Hazard::ReadAfterWrite)
+                    }
+                    None if access.reads
+                        && !has_content
+                        && !uninitialized.iter().any(|(pass, other)| {
+                            *pass == index && other.resource == access.resource
+                        }) =>
+                    {
+                        uninitialized.push((index, access));
+                    }
+                    _ => {}
+                }
+                if access.writes {
+                    if let Some(writer) = state.writer {
+                        edge(writer, Hazard::WriteAfterWrite);
+                    }
+                    for &reader in &state.readers {
+                        edge(reader, Hazard::WriteAfterRead);
+                    }
+                    state.readers.clear();
+                    state.writer = Some(index);
+                }
+                if access.reads {
+                    state.readers.insert(index);
+                }
+            }
+        }
+    }
+    let mut graph = DiGraph::with_capacity(work.passes.len(), dependences.len());
+    let nodes: Vec<NodeIndex> = work.passes.iter().map(|_| graph.add_node(())).collect();
+    for &(from, to, hazard) in dependences.keys() {
+        graph.add_edge(nodes[from.0], nodes[to.0], hazard);
+    }
+    let last = states
+        .into_iter()
+        .filter_map(|(part, state)| Some((part, state.writer?)));
+    let order = Order {
+        edges: graph,
+        dependences,
+        last: last.collect(),
+        subresources,
+    };
+    (order, uninitialized)
+}
+
+/// A read with nothing written above it: written never, written below, or written below by a pass
+/// that needs the reader.
+fn explain(reader: PassId, access: &Access, work: Work<'_>, order: &Order) -> OrderError {
+    let name = work.resource(access.resource).name.clone();
+    let pass = work.pass(reader);
+    let writes = |pass: &LinkedPass| {
+        pass.accesses.iter().any(|other| {
+            other.writes && other.resource == access.resource && other.part.overlaps(&access.part)
+        })
+    };
+    // A pass that changes what it reads depends on no pass below, whoever else changes it there: it
+    // lacks a beginning.
+    let itself = access.writes
+        || pass
+            .accesses
+            .iter()
+            .any(|other| other.writes && other.resource == access.resource);
+    let below = work.ids().skip(reader.0 + 1).find(|(_, pass)| writes(pass));
+    if pass.is_capture() {
+        return OrderError::Capture {
+            name: pass.name.value.clone(),
+            first: below.map(|(_, writer)| writer.name.value.clone()),
+        };
+    }
+    let (read, pass_name) = (access.span.clone(), pass.name.clone());
+    let Some((writer, below)) = below.filter(|_| !itself) else {
+        return OrderError::Unwritten {
+            name,
+            pass: pass_name,
+            read,
+            changes: itself,
+            partly: work.passes[..reader.0].iter().any(writes),
+        };
+    };
+    // Only what a pass needs makes it depend on another; an overwrite could be moved.
+    let needs = EdgeFiltered::from_fn(&order.edges, |edge| {
+        *edge.weight() == Hazard::ReadAfterWrite
+    });
+    let path = petgraph::algo::astar(
+        &needs,
+        NodeIndex::new(reader.0),
+        |node| node.index() == writer.0,
+        |_| 1u64,
+        |_| 0,
+    );
+    match path {
+        Some((_, path)) => OrderError::Cycle {
+            name,
+            pass: pass_name,
+            writer: below.name.clone(),
+            path: path
+                .iter()
+                .map(|node| work.passes[node.index()].name.value.clone())
+                .collect(),
+        },
+        None => OrderError::WrittenBelow {
+            name,
+            pass: pass_name,
+            read,
+            writer: below.name.clone(),
+        },
+    }
+}

@@ -1,0 +1,558 @@
+//! Order, culling and schedule on bare lists of accesses: each graph is drawn above its case.
+
+use crate::{
+    cull,
+    diagnostics::{Code, Diagnostic},
+    document::{Run, located::Located},
+    link::{Access, LinkedPass, Usage},
+    order::{Hazard, Order, order, order_of_live},
+    provider::NoProvider,
+    registry::Params,
+    resolve::{Buffer, Environment, Part, ResourceId, ResourceKind, Resources, Target, resolve},
+    schedule::schedule,
+    source::SourceFile,
+};
+use proptest::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// How a pass uses a resource.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum How {
+    Read,
+    /// Overwrites everything.
+    Write,
+    /// Overwrites some of it.
+    Part,
+    /// Reads and changes it: an atomic counter, a target that is loaded.
+    Change,
+}
+use How::{Change, Part as Partly, Read, Write};
+
+/// A use: resource, how, mips, layers.
+type Use = (usize, How, std::ops::Range<u32>, std::ops::Range<u32>);
+
+fn whole(resource: usize, how: How) -> Use {
+    (resource, how, 0..1, 0..1)
+}
+
+const RESOURCES: usize = 4;
+
+struct Case {
+    passes: Vec<LinkedPass>,
+    order: Order,
+    diagnostics: Vec<Diagnostic>,
+}
+
+fn edges(order: &Order) -> BTreeSet<(usize, usize, Hazard)> {
+    let edges = order.edges.raw_edges().iter();
+    edges
+        .map(|edge| (edge.source().index(), edge.target().index(), edge.weight))
+        .collect()
+}
+
+/// Calls `use_them` with some buffers.
+fn with_resources<T>(use_them: impl FnOnce(&Resources<'_>) -> T) -> T {
+    let params = Params::default();
+    let environment = Environment {
+        viewport: [8, 8],
+        limits: &wgpu::Limits::default(),
+        provider: &NoProvider,
+        imports: &BTreeMap::new(),
+    };
+    let mut resources: Resources<'_> = resolve(&[], &[], &params, &environment, &mut Vec::new());
+    for index in 0..RESOURCES {
+        resources.add(
+            format!("r{index}"),
+            None,
+            ResourceKind::Buffer(Buffer::default()),
+        );
+    }
+    use_them(&resources)
+}
+
+fn case(uses: &[Vec<Use>]) -> Case {
+    let names: Vec<String> = (0..uses.len()).map(|index| format!("p{index}")).collect();
+    let file = SourceFile::new("graph.ron", names.join(" "));
+    let pass = |(index, uses): (usize, &Vec<Use>)| {
+        let at = names[..index]
+            .iter()
+            .map(|name| name.len() + 1)
+            .sum::<usize>();
+        let span = file.span(at..at + names[index].len());
+        let access = |(resource, how, mips, layers): &Use| Access {
+            resource: ResourceId(*resource),
+            part: Part {
+                mips: mips.clone(),
+                layers: layers.clone(),
+            },
+            reads: matches!(how, Read | Change),
+            writes: *how != Read,
+            covers: *how == Write,
+            usage: Usage::None,
+            span: span.clone(),
+            step: 0,
+        };
+        let accesses = uses.iter().map(access).collect();
+        LinkedPass {
+            name: Located::new(names[index].clone(), span.clone()),
+            kind: "Test",
+            steps: Vec::new(),
+            accesses,
+            run: Run::Always,
+            enabled: true,
+        }
+    };
+    let passes: Vec<LinkedPass> = uses.iter().enumerate().map(pass).collect();
+    let mut diagnostics = Vec::new();
+    let order =
+        with_resources(|resources| order(&passes, passes.len(), resources, &mut diagnostics));
+    Case {
+        passes,
+        order,
+        diagnostics,
+    }
+}
+
+impl Case {
+    fn edges(&self) -> BTreeSet<(usize, usize, Hazard)> {
+        edges(&self.order)
+    }
+
+    /// Live passes for the final versions of the resources, and the order among them.
+    fn live(&self, wanted: &[Use]) -> (Vec<bool>, Order) {
+        let roots = wanted.iter().flat_map(|(resource, _, mips, layers)| {
+            let part = Part {
+                mips: mips.clone(),
+                layers: layers.clone(),
+            };
+            self.order.final_writers(&Target {
+                id: ResourceId(*resource),
+                part,
+            })
+        });
+        let live = cull::live(&self.order, roots, |_| None);
+        let order = with_resources(|resources| order_of_live(&self.passes, resources, &live));
+        (live, order)
+    }
+
+    fn schedule(&self, wanted: &[Use]) -> Vec<usize> {
+        let (live, order) = self.live(wanted);
+        schedule(&order, &live)
+    }
+
+    fn codes(&self) -> Vec<Code> {
+        self.diagnostics
+            .iter()
+            .map(|diagnostic| diagnostic.code)
+            .collect()
+    }
+}
+
+const RAW: Hazard = Hazard::ReadAfterWrite;
+const WAR: Hazard = Hazard::WriteAfterRead;
+const WAW: Hazard = Hazard::WriteAfterWrite;
+
+#[test]
+fn edges_of_each_hazard() {
+    type Table = (&'static str, Vec<Vec<Use>>, Vec<(usize, usize, Hazard)>);
+    let table: Vec<Table> = vec![
+        (
+            "p0 ─write─▶ r0 ─read─▶ p1",
+            vec![vec![whole(0, Write)], vec![whole(0, Read)]],
+            vec![(0, 1, RAW)],
+        ),
+        // p1 reads p0's version, so p2 has to wait for p1; p3 reads p2's version only.
+        (
+            "p0 ─▶ r0 ─▶ p1 ; p2 ─▶ r0 ─▶ p3",
+            vec![
+                vec![whole(0, Write)],
+                vec![whole(0, Read)],
+                vec![whole(0, Write)],
+                vec![whole(0, Read)],
+            ],
+            vec![(0, 1, RAW), (0, 2, WAW), (1, 2, WAR), (2, 3, RAW)],
+        ),
+        (
+            "p0 ─▶ r0 ◀─overwrites all─ p1",
+            vec![vec![whole(0, Write)], vec![whole(0, Write)]],
+            vec![(0, 1, WAW)],
+        ),
+        // What p1 does not write is still p0's: p1 needs p0.
+        (
+            "p0 ─▶ r0 ◀─overwrites some─ p1",
+            vec![vec![whole(0, Write)], vec![whole(0, Partly)]],
+            vec![(0, 1, RAW), (0, 1, WAW)],
+        ),
+        (
+            "p0 ─clear─▶ r0 ◀─atomicAdd─ p1 ; p2 atomicAdd",
+            vec![
+                vec![whole(0, Write)],
+                vec![whole(0, Change)],
+                vec![whole(0, Change)],
+            ],
+            // p1's own read is over once it writes, but p2 overwrites what p1 reads and wrote.
+            vec![
+                (0, 1, RAW),
+                (0, 1, WAW),
+                (1, 2, RAW),
+                (1, 2, WAR),
+                (1, 2, WAW),
+            ],
+        ),
+        (
+            "p0 ─▶ r0 ─▶ { p1, p2 } : readers need not wait for each other",
+            vec![
+                vec![whole(0, Write)],
+                vec![whole(0, Read)],
+                vec![whole(0, Read)],
+            ],
+            vec![(0, 1, RAW), (0, 2, RAW)],
+        ),
+        (
+            "p0 ─▶ r0.mip0 ; p1: r0.mip0 ─▶ r0.mip1 : a pass and its own parts make no edge",
+            vec![
+                vec![(0, Write, 0..1, 0..1)],
+                vec![(0, Read, 0..1, 0..1), (0, Write, 1..2, 0..1)],
+            ],
+            vec![(0, 1, RAW)],
+        ),
+        (
+            "p0 ─▶ r0.mip0 ; p1 ─▶ r0.mip1 ; p2 reads mip1 : mips are independent",
+            vec![
+                vec![(0, Write, 0..1, 0..1)],
+                vec![(0, Write, 1..2, 0..1)],
+                vec![(0, Read, 1..2, 0..1)],
+            ],
+            vec![(1, 2, RAW)],
+        ),
+        (
+            "p0 ─▶ r0.layer0 ; p1 ─▶ r0.layer1 ; p2 reads both ; p3 overwrites layer0",
+            vec![
+                vec![(0, Write, 0..1, 0..1)],
+                vec![(0, Write, 0..1, 1..2)],
+                vec![(0, Read, 0..1, 0..2)],
+                vec![(0, Write, 0..1, 0..1)],
+            ],
+            vec![(0, 2, RAW), (0, 3, WAW), (1, 2, RAW), (2, 3, WAR)],
+        ),
+    ];
+    for (graph, uses, expected) in table {
+        let case = case(&uses);
+        assert!(
+            case.diagnostics.is_empty(),
+            "{graph}: {:?}",
+            case.diagnostics
+        );
+        assert_eq!(case.edges(), expected.into_iter().collect(), "{graph}");
+    }
+}
+
+#[test]
+fn only_what_the_outputs_need_runs() {
+    type Table = (&'static str, Vec<Vec<Use>>, Vec<Use>, Vec<usize>);
+    let table: Vec<Table> = vec![
+        (
+            "p0 ─▶ r0 ; p1 ─▶ r1 ; out r0",
+            vec![vec![whole(0, Write)], vec![whole(1, Write)]],
+            vec![whole(0, Read)],
+            vec![0],
+        ),
+        // A covered version is nobody's: p0 is not run though p1 writes after it.
+        (
+            "p0 ─▶ r0 ◀─covers─ p1 ; out r0",
+            vec![vec![whole(0, Write)], vec![whole(0, Write)]],
+            vec![whole(0, Read)],
+            vec![1],
+        ),
+        (
+            "p0 ─▶ r0 ◀─partly─ p1 ; out r0",
+            vec![vec![whole(0, Write)], vec![whole(0, Partly)]],
+            vec![whole(0, Read)],
+            vec![0, 1],
+        ),
+        // p1 only reads; that a later pass overwrites what it read keeps it no more alive.
+        (
+            "p0 ─▶ r0 ─▶ p1 ─▶ r1 ; p2 ─▶ r0 ; out r0",
+            vec![
+                vec![whole(0, Write)],
+                vec![whole(0, Read), whole(1, Write)],
+                vec![whole(0, Write)],
+            ],
+            vec![whole(0, Read)],
+            vec![2],
+        ),
+        (
+            "p0 ─▶ r0 ─▶ p1 ─▶ r1 ─▶ p2 ─▶ r2 ; p3: r1 ─▶ r3 ; out r2",
+            vec![
+                vec![whole(0, Write)],
+                vec![whole(0, Read), whole(1, Write)],
+                vec![whole(1, Read), whole(2, Write)],
+                vec![whole(1, Read), whole(3, Write)],
+            ],
+            vec![whole(2, Read)],
+            vec![0, 1, 2],
+        ),
+        // An output that is one mip needs that mip's passes only.
+        (
+            "p0 ─▶ r0.mip0 ; p1 ─▶ r0.mip1 ; out r0.mip1",
+            vec![vec![(0, Write, 0..1, 0..1)], vec![(0, Write, 1..2, 0..1)]],
+            vec![(0, Read, 1..2, 0..1)],
+            vec![1],
+        ),
+        (
+            "no outputs, nothing runs",
+            vec![vec![whole(0, Write)]],
+            vec![],
+            vec![],
+        ),
+        // Nothing orders these four; the file does.
+        (
+            "p0 ─▶ r3 ; p1 ─▶ r2 ; p2 ─▶ r1 ; p3 ─▶ r0 ; all out",
+            (0..4).map(|index| vec![whole(3 - index, Write)]).collect(),
+            (0..4).map(|index| whole(index, Read)).collect(),
+            vec![0, 1, 2, 3],
+        ),
+    ];
+    for (graph, uses, outputs, expected) in table {
+        let case = case(&uses);
+        assert!(
+            case.diagnostics.is_empty(),
+            "{graph}: {:?}",
+            case.diagnostics
+        );
+        assert_eq!(case.schedule(&outputs), expected, "{graph}");
+    }
+}
+
+/// ```text
+/// p0 ─writes all─▶ r0 ◀─covers mip 0─ p1 ◀─covers mip 0─ p2 ; p3 reads r0
+/// ```
+/// p1 is nobody's, but that p0 comes before p2 was known through p1 only.
+#[test]
+fn order_through_a_culled_pass() {
+    let case = case(&[
+        vec![(0, Write, 0..2, 0..1)],
+        vec![(0, Write, 0..1, 0..1)],
+        vec![(0, Write, 0..1, 0..1)],
+        vec![(0, Read, 0..2, 0..1), whole(1, Write)],
+    ]);
+    let (live, order) = case.live(&[whole(1, Read)]);
+    assert_eq!(live, [true, false, true, true]);
+    let expected = [(0, 2, WAW), (0, 3, RAW), (2, 3, RAW)];
+    assert_eq!(edges(&order), expected.into_iter().collect());
+}
+
+#[test]
+fn reads_of_nothing() {
+    type Table = (&'static str, Vec<Vec<Use>>, Vec<Code>);
+    let table: Vec<Table> = vec![
+        (
+            "r0 ─▶ p0",
+            vec![vec![whole(0, Read)]],
+            vec![Code::ReadBeforeWrite],
+        ),
+        (
+            "p0 counts in r0, which nobody cleared",
+            vec![vec![whole(0, Change)]],
+            vec![Code::ReadBeforeWrite],
+        ),
+        (
+            "r0 ─▶ p0 ; p1 ─▶ r0",
+            vec![vec![whole(0, Read)], vec![whole(0, Write)]],
+            vec![Code::ReadBeforeWrite],
+        ),
+        // p0 ─▶ r1 ─▶ p1 ─▶ r0 ─▶ p0
+        (
+            "p0: r0 ─▶ r1 ; p1: r1 ─▶ r0",
+            vec![
+                vec![whole(0, Read), whole(1, Write)],
+                vec![whole(1, Read), whole(0, Write)],
+            ],
+            vec![Code::Cycle],
+        ),
+        // An overwrite is no need: p1 could run first.
+        (
+            "p0: r0 ─▶ r1 ; p1 ─▶ r1, r0",
+            vec![
+                vec![whole(0, Read), whole(1, Write)],
+                vec![whole(1, Write), whole(0, Write)],
+            ],
+            vec![Code::ReadBeforeWrite],
+        ),
+        // Neither needs the other's result: what both lack is a beginning.
+        (
+            "p0 adds to r0 ; p1 adds to r0 : nobody cleared it",
+            vec![vec![whole(0, Change)], vec![whole(0, Change)]],
+            vec![Code::ReadBeforeWrite],
+        ),
+        (
+            "p0 ─▶ r0.mip0 ; p1 reads r0.mip0..2",
+            vec![vec![whole(0, Write)], vec![(0, Read, 0..2, 0..1)]],
+            vec![Code::ReadBeforeWrite],
+        ),
+        // Some of a buffer that nobody wrote before is no read.
+        (
+            "p0 ─partly─▶ r0 ─▶ p1",
+            vec![vec![whole(0, Partly)], vec![whole(0, Read)]],
+            vec![],
+        ),
+        // Within one pass the steps run in order.
+        (
+            "p0: clears r0, then counts in it",
+            vec![vec![whole(0, Write), whole(0, Change)]],
+            vec![],
+        ),
+        (
+            "one mistake is told once per resource",
+            vec![vec![(0, Read, 0..3, 0..5)]],
+            vec![Code::ReadBeforeWrite],
+        ),
+    ];
+    for (graph, uses, expected) in table {
+        assert_eq!(case(&uses).codes(), expected, "{graph}");
+    }
+}
+
+#[test]
+fn a_cycle_is_told_with_its_path() {
+    // p0: r0 ─▶ r1 ; p1: r1 ─▶ r2 ; p2: r2 ─▶ r0
+    let case = case(&[
+        vec![whole(0, Read), whole(1, Write)],
+        vec![whole(1, Read), whole(2, Write)],
+        vec![whole(2, Read), whole(0, Write)],
+    ]);
+    assert_eq!(case.codes(), [Code::Cycle]);
+    assert!(
+        case.diagnostics[0].message.ends_with("p0 → p1 → p2 → p0"),
+        "{}",
+        case.diagnostics[0].message
+    );
+}
+
+/// A chain as long as no document has it: neither recursion nor quadratic work.
+#[test]
+fn ten_thousand_passes() {
+    let uses: Vec<Vec<Use>> = (0..10_000)
+        .map(|index| vec![whole(0, if index == 0 { Write } else { Change })])
+        .collect();
+    assert_eq!(
+        case(&uses).schedule(&[whole(0, Read)]),
+        (0..10_000).collect::<Vec<_>>()
+    );
+    let mut cycle = uses;
+    cycle[0] = vec![whole(1, Read), whole(0, Write)];
+    cycle.push(vec![whole(0, Read), whole(1, Write)]);
+    assert_eq!(case(&cycle).codes(), [Code::Cycle]);
+}
+
+type Cell = (usize, u32, u32);
+
+/// Who wrote what a pass sees in a cell.
+type Seen = BTreeMap<(usize, Cell), Option<usize>>;
+
+/// What each pass of `sequence` sees in the cells that it reads, when the passes run in that
+/// sequence: who wrote it.
+fn interpret(passes: &[LinkedPass], sequence: &[usize]) -> (Seen, BTreeMap<Cell, usize>) {
+    let mut memory: BTreeMap<Cell, usize> = BTreeMap::new();
+    let mut seen = BTreeMap::new();
+    for &pass in sequence {
+        for access in &passes[pass].accesses {
+            for mip in access.part.mips.clone() {
+                for layer in access.part.layers.clone() {
+                    let cell = (access.resource.0, mip, layer);
+                    let before = memory.get(&cell).copied();
+                    // A partial write mixes its own with what is there, so it sees it.
+                    if (access.reads || !access.covers) && before != Some(pass) {
+                        seen.insert((pass, cell), before);
+                    }
+                    if access.writes {
+                        memory.insert(cell, pass);
+                    }
+                }
+            }
+        }
+    }
+    (seen, memory)
+}
+
+prop_compose! {
+    fn any_use()(
+        resource in 0..RESOURCES,
+        how in prop_oneof![Just(Read), Just(Write), Just(Partly), Just(Change)],
+        mip in 0..2u32, mips in 1..3u32,
+        layer in 0..2u32, layers in 1..3u32,
+    ) -> Use {
+        (resource, how, mip..(mip + mips).min(2), layer..(layer + layers).min(2))
+    }
+}
+
+/// Some other order of these passes that every edge allows: of those that may run, the one of the
+/// highest rank.
+fn shuffled(order: &Order, passes: &BTreeSet<usize>, rank: &[u32]) -> Vec<usize> {
+    let edges = edges(order);
+    let mut open = passes.clone();
+    let mut sequence = Vec::new();
+    loop {
+        let is_ready = |pass: &&usize| {
+            !edges
+                .iter()
+                .any(|(from, to, _)| to == *pass && open.contains(from))
+        };
+        let Some(&next) = open.iter().filter(is_ready).max_by_key(|pass| rank[**pass]) else {
+            return sequence;
+        };
+        open.remove(&next);
+        sequence.push(next);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Whatever passes read and write: the schedule is the live passes, each once, every edge
+    /// obeyed, and each live pass sees exactly what it would see if the whole file ran from top to
+    /// bottom.
+    #[test]
+    fn the_schedule_means_the_file(
+        uses in prop::collection::vec(prop::collection::vec(any_use(), 1..4), 1..10),
+        wanted in prop::collection::vec(0..RESOURCES, 0..3),
+        rank in prop::collection::vec(any::<u32>(), 11),
+    ) {
+        // What nobody wrote is cleared by a first pass.
+        let clears = (0..RESOURCES).map(|resource| (resource, Write, 0..2, 0..2)).collect();
+        let uses: Vec<Vec<Use>> = std::iter::once(clears).chain(uses).collect();
+        let case = case(&uses);
+        prop_assert!(case.diagnostics.is_empty());
+        let outputs: Vec<Use> = wanted.iter().map(|&resource| (resource, Read, 0..2, 0..2)).collect();
+        let schedule = case.schedule(&outputs);
+
+        let live: BTreeSet<usize> = schedule.iter().copied().collect();
+        prop_assert_eq!(live.len(), schedule.len(), "each pass runs once");
+        let place: BTreeMap<usize, usize> = schedule.iter().enumerate().map(|(at, &pass)| (pass, at)).collect();
+        for (from, to, hazard) in case.edges() {
+            prop_assert!(from < to, "edges follow the file");
+            if let (Some(from), Some(to)) = (place.get(&from), place.get(&to)) {
+                prop_assert!(from < to);
+            } else {
+                prop_assert!(hazard != RAW || !live.contains(&to), "a live pass needs a culled one");
+            }
+        }
+        let file: Vec<usize> = (0..uses.len()).collect();
+        let (in_file, end_of_file) = interpret(&case.passes, &file);
+        // The schedule keeps the file's order; the edges must allow for no order that means
+        // something else.
+        for sequence in [schedule, shuffled(&case.live(&outputs).1, &live, &rank)] {
+            let (seen, end) = interpret(&case.passes, &sequence);
+            prop_assert_eq!(sequence.len(), live.len(), "each live pass runs");
+            for (read, version) in &seen {
+                prop_assert_eq!(version, &in_file[read], "{:?} sees another version in {:?}", read, &sequence);
+            }
+            for &resource in &wanted {
+                for (cell, writer) in end_of_file.iter().filter(|(cell, _)| cell.0 == resource) {
+                    prop_assert_eq!(end.get(cell), Some(writer), "an output ends with another \
+                        version");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! What the phases of this folder look at: linked passes, and the resources that they use.
+
+use crate::{
+    link::pass::{LinkedPass, PassId},
+    resource::{Resource, ResourceId, ResourceKind, SubresourceRange},
+};
+use std::collections::BTreeMap;
+
+/// Linked passes and the resources of a plan.
+#[derive(Clone, Copy)]
+pub(crate) struct Work<'p> {
+    pub passes: &'p [LinkedPass],
+    pub resources: &'p [Resource],
+}
+
+impl<'p> Work<'p> {
+    /// Every pass with its number.
+    pub fn ids(self) -> impl Iterator<Item = (PassId, &'p LinkedPass)> {
+        let passes = self.passes.iter().enumerate();
+        passes.map(|(index, pass)| (PassId(index), pass))
+    }
+
+    pub fn pass(self, id: PassId) -> &'p LinkedPass {
+        &self.passes[id.0]
+    }
+
+    pub fn resource(self, id: ResourceId) -> &'p Resource {
+        &self.resources[id.index()]
+    }
+}
+
+/// What has versions: mips and layers of textures, of one aspect; of buffers the stretches of items
+/// that accesses tell apart.
+#[derive(Debug)]
+pub(crate) struct Subresources {
+    /// Where stretches of layers or items begin and end, for resources of which parts are used.
+    cuts: BTreeMap<ResourceId, Vec<u32>>,
+    /// Of each resource, how far its layers or items reach.
+    reach: Vec<Reach>,
+}
+
+/// How far the layers of a texture or the items of a buffer reach, and what else has versions.
+#[derive(Clone, Copy, Debug)]
+struct Reach {
+    /// Layers; slices of mip 0 of a 3D texture; items.
+    layers: u32,
+    is_3d: bool,
+    /// Depth and stencil have versions of their own.
+    is_combined: bool,
+}
+
+impl Reach {
+    fn of(resource: &Resource) -> Self {
+        let (layers, is_3d, is_combined) = match &resource.kind {
+            ResourceKind::Texture(texture) => {
+                let is_combined = texture.format.is_combined_depth_stencil_format();
+                (texture.layers, texture.is_3d, is_combined)
+            }
+            // Of a buffer without a count nobody knows where its items end.
+            ResourceKind::Buffer(buffer) => {
+                let items = buffer
+                    .count
+                    .map(|items| u32::try_from(items).unwrap_or(u32::MAX));
+                (items.unwrap_or(u32::MAX), false, false)
+            }
+            _ => (u32::MAX, false, false),
+        };
+        Self {
+            layers,
+            is_3d,
+            is_combined,
+        }
+    }
+
+    /// Layers of a mip: the slices of a 3D texture become fewer.
+    fn layers(self, mip: u32) -> u32 {
+        match self.is_3d {
+            true => (self.layers >> mip).max(1),
+            false => self.layers,
+        }
+    }
+}
+
+impl Subresources {
+    pub fn new(work: Work<'_>) -> Self {
+        let mut cuts: BTreeMap<ResourceId, Vec<u32>> = BTreeMap::new();
+        for access in work.passes.iter().flat_map(|pass| &pass.accesses) {
+            let layers = &access.part.layers;
+            cuts.entry(access.resource)
+                .or_default()
+                .extend([layers.start, layers.end]);
+        }
+        for cuts in cuts.values_mut() {
+            cuts.sort_unstable();
+            cuts.dedup();
+        }
+        Self {
+            cuts,
+            reach: work.resources.iter().map(Reach::of).collect(),
+        }
+    }
+
+    /// The mips, stretches of layers and aspects of a part.
+    pub fn of(
+        &self,
+        id: ResourceId,
+        part: &SubresourceRange,
+    ) -> impl Iterator<Item = [u32; 3]> + use<'_> {
+        let cuts = self.cuts.get(&id).map_or(&[][..], Vec::as_slice);
+        let part = part.clone();
+        let reach = self.reach[id.index()];
+        let aspects = match (part.aspect, reach.is_combined) {
+            (wgt::TextureAspect::StencilOnly, true) => 1..2,
+            (wgt::TextureAspect::All, true) => 0..2,
+            _ => 0..1,
+        };
+        // A part that nobody uses by itself is among those that somebody does.
+        let covers =
+            move |begin: &u32, end: &u32| *begin < part.layers.end && part.layers.start < *end;
+        let stretches = cuts.iter().zip(cuts.iter().skip(1));
+        let stretches = stretches.filter(move |(begin, end)| covers(begin, end));
+        stretches.flat_map(move |(begin, _)| {
+            let (begin, aspects) = (*begin, aspects.clone());
+            let mips = part
+                .mips
+                .clone()
+                .filter(move |mip| begin < reach.layers(*mip));
+            mips.flat_map(move |mip| aspects.clone().map(move |aspect| [mip, begin, aspect]))
+        })
+    }
+}

@@ -1,0 +1,268 @@
+//! What a name means in a document: its own materials and inputs, what its includes give, and what
+//! the scene gives. Nothing else crosses the border between two documents.
+
+use super::params::Params;
+use crate::{
+    diagnostics::reports::Reported,
+    document::typed::{Document, Output},
+    language::name::{Name, wgsl_identifier},
+    resource::Target,
+    source::span::Located,
+};
+use std::{
+    collections::{BTreeMap, HashMap},
+    sync::Arc,
+};
+
+/// Number of a frame in [`Frames`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct FrameId(usize);
+
+/// Number of an instance of a document in [`Frames`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct InstanceId(usize);
+
+/// A document as it stands in the graph once.
+#[derive(Debug)]
+pub(crate) struct Instance {
+    pub document: Arc<Document>,
+    pub params: Arc<Params>,
+    /// What stands for names of the scene in here, besides what the scene gives itself.
+    pub scene: BTreeMap<String, Result<Target, Reported>>,
+    /// Where it is included; `None` for the root.
+    pub outer: Option<Outer>,
+    /// The materials outside that are written instead of its own ones, with the place that says so.
+    pub overrides: BTreeMap<String, (Located<String>, Result<Target, Reported>)>,
+    /// Something in it could not be read, so that unknown names are no mistakes.
+    pub incomplete: Option<Reported>,
+}
+
+/// Where a document is included.
+#[derive(Debug)]
+pub(crate) struct Outer {
+    pub frame: FrameId,
+    /// What stands before the names of its outputs there: `left.`, `lamp[2].`.
+    pub namespace: Option<String>,
+    /// What full names of everything else in it begin with.
+    pub private: String,
+}
+
+/// The names of an instance of a document, or of one repetition of a group in it.
+#[derive(Debug)]
+struct Frame {
+    instance: InstanceId,
+    /// The frame around it in the same document.
+    parent: Option<FrameId>,
+    /// What stands before its names in the document: `sample[3].`.
+    path: String,
+    names: Names,
+    /// Their spellings in shaders, those of parts of namespaces included.
+    spelt: HashMap<String, Result<Target, Reported>>,
+    /// The repeated entry, and which repetition this is.
+    index: Option<(Name, u32)>,
+}
+
+/// Names and what they mean.
+pub(crate) type Names = BTreeMap<Name, Meaning>;
+
+/// What a name of a document means.
+#[derive(Clone, Debug)]
+pub(crate) enum Meaning {
+    Target(Target),
+    /// Declared with a mistake.
+    Broken(Reported),
+    /// What a named include gives.
+    Namespace(Names),
+    /// What each repetition of an entry gives.
+    Repeated(Vec<Names>),
+}
+
+/// Where an expression stands: the frame, and the index of its own entry if that is repeated.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub frame: FrameId,
+    pub index: Option<u32>,
+}
+
+/// All frames of a graph.
+#[derive(Debug, Default)]
+pub(crate) struct Frames {
+    frames: Vec<Frame>,
+    instances: Vec<Instance>,
+}
+
+impl Frames {
+    pub fn add_instance(&mut self, instance: Instance) -> InstanceId {
+        self.instances.push(instance);
+        InstanceId(self.instances.len() - 1)
+    }
+
+    pub fn add_frame(
+        &mut self,
+        instance: InstanceId,
+        parent: Option<FrameId>,
+        path: String,
+        index: Option<(Name, u32)>,
+    ) -> FrameId {
+        self.frames.push(Frame {
+            instance,
+            parent,
+            path,
+            names: Names::new(),
+            spelt: HashMap::new(),
+            index,
+        });
+        FrameId(self.frames.len() - 1)
+    }
+
+    /// The frame of the root document.
+    pub fn root(&self) -> FrameId {
+        FrameId(0)
+    }
+
+    pub fn instance_of(&self, frame: FrameId) -> InstanceId {
+        self.frames[frame.0].instance
+    }
+
+    pub fn instance(&self, id: InstanceId) -> &Instance {
+        &self.instances[id.0]
+    }
+
+    pub fn instance_mut(&mut self, id: InstanceId) -> &mut Instance {
+        &mut self.instances[id.0]
+    }
+
+    /// The instance of the document that a frame is of.
+    pub fn document(&self, frame: FrameId) -> &Instance {
+        self.instance(self.instance_of(frame))
+    }
+
+    /// What stands before a frame's names in its document.
+    pub fn path(&self, frame: FrameId) -> &str {
+        &self.frames[frame.0].path
+    }
+
+    /// The full name of what a document calls `name`: the outermost name by which it is known.
+    pub fn full_name(&self, id: InstanceId, name: &str) -> String {
+        let instance = self.instance(id);
+        let Some(outer) = &instance.outer else {
+            return name.to_owned();
+        };
+        let is_it = |output: &&Output| output.material.text() == name;
+        match instance.document.outputs.iter().find(is_it) {
+            Some(output) => {
+                let path = self.path(outer.frame);
+                let namespace = outer.namespace.as_deref().unwrap_or("");
+                let outside = format!("{path}{namespace}{}", output.name.value);
+                self.full_name(self.instance_of(outer.frame), &outside)
+            }
+            None => format!("{}{name}", outer.private),
+        }
+    }
+
+    /// The instance around another one.
+    fn parent(&self, id: InstanceId) -> Option<InstanceId> {
+        let outer = self.instance(id).outer.as_ref()?;
+        Some(self.instance_of(outer.frame))
+    }
+
+    /// The names that were declared in a frame itself.
+    pub fn names(&self, frame: FrameId) -> &Names {
+        &self.frames[frame.0].names
+    }
+
+    /// The frame and those around it in its document, from the inside out.
+    fn outwards(&self, id: FrameId) -> impl Iterator<Item = &Frame> {
+        std::iter::successors(Some(&self.frames[id.0]), |frame| {
+            frame.parent.map(|parent| &self.frames[parent.0])
+        })
+    }
+
+    /// The first of a name stays; a second one is reported where documents are read.
+    pub fn declare(&mut self, frame: FrameId, name: &Name, meaning: Meaning) {
+        let frame = &mut self.frames[frame.0];
+        spell(&mut frame.spelt, &wgsl_identifier(name), &meaning);
+        frame.names.entry(name.clone()).or_insert(meaning);
+    }
+
+    pub fn find(&self, frame: FrameId, name: &str) -> Option<&Meaning> {
+        self.outwards(frame).find_map(|frame| frame.names.get(name))
+    }
+
+    /// What a shader's global of that spelling means.
+    pub fn find_spelt(&self, frame: FrameId, identifier: &str) -> Option<Result<Target, Reported>> {
+        self.outwards(frame)
+            .find_map(|frame| frame.spelt.get(identifier).cloned())
+    }
+
+    /// The index of the innermost repetition, or of that of a named entry.
+    pub fn index(&self, place: Place, of: Option<&Name>) -> Option<u32> {
+        let own = place.index.filter(|_| of.is_none());
+        own.or_else(|| {
+            self.outwards(place.frame).find_map(|frame| {
+                let (name, index) = frame.index.as_ref()?;
+                of.is_none_or(|of| of == name).then_some(*index)
+            })
+        })
+    }
+
+    /// Every name that is known in a frame, with those of namespaces.
+    pub fn known(&self, frame: FrameId) -> Vec<String> {
+        let mut known = Vec::new();
+        for frame in self.outwards(frame) {
+            list(&frame.names, "", &mut known);
+        }
+        known
+    }
+
+    /// The resource that a name of the scene stands for in an instance, where an include says so.
+    pub fn scene(&self, id: InstanceId, name: &str) -> Option<Result<Target, Reported>> {
+        let mut instances = std::iter::successors(Some(id), |id| self.parent(*id));
+        instances.find_map(|id| self.instance(id).scene.get(name).cloned())
+    }
+
+    /// Whether one instance stands in another one.
+    pub fn is_within(&self, inner: InstanceId, outer: InstanceId) -> bool {
+        std::iter::successors(Some(inner), |id| self.parent(*id)).any(|id| id == outer)
+    }
+}
+
+/// Notes how shaders spell what a name means.
+fn spell(spelt: &mut HashMap<String, Result<Target, Reported>>, spelling: &str, meaning: &Meaning) {
+    match meaning {
+        Meaning::Target(target) => {
+            spelt
+                .entry(spelling.to_owned())
+                .or_insert_with(|| Ok(target.clone()));
+        }
+        Meaning::Broken(reported) => {
+            spelt.entry(spelling.to_owned()).or_insert(Err(*reported));
+        }
+        Meaning::Namespace(names) => {
+            for (name, meaning) in names {
+                spell(spelt, &format!("{spelling}_{name}"), meaning);
+            }
+        }
+        Meaning::Repeated(list) => {
+            for (index, names) in list.iter().enumerate() {
+                for (name, meaning) in names {
+                    spell(spelt, &format!("{spelling}_{index}_{name}"), meaning);
+                }
+            }
+        }
+    }
+}
+
+fn list(names: &Names, prefix: &str, into: &mut Vec<String>) {
+    for (name, meaning) in names {
+        match meaning {
+            Meaning::Target(_) | Meaning::Broken(_) => into.push(format!("{prefix}{name}")),
+            Meaning::Namespace(inner) => list(inner, &format!("{prefix}{name}."), into),
+            Meaning::Repeated(inner) => {
+                if let Some(first) = inner.first() {
+                    list(first, &format!("{prefix}{name}[0]."), into);
+                }
+            }
+        }
+    }
+}

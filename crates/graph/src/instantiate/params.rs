@@ -1,0 +1,392 @@
+//! Values of params: the root's from the request, an included document's from the including one.
+
+use crate::{
+    diagnostics::{
+        list::Diagnostics,
+        reports::{Reported, Reports},
+    },
+    document::{
+        params::{Param, ParamValue},
+        typed::Document,
+    },
+    errors::{evaluation::EvaluationError, instantiate::ParamError},
+    graph::{Claim, Graph},
+    language::{
+        eval::Environment,
+        name::{Name, wgsl_identifier},
+        syntax::{Attribute, Expr, Leaf, Reference},
+        value::Value,
+    },
+    source::span::{Located, Span},
+};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The params of a document with the values of one plan.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Params {
+    pub list: Vec<BoundParam>,
+}
+
+/// A param with its value.
+#[derive(Clone, Debug)]
+pub(crate) struct BoundParam {
+    pub param: Param,
+    pub value: Result<ParamValue, Reported>,
+    /// The param of the root document whose value this is, unchanged.
+    pub root: Option<String>,
+    /// The params of the root document that it depends on.
+    pub roots: BTreeSet<String>,
+}
+
+impl Params {
+    pub fn bound(&self, name: &str) -> Option<&BoundParam> {
+        self.list
+            .iter()
+            .find(|bound| bound.param.name.value == name)
+    }
+
+    /// The param that a shader spells so.
+    pub fn spelt(&self, identifier: &str) -> Option<&BoundParam> {
+        let spelt = |bound: &&BoundParam| wgsl_identifier(&bound.param.name) == identifier;
+        self.bound(identifier)
+            .or_else(|| self.list.iter().find(spelt))
+    }
+
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.list.iter().map(|bound| bound.param.name.as_str())
+    }
+
+    /// The value of a param in an expression.
+    pub fn value(&self, name: &str) -> Option<Result<Value, Reported>> {
+        let bound = self.bound(name)?;
+        let value = bound.value.as_ref();
+        Some(
+            value
+                .map(|value| bound.param.value(value))
+                .map_err(|reported| *reported),
+        )
+    }
+
+    /// The params of the root document that an expression depends on.
+    pub fn roots(&self, expr: &Expr) -> BTreeSet<String> {
+        let mut roots = BTreeSet::new();
+        expr.visit(&mut |leaf| {
+            let name = match leaf {
+                Leaf::Param(name) => name,
+                Leaf::Word(name) => name.as_str(),
+                _ => return,
+            };
+            roots.extend(
+                self.bound(name)
+                    .iter()
+                    .flat_map(|bound| bound.roots.clone()),
+            );
+        });
+        roots
+    }
+}
+
+/// Only params and features have values: for defaults, and for claims.
+struct ParamsAlone<'a> {
+    params: &'a Params,
+    features: wgt::Features,
+    reports: &'a mut Reports,
+}
+
+impl Environment for ParamsAlone<'_> {
+    fn viewport(&self) -> [u32; 2] {
+        [1, 1]
+    }
+
+    fn has(&self, feature: wgt::Features) -> bool {
+        self.features.contains(feature)
+    }
+
+    fn param(&mut self, name: &str, span: &Span) -> Result<Value, Reported> {
+        match self.params.value(name) {
+            Some(value) => value,
+            None => {
+                let known = self.reports.known(self.params.names());
+                Err(self.report(EvaluationError::param(name, span, false, known)))
+            }
+        }
+    }
+
+    fn word_or_param(&mut self, name: &Name) -> Option<Value> {
+        self.params.value(name)?.ok()
+    }
+
+    fn index(&mut self, of: Option<&Name>, span: &Span) -> Result<u32, Reported> {
+        Err(self.report(EvaluationError::NoIndex(span.clone(), of.cloned())))
+    }
+
+    fn attribute(&mut self, of: &Reference, _: Attribute, span: &Span) -> Result<Value, Reported> {
+        let name = of.text().to_owned();
+        Err(self.report(EvaluationError::NoSizes(span.clone(), name)))
+    }
+
+    fn constant(&mut self, _: &str, span: &Span) -> Result<Value, Reported> {
+        Err(self.report(EvaluationError::NoShader(span.clone())))
+    }
+
+    fn report(&mut self, error: EvaluationError) -> Reported {
+        self.reports.report(error)
+    }
+}
+
+/// The value that a default has; exposed params are known before the declared ones.
+fn default(
+    params: &Params,
+    param: &Param,
+    features: wgt::Features,
+    reports: &mut Reports,
+) -> Result<ParamValue, Reported> {
+    let Some(default) = &param.default else {
+        return Ok(param.stand_in());
+    };
+    let mut environment = ParamsAlone {
+        params,
+        features,
+        reports,
+    };
+    let value = default.value(&mut environment)?;
+    param.convert(&value).map_err(|why| {
+        reports.report(ParamError::Default {
+            param: Located::new(param.name.value.clone(), default.span.clone()),
+            why,
+        })
+    })
+}
+
+/// The params of a document in the order in which their values are found.
+fn in_order(document: &Document) -> impl Iterator<Item = &Param> {
+    let (declared, exposed) = document.params.split_at(document.declared);
+    exposed.iter().chain(declared)
+}
+
+/// The params of the root document.
+pub(crate) fn root(
+    document: &Document,
+    asked: &BTreeMap<String, ParamValue>,
+    features: wgt::Features,
+    reports: &mut Reports,
+) -> Params {
+    let mut params = Params::default();
+    for param in in_order(document) {
+        let name = &param.name.value;
+        let value = match asked.get(name) {
+            Some(value) => Ok(value.clone()),
+            None => default(&params, param, features, reports),
+        };
+        params.list.push(BoundParam {
+            param: param.clone(),
+            value,
+            root: Some(name.clone()),
+            roots: BTreeSet::from([name.clone()]),
+        });
+    }
+    params
+}
+
+/// What an include says of the params of its document.
+pub(crate) struct Given<'a> {
+    /// What the params are called where they are exposed: with the include's name, if it has one.
+    pub exposed: BTreeMap<&'a str, String>,
+    pub outer: &'a Params,
+    /// The include's own place.
+    pub span: &'a Span,
+    pub features: wgt::Features,
+}
+
+impl Given<'_> {
+    /// The params of an included document; `set` are values with the params of the root that they
+    /// depend on.
+    pub fn bind(
+        &self,
+        document: &Document,
+        set: &BTreeMap<String, (Located<Expr>, Result<Value, Reported>)>,
+        reports: &mut Reports,
+    ) -> Params {
+        let mut params = Params::default();
+        for param in in_order(document) {
+            let bound = match set.get(&param.name.value) {
+                Some((expr, value)) => self.set(param, expr, value, reports),
+                None => self.unset(document, param, &params, reports),
+            };
+            params.list.push(bound);
+        }
+        params
+    }
+
+    fn set(
+        &self,
+        param: &Param,
+        expr: &Located<Expr>,
+        value: &Result<Value, Reported>,
+        reports: &mut Reports,
+    ) -> BoundParam {
+        let source = expr
+            .value
+            .as_param()
+            .and_then(|name| self.outer.bound(name));
+        let misfit = source.filter(|source| !param.holds_all_of(&source.param));
+        let value = match (value, misfit) {
+            (Err(reported), _) => Err(*reported),
+            (Ok(_), Some(source)) => Err(reports.report(ParamError::Misfit {
+                name: Located::new(param.name.value.clone(), expr.span.clone()),
+                outer: Box::new(source.param.clone()),
+                param: Box::new(param.clone()),
+            })),
+            (Ok(value), None) => param.convert(value).map_err(|why| {
+                reports.report(ParamError::Set {
+                    name: Located::new(param.name.value.clone(), expr.span.clone()),
+                    declared: param.name.span.clone(),
+                    why,
+                })
+            }),
+        };
+        BoundParam {
+            param: param.clone(),
+            value,
+            root: source.and_then(|source| source.root.clone()),
+            roots: self.outer.roots(&expr.value),
+        }
+    }
+
+    /// A param that the include says nothing of: one of the outer document that is exposed or asked
+    /// for, or what it is by itself.
+    fn unset(
+        &self,
+        document: &Document,
+        param: &Param,
+        known: &Params,
+        reports: &mut Reports,
+    ) -> BoundParam {
+        let name = param.name.as_str();
+        let outer = match self.exposed.get(name) {
+            Some(exposed) => self.outer.bound(exposed),
+            None if param.default.is_none() => self.outer.bound(name),
+            None => None,
+        };
+        let mut bound = BoundParam {
+            param: param.clone(),
+            value: Ok(param.stand_in()),
+            root: None,
+            roots: BTreeSet::new(),
+        };
+        match outer {
+            Some(outer) if !param.holds_all_of(&outer.param) => {
+                bound.value = Err(reports.report(ParamError::Misfit {
+                    name: Located::new(name.to_owned(), self.span.clone()),
+                    outer: Box::new(outer.param.clone()),
+                    param: Box::new(param.clone()),
+                }));
+            }
+            Some(outer) => {
+                bound.value = outer.value.clone();
+                bound.root.clone_from(&outer.root);
+                bound.roots.clone_from(&outer.roots);
+            }
+            None if param.default.is_none() => {
+                bound.value = Err(reports.report(ParamError::Required {
+                    name: name.to_owned(),
+                    document: document.file.name.to_string(),
+                    span: self.span.clone(),
+                    declared: param.name.span.clone(),
+                }));
+            }
+            None => {
+                bound.value = default(known, param, self.features, reports);
+                let roots = param.default.as_ref().map(|default| known.roots(default));
+                bound.roots = roots.unwrap_or_default();
+            }
+        }
+        bound
+    }
+}
+
+impl Graph {
+    /// The value of every param: that which is asked for, else the default on a device with these
+    /// features.
+    ///
+    /// # Errors
+    /// If there is no such param, or a value does not fit.
+    pub fn values(
+        &self,
+        asked: &BTreeMap<String, ParamValue>,
+        features: wgt::Features,
+    ) -> Result<BTreeMap<String, ParamValue>, Diagnostics> {
+        let mut reports = Reports::default();
+        let params = self.checked_params(asked, features, &mut reports);
+        match params {
+            Ok(params) => Ok(params
+                .list
+                .into_iter()
+                .filter_map(|bound| Some((bound.param.name.value, bound.value.ok()?)))
+                .collect()),
+            Err(_) => Err(self.diagnostics(reports.into_list())),
+        }
+    }
+
+    /// The params of the root document, all of them right.
+    pub(crate) fn checked_params(
+        &self,
+        asked: &BTreeMap<String, ParamValue>,
+        features: wgt::Features,
+        reports: &mut Reports,
+    ) -> Result<Params, Reported> {
+        let mut wrong = None;
+        for (name, value) in asked {
+            let mistake = match self.param(name) {
+                Ok(param) => param.check(value).err().map(|why| ParamError::Asked {
+                    name: Located::new(name.clone(), param.name.span.clone()),
+                    value: value.clone(),
+                    why,
+                }),
+                Err(error) => Some(ParamError::Unknown(error.to_string())),
+            };
+            wrong = mistake.map(|mistake| reports.report(mistake)).or(wrong);
+        }
+        let params = root(&self.document, asked, features, reports);
+        let bad = params
+            .list
+            .iter()
+            .find_map(|bound| bound.value.as_ref().err());
+        wrong.or(bad.copied()).map_or(Ok(params), Err)
+    }
+
+    /// What the document promises of itself for these values of params, on a device with these
+    /// features.
+    ///
+    /// # Errors
+    /// If a value does not fit, or a condition has no value.
+    pub fn claims(
+        &self,
+        asked: &BTreeMap<String, ParamValue>,
+        features: wgt::Features,
+    ) -> Result<Vec<Claim>, Diagnostics> {
+        let mut reports = Reports::default();
+        let mut claims = Vec::new();
+        if let Ok(params) = self.checked_params(asked, features, &mut reports) {
+            for (name, claim) in &self.document.claims {
+                let mut environment = ParamsAlone {
+                    params: &params,
+                    features,
+                    reports: &mut reports,
+                };
+                let condition = claim.condition.as_ref();
+                let holds = condition.map_or(Ok(true), |c| c.boolean(&mut environment));
+                claims.extend(holds.ok().map(|holds| Claim {
+                    name: name.value.clone(),
+                    condition: condition.map_or("", |c| c.text()).to_owned(),
+                    because: claim.because.clone(),
+                    holds,
+                }));
+            }
+        }
+        match reports.errors() {
+            0 => Ok(claims),
+            _ => Err(self.diagnostics(reports.into_list())),
+        }
+    }
+}

@@ -1,0 +1,273 @@
+//! Expressions and selections at their places in a document.
+
+use super::{frames::Place, world::World};
+use crate::{
+    diagnostics::reports::{Reported, Reports},
+    errors::{evaluation::EvaluationError, instantiate::BorderError},
+    language::{
+        eval::Environment,
+        name::Name,
+        syntax::{Attribute, Reference, Selection},
+        value::{Scalar, Value},
+    },
+    resource::{ResourceKind, SubresourceRange, Target},
+    shader::reflect::Shader,
+    source::span::{Located, Span},
+};
+use std::{ops::Range, sync::Arc};
+
+/// What names of an expression stand for at a place of a document.
+pub(crate) struct At<'w, 'a, 'r> {
+    world: &'w mut World<'a>,
+    place: Place,
+    /// The shader of the pass, where it is one's expression.
+    shader: Option<Result<Arc<Shader>, Reported>>,
+    reports: &'r mut Reports,
+}
+
+impl<'a> World<'a> {
+    pub fn at<'w, 'r>(
+        &'w mut self,
+        place: Place,
+        shader: Option<Result<Arc<Shader>, Reported>>,
+        reports: &'r mut Reports,
+    ) -> At<'w, 'a, 'r> {
+        At {
+            world: self,
+            place,
+            shader,
+            reports,
+        }
+    }
+
+    /// Narrows a target to some of its layers, slices or items.
+    pub(super) fn select_layers(
+        &mut self,
+        target: &mut Target,
+        selection: &Selection,
+        reference: &Reference,
+        place: Place,
+        reports: &mut Reports,
+    ) -> Result<(), Reported> {
+        let resource = self.get(target.id);
+        let (what, count) = match &resource.kind {
+            ResourceKind::Texture(texture) => {
+                let what = if texture.is_3d { "slices" } else { "layers" };
+                (what, Some(target.part.layers.len() as u64))
+            }
+            ResourceKind::Buffer(buffer) => ("items", buffer.count),
+            ResourceKind::Provided(provided) => ("items", provided.items),
+            ResourceKind::Sampler(_) | ResourceKind::Frame => ("items", None),
+        };
+        let items = match target.part.items() {
+            Some(items) if what == "items" => Some(items.len() as u64),
+            _ => count,
+        };
+        let Some(count) = items else {
+            let name = Located::new(reference.path(), reference.span.clone());
+            return Err(reports.report(EvaluationError::NoCount(name)));
+        };
+        let range = self.range(selection, (what, count), reference, target, place, reports)?;
+        let start = match target.part == SubresourceRange::WHOLE {
+            true => 0,
+            false => target.part.layers.start,
+        };
+        target.part.layers = start + range.start..start + range.end;
+        Ok(())
+    }
+
+    /// Narrows a target to some of its mips.
+    pub(super) fn select_mips(
+        &mut self,
+        target: &mut Target,
+        selection: &Selection,
+        reference: &Reference,
+        place: Place,
+        reports: &mut Reports,
+    ) -> Result<(), Reported> {
+        if !matches!(self.get(target.id).kind, ResourceKind::Texture(_)) {
+            return Err(reports.report(BorderError::NoPart {
+                text: reference.path(),
+                span: reference.span.clone(),
+                what: "only textures have mips",
+            }));
+        }
+        let have = ("mips", target.part.mips.len() as u64);
+        let range = self.range(selection, have, reference, target, place, reports)?;
+        let start = target.part.mips.start;
+        target.part.mips = start + range.start..start + range.end;
+        if let ResourceKind::Texture(texture) = &self.get(target.id).kind
+            && texture.is_3d
+        {
+            let layers = texture.mip_layers(target.part.mips.start);
+            target.part.layers.end = target.part.layers.end.min(layers);
+        }
+        Ok(())
+    }
+
+    /// The range that is selected of so many layers, items or mips.
+    fn range(
+        &mut self,
+        selection: &Selection,
+        (what, count): (&str, u64),
+        reference: &Reference,
+        target: &Target,
+        place: Place,
+        reports: &mut Reports,
+    ) -> Result<Range<u32>, Reported> {
+        let at = &mut self.at(place, None, reports);
+        let (range, span) = match selection {
+            Selection::One(one) => {
+                let first = one.count(at)?;
+                (first..first.saturating_add(1), &one.span)
+            }
+            Selection::Range(ends) => {
+                let [first, end] = &**ends;
+                (first.count(at)?..end.count(at)?, &end.span)
+            }
+        };
+        let fits = range.start < range.end && range.end <= count;
+        let narrow = || Some(u32::try_from(range.start).ok()?..u32::try_from(range.end).ok()?);
+        narrow().filter(|_| fits).ok_or_else(|| {
+            let last = count.saturating_sub(1);
+            reports.report(BorderError::Range {
+                text: reference.text().to_owned(),
+                span: span.clone(),
+                what: match count {
+                    1 => format!("its {what} are [0] alone, this is [{}]", range.start),
+                    _ => format!("its {what} are [0] to [{last}], this is [{}]", range.start),
+                },
+                declared: self.get(target.id).declared.clone(),
+            })
+        })
+    }
+
+    /// An attribute of a target; `None` if it has no such one.
+    fn attribute(&self, target: &Target, attribute: Attribute) -> Option<Value> {
+        let part = &target.part;
+        let texture = match &self.get(target.id).kind {
+            ResourceKind::Texture(texture) => texture,
+            ResourceKind::Buffer(_) | ResourceKind::Provided(_)
+                if attribute == Attribute::Count =>
+            {
+                return self.items(target).map(Value::count);
+            }
+            _ => return None,
+        };
+        let [width, height] = texture.mip_size(part.mips.start);
+        let layers = match texture.is_3d {
+            true => part
+                .layers
+                .len()
+                .min(texture.mip_layers(part.mips.start) as usize),
+            false => part.layers.len(),
+        };
+        let whole = |number: u32| Scalar::Whole(number.into());
+        Some(match attribute {
+            Attribute::Size if texture.is_3d => Value::List(vec![
+                whole(width),
+                whole(height),
+                Scalar::Whole(layers as i64),
+            ]),
+            Attribute::Size => Value::List(vec![whole(width), whole(height)]),
+            Attribute::Width => Value::whole(width),
+            Attribute::Height => Value::whole(height),
+            Attribute::Layers => Value::count(layers as u64),
+            Attribute::Mips => Value::count(part.mips.len() as u64),
+            Attribute::Samples => Value::whole(texture.samples),
+            Attribute::Count => {
+                let depth = if texture.is_3d { layers as u64 } else { 1 };
+                let count = u64::from(width).saturating_mul(height.into());
+                Value::count(count.saturating_mul(depth))
+            }
+            Attribute::Format => Value::Format(texture.format),
+            Attribute::Index => return None,
+        })
+    }
+
+    /// How many items of a buffer a target is, where that is known.
+    pub fn items(&self, target: &Target) -> Option<u64> {
+        let selected = target.part.items().map(|items| items.len() as u64);
+        selected.or(match &self.get(target.id).kind {
+            ResourceKind::Buffer(buffer) => buffer.count,
+            ResourceKind::Provided(provided) => provided.items,
+            _ => None,
+        })
+    }
+}
+
+impl Environment for At<'_, '_, '_> {
+    fn viewport(&self) -> [u32; 2] {
+        self.world.request.viewport
+    }
+
+    fn has(&self, feature: wgt::Features) -> bool {
+        self.world.request.features.contains(feature)
+    }
+
+    fn param(&mut self, name: &str, span: &Span) -> Result<Value, Reported> {
+        let instance = self.world.frames.document(self.place.frame);
+        if let Some(value) = instance.params.value(name) {
+            return value;
+        }
+        if let Some(reported) = instance.document.broken_params {
+            return Err(reported);
+        }
+        let is_material = self.world.frames.find(self.place.frame, name).is_some();
+        let known = self.reports.known(instance.params.names());
+        Err(self.report(EvaluationError::param(name, span, is_material, known)))
+    }
+
+    fn word_or_param(&mut self, name: &Name) -> Option<Value> {
+        let instance = self.world.frames.document(self.place.frame);
+        instance.params.value(name)?.ok()
+    }
+
+    fn index(&mut self, of: Option<&Name>, span: &Span) -> Result<u32, Reported> {
+        let index = self.world.frames.index(self.place, of);
+        let missing = || EvaluationError::NoIndex(span.clone(), of.cloned());
+        index.ok_or_else(|| self.reports.report(missing()))
+    }
+
+    fn attribute(
+        &mut self,
+        of: &Reference,
+        attribute: Attribute,
+        span: &Span,
+    ) -> Result<Value, Reported> {
+        let target = self.world.resolve(of, self.place, self.reports)?;
+        if let Some(value) = self.world.attribute(&target, attribute) {
+            return Ok(value);
+        }
+        let resource = self.world.get(target.id);
+        let error = match attribute {
+            Attribute::Count => EvaluationError::NoCount(Located::new(of.path(), of.span.clone())),
+            _ => EvaluationError::NoAttribute {
+                span: span.clone(),
+                of: format!("`{}`, {},", resource.name, resource.kind.describe()),
+            },
+        };
+        Err(self.report(error))
+    }
+
+    fn constant(&mut self, name: &str, span: &Span) -> Result<Value, Reported> {
+        let shader = match &self.shader {
+            Some(shader) => shader.as_ref().map_err(|reported| *reported)?,
+            None => return Err(self.reports.report(EvaluationError::NoShader(span.clone()))),
+        };
+        if let Some(value) = shader.constant(name) {
+            return Ok(Value::Scalar(value));
+        }
+        let known = self.reports.known(shader.constants());
+        Err(self.reports.report(EvaluationError::NoConstant {
+            span: span.clone(),
+            file: shader.source.file.name.to_string(),
+            name: name.to_owned(),
+            known,
+        }))
+    }
+
+    fn report(&mut self, error: EvaluationError) -> Reported {
+        self.reports.report(error)
+    }
+}

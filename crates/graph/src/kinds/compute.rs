@@ -1,0 +1,67 @@
+//! `Compute`: one dispatch of so many threads or workgroups, or with its size in a buffer.
+
+use super::{
+    kind::{Lowering, PassKind},
+    step::{Dispatch, Groups, Operand, Step, Threads},
+};
+use crate::{
+    language::{
+        syntax::{Expr, Reference},
+        value::Scalar,
+    },
+    source::span::Located,
+};
+use serde::Deserialize;
+
+/// Body of a `Compute` pass.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Compute {
+    dispatch: Size,
+    #[serde(default)]
+    entry: Option<Located<String>>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename = "dispatch")]
+enum Size {
+    Over(Expr),
+    Groups(Expr, Expr, Expr),
+    Indirect(Reference),
+}
+
+impl PassKind for Compute {
+    fn lower(&self, pass: &mut Lowering<'_>) {
+        let mut program = pass.program();
+        program.compute.clone_from(&self.entry);
+        let groups = match &self.dispatch {
+            Size::Over(threads) => Groups::Direct(over(threads, pass)),
+            Size::Groups(x, y, z) => {
+                Groups::Direct(Threads::Groups([x, y, z].map(|edge| pass.count32(edge))))
+            }
+            Size::Indirect(buffer) => Groups::Indirect(Operand::from(buffer)),
+        };
+        pass.step(Step::Dispatch(Dispatch { program, groups }));
+    }
+}
+
+/// A thread for each of a number of items, or for each texel of a size.
+fn over(threads: &Expr, pass: &mut Lowering<'_>) -> Threads {
+    let edge = |scalar: &Scalar| match scalar {
+        Scalar::Whole(whole) => u64::try_from(*whole).ok(),
+        Scalar::Number(_) => None,
+    };
+    let list = pass.list(threads);
+    let edges: Option<Vec<u64>> = list.iter().map(edge).collect();
+    match edges.as_deref() {
+        Some([items]) => Threads::Items(*items),
+        Some([width, height]) => Threads::Texels([*width, *height, 1]),
+        Some([width, height, depth]) => Threads::Texels([*width, *height, *depth]),
+        Some([]) => Threads::Items(1),
+        _ => {
+            let what = "a dispatch is over a number of items or over a size, in whole numbers";
+            pass.report_value(crate::diagnostics::code::Code::Expression, threads, what);
+            Threads::Items(1)
+        }
+    }
+}

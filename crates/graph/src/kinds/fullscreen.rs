@@ -1,0 +1,51 @@
+//! `Fullscreen`: a fragment shader once per pixel of its targets.
+
+use super::{
+    kind::{Lowering, PassKind},
+    step::{Draw, DrawCall, Step},
+    targets::{self, ColorEntry, StencilEntry},
+};
+use crate::{language::syntax::Expr, source::span::Located};
+use serde::Deserialize;
+
+/// Body of a `Fullscreen` pass.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Fullscreen {
+    color: Vec<ColorEntry>,
+    #[serde(default)]
+    stencil: Option<StencilEntry>,
+    #[serde(default)]
+    area: Option<Expr>,
+    #[serde(default)]
+    fragment: Option<Located<String>>,
+}
+
+impl PassKind for Fullscreen {
+    fn lower(&self, pass: &mut Lowering<'_>) {
+        let mut program = pass.program();
+        program.fragment.clone_from(&self.fragment);
+        let area = self.area.as_ref();
+        let colors = self
+            .color
+            .iter()
+            .map(|color| targets::color(color, area, pass));
+        let draw = Draw {
+            program,
+            fullscreen: true,
+            colors: colors.collect(),
+            depth: None,
+            stencil: self
+                .stencil
+                .as_ref()
+                .map(|entry| targets::stencil(entry, area, pass)),
+            area: area.and_then(|area| targets::area(area, pass)),
+            call: DrawCall::Direct {
+                vertices: 3,
+                instances: 1,
+            },
+            primitive: wgt::PrimitiveState::default(),
+        };
+        pass.step(Step::Draw(draw));
+    }
+}

@@ -1,0 +1,185 @@
+//! What a pass kind is: a type that deserialises its own body and lowers it to [`Step`]s.
+
+use super::step::{Names, Operand, Program, Scratch, Step};
+use crate::{
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Reported},
+    document::fields::Chosen,
+    errors::evaluation::EvaluationError,
+    language::{
+        eval::Environment,
+        name::Name,
+        syntax::{Expr, Reference},
+        value::{Scalar, Value},
+    },
+    source::span::Located,
+};
+use std::fmt;
+
+/// The body of a pass of some kind. Its fields are what the RON entry holds beside `name`, `shader`,
+/// `bind`, `set`, `if`, `repeat`, `run` and `overwrites`.
+pub trait PassKind: fmt::Debug + Send + Sync {
+    /// Says which GPU work the pass is, in order. Called without a GPU, more than once; it must
+    /// depend on nothing but the body and values that it asks for, and the shaders it names must not
+    /// depend on these.
+    fn lower(&self, pass: &mut Lowering<'_>);
+}
+
+/// What a [`PassKind`] lowers with: the pass's name, shader and values in, steps and diagnostics
+/// out.
+pub struct Lowering<'a> {
+    pub(crate) name: &'a Located<Name>,
+    pub(crate) shader: Option<&'a Located<String>>,
+    /// What the pass says of its own shader's globals.
+    pub(crate) bind: &'a [(Located<String>, Reference)],
+    /// `None` where a document is only read: nothing has a value then.
+    pub(crate) environment: Option<&'a mut dyn Environment>,
+    pub(crate) steps: Vec<Step<Names>>,
+    /// Name and bytes of the pass's own buffers.
+    pub(crate) scratch: Vec<(String, u64)>,
+    pub(crate) diagnostics: Vec<Diagnostic>,
+}
+
+impl<'a> Lowering<'a> {
+    pub(crate) fn new(
+        name: &'a Located<Name>,
+        shader: Option<&'a Located<String>>,
+        bind: &'a [(Located<String>, Reference)],
+        environment: Option<&'a mut dyn Environment>,
+    ) -> Self {
+        Self {
+            name,
+            shader,
+            bind,
+            environment,
+            // Most have one, and it is large.
+            steps: Vec::with_capacity(1),
+            scratch: Vec::new(),
+            diagnostics: Vec::new(),
+        }
+    }
+
+    /// The pass's name with its place in the document.
+    pub fn name(&self) -> Located<String> {
+        self.named(self.name)
+    }
+
+    /// The program of the pass's own shader (its `shader` field, else its name) with the bindings
+    /// the document gives.
+    pub fn program(&self) -> Program {
+        self.program_with(self.shader.cloned().unwrap_or_else(|| self.name()))
+    }
+
+    /// The program of a shader that comes with the pass kind.
+    pub fn program_of(&self, shader: &str) -> Program {
+        self.program_with(self.named(shader))
+    }
+
+    fn program_with(&self, shader: Located<String>) -> Program {
+        let bind = self.bind.iter();
+        Program {
+            shader: Some(shader),
+            bind: bind
+                .map(|(global, to)| (global.clone(), Operand::from(to)))
+                .collect(),
+            ..Program::default()
+        }
+    }
+
+    /// A name that the kind itself gives; errors about it point at the pass.
+    pub fn named(&self, name: &str) -> Located<String> {
+        Located::new(name.to_owned(), self.name.span.clone())
+    }
+
+    /// Adds a buffer of `bytes` that only this pass uses; `name` is what captures show.
+    pub fn scratch(&mut self, name: &str, bytes: u64) -> Scratch {
+        self.scratch.push((name.to_owned(), bytes));
+        Scratch(self.scratch.len() - 1)
+    }
+
+    /// Appends a step.
+    pub fn step(&mut self, step: Step<Names>) {
+        self.steps.push(step);
+    }
+
+    /// Reports a mistake in the body.
+    pub fn report(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+
+    /// Reports a value that cannot be, at the expression that it is.
+    pub fn report_value(&mut self, code: Code, expr: &Expr, what: impl Into<String>) {
+        self.report(Diagnostic::error(code, what).at(expr.span.clone(), ""));
+    }
+
+    /// What `of` makes of an expression in the plan's environment; `fallback` where nothing has a
+    /// value, or it is wrong, which was reported.
+    fn evaluate<T>(
+        &mut self,
+        fallback: T,
+        of: impl FnOnce(&mut dyn Environment) -> Result<T, Reported>,
+    ) -> T {
+        match &mut self.environment {
+            Some(environment) => of(&mut **environment).unwrap_or(fallback),
+            None => fallback,
+        }
+    }
+
+    /// A number of things; 1 where the document is only read.
+    pub fn count(&mut self, expr: &Expr) -> u64 {
+        self.evaluate(1, |environment| expr.count(environment))
+    }
+
+    /// A number of things that 32 bits hold; 1 where the document is only read.
+    pub fn count32(&mut self, expr: &Expr) -> u32 {
+        self.evaluate(1, |environment| expr.count32(environment))
+    }
+
+    /// A number; 0 where the document is only read.
+    pub fn number(&mut self, expr: &Expr) -> f64 {
+        self.evaluate(0.0, |environment| expr.number(environment))
+    }
+
+    /// True or false; false where the document is only read.
+    pub fn boolean(&mut self, expr: &Expr) -> bool {
+        self.evaluate(false, |environment| expr.boolean(environment))
+    }
+
+    /// One number, or several; none where the document is only read.
+    pub(crate) fn list(&mut self, expr: &Expr) -> Vec<Scalar> {
+        self.evaluate(Vec::new(), |environment| {
+            Ok(match expr.value(environment)? {
+                Value::List(list) => list,
+                _ => vec![expr.scalar(environment)?],
+            })
+        })
+    }
+
+    /// A word of the language that may be that of a `Choice` param, all of whose words must be in
+    /// `words`: a document must not fail on some of its params' values.
+    pub(crate) fn word<T: Copy>(&mut self, chosen: &Chosen<T>, words: &[(&str, T)]) -> T {
+        let expr = match chosen {
+            Chosen::Word(word) => return *word,
+            Chosen::Expr(expr) => expr,
+        };
+        let known = |name: &Name| words.iter().find(|(word, _)| **word == **name);
+        self.evaluate(words[0].1, |environment| {
+            let value = expr.value(environment)?;
+            if let Value::Word(word) = &value
+                && word
+                    .of
+                    .iter()
+                    .flat_map(|of| of.iter())
+                    .all(|word| known(word).is_some())
+                && let Some((_, value)) = known(&word.word)
+            {
+                return Ok(*value);
+            }
+            let expected = words.iter().map(|(word, _)| (*word).to_owned()).collect();
+            Err(environment.report(EvaluationError::Words {
+                span: expr.span.clone(),
+                expected,
+                found: value,
+            }))
+        })
+    }
+}

@@ -1,0 +1,14 @@
+//! Pass kinds: what an entry of `passes` may be, and what it lowers to. A kind is one file.
+
+mod clear;
+mod compute;
+mod copy;
+mod fullscreen;
+pub(crate) mod kind;
+mod raster;
+pub(crate) mod registry;
+pub mod step;
+mod targets;
+
+pub use kind::{Lowering, PassKind};
+pub use registry::Registry;

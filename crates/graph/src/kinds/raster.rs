@@ -1,0 +1,165 @@
+//! `Raster`: a draw call with vertex pulling into colour, depth and stencil attachments.
+
+use super::{
+    kind::{Lowering, PassKind},
+    step::{Draw, DrawCall, Operand, Step},
+    targets::{self, ColorEntry, DepthEntry, StencilEntry},
+};
+use crate::{
+    document::{
+        fields::Chosen,
+        ron::{raw, read},
+    },
+    language::syntax::{Expr, Reference},
+    source::span::Located,
+};
+use serde::{Deserialize, Deserializer};
+
+/// Body of a `Raster` pass.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Raster {
+    draw: Call,
+    #[serde(default)]
+    instances: Option<Expr>,
+    #[serde(default)]
+    color: Vec<ColorEntry>,
+    #[serde(default)]
+    depth: Option<DepthEntry>,
+    #[serde(default)]
+    stencil: Option<StencilEntry>,
+    #[serde(default)]
+    area: Option<Expr>,
+    #[serde(default = "no_culling")]
+    cull: Chosen<Face>,
+    #[serde(default)]
+    front_face: Winding,
+    #[serde(default)]
+    topology: Topology,
+    /// Whether a pixel that a triangle touches anywhere counts, not only one whose centre it covers.
+    #[serde(default)]
+    conservative: bool,
+    /// Whether what lies before the near or behind the far plane is drawn, its depth clamped.
+    #[serde(default)]
+    unclipped: bool,
+    #[serde(default)]
+    vertex: Option<Located<String>>,
+    #[serde(default)]
+    fragment: Option<Located<String>>,
+}
+
+fn no_culling() -> Chosen<Face> {
+    Chosen::Word(Face::None)
+}
+
+/// A number of vertices, or `Indirect("buffer")`.
+#[derive(Clone, Debug)]
+enum Call {
+    Vertices(Expr),
+    Indirect(Reference),
+}
+
+impl<'de> Deserialize<'de> for Call {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(rename = "draw")]
+        enum Words {
+            Indirect(Reference),
+        }
+        let (text, _) = raw(deserializer)?;
+        match text.starts_with(|c: char| c.is_alphabetic()) {
+            true => read(text).map(|Words::Indirect(buffer)| Self::Indirect(buffer)),
+            false => read(text).map(Self::Vertices),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+enum Face {
+    None,
+    Front,
+    Back,
+}
+
+/// The faces as words of a `Choice`.
+const FACES: [(&str, Face); 3] = [
+    ("none", Face::None),
+    ("front", Face::Front),
+    ("back", Face::Back),
+];
+
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+enum Winding {
+    #[default]
+    Ccw,
+    Cw,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+enum Topology {
+    #[default]
+    TriangleList,
+    TriangleStrip,
+    LineList,
+    PointList,
+}
+
+impl PassKind for Raster {
+    fn lower(&self, pass: &mut Lowering<'_>) {
+        let mut program = pass.program();
+        program.vertex.clone_from(&self.vertex);
+        program.fragment.clone_from(&self.fragment);
+        let call = match &self.draw {
+            Call::Vertices(count) => DrawCall::Direct {
+                vertices: pass.count32(count),
+                instances: self
+                    .instances
+                    .as_ref()
+                    .map_or(1, |count| pass.count32(count)),
+            },
+            Call::Indirect(buffer) => DrawCall::Indirect(Operand::from(buffer)),
+        };
+        let primitive = wgt::PrimitiveState {
+            topology: match self.topology {
+                Topology::TriangleList => wgt::PrimitiveTopology::TriangleList,
+                Topology::TriangleStrip => wgt::PrimitiveTopology::TriangleStrip,
+                Topology::LineList => wgt::PrimitiveTopology::LineList,
+                Topology::PointList => wgt::PrimitiveTopology::PointList,
+            },
+            front_face: match self.front_face {
+                Winding::Ccw => wgt::FrontFace::Ccw,
+                Winding::Cw => wgt::FrontFace::Cw,
+            },
+            cull_mode: match pass.word(&self.cull, &FACES) {
+                Face::None => None,
+                Face::Front => Some(wgt::Face::Front),
+                Face::Back => Some(wgt::Face::Back),
+            },
+            conservative: self.conservative,
+            unclipped_depth: self.unclipped,
+            ..wgt::PrimitiveState::default()
+        };
+        let area = self.area.as_ref();
+        let colors = self
+            .color
+            .iter()
+            .map(|color| targets::color(color, area, pass));
+        let draw = Draw {
+            program,
+            fullscreen: false,
+            colors: colors.collect(),
+            depth: self
+                .depth
+                .as_ref()
+                .map(|depth| targets::depth(depth, area, pass)),
+            stencil: self
+                .stencil
+                .as_ref()
+                .map(|entry| targets::stencil(entry, area, pass)),
+            area: area.and_then(|area| targets::area(area, pass)),
+            call,
+            primitive,
+        };
+        pass.step(Step::Draw(draw));
+    }
+}

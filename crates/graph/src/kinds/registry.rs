@@ -1,0 +1,63 @@
+//! The pass kinds that documents may use: an open set.
+
+use super::{
+    clear::Clear, compute::Compute, copy::Copy, fullscreen::Fullscreen, kind::PassKind,
+    raster::Raster,
+};
+use crate::{
+    diagnostics::diagnostic::Diagnostic,
+    document::ron::{Field, from_fields},
+    source::span::Span,
+};
+use serde::de::DeserializeOwned;
+use std::{fmt, sync::Arc};
+
+/// How an entry of a kind is read.
+type Parse = fn(&[Field], &Span) -> Result<Arc<dyn PassKind>, Diagnostic>;
+
+pub(crate) struct Kind {
+    pub name: &'static str,
+    pub parse: Parse,
+}
+
+/// The pass kinds that documents may use.
+#[derive(Default)]
+pub struct Registry {
+    kinds: Vec<Kind>,
+}
+
+impl Registry {
+    /// `Raster`, `Fullscreen`, `Compute`, `Copy` and `Clear`.
+    pub fn standard() -> Self {
+        let mut registry = Self::default();
+        registry.register::<Raster>("Raster");
+        registry.register::<Fullscreen>("Fullscreen");
+        registry.register::<Compute>("Compute");
+        registry.register::<Copy>("Copy");
+        registry.register::<Clear>("Clear");
+        registry
+    }
+
+    /// Adds a kind under the tag that documents write; a kind of that tag that is already there is
+    /// replaced. The language's own words (`Include`, `Group`, `Change`, `Remove`) stay what they
+    /// are.
+    pub fn register<K: PassKind + DeserializeOwned + 'static>(&mut self, tag: &'static str) {
+        self.kinds.retain(|kind| kind.name != tag);
+        let parse: Parse = |fields, whole| Ok(Arc::new(from_fields::<K>(fields, whole)?));
+        self.kinds.push(Kind { name: tag, parse });
+    }
+
+    pub(crate) fn get(&self, tag: &str) -> Option<&Kind> {
+        self.kinds.iter().find(|kind| kind.name == tag)
+    }
+
+    pub(crate) fn kinds(&self) -> impl Iterator<Item = &'static str> {
+        self.kinds.iter().map(|kind| kind.name)
+    }
+}
+
+impl fmt::Debug for Registry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(self.kinds()).finish()
+    }
+}

@@ -1,0 +1,221 @@
+//! What passes are made of: draws, dispatches, copies and clears. One type over names (as a pass
+//! kind lowers to them), ids (linked with resources and shaders) and handles (made on a device).
+
+use crate::{language::syntax::Reference, source::span::Located};
+use std::fmt::Debug;
+
+/// What the steps of a pass are written in: [`Names`], ids or handles.
+pub trait Stage: Clone + Debug + PartialEq {
+    /// An attachment: one mip of one layer of a texture.
+    type Attachment: Clone + Debug + PartialEq;
+    /// A texture, a buffer, or a part of one, that is copied or cleared.
+    type Operand: Clone + Debug + PartialEq;
+    /// A buffer with the arguments of a draw or dispatch.
+    type Arguments: Clone + Debug + PartialEq;
+    /// A shader and how it is bound.
+    type Program: Clone + Debug + PartialEq;
+    /// How many workgroups are dispatched.
+    type Size: Clone + Debug + PartialEq;
+}
+
+/// The stage in which everything is a name of the document.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Names;
+
+impl Stage for Names {
+    type Attachment = Reference;
+    type Operand = Operand;
+    type Arguments = Operand;
+    type Program = Program;
+    type Size = Threads;
+}
+
+/// A texture or buffer by name, or a pass's own buffer.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Operand {
+    /// One of the document, its inputs or the scene.
+    Named(Reference),
+    /// A buffer that only this pass uses.
+    Scratch(Scratch),
+}
+
+/// A buffer that only one pass uses, from [`Lowering::scratch`](crate::Lowering::scratch).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Scratch(pub(crate) usize);
+
+impl From<&Reference> for Operand {
+    fn from(reference: &Reference) -> Self {
+        Self::Named(reference.clone())
+    }
+}
+
+impl From<Scratch> for Operand {
+    fn from(scratch: Scratch) -> Self {
+        Self::Scratch(scratch)
+    }
+}
+
+/// How many threads a dispatch has.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Threads {
+    /// One for each of so many items, rounded up to whole workgroups. More workgroups than one
+    /// dimension holds are folded to two: the item is
+    /// `(workgroup.y * num_workgroups.x + workgroup.x) * workgroup_size + local index`.
+    Items(u64),
+    /// One for each texel, rounded up to whole workgroups in each direction.
+    Texels([u64; 3]),
+    /// So many workgroups.
+    Groups([u32; 3]),
+}
+
+/// One piece of GPU work of a pass. The steps of a pass run in order and are timed together.
+#[derive(Clone, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a graph has a handful, each made once"
+)]
+pub enum Step<S: Stage> {
+    /// A render pass with one draw call.
+    Draw(Draw<S>),
+    /// A compute pass with one dispatch.
+    Dispatch(Dispatch<S>),
+    /// A copy of a texture or buffer.
+    Copy {
+        /// Source.
+        from: S::Operand,
+        /// Destination, of equal format and size.
+        to: S::Operand,
+    },
+    /// A clear of a texture or buffer.
+    Clear {
+        /// What is cleared.
+        target: S::Operand,
+        /// Value per channel of a texture; buffers are cleared to zero.
+        value: [f64; 4],
+    },
+}
+
+impl<S: Stage> Step<S> {
+    /// What the step runs.
+    pub fn program(&self) -> Option<&S::Program> {
+        match self {
+            Self::Draw(draw) => Some(&draw.program),
+            Self::Dispatch(dispatch) => Some(&dispatch.program),
+            Self::Copy { .. } | Self::Clear { .. } => None,
+        }
+    }
+}
+
+/// A shader and how it is bound.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Program {
+    /// Name of the WGSL file without folder and ending.
+    pub shader: Option<Located<String>>,
+    /// Vertex entry point, where the file has several.
+    pub vertex: Option<Located<String>>,
+    /// Fragment entry point, where the file has several.
+    pub fragment: Option<Located<String>>,
+    /// Compute entry point, where the file has several.
+    pub compute: Option<Located<String>>,
+    /// Values of pipeline-overridable constants, beside those named like params.
+    pub constants: Vec<(String, f64)>,
+    /// Shader globals that are bound to a resource of another name.
+    pub bind: Vec<(Located<String>, Operand)>,
+}
+
+/// A draw call into attachments.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Draw<S: Stage> {
+    /// Vertex and fragment shader.
+    pub program: S::Program,
+    /// The vertex stage is the graph's own triangle over the whole target.
+    pub fullscreen: bool,
+    /// Colour attachments, by location.
+    pub colors: Vec<ColorTarget<S>>,
+    /// Depth attachment.
+    pub depth: Option<DepthTarget<S>>,
+    /// Stencil attachment: the same texture where there are both.
+    pub stencil: Option<StencilTarget<S>>,
+    /// Viewport and scissor rectangle in texels: x, y, width, height. `None`: the whole target.
+    pub area: Option<[u32; 4]>,
+    /// What is drawn.
+    pub call: DrawCall<S>,
+    /// Culling, topology, winding.
+    pub primitive: wgt::PrimitiveState,
+}
+
+/// What a draw call draws; vertices are pulled by `vertex_index`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DrawCall<S: Stage> {
+    /// So many vertices for each of so many instances.
+    Direct {
+        /// Number of vertices.
+        vertices: u32,
+        /// Number of instances.
+        instances: u32,
+    },
+    /// The arguments (`vertex_count, instance_count, first_vertex, first_instance`, u32 each) stand
+    /// in a buffer.
+    Indirect(S::Arguments),
+}
+
+/// A colour attachment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColorTarget<S: Stage> {
+    /// Texture, one mip and one layer.
+    pub target: S::Attachment,
+    /// Texture that a multisampled target is resolved into.
+    pub resolve: Option<S::Attachment>,
+    /// Value it is cleared to; `None` keeps what is there.
+    pub clear: Option<[f64; 4]>,
+    /// Blending; `None` overwrites.
+    pub blend: Option<wgt::BlendState>,
+    /// Channels that are written.
+    pub write: wgt::ColorWrites,
+}
+
+/// A depth attachment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DepthTarget<S: Stage> {
+    /// Texture, one mip and one layer.
+    pub target: S::Attachment,
+    /// Value it is cleared to; `None` keeps what is there.
+    pub clear: Option<f32>,
+    /// Depth test.
+    pub compare: wgt::CompareFunction,
+    /// Whether depth is written.
+    pub write: bool,
+    /// Depth bias of the rasteriser.
+    pub bias: wgt::DepthBiasState,
+}
+
+/// A stencil attachment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StencilTarget<S: Stage> {
+    /// Texture, one mip and one layer.
+    pub target: S::Attachment,
+    /// Value it is cleared to; `None` keeps what is there.
+    pub clear: Option<u32>,
+    /// Tests and operations.
+    pub state: wgt::StencilState,
+    /// What the tests compare with.
+    pub reference: u32,
+}
+
+/// A dispatch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dispatch<S: Stage> {
+    /// Compute shader.
+    pub program: S::Program,
+    /// How many workgroups.
+    pub groups: Groups<S>,
+}
+
+/// How many workgroups are dispatched.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Groups<S: Stage> {
+    /// So many.
+    Direct(S::Size),
+    /// Three u32 in a buffer.
+    Indirect(S::Arguments),
+}

@@ -1,0 +1,102 @@
+//! Expressions and references as tokens.
+
+use crate::{errors::language::SyntaxFault, source::span::SourceFile};
+use std::ops::Range;
+
+/// Most tokens of one expression: what is parsed and evaluated calls itself for each of them.
+const MOST: usize = 256;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Token<'a> {
+    Word(&'a str),
+    Whole(i64),
+    Number(f64),
+    Sign(&'static str),
+    End,
+}
+
+/// Two signs before one: `<=` is not `<` and `=`.
+const SIGNS: [&str; 23] = [
+    "||", "&&", "==", "!=", "<=", ">=", "..", "<", ">", "+", "-", "*", "/", "%", "!", "(", ")",
+    "[", "]", ",", "?", ":", ".",
+];
+
+/// The tokens of `range` of a file, each with its place; the last one is [`Token::End`].
+pub(crate) fn tokens(
+    file: &SourceFile,
+    range: Range<usize>,
+) -> Result<Vec<(Token<'_>, Range<usize>)>, SyntaxFault> {
+    let text = file.text.get(range.clone()).unwrap_or("");
+    let mut tokens = Vec::new();
+    let mut at = 0;
+    loop {
+        at += text[at..].len() - text[at..].trim_start_matches([' ', '\n', '\t', '\r']).len();
+        let rest = &text[at..];
+        let (token, length) = match rest.chars().next() {
+            None => (Token::End, 0),
+            Some(first) if first.is_ascii_alphabetic() || first == '_' => {
+                let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
+                let word = &rest[..rest.find(|c| !is_part(c)).unwrap_or(rest.len())];
+                (Token::Word(word), word.len())
+            }
+            Some(first) if first.is_ascii_digit() => number(rest)
+                .ok_or_else(|| SyntaxFault::Number(file.span(range.start + at..range.end)))?,
+            Some(first) => {
+                let sign = SIGNS.into_iter().find(|sign| rest.starts_with(sign));
+                let place = range.start + at..range.start + at + first.len_utf8();
+                let sign = sign.ok_or_else(|| SyntaxFault::Sign(file.span(place), first))?;
+                (Token::Sign(sign), sign.len())
+            }
+        };
+        let start = range.start + at;
+        tokens.push((token, start..start + length));
+        if token == Token::End {
+            return Ok(tokens);
+        }
+        if tokens.len() > MOST {
+            return Err(SyntaxFault::TooLong(file.span(range), MOST));
+        }
+        at += length;
+    }
+}
+
+/// The number that a text begins with, and its length. `0..2` begins with a whole number.
+fn number(text: &str) -> Option<(Token<'static>, usize)> {
+    let digits = |from: usize| {
+        let rest = &text[from..];
+        rest.len()
+            - rest
+                .trim_start_matches(|c: char| c.is_ascii_digit() || c == '_')
+                .len()
+    };
+    let mut end = digits(0);
+    let mut whole = true;
+    if text[end..].starts_with('.') && !text[end..].starts_with("..") {
+        end += 1;
+        end += digits(end);
+        whole = false;
+    }
+    if text[end..].starts_with(['e', 'E']) {
+        let sign = usize::from(text[end + 1..].starts_with(['-', '+']));
+        let length = digits(end + 1 + sign);
+        if length == 0 {
+            return None;
+        }
+        end += 1 + sign + length;
+        whole = false;
+    }
+    if text[end..].starts_with(|c: char| c.is_ascii_alphanumeric()) {
+        return None;
+    }
+    let plain = text[..end].replace('_', "");
+    let token = match whole {
+        true => Token::Whole(plain.parse().ok()?),
+        false => Token::Number(
+            plain
+                .parse()
+                .ok()
+                .filter(|number: &f64| number.is_finite())?,
+        ),
+    };
+    Some((token, end))
+}

@@ -1,0 +1,357 @@
+//! Tokens become expressions and references: recursive descent, a level of binding at a time.
+
+use super::{
+    lexer::{Token, tokens},
+    name::Name,
+    syntax::{
+        Attribute, Binary, Expr, ExprKind, Function, Reference, Segment, Selection, Subject, Unary,
+    },
+    value::{Scalar, Value},
+};
+use crate::{
+    errors::language::SyntaxFault,
+    source::span::{Located, SourceFile, Span},
+};
+use std::ops::Range;
+
+type Parsed<T> = Result<T, SyntaxFault>;
+
+/// Reads the expression that stands in `range` of a file.
+pub(crate) fn expression(file: &SourceFile, range: Range<usize>) -> Parsed<Expr> {
+    whole(file, range, |parser| parser.expr())
+}
+
+/// Reads the reference that stands in `range` of a file.
+pub(crate) fn reference(file: &SourceFile, range: Range<usize>) -> Parsed<Reference> {
+    whole(file, range, |parser| {
+        let path = parser.path()?;
+        parser.reference(path)
+    })
+}
+
+fn whole<T>(
+    file: &SourceFile,
+    range: Range<usize>,
+    read: impl FnOnce(&mut Parser<'_>) -> Parsed<T>,
+) -> Parsed<T> {
+    let mut parser = Parser {
+        file,
+        tokens: tokens(file, range)?,
+        at: 0,
+    };
+    let value = read(&mut parser)?;
+    match parser.peek() {
+        Token::End => Ok(value),
+        _ => Err(parser.unexpected("nothing more")),
+    }
+}
+
+struct Parser<'a> {
+    file: &'a SourceFile,
+    tokens: Vec<(Token<'a>, Range<usize>)>,
+    at: usize,
+}
+
+/// A dotted path as it stands there: materials, params and attributes look alike.
+struct Path<'a> {
+    parts: Vec<Part<'a>>,
+}
+
+struct Part<'a> {
+    word: &'a str,
+    range: Range<usize>,
+    selection: Option<Selection>,
+}
+
+impl<'a> Parser<'a> {
+    fn peek(&self) -> Token<'a> {
+        self.tokens[self.at].0
+    }
+
+    fn range(&self) -> Range<usize> {
+        self.tokens[self.at].1.clone()
+    }
+
+    fn next(&mut self) -> Range<usize> {
+        let range = self.range();
+        self.at = (self.at + 1).min(self.tokens.len() - 1);
+        range
+    }
+
+    fn take(&mut self, sign: &'static str) -> bool {
+        let is_there = self.peek() == Token::Sign(sign);
+        if is_there {
+            self.next();
+        }
+        is_there
+    }
+
+    fn expect(&mut self, sign: &'static str) -> Parsed<()> {
+        match self.take(sign) {
+            true => Ok(()),
+            false => Err(self.unexpected(&format!("`{sign}`"))),
+        }
+    }
+
+    fn unexpected(&self, expected: &str) -> SyntaxFault {
+        let found = match self.peek() {
+            Token::Word(word) => format!("`{word}`"),
+            Token::Sign(sign) => format!("`{sign}`"),
+            Token::Whole(number) => format!("`{number}`"),
+            Token::Number(number) => format!("`{number}`"),
+            Token::End => "the end".to_owned(),
+        };
+        SyntaxFault::Unexpected {
+            span: self.file.span(self.range()),
+            found,
+            expected: expected.to_owned(),
+        }
+    }
+
+    fn span(&self, from: usize) -> Span {
+        let end = self.tokens[self.at.saturating_sub(1)].1.end;
+        self.file.span(from..end.max(from))
+    }
+
+    fn expr(&mut self) -> Parsed<Expr> {
+        let start = self.range().start;
+        let condition = self.binary(0)?;
+        if !self.take("?") {
+            return Ok(condition);
+        }
+        let yes = self.expr()?;
+        self.expect(":")?;
+        let no = self.expr()?;
+        let kind = ExprKind::Ternary(Box::new([condition, yes, no]));
+        Ok(Expr::new(kind, self.span(start)))
+    }
+
+    /// What operators that bind at least so strongly make one of.
+    fn binary(&mut self, least: u8) -> Parsed<Expr> {
+        let start = self.range().start;
+        let mut left = self.unary()?;
+        loop {
+            let operator = match self.peek() {
+                Token::Sign(sign) => Binary::ALL.iter().find(|(known, ..)| *known == sign),
+                _ => None,
+            };
+            let Some((_, operator, strength)) = operator.filter(|(.., own)| *own >= least) else {
+                return Ok(left);
+            };
+            self.next();
+            let right = self.binary(strength + 1)?;
+            // A comparison of a comparison is a mistake in every language that allows it.
+            if *strength == 2
+                && let Token::Sign(sign) = self.peek()
+                && Binary::ALL
+                    .iter()
+                    .any(|(known, _, own)| *known == sign && *own == 2)
+            {
+                return Err(self.unexpected("`&&`, or brackets around one comparison"));
+            }
+            let kind = ExprKind::Binary(*operator, Box::new([left, right]));
+            left = Expr::new(kind, self.span(start));
+        }
+    }
+
+    fn unary(&mut self) -> Parsed<Expr> {
+        let start = self.range().start;
+        let operator = match self.peek() {
+            Token::Sign("-") => Unary::Minus,
+            Token::Sign("!") => Unary::Not,
+            _ => return self.primary(),
+        };
+        self.next();
+        let of = self.unary()?;
+        let kind = ExprKind::Unary(operator, Box::new(of));
+        Ok(Expr::new(kind, self.span(start)))
+    }
+
+    fn primary(&mut self) -> Parsed<Expr> {
+        let start = self.range().start;
+        let literal = |value| Ok(ExprKind::Literal(value));
+        let kind = match self.peek() {
+            Token::Whole(number) => {
+                self.next();
+                literal(Value::Scalar(Scalar::Whole(number)))
+            }
+            Token::Number(number) => {
+                self.next();
+                literal(Value::Scalar(Scalar::Number(number)))
+            }
+            Token::Word(word @ ("true" | "false")) => {
+                self.next();
+                literal(Value::Bool(word == "true"))
+            }
+            Token::Sign("(") => {
+                self.next();
+                let inner = self.expr()?;
+                self.expect(")")?;
+                return Ok(Expr::new(inner.kind, self.span(start)));
+            }
+            Token::Word(word) if self.tokens[self.at + 1].0 == Token::Sign("(") => self.call(word),
+            Token::Word(word) if word.starts_with(|c: char| c.is_ascii_uppercase()) => {
+                self.next();
+                Ok(ExprKind::Constant(word.to_owned()))
+            }
+            Token::Word(_) => {
+                let path = self.path()?;
+                self.value_of(path)
+            }
+            _ => return Err(self.unexpected("a number, a name or a bracket")),
+        }?;
+        Ok(Expr::new(kind, self.span(start)))
+    }
+
+    fn call(&mut self, name: &str) -> Parsed<ExprKind> {
+        let place = self.next();
+        self.expect("(")?;
+        if name == "has" {
+            let Token::Word(feature) = self.peek() else {
+                return Err(self.unexpected("a feature of wgpu"));
+            };
+            let span = self.file.span(self.next());
+            self.expect(")")?;
+            let flag = wgt::Features::from_name(feature);
+            let unknown = || SyntaxFault::Feature(Located::new(feature.to_owned(), span));
+            return flag.map(ExprKind::Has).ok_or_else(unknown);
+        }
+        let known = Function::ALL.iter().find(|(known, ..)| *known == name);
+        let Some((_, function, count)) = known else {
+            let name = Located::new(name.to_owned(), self.file.span(place));
+            return Err(SyntaxFault::Function(name));
+        };
+        let mut arguments = vec![self.expr()?];
+        while self.take(",") {
+            arguments.push(self.expr()?);
+        }
+        self.expect(")")?;
+        if arguments.len() != *count {
+            return Err(SyntaxFault::Arguments {
+                span: self.span(place.start),
+                function: function.as_str(),
+                expected: *count,
+                found: arguments.len(),
+            });
+        }
+        Ok(ExprKind::Call(*function, arguments))
+    }
+
+    fn path(&mut self) -> Parsed<Path<'a>> {
+        let mut parts = Vec::new();
+        loop {
+            let Token::Word(word) = self.peek() else {
+                return Err(self.unexpected("a name"));
+            };
+            let range = self.next();
+            let selection = match self.take("[") {
+                true => Some(self.selection()?),
+                false => None,
+            };
+            parts.push(Part {
+                word,
+                range,
+                selection,
+            });
+            if !self.take(".") {
+                return Ok(Path { parts });
+            }
+        }
+    }
+
+    fn selection(&mut self) -> Parsed<Selection> {
+        let first = self.expr()?;
+        let selection = match self.take("..") {
+            true => Selection::Range(Box::new([first, self.expr()?])),
+            false => Selection::One(Box::new(first)),
+        };
+        self.expect("]")?;
+        Ok(selection)
+    }
+
+    fn name(&self, part: &Part<'_>) -> Parsed<Located<Name>> {
+        let span = self.file.span(part.range.clone());
+        match Name::new(part.word) {
+            Ok(name) => Ok(Located::new(name, span)),
+            Err(fault) => Err(SyntaxFault::Name(span, fault)),
+        }
+    }
+
+    /// A path that is a material or a part of one.
+    fn reference(&self, mut path: Path<'_>) -> Parsed<Reference> {
+        let (first, last) = match path.parts.as_slice() {
+            [first, .., last] | [first @ last] => (first.range.start, last),
+            [] => return Err(self.unexpected("a name")),
+        };
+        let selected = last.selection.as_ref().and_then(|of| of.exprs().last());
+        let end = selected.map_or(last.range.end, |expr| expr.span.range.end + 1);
+        let mut reference = Reference {
+            segments: Vec::new(),
+            previous: false,
+            mips: None,
+            span: self.file.span(first..end),
+        };
+        let is = |part: Option<&Part<'_>>, word: &str, selected: bool| {
+            part.is_some_and(|part| part.word == word && part.selection.is_some() == selected)
+        };
+        if is(path.parts.last(), "mip", true) {
+            reference.mips = path.parts.pop().and_then(|part| part.selection);
+        }
+        if path.parts.len() > 1 && is(path.parts.last(), "previous", false) {
+            reference.previous = true;
+            path.parts.pop();
+        }
+        if path.parts.is_empty() {
+            return Err(SyntaxFault::Part(reference.span, "mip"));
+        }
+        for (index, part) in path.parts.into_iter().enumerate() {
+            let is_attribute = Attribute::ALL.iter().any(|(name, _)| *name == part.word);
+            if index > 0 && (is_attribute || matches!(part.word, "previous" | "mip")) {
+                let word = if is_attribute { "attribute" } else { "order" };
+                return Err(SyntaxFault::Part(self.file.span(part.range), word));
+            }
+            let name = self.name(&part)?;
+            let selection = part.selection;
+            reference.segments.push(Segment { name, selection });
+        }
+        Ok(reference)
+    }
+
+    /// A path that has a value: a param, or an attribute of something.
+    fn value_of(&self, mut path: Path<'_>) -> Parsed<ExprKind> {
+        let attribute = path.parts.last().and_then(|last| {
+            let mut known = Attribute::ALL.iter();
+            let known = known.find(|(name, _)| *name == last.word)?;
+            last.selection.is_none().then_some(known.1)
+        });
+        let alone = path.parts.len() == 1;
+        if alone && attribute == Some(Attribute::Index) {
+            return Ok(ExprKind::Attribute(
+                Subject::Repetition(None),
+                Attribute::Index,
+            ));
+        }
+        if let Some(attribute) = attribute.filter(|_| !alone) {
+            path.parts.pop();
+            let subject = match path.parts.as_slice() {
+                [one] if one.word == "viewport" && one.selection.is_none() => Subject::Viewport,
+                [one] if attribute == Attribute::Index => {
+                    Subject::Repetition(Some(self.name(one)?.value))
+                }
+                _ => Subject::Material(Box::new(self.reference(path)?)),
+            };
+            return Ok(ExprKind::Attribute(subject, attribute));
+        }
+        if let Some(part) = path.parts.iter().find(|part| part.selection.is_some()) {
+            return Err(SyntaxFault::Part(
+                self.file.span(part.range.clone()),
+                "number",
+            ));
+        }
+        let mut names = Vec::new();
+        for part in &path.parts {
+            names.push(self.name(part)?.value.to_string());
+        }
+        Ok(ExprKind::Param(names.join(".")))
+    }
+}

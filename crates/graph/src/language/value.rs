@@ -1,0 +1,101 @@
+//! Values of expressions.
+
+use super::name::Name;
+use std::{fmt, sync::Arc};
+
+/// A number of an expression.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scalar {
+    /// A whole number.
+    Whole(i64),
+    /// Any number.
+    Number(f64),
+}
+
+impl Scalar {
+    /// The number, whole or not.
+    pub fn number(self) -> f64 {
+        match self {
+            Self::Whole(whole) => whole as f64,
+            Self::Number(number) => number,
+        }
+    }
+}
+
+impl fmt::Display for Scalar {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole(whole) => write!(f, "{whole}"),
+            Self::Number(number) => write!(f, "{number}"),
+        }
+    }
+}
+
+/// A word, and those of its `Choice` where it is that of a param.
+#[derive(Clone, Debug)]
+pub struct Word {
+    /// The word.
+    pub word: Name,
+    /// All words of the param; `None` where it is written out.
+    pub of: Option<Arc<[Name]>>,
+}
+
+impl PartialEq for Word {
+    fn eq(&self, other: &Self) -> bool {
+        self.word == other.word
+    }
+}
+
+/// What an expression comes to.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A number.
+    Scalar(Scalar),
+    /// True or false.
+    Bool(bool),
+    /// A word of a `Choice`.
+    Word(Word),
+    /// Two to four numbers: a size or a vector.
+    List(Vec<Scalar>),
+    /// The format of a texture.
+    Format(wgt::TextureFormat),
+}
+
+impl Value {
+    /// A whole number.
+    pub(crate) fn whole(number: impl Into<i64>) -> Self {
+        Self::Scalar(Scalar::Whole(number.into()))
+    }
+
+    /// A count, which is far below what an `i64` holds or as good as that.
+    pub(crate) fn count(count: u64) -> Self {
+        Self::whole(i64::try_from(count).unwrap_or(i64::MAX))
+    }
+
+    /// What it is, for messages.
+    pub(crate) fn describe(&self) -> &'static str {
+        match self {
+            Self::Scalar(Scalar::Whole(_)) => "a whole number",
+            Self::Scalar(Scalar::Number(_)) => "a number",
+            Self::Bool(_) => "true or false",
+            Self::Word(_) => "a word",
+            Self::List(_) => "several numbers",
+            Self::Format(_) => "a format",
+        }
+    }
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Scalar(scalar) => write!(f, "{scalar}"),
+            Self::Bool(value) => write!(f, "{value}"),
+            Self::Word(word) => write!(f, "{}", word.word),
+            Self::List(list) => {
+                let list: Vec<String> = list.iter().map(Scalar::to_string).collect();
+                write!(f, "({})", list.join(", "))
+            }
+            Self::Format(format) => write!(f, "{format:?}"),
+        }
+    }
+}

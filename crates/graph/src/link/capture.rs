@@ -1,0 +1,79 @@
+//! Copies of materials as they stand after a pass.
+
+use super::{
+    linker::{Linker, Scope},
+    pass::{CAPTURE, LinkedPass},
+};
+use crate::{
+    diagnostics::reports::Reported,
+    errors::plan::OutputError,
+    instantiate::build::Run,
+    kinds::step::{Operand, Scratch, Step},
+    provider::Provided,
+    request::Capture,
+    resource::{Buffer, Origin, Resource, ResourceKind, Target},
+    source::span::Located,
+};
+
+impl Linker<'_, '_> {
+    /// A copy of a material as it stands after the pass that was linked last.
+    pub(super) fn capture(&mut self, capture: &Capture) -> Result<LinkedPass, Reported> {
+        let Some(target) = self.world.find_full(&capture.material, self.reports) else {
+            let known = self.reports.known(self.world.full_names());
+            return Err(self.reports.report(OutputError::NoMaterial {
+                graph: self.world.graph.path().to_owned(),
+                name: capture.material.clone(),
+                known,
+            }));
+        };
+        let target = target?;
+        let kind = self.copy_of(capture, &target)?;
+        let name = Located::new(capture.name(), self.world.graph.place());
+        let copy = self.world.add(Resource {
+            name: name.value.clone(),
+            declared: None,
+            kind,
+            origin: Origin::Own,
+        });
+        // Both ends are known by number: neither is a name of a document.
+        let whole = self.world.whole(copy);
+        self.scope = Scope {
+            captured: vec![target, whole],
+            ..Scope::default()
+        };
+        let steps = [Step::Copy {
+            from: Operand::Scratch(Scratch(0)),
+            to: Operand::Scratch(Scratch(1)),
+        }];
+        let mut pass = self.steps(name, CAPTURE, &steps)?;
+        // Whether or not the pass that it comes after runs: what has changed may have been written
+        // above that one.
+        pass.run = Run::OnChange;
+        Ok(pass)
+    }
+
+    /// A texture or buffer that a part of a resource can be copied into.
+    fn copy_of(&mut self, capture: &Capture, target: &Target) -> Result<ResourceKind, Reported> {
+        let name = capture.material.clone();
+        Ok(match &self.world.get(target.id).kind {
+            ResourceKind::Texture(texture) => {
+                let mut copy = texture.clone();
+                copy.size = texture.mip_size(target.part.mips.start);
+                copy.mips = target.part.mips.len() as u32;
+                copy.layers = target.part.layers.len() as u32;
+                copy.picture = None;
+                ResourceKind::Texture(copy)
+            }
+            ResourceKind::Provided(Provided { items: None, .. }) => {
+                return Err(self.reports.report(OutputError::Unsized(name)));
+            }
+            // It becomes as large as what is copied into it.
+            ResourceKind::Buffer(_) | ResourceKind::Provided(_) | ResourceKind::Frame => {
+                ResourceKind::Buffer(Buffer::default())
+            }
+            ResourceKind::Sampler(_) => {
+                return Err(self.reports.report(OutputError::Sampler(name)));
+            }
+        })
+    }
+}

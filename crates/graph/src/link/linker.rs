@@ -1,0 +1,353 @@
+//! Links passes one after the other.
+
+use super::{
+    layouts::Layouts,
+    pass::{Access, Ids, LinkedPass},
+};
+use crate::{
+    diagnostics::reports::{Reported, Reports},
+    errors::link::LinkError,
+    instantiate::{
+        build::{Border, Deciding, Inherited, Run},
+        frames::{InstanceId, Place},
+        lower::{Lowered, LoweredPass},
+        world::World,
+    },
+    kinds::step::{Dispatch, Groups, Names, Operand, Program, Step},
+    language::syntax::{Expr, Reference},
+    request::Capture,
+    resource::{Origin, ResourceId, SubresourceRange, Target},
+    shader::reflect::Shader,
+    source::span::{Located, Span},
+};
+use naga::ShaderStage;
+use std::{collections::BTreeSet, sync::Arc};
+
+/// All passes of a graph, linked with its resources.
+pub(crate) struct Linked<'a> {
+    pub world: World<'a>,
+    pub passes: Vec<LinkedPass>,
+    /// Of each pass: the instance of the document that it stands in; none of a capture.
+    pub instances: Vec<Option<InstanceId>>,
+    /// How many of the passes stand above the first mistake, if there is one: what is written below
+    /// is not known.
+    pub valid_prefix: Option<usize>,
+    pub borders: Vec<Border>,
+    pub deciding: Deciding,
+}
+
+/// What passes are linked against.
+pub(super) struct Linker<'a, 'r> {
+    pub world: World<'a>,
+    pub reports: &'r mut Reports,
+    pub layouts: Layouts,
+    /// What the names of the pass mean.
+    pub scope: Scope<'a>,
+}
+
+/// The pass that is being linked, as far as its names are concerned.
+#[derive(Default)]
+pub(super) struct Scope<'a> {
+    pub place: Option<Place>,
+    pub scratch: Vec<ResourceId>,
+    pub set: &'a [(Located<String>, Expr)],
+    pub inherited_bind: Vec<Inherited<'a, Reference>>,
+    pub inherited_set: Vec<Inherited<'a, Expr>>,
+    /// The shader that has the pass's own bindings.
+    pub shader: Option<Located<String>>,
+    /// The bindings and values that a shader of the pass has asked for.
+    pub asked: BTreeSet<String>,
+    /// What a capture copies, and where: the two operands of its step.
+    pub captured: Vec<Target>,
+}
+
+/// Links all passes with their captures.
+pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a> {
+    let request = lowered.world.request;
+    let mut linker = Linker {
+        world: lowered.world,
+        reports,
+        layouts: Layouts::default(),
+        scope: Scope::default(),
+    };
+    let (mut passes, mut instances) = (Vec::new(), Vec::new());
+    // What a pass with a mistake writes is not known.
+    let mut valid_prefix: Option<usize> = None;
+    for (index, pass) in lowered.passes.into_iter().enumerate() {
+        // For each mistake all names are searched for what was meant.
+        if linker.reports.has_enough() {
+            valid_prefix.get_or_insert(passes.len());
+            break;
+        }
+        if lowered.first_broken == Some(index) {
+            valid_prefix.get_or_insert(passes.len());
+        }
+        let (name, instance, is_broken) = (pass.flat.name.clone(), pass.instance, pass.is_broken);
+        match linker.pass(pass) {
+            Ok(linked) if !is_broken => {
+                passes.push(linked);
+                instances.push(Some(instance));
+            }
+            _ => drop(valid_prefix.get_or_insert(passes.len())),
+        }
+        let after = |capture: &&Capture| capture.after.as_deref() == Some(name.as_str());
+        let captures: BTreeSet<&Capture> = request.captures.iter().filter(after).collect();
+        for capture in captures {
+            // A capture that cannot be was reported, and nothing needs it.
+            if let Ok(captured) = linker.capture(capture) {
+                passes.push(captured);
+                instances.push(None);
+            }
+        }
+    }
+    if lowered.first_broken.is_some() {
+        valid_prefix.get_or_insert(passes.len());
+    }
+    let layouts = std::mem::take(&mut linker.layouts);
+    layouts.finalize(&mut linker.world, linker.reports);
+    Linked {
+        world: linker.world,
+        passes,
+        instances,
+        valid_prefix,
+        borders: lowered.borders,
+        deciding: lowered.deciding,
+    }
+}
+
+impl<'a> Linker<'a, '_> {
+    fn pass(&mut self, pass: LoweredPass<'a>) -> Result<LinkedPass, Reported> {
+        let flat = pass.flat;
+        self.scope = Scope {
+            place: Some(flat.place),
+            scratch: pass.scratch,
+            set: &flat.entry.set,
+            inherited_bind: flat.bind,
+            inherited_set: flat.set,
+            shader: Some(pass.shader),
+            asked: BTreeSet::new(),
+            captured: Vec::new(),
+        };
+        let mut linked = self.steps(flat.name, flat.pass.kind, &pass.steps)?;
+        linked.run = flat.run;
+        linked.enabled = flat.enabled;
+        self.unasked()?;
+        self.overwrites(&mut linked, &flat.pass.overwrites)?;
+        Ok(linked)
+    }
+
+    /// The pass of these steps.
+    pub fn steps(
+        &mut self,
+        name: Located<String>,
+        kind: &'static str,
+        steps: &[Step<Names>],
+    ) -> Result<LinkedPass, Reported> {
+        let mut pass = LinkedPass {
+            name,
+            kind,
+            steps: Vec::with_capacity(steps.len()),
+            accesses: Vec::new(),
+            run: Run::Always,
+            enabled: true,
+        };
+        let mut wrong = None;
+        for (index, step) in steps.iter().enumerate() {
+            let first = pass.accesses.len();
+            let linked = self.step(step, &mut pass);
+            let own = &mut pass.accesses[first..];
+            own.iter_mut().for_each(|access| access.step = index);
+            let looped = self.feedback(&pass.name, &pass.accesses[first..]);
+            match linked {
+                Ok(step) => pass.steps.push(step),
+                Err(reported) => wrong = Some(reported),
+            }
+            wrong = looped.err().or(wrong);
+        }
+        wrong.map_or(Ok(pass), Err)
+    }
+
+    fn step(&mut self, step: &Step<Names>, pass: &mut LinkedPass) -> Result<Step<Ids>, Reported> {
+        match step {
+            Step::Draw(draw) => self.draw(draw, pass).map(Step::Draw),
+            Step::Dispatch(dispatch) => {
+                let stages = [ShaderStage::Compute];
+                let program = self.program(&dispatch.program, &stages, false, pass)?;
+                let size = self.workgroup_size(&program, &pass.name)?;
+                let groups = match &dispatch.groups {
+                    Groups::Direct(threads) => {
+                        Groups::Direct(self.workgroups(threads, size, &pass.name)?)
+                    }
+                    Groups::Indirect(buffer) => Groups::Indirect(self.indirect(buffer, 12, pass)?),
+                };
+                Ok(Step::Dispatch(Dispatch { program, groups }))
+            }
+            Step::Copy { from, to } => self.copy(from, to, pass),
+            Step::Clear { target, value } => self.clear(target, *value, pass),
+        }
+    }
+
+    pub fn report(&mut self, error: LinkError) -> Reported {
+        self.reports.report(error)
+    }
+
+    /// What a reference of the pass's document names.
+    pub fn resolve(&mut self, reference: &Reference) -> Result<Target, Reported> {
+        let place = self.scope.place.unwrap_or_else(|| self.world.root());
+        self.world.resolve(reference, place, self.reports)
+    }
+
+    /// What an operand of a step names, with its name and place for messages.
+    pub fn operand(
+        &mut self,
+        operand: &Operand,
+        pass: &Located<String>,
+    ) -> Result<(Target, Located<String>), Reported> {
+        match operand {
+            Operand::Named(reference) => {
+                let target = self.resolve(reference)?;
+                let name = reference.text().to_owned();
+                Ok((target, Located::new(name, reference.span.clone())))
+            }
+            Operand::Scratch(scratch) if !self.scope.captured.is_empty() => {
+                let target = self.scope.captured[scratch.0].clone();
+                let name = self.world.get(target.id).name.clone();
+                Ok((target, Located::new(name, pass.span.clone())))
+            }
+            Operand::Scratch(scratch) => {
+                let id = self.scope.scratch[scratch.0];
+                let name = self.world.get(id).name.clone();
+                Ok((self.world.whole(id), Located::new(name, pass.span.clone())))
+            }
+        }
+    }
+
+    /// Last frame's version of a resource is there to be read, and so is what the document holds.
+    pub fn writable(&mut self, id: ResourceId, span: &Span) -> Result<(), Reported> {
+        let name = self.world.get(id).name.clone();
+        match self.world.get(id).origin {
+            Origin::Previous(base) => {
+                let of = self.world.get(base).name.clone();
+                Err(self.report(LinkError::WritesPrevious {
+                    of,
+                    span: span.clone(),
+                }))
+            }
+            Origin::Constant => Err(self.report(LinkError::WritesConstant {
+                name,
+                span: span.clone(),
+            })),
+            Origin::Own | Origin::Host => Ok(()),
+        }
+    }
+
+    /// A step that uses one part of a resource in two ways of which one writes: wgpu forbids it.
+    fn feedback(&mut self, pass: &Located<String>, accesses: &[Access]) -> Result<(), Reported> {
+        let mut wrong = None;
+        for (index, a) in accesses.iter().enumerate() {
+            for b in &accesses[..index] {
+                let conflict =
+                    a.resource == b.resource && a.part.overlaps(&b.part) && (a.writes || b.writes);
+                // A depth attachment that is tested and written counts once; so does one global
+                // used by both stages.
+                if conflict {
+                    let (reader, writer) = if a.writes && !b.writes {
+                        (b, a)
+                    } else {
+                        (a, b)
+                    };
+                    wrong = Some(self.report(LinkError::Feedback {
+                        pass: pass.value.clone(),
+                        name: self.world.get(a.resource).name.clone(),
+                        reader: reader.span.clone(),
+                        reads: !reader.writes,
+                        writer: writer.span.clone(),
+                    }));
+                }
+            }
+        }
+        wrong.map_or(Ok(()), Err)
+    }
+
+    /// The shader of a program; those that the document names were loaded with it.
+    pub fn shader(&mut self, program: &Program) -> Result<Arc<Shader>, Reported> {
+        let (Some(name), Some(place)) = (&program.shader, self.scope.place) else {
+            return Err(self.report(LinkError::NoShader));
+        };
+        let document = &self.world.frames.document(place.frame).document;
+        match self.world.graph.shaders.get(document, name) {
+            Some(shader) => shader.clone(),
+            // A kind names another one for other values.
+            None => Err(self.report(LinkError::ShaderNotLoaded(name.clone()))),
+        }
+    }
+
+    /// Reports what the entry binds or sets and no shader of it asks for.
+    fn unasked(&mut self) -> Result<(), Reported> {
+        let mut wrong = None;
+        for (name, _) in self.scope.set {
+            if !self.scope.asked.contains(name.as_str()) {
+                let shader = self.scope.shader.as_ref();
+                wrong = Some(self.report(LinkError::UnaskedSet {
+                    shader: shader.map_or(String::new(), |shader| shader.value.clone()),
+                    name: name.clone(),
+                    known: self.scope.asked.iter().cloned().collect(),
+                }));
+            }
+        }
+        wrong.map_or(Ok(()), Err)
+    }
+
+    /// Takes the author's word that a pass writes all of some resources.
+    fn overwrites(
+        &mut self,
+        pass: &mut LinkedPass,
+        references: &[Reference],
+    ) -> Result<(), Reported> {
+        for reference in references {
+            let target = self.resolve(reference)?;
+            let mut is_written = false;
+            for access in &mut pass.accesses {
+                if access.writes && access.resource == target.id && access.part == target.part {
+                    is_written = true;
+                    access.covers = true;
+                }
+            }
+            if !is_written {
+                return Err(self.report(LinkError::Overwrites {
+                    pass: pass.name.value.clone(),
+                    name: Located::new(reference.text().to_owned(), reference.span.clone()),
+                }));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// An access that reads or writes a whole part.
+pub(super) fn access(
+    target: &Target,
+    (reads, writes, covers): (bool, bool, bool),
+    usage: super::pass::Usage,
+    span: &Span,
+) -> Access {
+    Access {
+        resource: target.id,
+        part: target.part.clone(),
+        reads,
+        writes,
+        covers,
+        usage,
+        span: span.clone(),
+        step: 0,
+    }
+}
+
+impl Linked<'_> {
+    /// Whether a pass writes some of a part.
+    pub fn writes(&self, pass: usize, id: ResourceId, part: &SubresourceRange) -> bool {
+        let writes =
+            |access: &Access| access.writes && access.resource == id && access.part.overlaps(part);
+        self.passes[pass].accesses.iter().any(writes)
+    }
+}

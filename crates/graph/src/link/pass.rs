@@ -1,0 +1,174 @@
+//! What linking makes of a pass: steps over ids, and what they read and write.
+
+use crate::{
+    instantiate::build::Run,
+    kinds::step::{Stage, Step},
+    resource::{ResourceId, SubresourceRange, Target},
+    shader::reflect::Shader,
+    source::span::{Located, Span},
+};
+use naga::ShaderStage;
+use std::sync::Arc;
+
+/// Number of a pass of a plan, in the order of the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct PassId(pub(crate) usize);
+
+impl PassId {
+    /// The number: passes count from 0.
+    pub fn index(self) -> usize {
+        self.0
+    }
+}
+
+/// The kind of a pass that keeps a material as it stands after another pass.
+pub const CAPTURE: &str = "Capture";
+
+/// A pass with its steps resolved.
+#[derive(Clone, Debug)]
+pub struct LinkedPass {
+    /// Full name, with its place in the document.
+    pub name: Located<String>,
+    /// Kind, as the document writes it, or [`CAPTURE`].
+    pub kind: &'static str,
+    /// The GPU work.
+    pub steps: Vec<Step<Ids>>,
+    /// What the steps read and write.
+    pub accesses: Vec<Access>,
+    /// In which frames it runs.
+    pub run: Run,
+    /// The value of the expression in [`Run::When`]; true without one.
+    pub enabled: bool,
+}
+
+impl LinkedPass {
+    /// Whether it only keeps what another pass has made.
+    pub fn is_capture(&self) -> bool {
+        self.kind == CAPTURE
+    }
+}
+
+/// One use of a part of a resource by a step.
+#[derive(Clone, Debug)]
+pub struct Access {
+    /// The resource.
+    pub resource: ResourceId,
+    /// Its part.
+    pub part: SubresourceRange,
+    /// Whether it is read.
+    pub reads: bool,
+    /// Whether it is written.
+    pub writes: bool,
+    /// Everything in the part is overwritten.
+    pub covers: bool,
+    /// What the resource must be made for.
+    pub usage: Usage,
+    /// Place in the document or the shader that causes it.
+    pub span: Span,
+    /// Number of the step.
+    pub step: usize,
+}
+
+/// How a resource is bound; decides the usages it is created with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Usage {
+    /// A texture's.
+    Texture(wgt::TextureUsages),
+    /// A buffer's.
+    Buffer(wgt::BufferUsages),
+    /// A sampler needs none.
+    None,
+}
+
+/// The stage in which everything is a number of the plan.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ids;
+
+impl Stage for Ids {
+    type Attachment = Attachment;
+    type Operand = Target;
+    type Arguments = Target;
+    type Program = LinkedProgram;
+    type Size = [u32; 3];
+}
+
+/// An attachment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attachment {
+    /// One mip of one layer.
+    pub target: Target,
+    /// The texture's format.
+    pub format: wgt::TextureFormat,
+    /// The texture's samples.
+    pub samples: u32,
+}
+
+/// A shader with its entry points, constants and bindings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinkedProgram {
+    /// The shader.
+    pub shader: Arc<Shader>,
+    /// Numbers of the entry points in stage order (vertex, fragment; or compute).
+    pub entries: Vec<usize>,
+    /// Their stages.
+    pub stages: Vec<ShaderStage>,
+    /// Values of pipeline-overridable constants by the key that wgpu knows them by.
+    pub constants: Vec<(String, f64)>,
+    /// What is bound.
+    pub bindings: Vec<LinkedBinding>,
+}
+
+/// One binding of a program.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinkedBinding {
+    /// Number of the bind group.
+    pub group: u32,
+    /// Number in the group.
+    pub binding: u32,
+    /// What is bound.
+    pub target: BindTarget,
+    /// As what.
+    pub ty: wgt::BindingType,
+    /// The stages that use it.
+    pub visibility: wgt::ShaderStages,
+}
+
+/// What is bound.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BindTarget {
+    /// A buffer or some of its items.
+    Buffer(Target),
+    /// A texture or a part of one.
+    Texture {
+        /// The part.
+        target: Target,
+        /// What the shader sees.
+        dimension: wgt::TextureViewDimension,
+    },
+    /// A sampler.
+    Sampler(ResourceId),
+    /// The `params` uniform, already laid out.
+    Params(Block),
+}
+
+/// The bytes of a `params` uniform. Two of one size are equal: other bytes are an upload, not
+/// another binding.
+#[derive(Clone, Debug)]
+pub struct Block(pub Vec<u8>);
+
+impl PartialEq for Block {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.len() == other.0.len()
+    }
+}
+
+impl Step<Ids> {
+    /// The bytes of the `params` uniform.
+    pub fn params(&self) -> Option<&[u8]> {
+        let bindings = &self.program()?.bindings;
+        bindings.iter().find_map(|binding| match &binding.target {
+            BindTarget::Params(block) => Some(&block.0[..]),
+            _ => None,
+        })
+    }
+}

@@ -1,0 +1,165 @@
+//! Programs: their entry points, and the bindings that they need.
+
+use super::{
+    linker::Linker,
+    pass::{LinkedBinding, LinkedPass, LinkedProgram},
+};
+use crate::{
+    diagnostics::reports::Reported, errors::link::LinkError, kinds::step::Program,
+    shader::reflect::Global,
+};
+use naga::ShaderStage;
+
+impl Linker<'_, '_> {
+    pub(super) fn program(
+        &mut self,
+        program: &Program,
+        stages: &[ShaderStage],
+        depth_only: bool,
+        pass: &mut LinkedPass,
+    ) -> Result<LinkedProgram, Reported> {
+        let shader = self.shader(program)?;
+        let wanted = program
+            .shader
+            .as_ref()
+            .map_or(&pass.name.span, |name| &name.span);
+        let mut entries = Vec::new();
+        let mut wrong = None;
+        for stage in stages {
+            let name = match stage {
+                ShaderStage::Vertex => &program.vertex,
+                ShaderStage::Fragment => &program.fragment,
+                _ => &program.compute,
+            };
+            match shader.entry(*stage, depth_only, name.as_ref(), wanted) {
+                Ok(entry) => entries.push(entry),
+                Err(error) => wrong = Some(self.reports.report(error)),
+            }
+        }
+        if let Some(reported) = wrong {
+            return Err(reported);
+        }
+        let globals = shader.globals(&entries);
+        self.bound_globals(program, &shader, &globals)?;
+        self.groups_exist(&globals)?;
+        let mut linked = LinkedProgram {
+            constants: self.constants(program, &shader)?,
+            bindings: Vec::with_capacity(globals.len()),
+            shader,
+            entries,
+            stages: stages.to_vec(),
+        };
+        let mut wrong = None;
+        for global in &globals {
+            match self.bind(global, program, &linked, pass) {
+                Ok(binding) => linked.bindings.push(binding),
+                Err(reported) => wrong = Some(reported),
+            }
+        }
+        self.counts(&linked.bindings, pass)?;
+        wrong.map_or(Ok(linked), Err)
+    }
+
+    /// What the entry binds must be globals of its own shader. (A kind with several shaders hands its
+    /// bindings to all of them.)
+    fn bound_globals(
+        &mut self,
+        program: &Program,
+        shader: &crate::shader::reflect::Shader,
+        globals: &[Global],
+    ) -> Result<(), Reported> {
+        let mut wrong = None;
+        let own = self.scope.shader.clone();
+        let is_own = program.shader.as_ref().map(|s| &s.value) == own.as_ref().map(|s| &s.value);
+        for (bound, _) in &program.bind {
+            let exists = shader.global_names().any(|global| global == bound.as_str());
+            if !exists && is_own {
+                let known = globals.iter().map(|global| global.name.clone());
+                wrong = Some(self.report(LinkError::UnaskedBind {
+                    shader: shader.source.file.name.to_string(),
+                    name: bound.clone(),
+                    known: self.reports.known(known),
+                }));
+            }
+        }
+        wrong.map_or(Ok(()), Err)
+    }
+
+    /// Group numbers that the adapter does not have. (One number for two globals is found when the
+    /// shader is validated.)
+    fn groups_exist(&mut self, globals: &[Global]) -> Result<(), Reported> {
+        let most = self.world.request.limits.max_bind_groups;
+        for global in globals.iter().filter(|global| global.group >= most) {
+            self.reports.beyond(LinkError::BindGroup {
+                global: global.name.clone(),
+                group: global.group,
+                most,
+                span: global.span.clone(),
+            })?;
+        }
+        Ok(())
+    }
+
+    /// The numbers of bindings that wgpu limits per stage.
+    fn counts(&mut self, bindings: &[LinkedBinding], pass: &LinkedPass) -> Result<(), Reported> {
+        let limits = &self.world.request.limits;
+        let kinds: [(&str, fn(&wgt::BindingType) -> bool, u32); 5] = [
+            (
+                "storage buffers",
+                |ty| {
+                    is_buffer(ty, |ty| {
+                        matches!(ty, wgt::BufferBindingType::Storage { .. })
+                    })
+                },
+                limits.max_storage_buffers_per_shader_stage,
+            ),
+            (
+                "uniform buffers",
+                |ty| is_buffer(ty, |ty| *ty == wgt::BufferBindingType::Uniform),
+                limits.max_uniform_buffers_per_shader_stage,
+            ),
+            (
+                "textures",
+                |ty| matches!(ty, wgt::BindingType::Texture { .. }),
+                limits.max_sampled_textures_per_shader_stage,
+            ),
+            (
+                "storage textures",
+                |ty| matches!(ty, wgt::BindingType::StorageTexture { .. }),
+                limits.max_storage_textures_per_shader_stage,
+            ),
+            (
+                "samplers",
+                |ty| matches!(ty, wgt::BindingType::Sampler(_)),
+                limits.max_samplers_per_shader_stage,
+            ),
+        ];
+        for (what, is, most) in kinds {
+            let of_stage = |stage: wgt::ShaderStages| {
+                let seen = bindings
+                    .iter()
+                    .filter(|bound| bound.visibility.contains(stage));
+                seen.filter(|bound| is(&bound.ty)).count()
+            };
+            let stages = [
+                wgt::ShaderStages::VERTEX,
+                wgt::ShaderStages::FRAGMENT,
+                wgt::ShaderStages::COMPUTE,
+            ];
+            let number = stages.map(of_stage).into_iter().max().unwrap_or(0);
+            if number > most as usize {
+                self.reports.beyond(LinkError::TooManyBindings {
+                    pass: pass.name.clone(),
+                    what,
+                    number,
+                    most,
+                })?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn is_buffer(ty: &wgt::BindingType, is: fn(&wgt::BufferBindingType) -> bool) -> bool {
+    matches!(ty, wgt::BindingType::Buffer { ty, .. } if is(ty))
+}

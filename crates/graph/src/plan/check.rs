@@ -1,0 +1,205 @@
+//! `check`: everything that is wrong with a graph, for all values that decide which entries are
+//! there.
+
+use super::{make::Outcome, plan::Plan};
+use crate::{
+    diagnostics::{
+        code::Code,
+        diagnostic::{Diagnostic, Severity},
+        list::Diagnostics,
+    },
+    document::{
+        materials::InputKind,
+        params::{Param, ParamType, ParamValue},
+    },
+    graph::Graph,
+    instantiate::build::Deciding,
+    kinds::registry::Registry,
+    provider::Import,
+    request::PlanRequest,
+    source::sources::Sources,
+};
+use std::collections::BTreeMap;
+
+/// Formats that are tried where an input takes any: what a shader declares decides which fits.
+const TRIED: [wgt::TextureFormat; 5] = [
+    wgt::TextureFormat::Rgba16Float,
+    wgt::TextureFormat::Rgba32Uint,
+    wgt::TextureFormat::Rgba32Sint,
+    wgt::TextureFormat::Depth32Float,
+    wgt::TextureFormat::R32Float,
+];
+
+impl Graph {
+    /// [`Graph::load`] and [`Graph::plan`] in one, for everything that is wrong at once: what could
+    /// be read of a document is planned even where something else in it is wrong, and for each param
+    /// and feature in an `if` changed alone. Inputs that the request does not import are taken for
+    /// what the document asks for.
+    ///
+    /// # Errors
+    /// Everything that is wrong. Reads before writes and cycles are looked for above the first pass
+    /// that has a mistake.
+    pub fn check(
+        path: &str,
+        registry: &Registry,
+        sources: &dyn Sources,
+        request: &PlanRequest<'_>,
+    ) -> Result<(Self, Plan), Diagnostics> {
+        let (graph, mut errors) = Self::read(path, registry, sources)?;
+        let mut request = request.again();
+        if request.any_adapter {
+            // It says itself that not every adapter will do.
+            request.features |= graph.required;
+        }
+        let request = &request;
+        // Without its params nothing of the document has a size.
+        let outcome = match graph.document.broken_params {
+            None => graph.plan_for_any(request),
+            Some(_) => Outcome {
+                plan: None,
+                found: Vec::new(),
+                deciding: Deciding::default(),
+            },
+        };
+        if outcome.plan.is_some() && errors.is_empty() {
+            errors.extend(graph.sweep(request, &outcome.deciding));
+        }
+        errors.extend(outcome.found);
+        match outcome.plan {
+            Some(plan) if errors.is_empty() => Ok((graph, plan)),
+            // What nobody uses may be what a misspelt name was meant to be: warnings wait until the
+            // errors are gone.
+            _ => Err(graph.diagnostics(errors)),
+        }
+    }
+
+    /// Plans with what the document asks for in place of imports that the request has not.
+    fn plan_for_any(&self, request: &PlanRequest<'_>) -> Outcome {
+        let takes_any = self.document.inputs.iter().any(|input| {
+            matches!(input.kind, InputKind::Texture(None))
+                && !request.imports.contains_key(input.name.as_str())
+        });
+        let tried = if takes_any { &TRIED[..] } else { &TRIED[..1] };
+        let mut first = None;
+        for format in tried {
+            let request = PlanRequest {
+                imports: self.stand_ins(request, *format),
+                ..request.again()
+            };
+            let outcome = self.plan_all(&request);
+            if outcome.plan.is_some() {
+                return outcome;
+            }
+            first.get_or_insert(outcome);
+        }
+        first.unwrap_or_else(|| self.plan_all(request))
+    }
+
+    /// The request's imports, and what the document asks for besides.
+    fn stand_ins(
+        &self,
+        request: &PlanRequest<'_>,
+        any: wgt::TextureFormat,
+    ) -> BTreeMap<String, Import> {
+        let mut imports = request.imports.clone();
+        for input in &self.document.inputs {
+            let import = match input.kind {
+                InputKind::Texture(format) => Import::Texture {
+                    format: format.unwrap_or(any),
+                    size: request.viewport,
+                    mips: 1,
+                    layers: 1,
+                    is_3d: false,
+                    samples: 1,
+                    usage: wgt::TextureUsages::all(),
+                },
+                InputKind::Buffer => Import::Buffer {
+                    bytes: u64::from(u32::MAX),
+                    items: Some(1),
+                    usage: wgt::BufferUsages::all(),
+                },
+                InputKind::Sampler { compare } => Import::Sampler {
+                    filter: Default::default(),
+                    compare,
+                },
+            };
+            imports
+                .entry(input.name.value.to_string())
+                .or_insert(import);
+        }
+        imports
+    }
+
+    /// What is wrong for other values of what decides which entries are there, each changed alone.
+    fn sweep(&self, request: &PlanRequest<'_>, deciding: &Deciding) -> Vec<Diagnostic> {
+        let mut found = Vec::new();
+        for name in &deciding.params {
+            let Ok(param) = self.param(name) else {
+                continue;
+            };
+            for value in ends(param) {
+                let mut changed = request.again();
+                changed.params.insert(name.clone(), value.clone());
+                found.extend(self.wrong_with(&changed, &format!("`{name}` = {value}")));
+            }
+        }
+        for feature in deciding.features.iter() {
+            let mut changed = request.again();
+            changed.features.toggle(feature);
+            let has = if changed.features.contains(feature) {
+                "with"
+            } else {
+                "without"
+            };
+            let names: Vec<&str> = feature.iter_names().map(|(name, _)| name).collect();
+            let condition = format!("{has} the feature {}", names.join(", "));
+            found.extend(self.wrong_with(&changed, &condition));
+        }
+        found
+    }
+
+    /// What is wrong with one condition; the rest was looked at before.
+    fn wrong_with(&self, request: &PlanRequest<'_>, condition: &str) -> Vec<Diagnostic> {
+        let outcome = self.plan_for_any(request);
+        let errors = outcome
+            .found
+            .into_iter()
+            .filter(|found| found.severity == Severity::Error);
+        // A value at the end of a range may well be too large for a device, or for memory.
+        let errors = errors.filter(|found| {
+            !matches!(
+                found.code,
+                Code::Limit | Code::Size | Code::Memory | Code::Feature
+            )
+        });
+        errors
+            .map(|found| Diagnostic {
+                code: Code::Condition,
+                message: format!("with {condition}: {}", found.message),
+                ..found
+            })
+            .collect()
+    }
+}
+
+/// The values of a param that `check` looks at: every word, true and false, the ends of its range.
+fn ends(param: &Param) -> Vec<ParamValue> {
+    let numbers = || [param.min, param.max].into_iter().flatten();
+    match &param.ty {
+        ParamType::Bool => [true, false].map(ParamValue::Bool).to_vec(),
+        ParamType::Choice(words) => words
+            .iter()
+            .map(|word| ParamValue::Choice(word.to_string()))
+            .collect(),
+        ParamType::F32 => numbers()
+            .map(|number| ParamValue::F32(number as f32))
+            .collect(),
+        ParamType::I32 => numbers()
+            .map(|number| ParamValue::I32(number as i32))
+            .collect(),
+        ParamType::U32 => numbers()
+            .map(|number| ParamValue::U32(number as u32))
+            .collect(),
+        ParamType::Vec2 | ParamType::Vec3 | ParamType::Vec4 => Vec::new(),
+    }
+}

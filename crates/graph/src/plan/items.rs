@@ -1,0 +1,69 @@
+//! Where the content of an output or capture comes from, so that somebody who looks at it knows how
+//! to read it.
+
+use super::plan::Plan;
+use crate::{
+    kinds::step::Step,
+    link::pass::{Access, BindTarget, Ids},
+    resource::{ResourceId, ResourceKind},
+    shader::items::{Item, item},
+};
+use std::collections::BTreeSet;
+
+impl Plan {
+    /// The provided resources that are bound by the passes that write an output or capture: depths
+    /// that are written with a `camera` bound are that camera's.
+    pub fn provided_behind(&self, output: &str) -> BTreeSet<&str> {
+        let Some(origin) = self.origin(output) else {
+            return BTreeSet::new();
+        };
+        let writes = |access: &Access| access.writes && access.resource == origin;
+        let writers = self.live().filter(|pass| pass.accesses.iter().any(writes));
+        writers
+            .flat_map(|pass| &pass.accesses)
+            .map(|access| self.resource(access.resource))
+            .filter(|resource| matches!(resource.kind, ResourceKind::Provided(_)))
+            .map(|resource| resource.name.as_str())
+            .collect()
+    }
+
+    /// The items of an output or capture that is a buffer; `None` if it is none, or no live pass
+    /// binds it as an array of plain items or as a single one.
+    pub fn item(&self, output: &str) -> Option<Item> {
+        let origin = self.origin(output)?;
+        let programs = self
+            .live()
+            .flat_map(|pass| &pass.steps)
+            .filter_map(Step::program);
+        let mut seen = programs.flat_map(|program| {
+            let bindings = program.bindings.iter();
+            bindings.map(move |binding| (&program.shader.module, binding))
+        });
+        let (module, binding) = seen.find(|(_, binding)| {
+            matches!(&binding.target, BindTarget::Buffer(target)
+                if target.id == origin && target.part.items().is_none())
+        })?;
+        let place = naga::ResourceBinding {
+            group: binding.group,
+            binding: binding.binding,
+        };
+        let mut globals = module.global_variables.iter();
+        let (_, global) = globals.find(|(_, global)| global.binding == Some(place))?;
+        item(module, global.ty)
+    }
+
+    /// The resource that an output or capture is a copy of, or is itself.
+    fn origin(&self, output: &str) -> Option<ResourceId> {
+        let (_, target) = self.readable().iter().find(|(name, _)| name == output)?;
+        let mut origin = target.id;
+        let mut steps: Vec<&Step<Ids>> = self.live().flat_map(|pass| &pass.steps).collect();
+        // The last copy onto it counts; what that one reads was copied before.
+        while let Some(step) = steps.pop() {
+            origin = match step {
+                Step::Copy { from, to } if to.id == origin => from.id,
+                _ => origin,
+            };
+        }
+        Some(origin)
+    }
+}

@@ -1,0 +1,409 @@
+//! From a graph to a plan: one phase after the other, each with what the one before has made.
+
+use super::{
+    plan::Plan,
+    readable::{check_captures, readable},
+    summary::CulledPass,
+    usages,
+};
+use crate::{
+    diagnostics::{diagnostic::Diagnostic, list::Diagnostics, reports::Reports},
+    errors::{flow::OrderError, instantiate::BorderError, plan::OutputError},
+    flow::{
+        aliases::aliases,
+        conditions::conditions,
+        cull,
+        lifetimes::{Lifetime, Lifetimes, lifetimes},
+        order::{Order, order, order_of_live},
+        schedule::{Schedule, sequence},
+        work::Work,
+    },
+    graph::Graph,
+    instantiate::{
+        build::{Deciding, flatten},
+        lower::lower,
+    },
+    link::{
+        linker::{Linked, link},
+        pass::{Access, LinkedPass, PassId},
+    },
+    request::{PlanRequest, Request},
+    resource::{Buffer, Origin, ResourceId, ResourceKind, Target},
+    source::span::Located,
+};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What came of planning: the plan, if nothing is wrong; what is; what decides which entries are
+/// there.
+pub(super) struct Outcome {
+    pub plan: Option<Plan>,
+    pub found: Vec<Diagnostic>,
+    pub deciding: Deciding,
+}
+
+impl Graph {
+    /// Plans the graph: resolves names and sizes, links shaders, orders and culls passes. Touches no
+    /// GPU.
+    ///
+    /// # Errors
+    /// Everything that is wrong, with its place.
+    pub fn plan(&self, request: &PlanRequest<'_>) -> Result<Plan, Diagnostics> {
+        let outcome = self.plan_all(request);
+        outcome.plan.ok_or_else(|| self.diagnostics(outcome.found))
+    }
+
+    /// The plan, or everything that is wrong, even if some of the document could not be read.
+    pub(super) fn plan_all(&self, request: &PlanRequest<'_>) -> Outcome {
+        let mut reports = Reports::default();
+        reports.any_adapter = request.any_adapter;
+        let params = self.checked_params(&request.params, request.features, &mut reports);
+        if request.viewport.contains(&0) {
+            reports.report(OutputError::NoViewport(self.place()));
+        }
+        let Ok(params) = params else {
+            return Outcome::failed(reports, Deciding::default());
+        };
+        if reports.errors() > 0 {
+            return Outcome::failed(reports, Deciding::default());
+        }
+        let values = params.list.iter().filter_map(|bound| {
+            let value = bound.value.clone().ok()?;
+            Some((bound.param.name.value.clone(), value))
+        });
+        let values = values.collect();
+        let flat = flatten(self, request, params, &mut reports);
+        if lacks_features(&reports) {
+            return Outcome::lacking(reports, flat.deciding);
+        }
+        let lowered = lower(flat, &mut reports);
+        check_captures(request, &lowered.passes, &mut reports);
+        let mut linked = link(lowered, &mut reports);
+        let deciding = std::mem::take(&mut linked.deciding);
+        match self.schedule(linked, request, &mut reports) {
+            Some(scheduled) => self.finish(scheduled, request, values, (reports, deciding)),
+            None => Outcome::failed(reports, deciding),
+        }
+    }
+
+    /// Orders and culls what was linked, unless something is wrong with it.
+    fn schedule(
+        &self,
+        mut linked: Linked<'_>,
+        request: &PlanRequest<'_>,
+        reports: &mut Reports,
+    ) -> Option<Scheduled> {
+        let is_complete = linked.valid_prefix.is_none();
+        let valid_prefix = linked.valid_prefix.unwrap_or(linked.passes.len());
+        let order = order(linked.work(), valid_prefix, reports);
+        if is_complete {
+            never_written(linked.work(), &order, reports);
+            borders(&linked, reports);
+        }
+        let written = |target: &Target| !is_complete || !order.final_writers(target).is_empty();
+        let readable = readable(self, request, &mut linked.world, written, reports);
+        if !is_complete || reports.errors() > 0 {
+            return None;
+        }
+        let (passes, resources) = (linked.passes, linked.world.resources);
+        let work = Work {
+            passes: &passes,
+            resources: &resources,
+        };
+        let live = live(work, &readable, &order);
+        let sequence = sequence(&order_of_live(work, &live), &live);
+        let mut lifetimes = lifetimes(work, &sequence);
+        unsized_buffers(&lifetimes, work, reports);
+        // Whether conditions agree must not depend on which outputs are asked for.
+        let all: Vec<PassId> = work.ids().map(|(id, _)| id).collect();
+        conditions(work, &all, reports);
+        let conditions = conditions(work, &sequence, &mut Reports::default());
+        let previous = previous(&lifetimes, work);
+        for (id, base) in &previous {
+            // What the host provides is copied behind the frame, so it must be there.
+            let lifetime = lifetimes[id].clone();
+            lifetimes.entry(*base).or_insert(lifetime);
+        }
+        further_uses(&mut lifetimes, &readable, &previous, request, work);
+        usages::check(work, &sequence, request, reports);
+        if reports.errors() > 0 {
+            return None;
+        }
+        let constants = lifetimes
+            .keys()
+            .filter(|id| work.resource(**id).origin == Origin::Constant);
+        let kept: BTreeSet<ResourceId> = conditions
+            .kept
+            .iter()
+            .chain(constants)
+            .copied()
+            .chain(readable.iter().map(|(_, target)| target.id))
+            .chain(previous.values().copied())
+            .collect();
+        let aliases = aliases(work, &sequence, &lifetimes, &kept);
+        let culled = culled(work, &live);
+        let own = previous
+            .values()
+            .filter(|base| work.resource(**base).origin == Origin::Own);
+        let schedule = Schedule {
+            ping_pong: own.copied().collect(),
+            passes: sequence,
+            lifetimes,
+            conditions,
+            aliases,
+        };
+        Some(Scheduled {
+            passes,
+            resources,
+            schedule,
+            readable,
+            culled,
+        })
+    }
+
+    fn finish(
+        &self,
+        scheduled: Scheduled,
+        request: &PlanRequest<'_>,
+        values: BTreeMap<String, crate::document::params::ParamValue>,
+        (mut reports, deciding): (Reports, Deciding),
+    ) -> Outcome {
+        let mut plan = Plan {
+            graph: self.clone(),
+            request: Request::of(request),
+            values,
+            resources: scheduled.resources,
+            passes: scheduled.passes,
+            schedule: scheduled.schedule,
+            readable: scheduled.readable,
+            culled: scheduled.culled,
+            warnings: Vec::new(),
+        };
+        if let Some(too_much) = plan.check_memory(request.memory_limit) {
+            reports.report(too_much);
+            return Outcome::failed(reports, deciding);
+        }
+        plan.warnings = reports.into_list();
+        Outcome {
+            plan: Some(plan),
+            found: Vec::new(),
+            deciding,
+        }
+    }
+}
+
+/// What of a plan comes from its order.
+struct Scheduled {
+    passes: Vec<LinkedPass>,
+    resources: Vec<crate::resource::Resource>,
+    schedule: Schedule,
+    readable: Vec<(String, Target)>,
+    culled: Vec<CulledPass>,
+}
+
+impl Outcome {
+    fn failed(reports: Reports, deciding: Deciding) -> Self {
+        Self {
+            plan: None,
+            found: reports.into_list(),
+            deciding,
+        }
+    }
+
+    /// On a device that cannot run the graph nothing else is worth knowing.
+    fn lacking(reports: Reports, deciding: Deciding) -> Self {
+        let mut outcome = Self::failed(reports, deciding);
+        outcome.found.retain(is_lacking);
+        outcome
+    }
+}
+
+fn is_lacking(found: &Diagnostic) -> bool {
+    use crate::diagnostics::{code::Code, diagnostic::Severity};
+    found.code == Code::Feature && found.severity == Severity::Error
+}
+
+fn lacks_features(reports: &Reports) -> bool {
+    reports.iter().any(is_lacking)
+}
+
+impl Linked<'_> {
+    fn work(&self) -> Work<'_> {
+        Work {
+            passes: &self.passes,
+            resources: &self.world.resources,
+        }
+    }
+}
+
+/// Whether each pass is needed, by an output or by the host.
+fn live(work: Work<'_>, readable: &[(String, Target)], order: &Order) -> Vec<bool> {
+    // What the host imports is written for the host.
+    let of_host =
+        |access: &Access| access.writes && work.resource(access.resource).origin == Origin::Host;
+    let imports = work
+        .ids()
+        .filter(|(_, pass)| pass.accesses.iter().any(of_host));
+    let roots: BTreeSet<PassId> = readable
+        .iter()
+        .flat_map(|(_, target)| order.final_writers(target))
+        .chain(imports.map(|(id, _)| id))
+        .collect();
+    cull::live(order, roots, |pass| {
+        let of = |access: &Access| match work.resource(access.resource).origin {
+            Origin::Previous(id) => order.final_writers(&Target {
+                id,
+                part: access.part.clone(),
+            }),
+            _ => BTreeSet::new(),
+        };
+        work.pass(pass)
+            .accesses
+            .iter()
+            .flat_map(of)
+            .collect::<Vec<_>>()
+    })
+}
+
+/// The resources that are last frame's version of another one, with that one.
+fn previous(lifetimes: &Lifetimes, work: Work<'_>) -> BTreeMap<ResourceId, ResourceId> {
+    let of = |id: &ResourceId| match work.resource(*id).origin {
+        Origin::Previous(base) => Some((*id, base)),
+        _ => None,
+    };
+    lifetimes.keys().filter_map(of).collect()
+}
+
+/// Adds what is done to resources besides the passes' work: reading back, filling with a pattern or
+/// with what stands in the document, two versions taking turns.
+fn further_uses(
+    lifetimes: &mut Lifetimes,
+    readable: &[(String, Target)],
+    previous: &BTreeMap<ResourceId, ResourceId>,
+    request: &PlanRequest<'_>,
+    work: Work<'_>,
+) {
+    for (_, target) in readable {
+        let Some(lifetime) = lifetimes.get_mut(&target.id) else {
+            continue;
+        };
+        lifetime.textures |= wgt::TextureUsages::COPY_SRC | wgt::TextureUsages::TEXTURE_BINDING;
+        lifetime.buffers |= wgt::BufferUsages::COPY_SRC;
+    }
+    for (id, lifetime) in lifetimes.iter_mut() {
+        let resource = work.resource(*id);
+        let is_constant = resource.origin == Origin::Constant;
+        if request.poison.is_some() || is_constant {
+            fillable(&resource.kind, lifetime);
+        }
+    }
+    // Two versions of one resource are made alike, and a version can be read although nobody asks
+    // for the other.
+    for (id, base) in previous {
+        let (textures, buffers) = (lifetimes[id].textures, lifetimes[id].buffers);
+        if let Some(of_base) = lifetimes.get_mut(base) {
+            of_base.textures |= textures;
+            of_base.buffers |= buffers;
+        }
+    }
+}
+
+/// Adds the usages by which memory is filled: depths and samples are cleared, all else is copied to.
+fn fillable(kind: &ResourceKind, lifetime: &mut Lifetime) {
+    match kind {
+        ResourceKind::Texture(texture)
+            if texture.format.is_depth_stencil_format() || texture.samples > 1 =>
+        {
+            lifetime.textures |= wgt::TextureUsages::RENDER_ATTACHMENT;
+        }
+        ResourceKind::Texture(_) => lifetime.textures |= wgt::TextureUsages::COPY_DST,
+        ResourceKind::Buffer(_) => lifetime.buffers |= wgt::BufferUsages::COPY_DST,
+        _ => {}
+    }
+}
+
+/// A buffer that is only cleared or copied has no size: no shader says what its items are.
+fn unsized_buffers(lifetimes: &Lifetimes, work: Work<'_>, reports: &mut Reports) {
+    for resource in lifetimes.keys().map(|id| work.resource(*id)) {
+        if let ResourceKind::Buffer(Buffer { bytes: 0, .. }) = resource.kind
+            && let Some(declared) = &resource.declared
+        {
+            let name = Located::new(resource.name.clone(), declared.clone());
+            reports.report(OutputError::UnsizedBuffer(name));
+        }
+    }
+}
+
+/// Reads of last frame's version of what no frame writes.
+fn never_written(work: Work<'_>, order: &Order, reports: &mut Reports) {
+    for pass in work.passes {
+        for access in &pass.accesses {
+            let Origin::Previous(id) = work.resource(access.resource).origin else {
+                continue;
+            };
+            let part = access.part.clone();
+            let is_host = work.resource(id).origin == Origin::Host;
+            if is_host || !order.final_writers(&Target { id, part }).is_empty() {
+                continue;
+            }
+            reports.report(OrderError::NeverWritten {
+                name: work.resource(id).name.clone(),
+                pass: pass.name.clone(),
+                read: access.span.clone(),
+            });
+        }
+    }
+}
+
+/// What documents give must be written in them, and what they only take must not.
+fn borders(linked: &Linked<'_>, reports: &mut Reports) {
+    for border in &linked.borders {
+        let within = |pass: &usize| {
+            linked.instances[*pass]
+                .is_some_and(|instance| linked.world.frames.is_within(instance, border.instance))
+        };
+        let passes: Vec<usize> = (0..linked.passes.len()).filter(within).collect();
+        for (name, target) in &border.outputs {
+            let has_content = linked.world.get(target.id).origin != Origin::Own;
+            let mut passes = passes.iter();
+            if !has_content && !passes.any(|pass| linked.writes(*pass, target.id, &target.part)) {
+                let name = Located::new(name.value.to_string(), name.span.clone());
+                reports.report(BorderError::UnwrittenOutput(name));
+            }
+        }
+        for (name, target) in &border.read_only {
+            let mut passes = passes.iter();
+            let writer = passes.find(|pass| linked.writes(**pass, target.id, &target.part));
+            if let Some(writer) = writer {
+                let name = Located::new(name.value.to_string(), name.span.clone());
+                let by = linked.passes[*writer].name.span.clone();
+                reports.report(BorderError::WrittenInput(name, by));
+            }
+        }
+    }
+}
+
+fn culled(work: Work<'_>, live: &[bool]) -> Vec<CulledPass> {
+    let passes = work.passes.iter().zip(live);
+    passes
+        .filter(|(_, live)| !**live)
+        .map(|(pass, _)| {
+            let written: BTreeSet<String> = pass
+                .accesses
+                .iter()
+                .filter(|access| access.writes)
+                .map(|access| format!("`{}`", work.resource(access.resource).name))
+                .collect();
+            let written: Vec<String> = written.into_iter().collect();
+            CulledPass {
+                name: pass.name.value.clone(),
+                reason: match written.is_empty() {
+                    true => "it writes nothing".to_owned(),
+                    false => format!(
+                        "nothing that an output needs reads what it writes ({})",
+                        written.join(", ")
+                    ),
+                },
+            }
+        })
+        .collect()
+}

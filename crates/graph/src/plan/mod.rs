@@ -1,0 +1,19 @@
+//! Phase 6: everything that a device needs to know, in one place.
+
+pub(crate) mod check;
+pub(crate) mod items;
+pub(crate) mod make;
+pub(crate) mod memory;
+#[expect(
+    clippy::module_inception,
+    reason = "the folder is named after what it makes"
+)]
+pub(crate) mod plan;
+pub(crate) mod readable;
+pub(crate) mod summary;
+pub mod text;
+mod usages;
+
+pub use memory::MemoryEntry;
+pub use plan::Plan;
+pub use summary::{CulledPass, OutputSummary, PassSummary};

@@ -1,0 +1,142 @@
+//! What a plan tells of itself, and plans made from it.
+
+use super::plan::Plan;
+use crate::{
+    diagnostics::{diagnostic::Diagnostic, list::Diagnostics},
+    document::params::ParamValue,
+    graph::Graph,
+    link::pass::LinkedPass,
+    request::PlanRequest,
+    resource::{ResourceKind, Target},
+};
+
+/// A live pass.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PassSummary {
+    /// Name.
+    pub name: String,
+    /// Kind, as the document writes it.
+    pub kind: String,
+}
+
+/// A pass that does not run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CulledPass {
+    /// Name.
+    pub name: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// Something that can be read back.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OutputSummary {
+    /// Name of the output or capture.
+    pub name: String,
+    /// Format of a texture; `None` for a buffer.
+    pub format: Option<wgt::TextureFormat>,
+    /// Texels of a texture; `[bytes, 1]` of a buffer.
+    pub size: [u32; 2],
+}
+
+impl Plan {
+    /// The live passes in the order in which they run.
+    pub fn passes(&self) -> Vec<PassSummary> {
+        let summary = |pass: &LinkedPass| PassSummary {
+            name: pass.name.value.clone(),
+            kind: pass.kind.to_owned(),
+        };
+        self.live().map(summary).collect()
+    }
+
+    /// The passes that do not run.
+    pub fn culled(&self) -> &[CulledPass] {
+        &self.culled
+    }
+
+    /// The provided resources that live passes bind; only these are built.
+    pub fn provided(&self) -> Vec<&str> {
+        self.schedule()
+            .lifetimes
+            .keys()
+            .map(|id| self.resource(*id))
+            .filter(|resource| matches!(resource.kind, ResourceKind::Provided(_)))
+            .map(|resource| resource.name.as_str())
+            .collect()
+    }
+
+    /// What can be read back after a frame.
+    pub fn outputs(&self) -> Vec<OutputSummary> {
+        let summary = |(name, target): &(String, Target)| {
+            let (format, size) = match &self.resource(target.id).kind {
+                ResourceKind::Texture(texture) => (
+                    Some(texture.format),
+                    texture.mip_size(target.part.mips.start),
+                ),
+                ResourceKind::Buffer(buffer) => {
+                    (None, [u32::try_from(buffer.bytes).unwrap_or(u32::MAX), 1])
+                }
+                _ => (None, [0, 0]),
+            };
+            OutputSummary {
+                name: name.clone(),
+                format,
+                size,
+            }
+        };
+        self.readable.iter().map(summary).collect()
+    }
+
+    /// The graph that was planned.
+    pub fn graph(&self) -> &Graph {
+        &self.graph
+    }
+
+    /// Width and height of the viewport in pixels.
+    pub fn viewport(&self) -> [u32; 2] {
+        self.request.viewport
+    }
+
+    /// The value of a param in this plan.
+    pub fn param(&self, name: &str) -> Option<&ParamValue> {
+        self.values.get(name)
+    }
+
+    /// This plan for another viewport.
+    ///
+    /// # Errors
+    /// Everything that is wrong then.
+    pub fn with_viewport(&self, viewport: [u32; 2]) -> Result<Self, Diagnostics> {
+        self.with(|request| request.viewport = viewport)
+    }
+
+    /// This plan with another value of a param.
+    ///
+    /// # Errors
+    /// Everything that is wrong then.
+    pub fn with_param(&self, name: &str, value: ParamValue) -> Result<Self, Diagnostics> {
+        self.with(|request| {
+            request.params.insert(name.to_owned(), value);
+        })
+    }
+
+    /// This plan with several things of its request changed at once, such as the viewport and the
+    /// imports that follow it. What the provider described is as it was, unless another provider is
+    /// put in.
+    ///
+    /// # Errors
+    /// Everything that is wrong then.
+    pub fn with<'a>(
+        &'a self,
+        change: impl FnOnce(&mut PlanRequest<'a>),
+    ) -> Result<Self, Diagnostics> {
+        let mut request = self.request.again();
+        change(&mut request);
+        self.graph.plan(&request)
+    }
+
+    /// What is suspicious.
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.warnings
+    }
+}

@@ -1,0 +1,27 @@
+//! Numbers and names as people read them.
+
+/// The text, cut to at most `characters`, with an ellipsis where something is missing. The end of a
+/// name often tells more than its middle, so the middle goes.
+pub fn cut(text: &str, characters: usize) -> String {
+    let all: Vec<char> = text.chars().collect();
+    if all.len() <= characters {
+        return text.to_owned();
+    }
+    let tail = characters / 3;
+    let head = characters.saturating_sub(tail + 1);
+    all[..head]
+        .iter()
+        .chain(['…'].iter())
+        .chain(&all[all.len() - tail..])
+        .collect()
+}
+
+/// Bytes in the unit that fits.
+pub fn bytes(bytes: u64) -> String {
+    match bytes {
+        0..1024 => format!("{bytes} B"),
+        1024..1_048_576 => format!("{:.1} KiB", bytes as f64 / 1024.0),
+        1_048_576..1_073_741_824 => format!("{:.1} MiB", bytes as f64 / 1_048_576.0),
+        _ => format!("{:.2} GiB", bytes as f64 / 1_073_741_824.0),
+    }
+}

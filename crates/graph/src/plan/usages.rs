@@ -1,0 +1,51 @@
+//! What the host will hand over, held against what passes do with it.
+
+use crate::{
+    diagnostics::reports::Reports,
+    errors::plan::OutputError,
+    flow::work::Work,
+    link::pass::{PassId, Usage},
+    provider::Import,
+    request::PlanRequest,
+    resource::Origin,
+    source::span::Located,
+};
+
+/// What the host imports must have been made for what passes do with it.
+pub(super) fn check(
+    work: Work<'_>,
+    sequence: &[PassId],
+    request: &PlanRequest<'_>,
+    reports: &mut Reports,
+) {
+    fn names<T>(of: &str, flags: impl Iterator<Item = (&'static str, T)>) -> String {
+        let names: Vec<String> = flags.map(|(name, _)| format!("{of}::{name}")).collect();
+        names.join(" | ")
+    }
+    for pass in sequence.iter().map(|&pass| work.pass(pass)) {
+        for access in &pass.accesses {
+            let resource = work.resource(access.resource);
+            if resource.origin != Origin::Host {
+                continue;
+            }
+            let lacking = match (request.imports.get(&resource.name).copied(), access.usage) {
+                (Some(Import::Texture { usage, .. }), Usage::Texture(needed))
+                    if !usage.contains(needed) =>
+                {
+                    names("TextureUsages", needed.difference(usage).iter_names())
+                }
+                (Some(Import::Buffer { usage, .. }), Usage::Buffer(needed))
+                    if !usage.contains(needed) =>
+                {
+                    names("BufferUsages", needed.difference(usage).iter_names())
+                }
+                _ => continue,
+            };
+            reports.report(OutputError::ImportUsage {
+                name: Located::new(resource.name.clone(), access.span.clone()),
+                pass: pass.name.clone(),
+                lacking,
+            });
+        }
+    }
+}

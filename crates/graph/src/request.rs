@@ -1,0 +1,150 @@
+//! What a plan is asked for.
+
+use crate::{
+    document::params::ParamValue,
+    provider::{Describe, Described, Import},
+};
+use std::collections::BTreeMap;
+
+/// What a plan is made for.
+pub struct PlanRequest<'a> {
+    /// Width and height in pixels.
+    pub viewport: [u32; 2],
+    /// Values of params; where missing, the document's default.
+    pub params: BTreeMap<String, ParamValue>,
+    /// The outputs that are wanted; `None` = all that the document declares.
+    pub outputs: Option<Vec<String>>,
+    /// Materials that are to be read back beside the outputs.
+    pub captures: Vec<Capture>,
+    /// Limits that the device will have.
+    pub limits: wgt::Limits,
+    /// Features that the device will have.
+    pub features: wgt::Features,
+    /// Bytes that the graph's own textures and buffers may take together; one that takes more is
+    /// refused with a table of what takes the most, before anything is allocated. `None`: whatever
+    /// the device gives. (wgpu does not tell how much memory there is.)
+    pub memory_limit: Option<u64>,
+    /// What the host will import for the inputs of the root document, by name.
+    pub imports: BTreeMap<String, Import>,
+    /// Fills memory between uses with a pattern made of this byte: a graph whose outputs change
+    /// with it reads what it has not written. Costs time; for finding mistakes.
+    pub poison: Option<u8>,
+    /// It is not known on which device the graph will run: what is beyond `limits` and `features` is
+    /// told as a warning.
+    pub any_adapter: bool,
+    /// Describes the provided resources.
+    pub provider: &'a dyn Describe,
+}
+
+impl<'a> PlanRequest<'a> {
+    /// A request with wgpu's default limits, no features, default params and all outputs.
+    pub fn new(viewport: [u32; 2], provider: &'a dyn Describe) -> Self {
+        Self {
+            viewport,
+            params: BTreeMap::new(),
+            outputs: None,
+            captures: Vec::new(),
+            limits: wgt::Limits::default(),
+            features: wgt::Features::empty(),
+            memory_limit: None,
+            imports: BTreeMap::new(),
+            poison: None,
+            any_adapter: false,
+            provider,
+        }
+    }
+}
+
+impl<'a> PlanRequest<'a> {
+    /// The same request once more, to be changed.
+    pub(crate) fn again(&self) -> PlanRequest<'a> {
+        PlanRequest {
+            viewport: self.viewport,
+            params: self.params.clone(),
+            outputs: self.outputs.clone(),
+            captures: self.captures.clone(),
+            limits: self.limits.clone(),
+            features: self.features,
+            memory_limit: self.memory_limit,
+            imports: self.imports.clone(),
+            poison: self.poison,
+            any_adapter: self.any_adapter,
+            provider: self.provider,
+        }
+    }
+}
+
+/// A [`PlanRequest`] that a plan keeps, so that it can be made again with something changed.
+#[derive(Clone, Debug)]
+pub(crate) struct Request {
+    pub viewport: [u32; 2],
+    pub params: BTreeMap<String, ParamValue>,
+    pub outputs: Option<Vec<String>>,
+    pub captures: Vec<Capture>,
+    pub limits: wgt::Limits,
+    pub features: wgt::Features,
+    pub memory_limit: Option<u64>,
+    pub imports: BTreeMap<String, Import>,
+    pub poison: Option<u8>,
+    pub any_adapter: bool,
+    provider: Described,
+}
+
+impl Request {
+    pub fn of(request: &PlanRequest<'_>) -> Self {
+        Self {
+            viewport: request.viewport,
+            params: request.params.clone(),
+            outputs: request.outputs.clone(),
+            captures: request.captures.clone(),
+            limits: request.limits.clone(),
+            features: request.features,
+            memory_limit: request.memory_limit,
+            imports: request.imports.clone(),
+            poison: request.poison,
+            any_adapter: request.any_adapter,
+            provider: Described::by(request.provider),
+        }
+    }
+
+    /// Whether the host imports or provides something under this name.
+    pub fn offers(&self, name: &str) -> bool {
+        self.imports.contains_key(name) || self.provider.0.contains_key(name)
+    }
+
+    /// The request to plan with; provided resources are as they were described.
+    pub fn again(&self) -> PlanRequest<'_> {
+        PlanRequest {
+            viewport: self.viewport,
+            params: self.params.clone(),
+            outputs: self.outputs.clone(),
+            captures: self.captures.clone(),
+            limits: self.limits.clone(),
+            features: self.features,
+            memory_limit: self.memory_limit,
+            imports: self.imports.clone(),
+            poison: self.poison,
+            any_adapter: self.any_adapter,
+            provider: &self.provider,
+        }
+    }
+}
+
+/// A material to be read back.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Capture {
+    /// Material, view or provided resource.
+    pub material: String,
+    /// The pass after which its content is wanted; `None` = at the end of the frame.
+    pub after: Option<String>,
+}
+
+impl Capture {
+    /// The name under which it is read back: `material` or `material@pass`.
+    pub fn name(&self) -> String {
+        match &self.after {
+            Some(pass) => format!("{}@{pass}", self.material),
+            None => self.material.clone(),
+        }
+    }
+}

@@ -1,0 +1,271 @@
+//! What a resource global is: a uniform, a storage buffer of some layout, a texture, a sampler.
+
+use naga::{AddressSpace, Handle, ImageClass, TypeInner, proc::Layouter};
+use std::fmt;
+
+/// What a global is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Class {
+    Uniform {
+        size: u64,
+        members: Vec<Member>,
+        layout: String,
+    },
+    /// `fixed`: bytes before the runtime-sized array (or of the whole type); `stride`: bytes per
+    /// item of that array.
+    Storage {
+        fixed: u64,
+        stride: Option<u64>,
+        read_only: bool,
+        layout: String,
+    },
+    Texture(TextureClass),
+    Sampler {
+        comparison: bool,
+    },
+    Unsupported(&'static str),
+}
+
+/// A texture global, sampled or storage.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum TextureClass {
+    Sampled {
+        scalar: ScalarClass,
+        dimension: wgt::TextureViewDimension,
+        depth: bool,
+        multisampled: bool,
+    },
+    Storage {
+        format: String,
+        dimension: wgt::TextureViewDimension,
+        access: wgt::StorageTextureAccess,
+    },
+}
+
+/// What one channel of a texture is to a shader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ScalarClass {
+    Float,
+    Uint,
+    Sint,
+}
+
+impl fmt::Display for ScalarClass {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Float => "f32",
+            Self::Uint => "u32",
+            Self::Sint => "i32",
+        })
+    }
+}
+
+impl ScalarClass {
+    fn of(kind: naga::ScalarKind) -> Option<Self> {
+        match kind {
+            naga::ScalarKind::Float => Some(Self::Float),
+            naga::ScalarKind::Uint => Some(Self::Uint),
+            naga::ScalarKind::Sint => Some(Self::Sint),
+            _ => None,
+        }
+    }
+}
+
+/// A member of a uniform struct.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Member {
+    pub name: String,
+    pub offset: u64,
+    /// Scalar class and number of components; `None` for matrices, arrays and structs.
+    pub vector: Option<(ScalarClass, u32)>,
+}
+
+/// Scalar class and number of components of a scalar or vector.
+pub(super) fn vector(module: &naga::Module, ty: Handle<naga::Type>) -> Option<(ScalarClass, u32)> {
+    match module.types[ty].inner {
+        TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => {
+            Some((ScalarClass::of(scalar.kind)?, 1))
+        }
+        TypeInner::Vector { size, scalar } => Some((ScalarClass::of(scalar.kind)?, size as u32)),
+        _ => None,
+    }
+}
+
+pub(super) fn class_of(
+    module: &naga::Module,
+    layouter: &Layouter,
+    variable: &naga::GlobalVariable,
+) -> Class {
+    let inner = &module.types[variable.ty].inner;
+    let size = u64::from(layouter[variable.ty].size);
+    match (variable.space, inner) {
+        (AddressSpace::Uniform, _) => {
+            let members = match inner {
+                TypeInner::Struct { members, .. } => members
+                    .iter()
+                    .map(|member| Member {
+                        name: member.name.clone().unwrap_or_default(),
+                        offset: u64::from(member.offset),
+                        vector: vector(module, member.ty),
+                    })
+                    .collect(),
+                _ => Vec::new(),
+            };
+            let layout = layout(module, variable.ty);
+            Class::Uniform {
+                size,
+                members,
+                layout,
+            }
+        }
+        (AddressSpace::Storage { access }, _) => {
+            let (fixed, stride) = storage_size(module, variable.ty, size);
+            Class::Storage {
+                fixed,
+                stride,
+                read_only: !access.contains(naga::StorageAccess::STORE),
+                layout: layout(module, variable.ty),
+            }
+        }
+        (
+            AddressSpace::Handle,
+            TypeInner::Image {
+                dim,
+                arrayed,
+                class,
+            },
+        ) => image(*dim, *arrayed, class),
+        (AddressSpace::Handle, TypeInner::Sampler { comparison }) => Class::Sampler {
+            comparison: *comparison,
+        },
+        (AddressSpace::Handle, TypeInner::AccelerationStructure { .. }) => {
+            Class::Unsupported("an acceleration structure")
+        }
+        (AddressSpace::Handle, TypeInner::BindingArray { .. }) => {
+            Class::Unsupported("a binding array")
+        }
+        _ => Class::Unsupported("a global of this address space"),
+    }
+}
+
+fn image(dim: naga::ImageDimension, arrayed: bool, class: &ImageClass) -> Class {
+    let dimension = match (dim, arrayed) {
+        (naga::ImageDimension::D2, false) => wgt::TextureViewDimension::D2,
+        (naga::ImageDimension::D2, true) => wgt::TextureViewDimension::D2Array,
+        (naga::ImageDimension::D3, _) => wgt::TextureViewDimension::D3,
+        (naga::ImageDimension::Cube, false) => wgt::TextureViewDimension::Cube,
+        (naga::ImageDimension::Cube, true) => wgt::TextureViewDimension::CubeArray,
+        _ => return Class::Unsupported("a 1D texture"),
+    };
+    let sampled = |scalar, depth, multisampled| {
+        Class::Texture(TextureClass::Sampled {
+            scalar,
+            dimension,
+            depth,
+            multisampled,
+        })
+    };
+    match class {
+        ImageClass::Sampled { kind, multi } => match ScalarClass::of(*kind) {
+            Some(scalar) => sampled(scalar, false, *multi),
+            None => Class::Unsupported("a texture of this scalar type"),
+        },
+        ImageClass::Depth { multi } => sampled(ScalarClass::Float, true, *multi),
+        ImageClass::Storage { format, access } => {
+            let load = access.contains(naga::StorageAccess::LOAD);
+            let store = access.contains(naga::StorageAccess::STORE);
+            let access = match (load, store) {
+                _ if access.contains(naga::StorageAccess::ATOMIC) => {
+                    wgt::StorageTextureAccess::Atomic
+                }
+                (true, true) => wgt::StorageTextureAccess::ReadWrite,
+                (true, false) => wgt::StorageTextureAccess::ReadOnly,
+                _ => wgt::StorageTextureAccess::WriteOnly,
+            };
+            Class::Texture(TextureClass::Storage {
+                format: format!("{format:?}"),
+                dimension,
+                access,
+            })
+        }
+        _ => Class::Unsupported("an external texture"),
+    }
+}
+
+/// Bytes before the runtime-sized array and its stride, or the whole size.
+fn storage_size(module: &naga::Module, ty: Handle<naga::Type>, size: u64) -> (u64, Option<u64>) {
+    let dynamic = |ty: Handle<naga::Type>| match module.types[ty].inner {
+        TypeInner::Array {
+            size: naga::ArraySize::Dynamic,
+            stride,
+            ..
+        } => Some(u64::from(stride)),
+        _ => None,
+    };
+    if let Some(stride) = dynamic(ty) {
+        return (0, Some(stride));
+    }
+    let last = match &module.types[ty].inner {
+        TypeInner::Struct { members, .. } => members.last(),
+        _ => None,
+    };
+    let dynamic = last.and_then(|last| Some((last.offset, dynamic(last.ty)?)));
+    dynamic.map_or((size, None), |(offset, stride)| {
+        (u64::from(offset), Some(stride))
+    })
+}
+
+/// A type's memory layout in words, equal for equal layouts:
+/// `array<{0: vec3<f32>, 12: f32}, 16 bytes each>`. Names of members do not count.
+fn layout(module: &naga::Module, ty: Handle<naga::Type>) -> String {
+    let mut text = String::new();
+    write_layout(module, ty, &mut text, 0);
+    text
+}
+
+fn write_layout(module: &naga::Module, ty: Handle<naga::Type>, text: &mut String, depth: usize) {
+    // A struct of structs of structs … doubles with every level; what is longer than this is the
+    // same for our purpose.
+    const LONGEST: usize = 4096;
+    const DEEPEST: usize = 32;
+    let scalar = |scalar: naga::Scalar| match scalar.kind {
+        naga::ScalarKind::Float => format!("f{}", scalar.width * 8),
+        naga::ScalarKind::Sint => format!("i{}", scalar.width * 8),
+        _ => format!("u{}", scalar.width * 8),
+    };
+    if text.len() > LONGEST || depth > DEEPEST {
+        text.push('…');
+        return;
+    }
+    match &module.types[ty].inner {
+        TypeInner::Scalar(kind) | TypeInner::Atomic(kind) => text.push_str(&scalar(*kind)),
+        TypeInner::Vector { size, scalar: kind } => {
+            text.push_str(&format!("vec{}<{}>", *size as u32, scalar(*kind)));
+        }
+        TypeInner::Matrix {
+            columns,
+            rows,
+            scalar: kind,
+        } => {
+            let (columns, rows) = (*columns as u32, *rows as u32);
+            text.push_str(&format!("mat{columns}x{rows}<{}>", scalar(*kind)));
+        }
+        TypeInner::Array { base, size, stride } => {
+            text.push_str("array<");
+            write_layout(module, *base, text, depth + 1);
+            if let naga::ArraySize::Constant(count) = size {
+                text.push_str(&format!(", {count}"));
+            }
+            text.push_str(&format!(", {stride} bytes each>"));
+        }
+        TypeInner::Struct { members, .. } => {
+            for (index, member) in members.iter().enumerate() {
+                let open = if index == 0 { "{" } else { ", " };
+                text.push_str(&format!("{open}{}: ", member.offset));
+                write_layout(module, member.ty, text, depth + 1);
+            }
+            text.push('}');
+        }
+        other => text.push_str(&format!("{other:?}")),
+    }
+}

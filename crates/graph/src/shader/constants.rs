@@ -1,0 +1,94 @@
+//! Words of `Choice` params as constants of the shaders of their document: `cull` brings
+//! `const CULL_NONE: u32 = 0u;` and so on.
+
+use super::{expand::Expanded, reflect::Shader, text::identifiers};
+use crate::{
+    document::params::{Param, ParamType},
+    errors::shader::ShaderError,
+    source::span::Span,
+};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// The constants of a document's words, by name.
+#[derive(Debug, Default)]
+pub(crate) struct ChoiceConstants(BTreeMap<String, ChoiceConstant>);
+
+#[derive(Debug)]
+struct ChoiceConstant {
+    number: u32,
+    param: String,
+    word: String,
+    declared: Span,
+}
+
+impl ChoiceConstants {
+    /// Those of these params, and the words that give one constant.
+    pub fn of(params: &[Param]) -> (Self, Vec<ShaderError>) {
+        let (mut constants, mut clashes) = (BTreeMap::<String, ChoiceConstant>::new(), Vec::new());
+        for param in params {
+            let ParamType::Choice(words) = &param.ty else {
+                continue;
+            };
+            for (number, word) in (0u32..).zip(words.iter()) {
+                let name = constant_name(&param.name, word);
+                let constant = ChoiceConstant {
+                    number,
+                    param: param.name.value.clone(),
+                    word: word.to_string(),
+                    declared: param.name.span.clone(),
+                };
+                if let Some(first) = constants.get(&name) {
+                    clashes.push(ShaderError::TwoWords {
+                        constant: name,
+                        first: first.declared.clone(),
+                        second: constant.declared,
+                    });
+                    continue;
+                }
+                constants.insert(name, constant);
+            }
+        }
+        (Self(constants), clashes)
+    }
+
+    /// Appends those that the text uses and does not declare; returns those that it declares.
+    pub fn append(&self, source: &mut Expanded) -> Vec<&str> {
+        let mut used: HashMap<&str, bool> = HashMap::new();
+        for (word, is_declared) in identifiers(&source.text) {
+            if let Some((name, _)) = self.0.get_key_value(word) {
+                *used.entry(name).or_default() |= is_declared;
+            }
+        }
+        let (declared, missing): (BTreeSet<_>, BTreeSet<_>) =
+            used.into_iter().partition(|(_, is_declared)| *is_declared);
+        for (name, _) in missing {
+            let constant = &self.0[name];
+            let text = format!("\nconst {name}: u32 = {}u;\n", constant.number);
+            source.push(&text, &constant.declared);
+        }
+        declared.into_iter().map(|(name, _)| name).collect()
+    }
+
+    /// The first of the declared constants that is another number than its word.
+    pub fn disagreement(&self, shader: &Shader, declared: &[&str]) -> Option<ShaderError> {
+        declared.iter().find_map(|name| {
+            let constant = self.0.get(*name)?;
+            let found = shader.constant(name)?;
+            let agrees = found.number() == f64::from(constant.number);
+            (!agrees).then(|| ShaderError::Choice {
+                constant: (*name).to_owned(),
+                found: found.to_string(),
+                word: format!("`{}`", constant.word),
+                param: constant.param.clone(),
+                number: constant.number,
+                at: shader.constant_span(name),
+                declared: constant.declared.clone(),
+            })
+        })
+    }
+}
+
+/// `CULL_FRONT` of `cull` and `front`; of `left.cull`, `LEFT_CULL_FRONT`.
+fn constant_name(param: &str, word: &str) -> String {
+    format!("{param}_{word}").replace('.', "_").to_uppercase()
+}

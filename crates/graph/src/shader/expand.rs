@@ -1,0 +1,188 @@
+//! `#import "path"`: a textual, once-only line, with a map from the expanded text back to the files.
+//!
+//! Names stay as written, so that errors, captures and bindings speak the author's language.
+
+use super::text::{BREAKS, Comments};
+use crate::{
+    diagnostics::{diagnostic::Diagnostic, reports::Mistake, suggest::likeness},
+    errors::shader::ImportError,
+    source::{
+        paths::{escapes, folder_of, import_candidates, shader_candidates},
+        sources::{self, Sources},
+        span::{Located, SourceFile, Span},
+    },
+};
+use std::{collections::HashMap, ops::Range, sync::Arc};
+
+/// Deepest chain of imports; far above any sensible house, far below the stack.
+const DEEPEST_IMPORT: usize = 64;
+
+/// A shader with its imports in place.
+#[derive(Clone, Debug)]
+pub(crate) struct Expanded {
+    pub text: String,
+    /// The shader's own file.
+    pub file: SourceFile,
+    /// Consecutive pieces of `text`: where each begins, and the file and offset it came from.
+    pieces: Vec<(usize, SourceFile, usize)>,
+}
+
+impl Expanded {
+    /// The place in the author's file of a place in the expanded text.
+    pub fn locate(&self, range: Range<usize>) -> Span {
+        let index = self
+            .pieces
+            .partition_point(|(start, ..)| *start <= range.start)
+            .saturating_sub(1);
+        match self.pieces.get(index) {
+            Some((start, file, offset)) => {
+                let from = (offset + range.start - start).min(file.text.len());
+                file.span(from..(from + range.len()).min(file.text.len()))
+            }
+            None => self.file.span(0..0),
+        }
+    }
+
+    /// Appends a generated piece; mistakes in it are told at `origin`.
+    pub fn push(&mut self, text: &str, origin: &Span) {
+        let (file, at) = (origin.file.clone(), origin.range.start);
+        self.pieces.push((self.text.len(), file, at));
+        self.text.push_str(text);
+    }
+
+    /// Whether a place in the expanded text belongs to an imported module.
+    pub fn is_imported(&self, at: usize) -> bool {
+        self.locate(at..at).file != self.file
+    }
+}
+
+/// Reads shaders for a document and those that it includes, each file once.
+pub(crate) struct ShaderFiles<'a> {
+    sources: &'a dyn Sources,
+    read: HashMap<String, Option<SourceFile>>,
+}
+
+impl<'a> ShaderFiles<'a> {
+    pub fn new(sources: &'a dyn Sources) -> Self {
+        Self {
+            sources,
+            read: HashMap::new(),
+        }
+    }
+
+    fn find(&mut self, candidates: &[String]) -> Result<Option<SourceFile>, String> {
+        for path in candidates {
+            if !self.read.contains_key(path) {
+                let file =
+                    sources::read(self.sources, path).map_err(|why| format!("{path}: {why}"))?;
+                let file = file.map(|text: Arc<str>| SourceFile::new(path.as_str(), text));
+                self.read.insert(path.clone(), file);
+            }
+            if let Some(Some(file)) = self.read.get(path) {
+                return Ok(Some(file.clone()));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The shader that a document names, with its imports in place. It is looked for beside the file
+    /// in which the name is written.
+    pub fn expand(&mut self, name: &Located<String>) -> Result<Expanded, Diagnostic> {
+        let candidates = shader_candidates(folder_of(&name.span.file.name), name);
+        if escapes(name) {
+            return Err(ImportError::Outside(name.clone()).diagnostic());
+        }
+        let file = match self.find(&candidates) {
+            Ok(Some(file)) => file,
+            Ok(None) => {
+                let likeness = self.likeness(&candidates, name);
+                return Err(ImportError::NoShader(name.clone(), candidates, likeness).diagnostic());
+            }
+            Err(why) => return Err(ImportError::Unreadable(name.clone(), why).diagnostic()),
+        };
+        let mut expanded = Expanded {
+            text: String::new(),
+            file: file.clone(),
+            pieces: Vec::new(),
+        };
+        self.append(&file, &mut expanded, &mut vec![file.name.to_string()], 0)
+            .map_err(Mistake::diagnostic)?;
+        Ok(expanded)
+    }
+
+    fn likeness(&self, candidates: &[String], name: &str) -> Option<String> {
+        let files = candidates
+            .iter()
+            .flat_map(|path| self.sources.list(folder_of(path)));
+        let known = files.filter_map(|file| file.strip_suffix(".wgsl").map(str::to_owned));
+        likeness(name, known)
+    }
+
+    fn append(
+        &mut self,
+        file: &SourceFile,
+        into: &mut Expanded,
+        seen: &mut Vec<String>,
+        depth: usize,
+    ) -> Result<(), ImportError> {
+        let mut at = 0;
+        into.pieces.push((into.text.len(), file.clone(), 0));
+        let mut comments = Comments::default();
+        for line in file.text.split_inclusive('\n') {
+            let start = at;
+            at += line.len();
+            let inside = comments.are_open();
+            comments.read(line);
+            let Some(rest) = line
+                .trim_start()
+                .strip_prefix("#import")
+                .filter(|_| !inside)
+            else {
+                into.text.push_str(line);
+                continue;
+            };
+            let place = file.span(start..start + line.trim_end().len());
+            let path = path(rest).ok_or_else(|| ImportError::Unquoted(place.clone()))?;
+            let imported = self.import(file, path, &place)?;
+            // Once only: this also ends cycles.
+            if !seen.contains(&imported.name.to_string()) {
+                if depth == DEEPEST_IMPORT {
+                    return Err(ImportError::TooDeep(place));
+                }
+                seen.push(imported.name.to_string());
+                self.append(&imported, into, seen, depth + 1)?;
+                if !into.text.ends_with('\n') {
+                    into.text.push('\n');
+                }
+            }
+            into.pieces.push((into.text.len(), file.clone(), at));
+        }
+        Ok(())
+    }
+
+    fn import(
+        &mut self,
+        file: &SourceFile,
+        path: &str,
+        place: &Span,
+    ) -> Result<SourceFile, ImportError> {
+        let path = Located::new(path.to_owned(), place.clone());
+        if escapes(&path) {
+            return Err(ImportError::Leaves(path));
+        }
+        let candidates = import_candidates(&file.name, &path);
+        match self.find(&candidates) {
+            Ok(Some(imported)) => Ok(imported),
+            Ok(None) => Err(ImportError::NoFile(path, candidates)),
+            Err(why) => Err(ImportError::UnreadableFile(path, why)),
+        }
+    }
+}
+
+/// The path in what follows `#import`; only a line comment may follow.
+fn path(rest: &str) -> Option<&str> {
+    let (path, after) = rest.trim().strip_prefix('"')?.split_once('"')?;
+    let after = after.trim();
+    let ends = after.is_empty() || after.starts_with("//") && !after.contains(BREAKS);
+    (ends && !path.is_empty()).then_some(path)
+}

@@ -1,0 +1,119 @@
+//! The items of a buffer, scalar by scalar, as a shader that binds it declares them.
+
+use naga::{Handle, ScalarKind, TypeInner};
+
+/// One scalar of a buffer's items.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// As WGSL spells it, from the item on: `origin.x`, `indices[2]`; empty if the item is a single
+    /// scalar.
+    pub name: String,
+    /// Bytes from the begin of the item.
+    pub offset: usize,
+    /// What it is.
+    pub scalar: ItemScalar,
+}
+
+/// A scalar of 32 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ItemScalar {
+    /// `f32`.
+    F32,
+    /// `i32`.
+    I32,
+    /// `u32`.
+    U32,
+}
+
+impl ItemScalar {
+    /// The bits of a number of this type; `None` if it cannot hold it.
+    pub(crate) fn bits(self, number: f64) -> Option<u32> {
+        let whole = number.fract() == 0.0;
+        match self {
+            Self::F32 => Some((number as f32).to_bits()),
+            Self::U32 => {
+                (whole && (0.0..=f64::from(u32::MAX)).contains(&number)).then_some(number as u32)
+            }
+            Self::I32 => {
+                let fits = (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(&number);
+                (whole && fits).then_some((number as i32).cast_unsigned())
+            }
+        }
+    }
+}
+
+/// The items of a buffer, as a shader that binds it declares them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Item {
+    /// Bytes from one item to the next.
+    pub stride: usize,
+    /// Its scalars; bytes between them are padding.
+    pub fields: Vec<Field>,
+}
+
+/// An item with more scalars than this is no row of a table.
+const MOST_FIELDS: usize = 64;
+
+pub(crate) fn item(module: &naga::Module, ty: Handle<naga::Type>) -> Option<Item> {
+    let inner = &module.types[ty].inner;
+    let (of, stride) = match inner {
+        TypeInner::Array { base, stride, .. } => (*base, *stride),
+        _ => (ty, inner.size(module.to_ctx())),
+    };
+    let mut fields = Vec::new();
+    flatten(module, of, String::new(), 0, &mut fields)?;
+    Some(Item {
+        stride: stride as usize,
+        fields,
+    })
+}
+
+/// Adds the scalars of a type; `None` if it has one that is no 32-bit number, or too many.
+fn flatten(
+    module: &naga::Module,
+    ty: Handle<naga::Type>,
+    name: String,
+    offset: usize,
+    fields: &mut Vec<Field>,
+) -> Option<()> {
+    let mut push = |name: String, offset, scalar: naga::Scalar| {
+        let scalar = match (scalar.kind, scalar.width) {
+            (ScalarKind::Float, 4) => ItemScalar::F32,
+            (ScalarKind::Sint, 4) => ItemScalar::I32,
+            (ScalarKind::Uint, 4) => ItemScalar::U32,
+            _ => return None,
+        };
+        fields.push(Field {
+            name,
+            offset,
+            scalar,
+        });
+        (fields.len() <= MOST_FIELDS).then_some(())
+    };
+    let dot = if name.is_empty() { "" } else { "." };
+    match &module.types[ty].inner {
+        TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => push(name, offset, *scalar),
+        TypeInner::Vector { size, scalar } => ["x", "y", "z", "w"]
+            .iter()
+            .take(*size as usize)
+            .enumerate()
+            .try_for_each(|(index, axis)| {
+                let place = offset + index * usize::from(scalar.width);
+                push(format!("{name}{dot}{axis}"), place, *scalar)
+            }),
+        TypeInner::Array {
+            base,
+            size: naga::ArraySize::Constant(count),
+            stride,
+        } => (0..count.get() as usize).try_for_each(|index| {
+            let place = offset + index * *stride as usize;
+            flatten(module, *base, format!("{name}[{index}]"), place, fields)
+        }),
+        TypeInner::Struct { members, .. } => members.iter().try_for_each(|member| {
+            let of = member.name.as_deref().unwrap_or("_");
+            let place = offset + member.offset as usize;
+            flatten(module, member.ty, format!("{name}{dot}{of}"), place, fields)
+        }),
+        _ => None,
+    }
+}

@@ -1,0 +1,435 @@
+//! What a WGSL module binds and how: every resource global with its type, place, binding number and
+//! use per entry point.
+
+use super::{
+    class::{Class, ScalarClass, TextureClass, class_of, vector},
+    expand::Expanded,
+    guard,
+    items::{Field, item},
+    text::words,
+    wgsl_errors::{function_span, parse_error, validation_error},
+};
+use crate::{
+    errors::shader::ShaderError,
+    language::value::Scalar,
+    source::span::{Located, Span},
+};
+use naga::{
+    AddressSpace, Handle, ShaderStage, TypeInner,
+    proc::{GlobalCtx, Layouter},
+    valid::{GlobalUse, ModuleInfo, ValidationFlags, Validator},
+};
+use std::collections::BTreeSet;
+
+/// A parsed, validated shader whose resource globals all have binding numbers.
+#[derive(Debug)]
+pub struct Shader {
+    pub(crate) source: Expanded,
+    pub(crate) module: naga::Module,
+    info: ModuleInfo,
+    layouter: Layouter,
+}
+
+/// Shaders of one text are one.
+impl PartialEq for Shader {
+    fn eq(&self, other: &Self) -> bool {
+        self.source.text == other.source.text
+    }
+}
+
+impl Eq for Shader {}
+
+/// A resource global.
+#[derive(Clone, Debug)]
+pub(crate) struct Global {
+    pub handle: Handle<naga::GlobalVariable>,
+    pub name: String,
+    pub span: Span,
+    pub group: u32,
+    pub binding: u32,
+    pub class: Class,
+    pub reads: bool,
+    pub writes: bool,
+    /// The scalars of an item, where they are plain numbers.
+    pub fields: Option<Vec<Field>>,
+    /// The stages of the entry points that use it.
+    pub stages: wgt::ShaderStages,
+}
+
+impl Shader {
+    /// Parses and validates. Globals without `@group`/`@binding` get free numbers: group 0 those of
+    /// imported modules, group 1 the shader's own.
+    pub(crate) fn new(source: Expanded) -> Result<Self, ShaderError> {
+        guard::check(&source)?;
+        let mut module = naga::front::wgsl::parse_str(&source.text)
+            .map_err(|error| parse_error(&error, &source))?;
+        assign_bindings(&mut module, &source);
+        // What a device lacks is said when the pipeline is made for it; a document is checked
+        // against the language.
+        let mut validator =
+            Validator::new(ValidationFlags::all(), naga::valid::Capabilities::all());
+        let info = validator
+            .validate(&module)
+            .map_err(|error| validation_error(&error, &module, &source))?;
+        let mut layouter = Layouter::default();
+        layouter
+            .update(GlobalCtx {
+                types: &module.types,
+                constants: &module.constants,
+                overrides: &module.overrides,
+                global_expressions: &module.global_expressions,
+            })
+            .map_err(|error| ShaderError::NoLayout {
+                what: error.to_string(),
+                at: source.file.span(0..0),
+            })?;
+        Ok(Self {
+            source,
+            module,
+            info,
+            layouter,
+        })
+    }
+
+    /// Fragment entry points without colour outputs.
+    pub(crate) fn colourless_fragments(&self) -> impl Iterator<Item = usize> {
+        let entries = self.module.entry_points.iter().enumerate();
+        entries
+            .filter(|(index, entry)| {
+                entry.stage == ShaderStage::Fragment && self.fragment_outputs(*index).is_empty()
+            })
+            .map(|(index, _)| index)
+    }
+
+    /// The entry point of `stage`: the one called `name`, or the only one of the stage, of those
+    /// without colour outputs in a fragment stage that draws `depth_only`. `wanted` is where it is
+    /// asked for.
+    pub(crate) fn entry(
+        &self,
+        stage: ShaderStage,
+        depth_only: bool,
+        name: Option<&Located<String>>,
+        wanted: &Span,
+    ) -> Result<usize, ShaderError> {
+        let fits = |index: usize, entry: &naga::EntryPoint| {
+            entry.stage == stage
+                && (stage != ShaderStage::Fragment
+                    || !depth_only
+                    || name.is_some()
+                    || self.fragment_outputs(index).is_empty())
+        };
+        let entries = self.module.entry_points.iter().enumerate();
+        let of_stage: Vec<(usize, &str)> = entries
+            .filter(|(index, entry)| fits(*index, entry))
+            .map(|(index, entry)| (index, entry.name.as_str()))
+            .collect();
+        let stage = format!("{stage:?}").to_lowercase();
+        let file = self.source.file.name.to_string();
+        let known = || {
+            of_stage
+                .iter()
+                .map(|(_, known)| (*known).to_owned())
+                .collect()
+        };
+        match (name, of_stage.as_slice()) {
+            (Some(name), _) => {
+                let mut named = of_stage.iter().filter(|(_, known)| *known == name.as_str());
+                let error = || ShaderError::NoSuchEntry {
+                    file,
+                    stage,
+                    name: name.clone(),
+                    known: known(),
+                };
+                named.next().map(|(index, _)| *index).ok_or_else(error)
+            }
+            (None, [(index, _)]) => Ok(*index),
+            (None, []) => Err(ShaderError::NoEntry {
+                file,
+                stage,
+                at: wanted.clone(),
+            }),
+            (None, _) => Err(ShaderError::SeveralEntries {
+                file,
+                stage,
+                at: wanted.clone(),
+                known: known(),
+            }),
+        }
+    }
+
+    /// The module, with a binding number for every resource global.
+    pub fn module(&self) -> &naga::Module {
+        &self.module
+    }
+
+    /// The shader's own file.
+    pub fn file(&self) -> &str {
+        &self.source.file.name
+    }
+
+    /// The name of an entry point.
+    pub fn entry_name(&self, entry: usize) -> &str {
+        &self.module.entry_points[entry].name
+    }
+
+    /// `None` if it depends on an override.
+    pub(crate) fn workgroup_size(&self, entry: usize) -> Option<[u32; 3]> {
+        let entry = &self.module.entry_points[entry];
+        entry
+            .workgroup_size_overrides
+            .is_none()
+            .then_some(entry.workgroup_size)
+    }
+
+    /// The place of an entry point's name; naga keeps none.
+    pub(crate) fn entry_span(&self, entry: usize) -> Span {
+        function_span(&self.source, self.entry_name(entry))
+    }
+
+    /// Resource globals that the entry points use, in declaration order, with their use in any of
+    /// them.
+    pub(crate) fn globals(&self, entries: &[usize]) -> Vec<Global> {
+        let mut globals = Vec::with_capacity(self.module.global_variables.len());
+        for (handle, variable) in self.module.global_variables.iter() {
+            let Some(binding) = variable.binding else {
+                continue;
+            };
+            let (mut usage, mut stages) = (GlobalUse::empty(), wgt::ShaderStages::NONE);
+            for &entry in entries {
+                let here = self.info.get_entry_point(entry)[handle];
+                usage |= here;
+                if !here.is_empty() {
+                    stages |= stages_of(self.module.entry_points[entry].stage);
+                }
+            }
+            if usage.is_empty() {
+                continue;
+            }
+            let class = class_of(&self.module, &self.layouter, variable);
+            let storage_texture = match &class {
+                Class::Texture(TextureClass::Storage { access, .. }) => Some(*access),
+                _ => None,
+            };
+            // Atomics read what they add to; a storage texture's declared access is what the device
+            // is told.
+            let atomic = usage.contains(GlobalUse::ATOMIC);
+            let reads = match storage_texture {
+                Some(wgt::StorageTextureAccess::WriteOnly) => false,
+                Some(_) => true,
+                None => usage.contains(GlobalUse::READ) || atomic,
+            };
+            globals.push(Global {
+                handle,
+                name: variable.name.clone().unwrap_or_default(),
+                span: self.global_span(handle, variable),
+                group: binding.group,
+                binding: binding.binding,
+                class,
+                reads,
+                writes: usage.contains(GlobalUse::WRITE) || atomic,
+                fields: item(&self.module, variable.ty).map(|item| item.fields),
+                stages,
+            });
+        }
+        globals
+    }
+
+    fn global_span(
+        &self,
+        handle: Handle<naga::GlobalVariable>,
+        variable: &naga::GlobalVariable,
+    ) -> Span {
+        let range = self
+            .module
+            .global_variables
+            .get_span(handle)
+            .to_range()
+            .unwrap_or(0..0);
+        let name = variable.name.as_deref().unwrap_or("");
+        // The declaration begins with its attributes; the name is what matters, and the type
+        // follows it.
+        let declaration = self.source.text.get(range.clone()).unwrap_or("");
+        let declaration = declaration.split(':').next().unwrap_or("");
+        let at = range.start + words(declaration, name).last().unwrap_or(0);
+        self.source.locate(at..at + name.len())
+    }
+
+    /// Names of the sampler globals (but those that compare) through which the entry points sample
+    /// a texture global.
+    pub(crate) fn samplers_of(
+        &self,
+        entries: &[usize],
+        texture: Handle<naga::GlobalVariable>,
+    ) -> BTreeSet<String> {
+        entries
+            .iter()
+            .flat_map(|&entry| &self.info.get_entry_point(entry).sampling_set)
+            .filter(|key| key.image == texture)
+            .map(|key| &self.module.global_variables[key.sampler])
+            .filter(|sampler| {
+                !matches!(
+                    self.module.types[sampler.ty].inner,
+                    TypeInner::Sampler { comparison: true }
+                )
+            })
+            .filter_map(|sampler| sampler.name.clone())
+            .collect()
+    }
+
+    /// Overridable constants: name, the key that wgpu knows it by (its `@id` if it has one),
+    /// whether it has a value of its own, and its place.
+    pub(crate) fn overrides(&self) -> impl Iterator<Item = (&str, String, bool, Span)> {
+        self.module
+            .overrides
+            .iter()
+            .filter_map(|(handle, constant)| {
+                let name = constant.name.as_deref()?;
+                let key = constant
+                    .id
+                    .map_or_else(|| name.to_owned(), |id| id.to_string());
+                let range = self
+                    .module
+                    .overrides
+                    .get_span(handle)
+                    .to_range()
+                    .unwrap_or(0..0);
+                Some((
+                    name,
+                    key,
+                    constant.init.is_some(),
+                    self.source.locate(range),
+                ))
+            })
+    }
+
+    /// The value of a scalar module-scope constant.
+    pub(crate) fn constant(&self, name: &str) -> Option<Scalar> {
+        let mut constants = self.module.constants.iter();
+        let (_, constant) = constants.find(|(_, known)| known.name.as_deref() == Some(name))?;
+        match &self.module.global_expressions[constant.init] {
+            naga::Expression::Literal(literal) => Some(match *literal {
+                naga::Literal::F64(value) | naga::Literal::AbstractFloat(value) => {
+                    Scalar::Number(value)
+                }
+                naga::Literal::F32(value) => Scalar::Number(value.into()),
+                naga::Literal::U32(value) => Scalar::Whole(value.into()),
+                naga::Literal::I32(value) => Scalar::Whole(value.into()),
+                naga::Literal::I64(value) | naga::Literal::AbstractInt(value) => {
+                    Scalar::Whole(value)
+                }
+                _ => return None,
+            }),
+            naga::Expression::ZeroValue(_) => Some(Scalar::Whole(0)),
+            _ => None,
+        }
+    }
+
+    /// Names of the module-scope constants.
+    pub(crate) fn constants(&self) -> impl Iterator<Item = &str> {
+        let constants = self.module.constants.iter();
+        constants.filter_map(|(_, constant)| constant.name.as_deref())
+    }
+
+    /// The place of a module-scope constant.
+    pub(crate) fn constant_span(&self, name: &str) -> Span {
+        let text = &self.source.text;
+        let declared = |at: &usize| text[..*at].trim_end().ends_with("const");
+        let at = words(text, name).find(declared).unwrap_or(0);
+        self.source.locate(at..at + name.len())
+    }
+
+    /// Names of what the module asks for: members of the uniform `params`, and overrides.
+    pub(crate) fn params(&self) -> impl Iterator<Item = &str> {
+        let mut globals = self.module.global_variables.iter();
+        let params = globals.find(|(_, global)| global.name.as_deref() == Some("params"));
+        let members = params.map(|(_, global)| &self.module.types[global.ty].inner);
+        let members = match members {
+            Some(TypeInner::Struct { members, .. }) => members.as_slice(),
+            _ => &[],
+        };
+        let overrides = self.module.overrides.iter();
+        let overrides = overrides.filter_map(|(_, constant)| constant.name.as_deref());
+        members
+            .iter()
+            .filter_map(|member| member.name.as_deref())
+            .chain(overrides)
+    }
+
+    /// Names of all globals of the module, used or not.
+    pub(crate) fn global_names(&self) -> impl Iterator<Item = &str> {
+        let globals = self.module.global_variables.iter();
+        globals.filter_map(|(_, global)| global.name.as_deref())
+    }
+
+    /// Scalar class and component count of each colour output of a fragment entry point, by
+    /// location.
+    pub(crate) fn fragment_outputs(&self, entry: usize) -> Vec<(u32, ScalarClass, u32)> {
+        let Some(result) = &self.module.entry_points[entry].function.result else {
+            return Vec::new();
+        };
+        let mut outputs = Vec::new();
+        let mut add = |binding: &Option<naga::Binding>, ty: Handle<naga::Type>| {
+            if let (Some(naga::Binding::Location { location, .. }), Some((scalar, width))) =
+                (binding, vector(&self.module, ty))
+            {
+                outputs.push((*location, scalar, width));
+            }
+        };
+        match &self.module.types[result.ty].inner {
+            TypeInner::Struct { members, .. } => members
+                .iter()
+                .for_each(|member| add(&member.binding, member.ty)),
+            _ => add(&result.binding, result.ty),
+        }
+        outputs.sort_by_key(|(location, ..)| *location);
+        outputs
+    }
+}
+
+/// A shader stage as wgpu's flag.
+fn stages_of(stage: ShaderStage) -> wgt::ShaderStages {
+    match stage {
+        ShaderStage::Vertex => wgt::ShaderStages::VERTEX,
+        ShaderStage::Fragment => wgt::ShaderStages::FRAGMENT,
+        _ => wgt::ShaderStages::COMPUTE,
+    }
+}
+
+/// Gives every resource global without numbers the next free ones of its group.
+fn assign_bindings(module: &mut naga::Module, source: &Expanded) {
+    let mut next = [0; 2];
+    let mut taken: BTreeSet<(u32, u32)> = module
+        .global_variables
+        .iter()
+        .filter_map(|(_, v)| v.binding.map(|b| (b.group, b.binding)))
+        .collect();
+    let handles: Vec<_> = module
+        .global_variables
+        .iter()
+        .map(|(handle, _)| handle)
+        .collect();
+    for handle in handles {
+        let at = module
+            .global_variables
+            .get_span(handle)
+            .to_range()
+            .map_or(0, |range| range.start);
+        let variable = module.global_variables.get_mut(handle);
+        let is_resource = matches!(
+            variable.space,
+            AddressSpace::Uniform | AddressSpace::Storage { .. } | AddressSpace::Handle
+        );
+        if !is_resource || variable.binding.is_some() {
+            continue;
+        }
+        let group = u32::from(!source.is_imported(at));
+        let binding = &mut next[group as usize];
+        // No module has as many globals as there are numbers.
+        while taken.contains(&(group, *binding)) {
+            *binding += 1;
+        }
+        let binding = *binding;
+        taken.insert((group, binding));
+        variable.binding = Some(naga::ResourceBinding { group, binding });
+    }
+}

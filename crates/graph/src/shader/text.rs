@@ -1,0 +1,108 @@
+//! WGSL as text: what naga does not tell, or must not be asked before.
+
+/// WGSL's line breaks besides `\n`: a comment ends at any of them.
+pub(super) const BREAKS: [char; 6] = ['\r', '\u{b}', '\u{c}', '\u{85}', '\u{2028}', '\u{2029}'];
+
+/// Block comments that are open at the end of what was read so far.
+#[derive(Default)]
+pub(super) struct Comments {
+    depth: usize,
+}
+
+impl Comments {
+    pub fn are_open(&self) -> bool {
+        self.depth > 0
+    }
+
+    /// Reads on.
+    pub fn read(&mut self, text: &str) {
+        let mut at = 0;
+        while let Some(rest) = text.get(at..).filter(|rest| !rest.is_empty()) {
+            let length = rest.chars().next().map_or(1, char::len_utf8);
+            at += match rest.as_bytes() {
+                [b'/', b'*', ..] => {
+                    self.depth += 1;
+                    2
+                }
+                [b'*', b'/', ..] if self.depth > 0 => {
+                    self.depth -= 1;
+                    2
+                }
+                [b'/', b'/', ..] if self.depth == 0 => {
+                    let end = rest.find(|c| c == '\n' || BREAKS.contains(&c));
+                    end.unwrap_or(rest.len())
+                }
+                _ => length,
+            };
+        }
+    }
+}
+
+/// The next token that is no comment and no space, and how far it reaches from the start of `text`:
+/// a word, or one sign.
+pub(super) fn next(text: &str) -> Option<(usize, &str)> {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let mut at = 0;
+    loop {
+        let rest = text.get(at..)?;
+        let first = rest.chars().next()?;
+        if rest.starts_with("//") {
+            // The line ends of WGSL: what naga reads must not be a comment here.
+            at += rest.find(|c| matches!(c, '\n'..='\r' | '\u{85}' | '\u{2028}' | '\u{2029}'))?;
+        } else if rest.starts_with("/*") {
+            at += comment(rest.as_bytes());
+        } else if is_word(first) {
+            let length = rest.find(|c| !is_word(c)).unwrap_or(rest.len());
+            return Some((at + length, &rest[..length]));
+        } else if first.is_ascii_punctuation() {
+            return Some((at + 1, &rest[..1]));
+        } else {
+            // Some of what WGSL skips is no white space elsewhere.
+            at += first.len_utf8();
+        }
+    }
+}
+
+/// Bytes of the block comment, possibly with others inside, that `text` begins with.
+fn comment(text: &[u8]) -> usize {
+    let (mut depth, mut at) = (0, 0);
+    loop {
+        (depth, at) = match text.get(at..) {
+            None | Some([]) => return text.len(),
+            Some([b'/', b'*', ..]) => (depth + 1, at + 2),
+            Some([b'*', b'/', ..]) if depth == 1 => return at + 2,
+            Some([b'*', b'/', ..]) => (depth - 1, at + 2),
+            Some(_) => (depth, at + 1),
+        };
+    }
+}
+
+/// Where `word` stands in `text` as a whole word.
+pub(super) fn words<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = usize> + 'a {
+    let is_part = |c: char| c.is_alphanumeric() || c == '_';
+    text.match_indices(word)
+        .map(|(at, _)| at)
+        .filter(move |&at| {
+            !text[..at].ends_with(is_part) && !text[at + word.len()..].starts_with(is_part)
+        })
+}
+
+/// The words of a text outside comments, and which of them are declared as module-scope constants.
+pub(super) fn identifiers(text: &str) -> impl Iterator<Item = (&str, bool)> {
+    let (mut at, mut depth, mut after_const) = (0, 0usize, false);
+    std::iter::from_fn(move || {
+        loop {
+            let (length, token) = next(&text[at..])?;
+            at += length;
+            match token {
+                "{" => depth += 1,
+                "}" => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            let is_declared = std::mem::replace(&mut after_const, depth == 0 && token == "const");
+            if token.starts_with(|c: char| c.is_alphabetic() || c == '_') {
+                return Some((token, is_declared));
+            }
+        }
+    })
+}

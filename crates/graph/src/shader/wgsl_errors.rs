@@ -1,0 +1,99 @@
+//! naga's errors as ours, at the author's places.
+
+use super::{expand::Expanded, text::words};
+use crate::{errors::shader::ShaderError, source::span::Span};
+use naga::{
+    Handle,
+    valid::{EntryPointError, ValidationError},
+};
+
+/// The place of the name of a function.
+pub(super) fn function_span(source: &Expanded, name: &str) -> Span {
+    let text = &source.text;
+    let at = words(text, name)
+        .find(|&at| text[..at].trim_end().ends_with("fn"))
+        .unwrap_or(0);
+    source.locate(at..at + name.len())
+}
+
+/// Two globals that one entry point uses under one number.
+fn collision(
+    handle: Handle<naga::GlobalVariable>,
+    module: &naga::Module,
+    source: &Expanded,
+) -> ShaderError {
+    let globals = &module.global_variables;
+    let binding = globals[handle].binding;
+    let place = |handle| source.locate(globals.get_span(handle).to_range().unwrap_or(0..0));
+    let name = |handle: Handle<naga::GlobalVariable>| globals[handle].name.clone();
+    let others = globals
+        .iter()
+        .filter(|(other, variable)| *other != handle && variable.binding == binding)
+        .map(|(other, _)| (place(other), name(other).unwrap_or_default()));
+    ShaderError::Collision {
+        file: source.file.name.to_string(),
+        global: name(handle).unwrap_or_default(),
+        number: binding.map_or(String::new(), |binding| {
+            format!("@group({}) @binding({})", binding.group, binding.binding)
+        }),
+        at: place(handle),
+        others: others.collect(),
+    }
+}
+
+pub(super) fn parse_error(error: &naga::front::wgsl::ParseError, source: &Expanded) -> ShaderError {
+    let labels = error.labels();
+    let place =
+        |(span, text): (naga::Span, &str)| Some((source.locate(span.to_range()?), text.to_owned()));
+    let mut places: Vec<(Span, String)> = labels.filter_map(place).collect();
+    if places.is_empty() {
+        // naga gives no place where a type is too large.
+        places.push((source.file.span(0..0), String::new()));
+    }
+    ShaderError::Naga {
+        file: source.file.name.to_string(),
+        what: format!("does not compile: {}", error.message()),
+        places,
+        notes: error.notes().map(str::to_owned).collect(),
+    }
+}
+
+pub(super) fn validation_error(
+    error: &naga::WithSpan<ValidationError>,
+    module: &naga::Module,
+    source: &Expanded,
+) -> ShaderError {
+    if let ValidationError::EntryPoint {
+        source: EntryPointError::BindingCollision(handle),
+        ..
+    } = error.as_inner()
+    {
+        return collision(*handle, module, source);
+    }
+    // The causes say what is wrong; the outermost one only which function.
+    let mut what = format!("is not valid: {}", error.as_inner());
+    let mut cause = std::error::Error::source(error.as_inner());
+    while let Some(inner) = cause {
+        what.push_str(&format!(": {inner}"));
+        cause = inner.source();
+    }
+    let place = |(span, text): &(naga::Span, String)| {
+        // Some spans are labelled with a handle of naga's, which tells an author nothing.
+        let text = if text.starts_with("naga::") { "" } else { text };
+        Some((source.locate(span.to_range()?), text.to_owned()))
+    };
+    let mut places: Vec<(Span, String)> = error.spans().filter_map(place).collect();
+    if places.is_empty() {
+        let place = match error.as_inner() {
+            ValidationError::EntryPoint { name, .. } => function_span(source, name),
+            _ => source.file.span(0..0),
+        };
+        places.push((place, String::new()));
+    }
+    ShaderError::Naga {
+        file: source.file.name.to_string(),
+        what,
+        places,
+        notes: Vec::new(),
+    }
+}

@@ -1,0 +1,68 @@
+//! Where a name in a document or shader is looked for.
+
+use std::path::Path;
+
+/// Where the shader called `name` may stand for a document in `folder`, in the order in which it is
+/// looked for: beside the document, in the `shaders` folder beside the document's folder, in the
+/// store's `shaders` folder.
+pub(crate) fn shader_candidates(folder: &str, name: &str) -> Vec<String> {
+    let folder = Path::new(folder);
+    let file = format!("{name}.wgsl");
+    let mut candidates = vec![join(folder, &file)];
+    if let Some(parent) = folder.parent() {
+        candidates.push(join(parent, &format!("shaders/{file}")));
+        // A document in a sub-folder of pipelines (a shared sub-graph) finds the shaders of its
+        // house too.
+        if let Some(grandparent) = parent.parent() {
+            candidates.push(join(grandparent, &format!("shaders/{file}")));
+        }
+    }
+    candidates.push(format!("shaders/{file}"));
+    candidates.dedup();
+    candidates
+}
+
+/// Where `#import "path"` of the file `importer` may stand: beside the importer, above it, and in
+/// the store's `shaders`.
+pub(crate) fn import_candidates(importer: &str, path: &str) -> Vec<String> {
+    let folder = Path::new(importer).parent().unwrap_or(Path::new(""));
+    let mut candidates = vec![join(folder, path)];
+    if let Some(parent) = folder.parent() {
+        candidates.push(join(parent, path));
+    }
+    candidates.push(format!("shaders/{path}"));
+    candidates.dedup();
+    candidates
+}
+
+/// Where `Include(graph: "path")` of the document `includer` may stand: beside it, and in the
+/// store's `pipelines`.
+pub(crate) fn include_candidates(includer: &str, path: &str) -> Vec<String> {
+    // One file under one name, or a cycle would not be seen as one.
+    let parts: Vec<&str> = path
+        .split('/')
+        .filter(|part| !matches!(*part, "" | "."))
+        .collect();
+    let path = parts.join("/");
+    let mut candidates = vec![
+        join(Path::new(folder_of(includer)), &path),
+        format!("pipelines/{path}"),
+    ];
+    candidates.dedup();
+    candidates
+}
+
+/// The folder of a path, empty for a bare name.
+pub(crate) fn folder_of(path: &str) -> &str {
+    let folder = Path::new(path).parent();
+    folder.and_then(Path::to_str).unwrap_or("")
+}
+
+/// Whether a path leads out of the folder it is looked for in (backslashes and drives: on Windows).
+pub(crate) fn escapes(path: &str) -> bool {
+    path.split('/').any(|part| part == "..") || path.starts_with('/') || path.contains(['\\', ':'])
+}
+
+fn join(folder: &Path, file: &str) -> String {
+    folder.join(file).to_string_lossy().replace('\\', "/")
+}

@@ -1,0 +1,139 @@
+//! Whether a shadow ray's answer is indeterminate: whether it flips when receiver or casters move
+//! within their f32 error bounds.
+//!
+//! A caster is *touched* when some admissible displacement of the receiver, or of the caster's
+//! corners, makes the shadow ray hit it, and *robust* when every one does. A lit pixel that touches
+//! no caster and a shadowed one with a robust caster are determinate. A shadowed pixel without one,
+//! whose ray meets an edge between two casters, is determinate if displaced rays find it in shadow
+//! all around; but two triangles that merely abut, without a common edge, move each on its own, and
+//! a ray between them is indeterminate.
+
+use crate::{
+    error_bound::{Uncertainty, caster_error},
+    ray::{Corners, Ray},
+    tree::Caster,
+};
+use glam::DVec3;
+
+/// What a shadow ray has to do with a caster.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Contact {
+    /// No displacement makes it a hit.
+    Miss,
+    /// No hit, but some displacement makes it one.
+    Touched,
+    /// A hit that some displacement undoes.
+    Hit {
+        /// The caster's own error, scene units.
+        error: f64,
+        /// Some displacement puts the ray across an edge that no other triangle has.
+        near_open_edge: bool,
+    },
+    /// A hit under every displacement.
+    Robust,
+}
+
+/// A shadow ray with its uncertainty, in the ray's sheared space.
+pub(crate) struct FuzzyRay<'a> {
+    ray: &'a Ray,
+    origin: DVec3,
+    direction: DVec3,
+    uncertainty: &'a Uncertainty,
+    sheared_segments: [DVec3; 3],
+}
+
+impl<'a> FuzzyRay<'a> {
+    /// `direction` is a unit vector, the one `ray` was made of.
+    pub(crate) fn new(
+        ray: &'a Ray,
+        origin: DVec3,
+        direction: DVec3,
+        uncertainty: &'a Uncertainty,
+    ) -> Self {
+        let sheared_segments = uncertainty
+            .segments
+            .map(|segment| ray.sheared_vector(segment.to_array()));
+        Self {
+            ray,
+            origin,
+            direction,
+            uncertainty,
+            sheared_segments,
+        }
+    }
+
+    /// Classifies one caster.
+    pub(crate) fn contact(&self, &Caster { corners, open, .. }: &Caster) -> Contact {
+        let sheared = corners.map(|corner| self.ray.sheared(corner));
+        let [a, b, c] = sheared;
+        let [sx, sy, _] = self.ray.shear;
+        // |S| ≤ 1 twice, so a ball's image is within √3 of its radius, and so is a sheared corner
+        // of the corner itself.
+        let farthest = corners
+            .map(|corner| (glam::Vec3::from(corner).as_dvec3() - self.origin).length_squared());
+        let caster = caster_error(farthest[0].max(farthest[1]).max(farthest[2]).sqrt());
+        let ball = self.uncertainty.radius + caster;
+        let extent = self
+            .sheared_segments
+            .iter()
+            .fold(DVec3::ZERO, |sum, s| sum + s.abs())
+            + DVec3::splat(ball * 3f64.sqrt());
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        if low.x > extent.x
+            || low.y > extent.y
+            || high.x < -extent.x
+            || high.y < -extent.y
+            || high.z < -extent.z
+        {
+            return Contact::Miss;
+        }
+        if corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0] {
+            // Two equal corners stay equal in any arithmetic, and the edge functions cancel
+            // exactly.
+            return Contact::Miss;
+        }
+
+        let edges = Ray::edges(sheared);
+        let sides = [c - b, a - c, b - a];
+        let thresholds: [f64; 3] = std::array::from_fn(|i| {
+            let side = sides[i];
+            let segments: f64 = self
+                .sheared_segments
+                .iter()
+                .map(|s| (side.x * s.y - side.y * s.x).abs())
+                .sum();
+            segments
+                + ball
+                    * (side.x * side.x + side.y * side.y + (side.y * sx - side.x * sy).powi(2))
+                        .sqrt()
+        });
+        let (t, t_error) = self.distance(&corners, ball);
+        let inside =
+            |sign: f64, margin: f64| (0..3).all(|i| sign * edges[i] >= margin * thresholds[i]);
+        match Ray::hit_sheared(sheared, edges).filter(|hit| hit.t > self.ray.nearest) {
+            Some(_) if t > t_error && (inside(1.0, 1.0) || inside(-1.0, 1.0)) => Contact::Robust,
+            Some(_) => {
+                let near_open_edge = (0..3).any(|i| open[i] && edges[i].abs() < thresholds[i]);
+                Contact::Hit {
+                    error: caster,
+                    near_open_edge,
+                }
+            }
+            None if t > -t_error && (inside(1.0, -1.0) || inside(-1.0, -1.0)) => Contact::Touched,
+            None => Contact::Miss,
+        }
+    }
+
+    /// Distance to the caster's plane and how much displacements change it: without bound for a
+    /// plane along the ray.
+    fn distance(&self, corners: &Corners, ball: f64) -> (f64, f64) {
+        let [a, b, c] = corners.map(|corner| glam::Vec3::from(corner).as_dvec3());
+        let normal = (b - a).cross(c - a);
+        let slope = normal.dot(self.direction);
+        if slope == 0.0 {
+            return (0.0, f64::INFINITY);
+        }
+        let error = (self.uncertainty.along(normal) + ball * normal.length()) / slope.abs();
+        (normal.dot(a - self.origin) / slope, error)
+    }
+}

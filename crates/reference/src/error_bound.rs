@@ -1,0 +1,63 @@
+//! What f32 may move receivers and casters by, as lengths and as displacements.
+
+use glam::DVec3;
+
+/// Half an ulp of 1 in f32: the relative error of one rounding.
+pub const F32_ROUNDING: f64 = 1.0 / (1u32 << 24) as f64;
+
+/// Roundings that move a caster's corner across the ray, in units of its distance from the
+/// receiver: corner − origin (1), the shear's coefficients (3: two rounded components and a
+/// division), its product and sum (2), both axes together (√2).
+const CASTER_ROUNDINGS: f64 = 8.0;
+
+/// Where f32 arithmetic may put a receiver: its exact place + Σ [−1, 1] · segmentᵢ + a ball.
+#[derive(Clone, Copy, Debug)]
+pub struct Uncertainty {
+    /// Displacements in the receiver's plane, from its barycentrics.
+    pub segments: [DVec3; 3],
+    /// Radius of the ball, scene units.
+    pub radius: f64,
+}
+
+impl Uncertainty {
+    /// Half the extent of the displacements along `normal`, times its length, without the ball.
+    pub fn along(&self, normal: DVec3) -> f64 {
+        self.segments
+            .iter()
+            .map(|segment| segment.dot(normal).abs())
+            .sum()
+    }
+
+    /// Radius of a ball that holds every displacement of receiver and casters within
+    /// `max_distance`.
+    pub(crate) fn extent(&self, max_distance: f64) -> f64 {
+        self.segments
+            .iter()
+            .map(|segment| segment.length())
+            .sum::<f64>()
+            + self.radius
+            + caster_error(max_distance)
+    }
+
+    /// Displacements of the receiver towards eight sides of the light direction, each raised
+    /// towards the light by the ball's radius; `caster` is the largest error of the casters in
+    /// question.
+    pub(crate) fn displacements(&self, to_light: DVec3, caster: f64) -> [DVec3; 8] {
+        let (side, other) = to_light.any_orthonormal_pair();
+        std::array::from_fn(|eighth| {
+            let (sin, cos) = (eighth as f64 * std::f64::consts::FRAC_PI_4).sin_cos();
+            let outwards = side * cos + other * sin;
+            let in_plane: DVec3 = self
+                .segments
+                .iter()
+                .map(|&s| if s.dot(outwards) < 0.0 { -s } else { s })
+                .sum();
+            in_plane + (outwards + to_light) * (self.radius + caster)
+        })
+    }
+}
+
+/// Bound on the f32 displacement of a caster whose corners are within `distance` of the receiver.
+pub(crate) fn caster_error(distance: f64) -> f64 {
+    CASTER_ROUNDINGS * F32_ROUNDING * distance
+}

@@ -1,0 +1,81 @@
+//! One value for each pixel of a viewport, on all cores.
+
+use crate::error::Error;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+/// Primitive id of a pixel that shows no geometry.
+pub const BACKGROUND: u32 = u32::MAX;
+
+/// How a run reports its progress and is stopped.
+#[derive(Clone, Copy)]
+pub struct Progress<'a> {
+    /// Called from any thread whenever a row of pixels is done, with the number of rows done so
+    /// far, of `viewport[1]`.
+    pub rows_done: &'a (dyn Fn(u64) + Sync),
+    /// Raised by the caller to stop; the run then ends within a row's time with
+    /// [`Error::Interrupted`].
+    pub interrupted: &'a AtomicBool,
+}
+
+static NEVER: AtomicBool = AtomicBool::new(false);
+
+impl Default for Progress<'_> {
+    /// Silent, and never interrupted.
+    fn default() -> Self {
+        Self {
+            rows_done: &|_| (),
+            interrupted: &NEVER,
+        }
+    }
+}
+
+/// One value per pixel, rows in parallel; `pixel` gets column, row and a stack of its thread's. The
+/// first error, in no particular order, ends the run.
+///
+/// # Errors
+/// Those of `pixel`, and [`Error::Interrupted`].
+pub fn per_pixel<T: Send>(
+    viewport: [u32; 2],
+    progress: Progress,
+    pixel: impl Fn(u32, u32, &mut Vec<u32>) -> Result<T, Error> + Sync,
+) -> Result<Vec<T>, Error> {
+    let [width, height] = viewport;
+    let done = AtomicU64::new(0);
+    let rows: Vec<Vec<T>> = (0..height)
+        .into_par_iter()
+        .map_init(Vec::new, |stack, y| {
+            if progress.interrupted.load(Ordering::Relaxed) {
+                return Err(Error::Interrupted);
+            }
+            let row = (0..width)
+                .map(|x| pixel(x, y, stack))
+                .collect::<Result<Vec<T>, Error>>()?;
+            (progress.rows_done)(done.fetch_add(1, Ordering::Relaxed) + 1);
+            Ok(row)
+        })
+        .collect::<Result<_, Error>>()?;
+    Ok(rows.into_iter().flatten().collect())
+}
+
+/// Whether the buffer `name` holds one value per pixel.
+///
+/// # Errors
+/// [`Error::PixelCount`].
+pub fn check_pixel_count(
+    name: &'static str,
+    viewport: [u32; 2],
+    actual: usize,
+) -> Result<(), Error> {
+    let expected = u64::from(viewport[0]) * u64::from(viewport[1]);
+    if actual as u64 == expected {
+        Ok(())
+    } else {
+        Err(Error::PixelCount {
+            name,
+            viewport,
+            expected,
+            actual: actual as u64,
+        })
+    }
+}

@@ -1,0 +1,7 @@
+//! A binary bounding volume hierarchy over a mesh's triangles.
+
+mod build;
+mod median;
+mod tree;
+
+pub use tree::{Bvh, BvhNode, MAX_DEPTH};

@@ -1,0 +1,66 @@
+//! Reading a file whole, and never more of it than a file of its kind has.
+
+use std::{
+    fs::File,
+    io::{self, Read},
+    path::Path,
+};
+
+const MIB: u64 = 1 << 20;
+
+/// What a kind of file may have at most.
+#[derive(Clone, Copy, Debug)]
+pub struct Limit {
+    /// The kind, with its article: "an .obj file".
+    pub of: &'static str,
+    /// Most MiB that are read.
+    pub mib: u64,
+    /// What to do with a longer one.
+    pub way_out: &'static str,
+}
+
+impl Limit {
+    /// The bytes of the file at `path`.
+    ///
+    /// # Errors
+    /// What the system said; a folder, a device or a pipe, none of which is opened (that alone can
+    /// block); a file beyond the limit. The message does not name the file.
+    pub fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let found = std::fs::metadata(path)?;
+        if found.is_dir() {
+            return Err(io::Error::other("it is a folder, expected a file"));
+        }
+        if !found.is_file() {
+            return Err(io::Error::other(
+                "it is a device, a pipe or a socket, whose length nobody knows: copy what it \
+                 gives into a file, and name that",
+            ));
+        }
+        let most = self.mib * MIB;
+        if found.len() > most {
+            return Err(self.exceeded(&format!("{} MiB", found.len().div_ceil(MIB))));
+        }
+        let mut bytes = Vec::new();
+        bytes.try_reserve_exact(found.len() as usize + 1)?;
+        // Files of the kernel's have length 0 whatever they hold, and others may grow meanwhile.
+        File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+        if bytes.len() as u64 > most {
+            return Err(self.exceeded(&format!("more than {} MiB", self.mib)));
+        }
+        Ok(bytes)
+    }
+
+    /// The text of the file at `path`.
+    ///
+    /// # Errors
+    /// As [`Self::read`]; and bytes that are no UTF-8.
+    pub fn read_text(&self, path: &Path) -> io::Result<String> {
+        String::from_utf8(self.read(path)?)
+            .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is no text in UTF-8"))
+    }
+
+    fn exceeded(&self, length: &str) -> io::Error {
+        let Self { of, mib, way_out } = self;
+        io::Error::other(format!("it has {length}, {of} {mib} at most: {way_out}"))
+    }
+}

@@ -1,0 +1,33 @@
+//! How an OBJ file becomes a mesh.
+
+use serde::Deserialize;
+
+/// Which diagonal splits a quad, corners counted from the first; larger polygons are fanned from
+/// the same corner.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub enum QuadDiagonal {
+    /// (0, 1, 2), (0, 2, 3): what most importers do.
+    #[default]
+    FirstThird,
+    /// (1, 2, 3), (1, 3, 0): reproduces the dissertation's Sponza.
+    SecondFourth,
+}
+
+impl QuadDiagonal {
+    /// Corner from which a polygon is fanned.
+    pub(super) fn apex(self) -> usize {
+        match self {
+            Self::FirstThird => 0,
+            Self::SecondFourth => 1,
+        }
+    }
+}
+
+/// How an OBJ file becomes a mesh.
+#[derive(Clone, Debug, Default)]
+pub struct ObjOptions {
+    /// Names of groups or objects that are left out (the whole text after `g` or `o`).
+    pub leave_out: Vec<String>,
+    /// How polygons are split.
+    pub quads: QuadDiagonal,
+}

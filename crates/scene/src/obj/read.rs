@@ -1,0 +1,99 @@
+//! Reading the file, and what is refused of it.
+
+use super::{guard::Guard, import::import, options::ObjOptions};
+use crate::{
+    error::{EXTENTS, SceneError},
+    limit::Limit,
+    mesh::Mesh,
+    report::ImportReport,
+};
+use std::{collections::HashSet, path::Path};
+
+/// Some twenty million faces. The mesh takes several times as much.
+const OBJ_FILE: Limit = Limit {
+    of: "an .obj file",
+    mib: 2048,
+    way_out: "split it, or leave groups out of it",
+};
+
+/// Reads an OBJ file.
+///
+/// # Errors
+/// [`SceneError`] with file, line, group and face number: unreadable or damaged files, faces that
+/// name missing or non-finite vertices, a group to be left out that does not exist, a file without
+/// triangles.
+pub fn load_obj(path: &Path, options: &ObjOptions) -> Result<(Mesh, ImportReport), SceneError> {
+    let bytes = OBJ_FILE.read(path).map_err(|reason| SceneError::Read {
+        path: path.to_owned(),
+        reason,
+    })?;
+    parse_obj(&bytes, path, options)
+}
+
+/// Reads the bytes of an OBJ file; `path` only serves messages.
+///
+/// # Errors
+/// As [`load_obj`], but for reading.
+pub fn parse_obj(
+    bytes: &[u8],
+    path: &Path,
+    options: &ObjOptions,
+) -> Result<(Mesh, ImportReport), SceneError> {
+    let mut guard = Guard::new(bytes, &options.leave_out);
+    let no_materials = |_: &Path| Ok(Default::default());
+    let loaded = tobj::load_obj_buf(&mut guard, &tobj::LoadOptions::default(), no_materials);
+    let (models, _) = loaded.map_err(|error| SceneError::ObjLine {
+        path: path.to_owned(),
+        line: guard.line,
+        reason: guard
+            .fatal
+            .take()
+            .unwrap_or_else(|| format!("{error} in {:?}", guard.current_line())),
+    })?;
+    if guard.fault_count > 0 {
+        return Err(SceneError::ObjFaces {
+            path: path.to_owned(),
+            faults: guard.faults,
+            total: guard.fault_count,
+        });
+    }
+    let groups: HashSet<&String> = guard.groups.iter().collect();
+    let missing = options.leave_out.iter().find(|name| !groups.contains(name));
+    if let Some(name) = missing {
+        let groups = guard.groups.into_iter().skip(1).collect();
+        return Err(SceneError::NoSuchGroup {
+            path: path.to_owned(),
+            name: name.clone(),
+            groups,
+        });
+    }
+    let (mesh, report) = import(&models, &guard, options, path)?;
+    if mesh.triangles.is_empty() {
+        return Err(SceneError::NoTriangles {
+            path: path.to_owned(),
+            faces: report.faces,
+            lines: report.lines,
+            points: report.points,
+        });
+    }
+    check_extent(&mesh, path)?;
+    Ok((mesh, report))
+}
+
+/// Refuses lengths whose products leave f32. A mesh that is one point has none.
+fn check_extent(mesh: &Mesh, path: &Path) -> Result<(), SceneError> {
+    let Some((low, high)) = mesh.bounds() else {
+        return Ok(());
+    };
+    let across = low.as_dvec3().distance(high.as_dvec3());
+    let farthest = f64::from(low.abs().max(high.abs()).max_element());
+    let too_far = across.max(farthest) > *EXTENTS.end();
+    if too_far || (across > 0.0 && across < *EXTENTS.start()) {
+        return Err(SceneError::Extent {
+            path: path.to_owned(),
+            across,
+            farthest,
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,23 @@
+//! What is drawn.
+
+use crate::{camera::View, light::DirectionalLight, mesh::Mesh};
+
+/// A mesh with the views and the light under which it is drawn.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Name shown in tables and results.
+    pub name: String,
+    /// Every triangle, receivers and casters alike.
+    pub mesh: Mesh,
+    /// At least one view; the first is the default.
+    pub views: Vec<View>,
+    /// The light.
+    pub light: DirectionalLight,
+}
+
+impl Scene {
+    /// The view of that name, if the scene has one.
+    pub fn view(&self, name: &str) -> Option<&View> {
+        self.views.iter().find(|view| view.name == name)
+    }
+}

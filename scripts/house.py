@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+"""Checks what clippy does not: no import circle between the files of a crate, no Rust line over 100 columns.
+
+An import is a path in a `use` or in code that begins with `crate`, `super`, `self` or a child module. It
+counts as one of the file of the deepest module that it names; tests are left out. `mod x;` alone is none.
+
+    scripts/house.py            exit 0 fine, 1 not
+    scripts/house.py --edges    also prints every import
+"""
+
+import re
+import sys
+from pathlib import Path
+
+WIDTH = 100
+ROOT = Path(__file__).resolve().parent.parent
+TOKENS = re.compile(
+    r"""//[^\n]*|/\*.*?\*/|b?r(?P<h>\#*)".*?"(?P=h)|b?"(?:\\.|[^"\\])*"|'(?:\\.[^']*|[^'\\\n])'""",
+    re.DOTALL | re.VERBOSE,
+)
+
+
+def code(text):
+    """The text without comments, strings and test modules."""
+    text = TOKENS.sub(" ", text)
+    out, at = [], 0
+    for match in re.finditer(r"#\[cfg\(test\)\]", text):
+        if match.start() < at:
+            continue
+        out.append(text[at : match.start()])
+        depth, at = 0, match.end()
+        while at < len(text):
+            if text[at] in "{(":
+                depth += 1
+            elif text[at] in "})":
+                depth -= 1
+            at += 1
+            if depth == 0 and text[at - 1] in ";}":
+                break
+    out.append(text[at:])
+    return "".join(out)
+
+
+def modules(folder):
+    """The file of each module of a crate, by the module's path."""
+    found = {}
+    for file in sorted(folder.rglob("*.rs")):
+        parts = list(file.relative_to(folder).with_suffix("").parts)
+        if parts[-1] in ("mod", "lib", "main"):
+            parts.pop()
+        found[tuple(parts)] = file
+    return found
+
+
+def expand(tree):
+    """The paths of a `use`: `a::{b, c::{d}}` is `a::b` and `a::c::d`."""
+    tree = tree.strip()
+    if "{" not in tree:
+        return [re.split(r"\s+as\s+", tree)[0].strip()]
+    head, rest = tree.split("{", 1)
+    rest = rest[: rest.rfind("}")]
+    parts, depth, last = [], 0, 0
+    for at, sign in enumerate(rest + ","):
+        depth += (sign == "{") - (sign == "}")
+        if sign == "," and depth == 0:
+            parts.append(rest[last:at])
+            last = at + 1
+    return [head.strip() + path for part in parts if part.strip() for path in expand(part)]
+
+
+def paths(text):
+    uses = re.compile(r"\buse\s+([^;]+);")
+    for match in uses.finditer(text):
+        yield from expand(match.group(1))
+    for match in re.finditer(r"\b[a-z_]\w*(?:::\w+)+", uses.sub(" ", text)):
+        yield match.group(0)
+
+
+def imports(folder):
+    known = modules(folder)
+    edges = {}
+    for module, file in known.items():
+        text = code(file.read_text())
+        for path in paths(text):
+            parts = [part.strip() for part in path.split("::")]
+            if parts[0] == "crate":
+                at, parts = (), parts[1:]
+            elif parts[0] in ("super", "self"):
+                at = module
+                while parts and parts[0] in ("super", "self"):
+                    at = at[:-1] if parts[0] == "super" else at
+                    parts = parts[1:]
+            elif module + (parts[0],) in known:
+                at = module
+            else:
+                continue
+            while parts and at + (parts[0],) in known:
+                at, parts = at + (parts[0],), parts[1:]
+            target = known.get(at)
+            if target and target != file:
+                edges.setdefault(file, set()).add(target)
+    return edges
+
+
+def circles(edges):
+    """Strongly connected components of more than one file (Tarjan 1972)."""
+    number, low, stack, found = {}, {}, [], []
+
+    def visit(node):
+        number[node] = low[node] = len(number)
+        stack.append(node)
+        for other in sorted(edges.get(node, ())):
+            if other not in number:
+                visit(other)
+                low[node] = min(low[node], low[other])
+            elif other in stack:
+                low[node] = min(low[node], number[other])
+        if low[node] == number[node]:
+            at = stack.index(node)
+            if len(stack) - at > 1:
+                found.append(sorted(stack[at:]))
+            del stack[at:]
+
+    for node in sorted(edges):
+        if node not in number:
+            visit(node)
+    return found
+
+
+def main():
+    sys.setrecursionlimit(10_000)
+    failed = 0
+    for folder in sorted(ROOT.glob("crates/*/src")):
+        edges = imports(folder)
+        if "--edges" in sys.argv:
+            for file, targets in sorted(edges.items()):
+                for target in sorted(targets):
+                    print(f"{file.relative_to(ROOT)} -> {target.relative_to(folder)}")
+        for circle in circles(edges):
+            failed += 1
+            print(f"import circle in {folder.relative_to(ROOT)}:")
+            for file in circle:
+                inside = sorted(str(t.relative_to(folder)) for t in edges[file] if t in circle)
+                print(f"    {file.relative_to(folder)} imports {', '.join(inside)}")
+    for folder in ("crates", "tests", "benches", "fuzz"):
+        for file in sorted((ROOT / folder).rglob("*.rs")):
+            if "target" in file.relative_to(ROOT).parts:
+                continue
+            for number, line in enumerate(file.read_text().splitlines(), 1):
+                if len(line) > WIDTH:
+                    failed += 1
+                    print(f"{file.relative_to(ROOT)}:{number}: {len(line)} columns")
+    print(f"house: {failed} faults" if failed else "house: no import circle, no long line")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -171,7 +171,9 @@ pub(crate) enum LinkError {
         at: Span,
         pass: Located<String>,
     },
-    #[error("{}×{}×{} workgroups are more than the adapter can run", groups[0], groups[1], groups[2])]
+    #[error(
+        "{}×{}×{} workgroups are more than the adapter can run", groups[0], groups[1], groups[2]
+    )]
     Workgroups {
         groups: [u64; 3],
         most: u32,
@@ -555,6 +557,12 @@ impl LinkError {
                     None => told,
                 }
             }
+            other => other.explain_member(told),
+        }
+    }
+
+    fn explain_member(self, told: Diagnostic) -> Diagnostic {
+        match self {
             Self::UnknownMember {
                 member,
                 span,

@@ -9,9 +9,8 @@ use super::{
 use crate::{
     diagnostics::reports::Reported,
     document::{
-        entries::{Entry, Include},
         materials::{Input, InputKind, Material},
-        typed::Document,
+        typed::{Document, Entry, Include},
     },
     errors::instantiate::BorderError,
     language::{

@@ -53,7 +53,7 @@ impl Linker<'_, '_> {
                 },
             ) => self.storage((format, *access, *dimension), texture, target),
         };
-        bound.or_else(|misfit| {
+        bound.map_err(|misfit| {
             let resource = self.world.get(target.id);
             let error = LinkError::Texture {
                 name: resource.name.clone(),
@@ -63,7 +63,7 @@ impl Linker<'_, '_> {
                 declared: resource.declared.clone(),
                 misfit: Box::new(misfit),
             };
-            Err(self.report(error))
+            self.report(error)
         })
     }
 
@@ -205,7 +205,7 @@ fn wrong_shape(
         _ if texture.is_3d => Some(TextureMisfit::Solid),
         D::D2 if layers > 1 => Some(TextureMisfit::Layers(layers)),
         D::Cube if layers != 6 => Some(TextureMisfit::Cube(layers)),
-        D::CubeArray if layers % 6 != 0 => Some(TextureMisfit::Cube(layers)),
+        D::CubeArray if !layers.is_multiple_of(6) => Some(TextureMisfit::Cube(layers)),
         _ => None,
     }
 }

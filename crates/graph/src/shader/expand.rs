@@ -1,4 +1,5 @@
-//! `#import "path"`: a textual, once-only line, with a map from the expanded text back to the files.
+//! `#import "path"`: a textual, once-only line, with a map from the expanded text back to the
+//! files.
 //!
 //! Names stay as written, so that errors, captures and bindings speak the author's language.
 
@@ -85,8 +86,8 @@ impl<'a> ShaderFiles<'a> {
         Ok(None)
     }
 
-    /// The shader that a document names, with its imports in place. It is looked for beside the file
-    /// in which the name is written.
+    /// The shader that a document names, with its imports in place. It is looked for beside the
+    /// file in which the name is written.
     pub fn expand(&mut self, name: &Located<String>) -> Result<Expanded, Diagnostic> {
         let candidates = shader_candidates(folder_of(&name.span.file.name), name);
         if escapes(name) {

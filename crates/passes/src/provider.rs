@@ -239,10 +239,9 @@ impl Provider for SceneProvider {
     ) -> Result<wgpu::Buffer, ProviderError> {
         let why = |error: Error| ProviderError(error.to_string());
         let known = NAMES.into_iter().find(|&known| known == name);
-        let known_names = self.names();
         let unknown = || Error::Unknown {
             name: name.to_owned(),
-            known: known_names.clone(),
+            known: NAMES.map(str::to_owned).to_vec(),
         };
         let name = known.ok_or_else(unknown).map_err(why)?;
         if !self.buffers.contains_key(name) {

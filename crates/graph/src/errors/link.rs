@@ -317,8 +317,8 @@ pub(crate) enum TextureMisfit {
         holds: Option<ScalarClass>,
         depth: bool,
     },
-    #[error("sampled through `{0}`, but the format cannot be filtered")]
-    Filtered(String),
+    #[error("sampled through `{sampler}`, but the format cannot be filtered")]
+    Filtered { sampler: String, by_feature: bool },
     #[error("it has {0} samples: declare a multisampled texture where these are more than one")]
     Samples(u32),
     #[error("the shader declares {0}")]
@@ -360,7 +360,13 @@ impl TextureMisfit {
 
     fn help(&self) -> Option<&'static str> {
         match self {
-            Self::Filtered(_) => {
+            Self::Filtered {
+                by_feature: true, ..
+            } => Some(
+                "list `requires: [\"FLOAT32_FILTERABLE\"]`, or use a sampler with `filter: Nearest`, \
+                 textureLoad, or a format of 16 bits",
+            ),
+            Self::Filtered { .. } => {
                 Some("use a sampler with `filter: Nearest`, textureLoad, or a filterable format")
             }
             Self::NoStorage => Some(

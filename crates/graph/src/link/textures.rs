@@ -107,8 +107,17 @@ impl Linker<'_, '_> {
             .flags
             .contains(TextureFormatFeatureFlags::FILTERABLE)
             && !is_depth;
-        if !filterable && let Some(sampler) = self.linear_sampler(global, linked, program) {
-            return Err(TextureMisfit::Filtered(sampler));
+        let able = wgt::Features::FLOAT32_FILTERABLE;
+        let with_feature = format.guaranteed_format_features(able).flags;
+        let by_feature = with_feature.contains(TextureFormatFeatureFlags::FILTERABLE);
+        let asks = by_feature && self.world.graph.features().contains(able);
+        if !(filterable || asks && self.reports.any_adapter)
+            && let Some(sampler) = self.linear_sampler(global, linked, program)
+        {
+            return Err(TextureMisfit::Filtered {
+                sampler,
+                by_feature,
+            });
         }
         let sample_type = match (scalar, depth) {
             (_, true) => wgt::TextureSampleType::Depth,

@@ -282,7 +282,7 @@ impl<'a> Reader<'a> {
                     name: Located::new(param.name.value, span),
                     first: known.name.span.clone(),
                 };
-                self.reports.report(error);
+                document.broken_params = Some(self.reports.report(error));
                 continue;
             }
             document.params.push(param);

@@ -139,6 +139,8 @@ pub(crate) enum LinkError {
         member: String,
         span: Span,
         known: Vec<String>,
+        /// The type of a param that is such a member, if there is one.
+        ty: Option<String>,
     },
     #[error("`params.index` is the number of the repetition, a u32")]
     IndexMember(Span),
@@ -573,9 +575,13 @@ impl LinkError {
                 member,
                 span,
                 known,
-            } => told.at(span, "").suggest(&member, known).help(format!(
-                "or declare it, `params: [U32(name: \"{member}\", default: …)]`, or `set` it"
-            )),
+                ty,
+            } => told.at(span, "").suggest(&member, known).help(match ty {
+                Some(ty) => format!(
+                    "or declare it, `params: [{ty}(name: \"{member}\", default: …)]`, or `set` it"
+                ),
+                None => format!("or `set` it: `set: {{\"{member}\": …}}`"),
+            }),
             Self::IndexMember(span) | Self::MemberIsNoVector { span, .. } => {
                 told.at(span, "in this uniform")
             }
@@ -674,7 +680,10 @@ impl LinkError {
             }
             Self::SeveralLayers(name) => told
                 .at(name.span, "a pass draws to one mip of one layer")
-                .help("name one: `x[0]`, `x.mip[0]`, `x[0].mip[0]`"),
+                .help(format!(
+                    "name one: `{0}[0]`, `{0}.mip[0]`, `{0}[0].mip[0]`",
+                    name.value
+                )),
             Self::NoTargets(pass) => told.at(
                 pass.span,
                 "give it `color: […]`, `depth: …` or `stencil: (…)`",

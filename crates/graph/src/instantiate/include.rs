@@ -413,7 +413,10 @@ impl<'a> Builder<'a, '_> {
                 .inputs
                 .iter()
                 .any(|input| input.name.as_str() == path);
-            let is_bound = said.bind.iter().any(|(bound, ..)| bound.as_str() == name.as_str());
+            let is_bound = said
+                .bind
+                .iter()
+                .any(|(bound, ..)| bound.as_str() == name.as_str());
             if !is_input && !is_bound {
                 let meaning = target.map_or_else(Meaning::Broken, Meaning::Target);
                 names.insert(name.value.clone(), meaning);

@@ -115,8 +115,16 @@ impl<'a> ShaderFiles<'a> {
         let files = candidates
             .iter()
             .flat_map(|path| self.sources.list(folder_of(path)));
-        let known = files.filter_map(|file| file.strip_suffix(".wgsl").map(str::to_owned));
-        likeness(name, known)
+        // A document names shaders without the ending, an import names a file with its folder.
+        let named = |file: String| {
+            let stem = file.strip_suffix(".wgsl")?;
+            Some(match name.rsplit_once('/') {
+                Some((folder, _)) => format!("{folder}/{file}"),
+                None if name.ends_with(".wgsl") => file,
+                None => stem.to_owned(),
+            })
+        };
+        likeness(name, files.filter_map(named))
     }
 
     fn append(
@@ -174,7 +182,10 @@ impl<'a> ShaderFiles<'a> {
         let candidates = import_candidates(&file.name, &path);
         match self.find(&candidates) {
             Ok(Some(imported)) => Ok(imported),
-            Ok(None) => Err(ImportError::NoFile(path, candidates)),
+            Ok(None) => {
+                let likeness = self.likeness(&candidates, &path);
+                Err(ImportError::NoFile(path, candidates, likeness))
+            }
             Err(why) => Err(ImportError::UnreadableFile(path, why)),
         }
     }

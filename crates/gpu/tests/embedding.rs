@@ -1,6 +1,9 @@
 //! What a host program relies on: imports, views of outputs, provided resources, errors before
 //! anything is encoded.
 
+#[path = "support/host.rs"]
+mod host;
+#[path = "../../graph/tests/support/mod.rs"]
 mod support;
 
 use skiagraph_graph::{
@@ -106,8 +109,8 @@ fn sums() -> Files {
     Files::new([
         (
             "graph.ron",
-            "(format: 1, materials: [Texture(name: \"sum\", format: R32Uint, size: Viewport)],
-              passes: [Fullscreen(name: \"add\", color: [(target: \"sum\")])], outputs: [(name: \
+            "(format: 2, materials: [Texture(name: \"sum\", format: R32Uint)],
+              passes: [Fullscreen(name: \"add\", color: [\"sum\"])], outputs: [(name: \
                   \"sum\")])",
         ),
         (
@@ -125,8 +128,8 @@ fn sums_request() -> PlanRequest<'static> {
     let mut request = request(&NoProvider);
     let (image, more) = (texture(&KIND, 0), buffer(&[0], STORAGE));
     request.imports.extend([
-        ("host.image".to_owned(), Import::texture(&image)),
-        ("host.more".to_owned(), Import::buffer(&more, None)),
+        ("host.image".to_owned(), import::texture(&image)),
+        ("host.more".to_owned(), import::buffer(&more, None)),
     ]);
     request
 }
@@ -250,12 +253,12 @@ fn a_pass_that_writes_for_the_host_runs() {
     let files = Files::new([
         (
             "graph.ron",
-            "(format: 1, materials: [Texture(name: \"image\", format: R32Uint, size: Viewport), \
-             Texture(name: \"nobody\", format: R32Uint, size: Viewport)],
+            "(format: 2, materials: [Texture(name: \"image\", format: R32Uint), \
+             Texture(name: \"nobody\", format: R32Uint)],
               passes: [Compute(name: \"count\", dispatch: Groups(1, 1, 1)), Fullscreen(name: \
-                  \"idle\", shader: \"draw\", color: [(target: \"nobody\")]),
-                       Fullscreen(name: \"draw\", color: [(target: \"image\")])],
-              outputs: [(name: \"image\")])",
+                  \"idle\", shader: \"draw\", color: [\"nobody\"]),
+                       Fullscreen(name: \"draw\", color: [\"image\"])],
+              outputs: [\"image\"])",
         ),
         (
             "count.wgsl",
@@ -271,7 +274,7 @@ fn a_pass_that_writes_for_the_host_runs() {
     let mut request = request(&NoProvider);
     request
         .imports
-        .insert("host.counter".to_owned(), Import::buffer(&counter, Some(2)));
+        .insert("host.counter".to_owned(), import::buffer(&counter, Some(2)));
     let mut executor = executor(&files, &request);
     let live: Vec<String> = executor
         .plan()
@@ -293,7 +296,7 @@ fn an_import_is_read_back_if_it_was_made_for_that() {
     let files = Files::new([
         (
             "graph.ron",
-            "(format: 1, passes: [Fullscreen(name: \"draw\", color: [(target: \"host.image\")])], \
+            "(format: 2, passes: [Fullscreen(name: \"draw\", color: [(target: \"host.image\")])], \
              outputs: [(name: \"host.image\")])",
         ),
         (
@@ -308,7 +311,7 @@ fn an_import_is_read_back_if_it_was_made_for_that() {
     ] {
         let image = texture(&Kind { usage, ..KIND }, 0);
         let mut request = request(&NoProvider);
-        let described = Import::texture(&image);
+        let described = import::texture(&image);
         request.imports.insert("host.image".to_owned(), described);
         let mut executor = executor(&files, &request);
         executor.import_texture("host.image", &image).unwrap();
@@ -337,11 +340,11 @@ fn the_host_binds_what_the_graph_made() {
     let files = Files::new([
         (
             "graph.ron",
-            "(format: 1, materials: [Texture(name: \"image\", format: R32Uint, size: Viewport), \
+            "(format: 2, materials: [Texture(name: \"image\", format: R32Uint), \
              Buffer(name: \"items\", count: 64)],
-              passes: [Fullscreen(name: \"draw\", color: [(target: \"image\")]), Compute(name: \
+              passes: [Fullscreen(name: \"draw\", color: [\"image\"]), Compute(name: \
                   \"fill\", dispatch: Over(\"items\"))],
-              outputs: [(name: \"image\"), (name: \"items\")])",
+              outputs: [\"image\", \"items\"])",
         ),
         (
             "draw.wgsl",
@@ -427,12 +430,12 @@ fn another_viewport_with_other_imports() {
         .plan()
         .with(|request| {
             request.viewport = [16, 16];
-            let image = Import::texture(&image);
+            let image = import::texture(&image);
             request.imports.insert("host.image".to_owned(), image);
         })
         .unwrap();
-    let renewed = executor.replace_graph(plan, &mut NoProvider).unwrap();
-    assert_eq!(renewed.resources, ["sum"]);
+    let report = executor.replace_graph(plan, &mut NoProvider).unwrap();
+    assert_eq!(report.resources, ["sum"]);
     let error = executor
         .encode(&mut encoder(), &Frame::default())
         .expect_err("the image of the old size does not serve any more");
@@ -472,9 +475,9 @@ fn taker() -> Files {
     Files::new([
         (
             "graph.ron",
-            "(format: 1, materials: [Buffer(name: \"copy\", count: 1)],
+            "(format: 2, materials: [Buffer(name: \"copy\", count: 1)],
               passes: [Compute(name: \"take\", run: OnChange, dispatch: Groups(1, 1, 1))], \
-                  outputs: [(name: \"copy\")])",
+                  outputs: [\"copy\"])",
         ),
         (
             "take.wgsl",
@@ -579,7 +582,7 @@ fn a_lost_device_comes_back_as_an_error() {
 
 /// Every method that needs the device says that it is lost; none panics.
 fn lose_the_device(before: bool) {
-    let gpu = gpu::open(None).unwrap_or_else(|error| panic!("{error}"));
+    let gpu = device::open(None).unwrap_or_else(|error| panic!("{error}"));
     let request = sums_request();
     let plan = |files: &Files, request: &PlanRequest<'_>| planned(files, request);
     let made = |name: &str| {
@@ -625,14 +628,14 @@ fn lose_the_device(before: bool) {
     gpu.queue.submit([encoder.finish()]);
     // `submitted` comes after the loss in one run, before it in the other.
     if before {
-        executor.submitted(&gpu.queue).unwrap();
+        executor.submitted().unwrap();
     }
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
 
     gpu.device.destroy();
     if !before {
         // It has no result of its own to wait for, so it may say nothing.
-        let submitted = executor.submitted(&gpu.queue);
+        let submitted = executor.submitted();
         assert!(
             matches!(submitted, Ok(()) | Err(ExecuteError::DeviceLost(_))),
             "{submitted:?}"

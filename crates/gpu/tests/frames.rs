@@ -1,5 +1,8 @@
 //! What passes find from frame to frame: last frame's versions, skipped passes, shared memory.
 
+#[path = "support/host.rs"]
+mod host;
+#[path = "../../graph/tests/support/mod.rs"]
 mod support;
 
 use proptest::prelude::*;
@@ -9,8 +12,8 @@ use skiagraph_graph::{
 use std::{collections::BTreeMap, fmt::Write as _, sync::LazyLock};
 use support::{Files, load};
 
-static GPU: LazyLock<gpu::Gpu> =
-    LazyLock::new(|| gpu::open(None).unwrap_or_else(|error| panic!("{error}")));
+static GPU: LazyLock<device::Gpu> =
+    LazyLock::new(|| device::open(None).unwrap_or_else(|error| panic!("{error}")));
 
 fn request() -> PlanRequest<'static> {
     let mut request = PlanRequest::new([8, 8], &NoProvider);
@@ -46,7 +49,7 @@ fn frame(executor: &mut Executor, all: bool, read: &[&str]) -> FrameReport {
         .unwrap_or_else(|error| panic!("{error}"));
     GPU.queue.submit([encoder.finish()]);
     executor
-        .submitted(&GPU.queue)
+        .submitted()
         .unwrap_or_else(|error| panic!("{error}"));
     executor.finish().unwrap_or_else(|error| panic!("{error}"))
 }
@@ -91,14 +94,14 @@ fn document(params: &str, materials: &[&str], passes: &[&str], outputs: &[&str])
     Files::new([]).with(
         "graph.ron",
         format!(
-            "(format: 1, params: [{params}], materials: [{buffers}], passes: [{}], outputs: [{}])",
+            "(format: 2, params: [{params}], materials: [{buffers}], passes: [{}], outputs: [{}])",
             passes.join(","),
             outputs.join(",")
         ),
     )
 }
 
-const SEED_PARAM: &str = "(name: \"seed\", type: U32, default: 5)";
+const SEED_PARAM: &str = "U32(name: \"seed\", default: 5)";
 
 /// ```text
 /// Previous(total) ─▶ count ─▶ total
@@ -110,7 +113,7 @@ fn a_sum_over_frames_starts_from_zero() {
         &["total"],
         &[
             "Compute(name: \"count\", dispatch: Groups(1, 1, 1), bind: {\"old\": \
-            Previous(\"total\"), \"out\": \"total\"})",
+            \"total.previous\", \"out\": \"total\"})",
         ],
         &["total"],
     )
@@ -130,11 +133,11 @@ fn a_sum_over_frames_starts_from_zero() {
 fn last_frame_is_zero_after_a_resize() {
     let files = Files::new([]).with(
         "graph.ron",
-        "(format: 1, materials: [Texture(name: \"age\", format: R32Uint, size: Viewport), \
-         Texture(name: \"was\", format: R32Uint, size: Viewport)],
-          passes: [Copy(name: \"keep\", from: Previous(\"age\"), to: \"was\"), Fullscreen(name: \
-              \"grow\", color: [(target: \"age\")])],
-          outputs: [(name: \"age\")])",
+        "(format: 2, materials: [Texture(name: \"age\", format: R32Uint), \
+         Texture(name: \"was\", format: R32Uint)],
+          passes: [Copy(name: \"keep\", from: \"age.previous\", to: \"was\"), Fullscreen(name: \
+              \"grow\", color: [\"age\"])],
+          outputs: [\"age\"])",
     ).with(
         "grow.wgsl",
         "var was: texture_2d<u32>;
@@ -142,11 +145,11 @@ fn last_frame_is_zero_after_a_resize() {
     );
     let mut executor = executor(&files);
     assert_eq!([0; 3].map(|_| number(&mut executor, "age")), [2, 4, 6]);
-    let renewed = executor
+    let report = executor
         .resize([4, 2], &mut NoProvider)
         .unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(renewed.resources, ["age", "was"]);
-    assert!(renewed.pipelines.is_empty());
+    assert_eq!(report.resources, ["age", "was"]);
+    assert!(report.pipelines.is_empty());
     assert_eq!([0; 3].map(|_| number(&mut executor, "age")), [2, 4, 6]);
     assert_eq!(executor.plan().outputs()[0].size, [4, 2]);
 }
@@ -158,12 +161,12 @@ fn last_frame_is_zero_after_a_resize() {
 #[test]
 fn a_version_that_was_not_written_stays_the_last_one() {
     let files = document(
-        &format!("{SEED_PARAM}, (name: \"on\", type: Bool, default: true)"),
+        &format!("{SEED_PARAM}, Bool(name: \"on\", default: true)"),
         &["b", "c"],
         &[
             "Compute(name: \"make\", dispatch: Groups(1, 1, 1), run: When(\"on\"), bind: \
              {\"out\": \"b\"})",
-            "Compute(name: \"watch\", dispatch: Groups(1, 1, 1), bind: {\"old\": Previous(\"b\"), \
+            "Compute(name: \"watch\", dispatch: Groups(1, 1, 1), bind: {\"old\": \"b.previous\", \
              \"out\": \"c\"})",
         ],
         &["b", "c"],
@@ -197,7 +200,7 @@ fn a_version_that_was_not_written_stays_the_last_one() {
 #[test]
 fn what_did_not_change_is_not_made_again() {
     let files = document(
-        &format!("{SEED_PARAM}, (name: \"other\", type: U32, default: 1)"),
+        &format!("{SEED_PARAM}, U32(name: \"other\", default: 1)"),
         &["a", "b", "c", "d", "e"],
         &[
             "Compute(name: \"first\", dispatch: Groups(1, 1, 1), run: Once, bind: {\"out\": \
@@ -233,7 +236,7 @@ fn what_did_not_change_is_not_made_again() {
     let mut request = request();
     request
         .imports
-        .insert("host".to_owned(), Import::buffer(&host, Some(1)));
+        .insert("host".to_owned(), import::buffer(&host, Some(1)));
     let mut executor = executor_for(&files, &request);
     executor
         .import_buffer("host", &host)
@@ -302,7 +305,7 @@ fn pool(files: &Files) -> (u64, u64) {
 fn chain(names: &[&str], run: &str, overwrite: bool) -> Files {
     let textures: String = names
         .iter()
-        .map(|name| format!("Texture(name: \"{name}\", format: R32Uint, size: Viewport),"))
+        .map(|name| format!("Texture(name: \"{name}\", format: R32Uint),"))
         .collect();
     let load = if overwrite {
         "Clear(0, 0, 0, 0)"
@@ -326,7 +329,7 @@ fn chain(names: &[&str], run: &str, overwrite: bool) -> Files {
     )])
     .with(
         "graph.ron",
-        format!("(format: 1, materials: [{textures}], passes: [{passes}], outputs: [(name: \
+        format!("(format: 2, materials: [{textures}], passes: [{passes}], outputs: [(name: \
             \"{last}\")])"),
     )
 }
@@ -553,7 +556,7 @@ impl Program {
         files.with(
             "graph.ron",
             format!(
-                "(format: 1, params: [{SEED_PARAM}, (name: \"flag\", type: Bool, default: true)], \
+                "(format: 2, params: [{SEED_PARAM}, Bool(name: \"flag\", default: true)], \
                  materials: [{materials}], passes: [{passes}], outputs: [{outputs}])"
             ),
         )
@@ -688,7 +691,7 @@ proptest! {
         fill(9);
         let mut request = request();
         request.poison = program.poison;
-        request.imports = BTreeMap::from([("host".to_owned(), Import::buffer(&host, None))]);
+        request.imports = BTreeMap::from([("host".to_owned(), import::buffer(&host, None))]);
         // Writers of several conditions that meet in one group are refused; that is tested
         // elsewhere.
         let plan = match graph.plan(&request) {

@@ -1,9 +1,12 @@
 //! What another param, another size, another graph come to; and that what fails changes nothing.
 
+#[path = "support/host.rs"]
+mod host;
+#[path = "../../graph/tests/support/mod.rs"]
 mod support;
 
 use skiagraph_graph::{
-    ExecuteError, Executor, Frame, NoProvider, ParamValue, PlanRequest, Renewed,
+    ExecuteError, Executor, Frame, NoProvider, ParamValue, PlanRequest, ReplanReport,
 };
 use support::{
     Files,
@@ -18,45 +21,45 @@ fn params() -> Files {
             "(
                 format: 1,
                 params: [
-                    (name: \"gain\", type: U32, default: 1, max: 100),
-                    (name: \"offset\", type: U32, default: 0),
-                    (name: \"both\", type: U32, default: 0),
-                    (name: \"face\", type: Choice([\"none\", \"front\", \"back\"]), default: \
+                    U32(name: \"gain\", default: 1, max: 100),
+                    U32(name: \"offset\", default: 0),
+                    U32(name: \"both\", default: 0),
+                    Choice(name: \"face\", words: [none, front, back], default: \
                         \"none\"),
-                    (name: \"slope\", type: F32, default: 0),
-                    (name: \"far\", type: F32, default: 1, min: 0, max: 1),
-                    (name: \"edge\", type: U32, default: 8),
-                    (name: \"layers\", type: U32, default: 2, min: 2),
-                    (name: \"items\", type: U32, default: 64, min: 1),
-                    (name: \"corners\", type: U32, default: 3),
-                    (name: \"times\", type: U32, default: 2),
-                    (name: \"enabled\", type: Bool, default: true),
+                    F32(name: \"slope\", default: 0),
+                    F32(name: \"far\", default: 1, min: 0, max: 1),
+                    U32(name: \"edge\", default: 8),
+                    U32(name: \"layers\", default: 2, min: 2),
+                    U32(name: \"items\", default: 64, min: 1),
+                    U32(name: \"corners\", default: 3),
+                    U32(name: \"times\", default: 2),
+                    Bool(name: \"enabled\", default: true),
                 ],
                 materials: [
-                    Texture(name: \"depth\", format: Depth32Float, size: Square(Param(\"edge\"))),
-                    Texture(name: \"stack\", format: R32Uint, size: Texels(4, 4), layers: \
-                        Param(\"layers\")),
-                    Buffer(name: \"list\", count: Param(\"items\")),
-                    Texture(name: \"sum\", format: R16Float, size: Texels(1, 1)),
+                    Texture(name: \"depth\", format: Depth32Float, size: Square(\"edge\")),
+                    Texture(name: \"stack\", format: R32Uint, size: (4, 4), layers: \
+                        \"layers\"),
+                    Buffer(name: \"list\", count: \"items\"),
+                    Texture(name: \"sum\", format: R16Float, size: (1, 1)),
                     Buffer(name: \"sometimes\", count: 1),
-                    Texture(name: \"image\", format: R32Uint, size: Viewport),
+                    Texture(name: \"image\", format: R32Uint),
                 ],
                 passes: [
-                    Raster(name: \"draw\", draw: Vertices(Param(\"corners\")), cull: \
-                        Param(\"face\"),
-                        depth: (target: \"depth\", load: Clear(Param(\"far\")), bias: \
-                            (slope_scale: Param(\"slope\")))),
+                    Raster(name: \"draw\", draw: Vertices(\"corners\"), cull: \
+                        \"face\",
+                        depth: (target: \"depth\", load: Clear(\"far\"), bias: \
+                            (slope_scale: \"slope\"))),
                     Compute(name: \"pile\", dispatch: Over(\"stack\")),
                     Compute(name: \"fill\", dispatch: Over(\"list\")),
                     Clear(name: \"zero\", target: \"sum\"),
-                    Fullscreen(name: \"add\", repeat: Param(\"times\"), color: [(target: \"sum\", \
+                    Fullscreen(name: \"add\", repeat: \"times\", color: [(target: \"sum\", \
                         load: Load, blend: Additive)]),
                     Compute(name: \"switch\", run: When(\"enabled\"), dispatch: Groups(1, 1, 1), \
-                        bind: {\"old\": Previous(\"sometimes\")}),
-                    Fullscreen(name: \"shade\", color: [(target: \"image\")]),
+                        bind: {\"old\": \"sometimes.previous\"}),
+                    Fullscreen(name: \"shade\", color: [\"image\"]),
                 ],
-                outputs: [(name: \"image\"), (name: \"depth\"), (name: \"stack\"), (name: \
-                    \"list\"), (name: \"sum\"), (name: \"sometimes\")],
+                outputs: [\"image\", \"depth\", \"stack\", (name: \
+                    \"list\"), \"sum\", \"sometimes\"],
             )",
         ),
         (
@@ -154,15 +157,15 @@ fn a_param_costs_what_follows_from_it() {
         ),
     ];
     for (name, value, uploads, pipelines, resources, image) in rows {
-        let renewed = executor
+        let report = executor
             .set_param(name, value.clone(), &mut NoProvider)
             .unwrap_or_else(|error| panic!("{error}"));
-        let expected = Renewed {
+        let expected = ReplanReport {
             uploads: uploads.iter().map(|name| (*name).to_owned()).collect(),
             pipelines: pipelines.iter().map(|name| (*name).to_owned()).collect(),
             resources: resources.iter().map(|name| (*name).to_owned()).collect(),
         };
-        assert_eq!(renewed, expected, "{name} = {value}");
+        assert_eq!(report, expected, "{name} = {value}");
         assert_eq!(executor.plan().param(name), Some(&value));
         assert_eq!(
             numbers(&mut executor, "image"),
@@ -191,13 +194,13 @@ fn counter(step: &str) -> Files {
     Files::new([
         (
             "graph.ron",
-            "(format: 1, params: [(name: \"most\", type: U32, default: 5, max: 9), (name: \
+            "(format: 2, params: [U32(name: \"most\", default: 5, max: 9), (name: \
              \"items\", type: U32, default: 1)],
-              materials: [Buffer(name: \"total\", count: Param(\"items\")), Texture(name: \
-                  \"image\", format: R32Uint, size: Viewport)],
+              materials: [Buffer(name: \"total\", count: \"items\"), Texture(name: \
+                  \"image\", format: R32Uint)],
               passes: [Compute(name: \"count\", dispatch: Groups(1, 1, 1), bind: {\"old\": \
-                  Previous(\"total\")}), Fullscreen(name: \"draw\", color: [(target: \"image\")])],
-              outputs: [(name: \"total\"), (name: \"image\")])",
+                  \"total.previous\"}), Fullscreen(name: \"draw\", color: [\"image\"])],
+              outputs: [\"total\", \"image\"])",
         ),
         (
             "draw.wgsl",
@@ -229,7 +232,7 @@ fn what_fails_changes_nothing() {
     let mut executor = executor(&counter("1u"), &boundless());
     let mut expected = 1;
     assert_eq!(numbers(&mut executor, "total"), [expected]);
-    type Change = fn(&mut Executor) -> Result<Renewed, ExecuteError>;
+    type Change = fn(&mut Executor) -> Result<ReplanReport, ExecuteError>;
     let changes: [(&str, Change); 8] = [
         ("the viewport has no pixels", |executor| {
             executor.resize([0, 8], &mut NoProvider)
@@ -280,12 +283,12 @@ fn an_edited_shader_keeps_what_was_there() {
     assert_eq!(numbers(&mut executor, "total"), [1]);
     assert_eq!(numbers(&mut executor, "total"), [2]);
     let plan = planned(&counter("10u"), &request(&NoProvider));
-    let renewed = executor.replace_graph(plan, &mut NoProvider).unwrap();
-    let only = Renewed {
+    let report = executor.replace_graph(plan, &mut NoProvider).unwrap();
+    let only = ReplanReport {
         pipelines: vec!["count".to_owned()],
-        ..Renewed::default()
+        ..ReplanReport::default()
     };
-    assert_eq!(renewed, only);
+    assert_eq!(report, only);
     assert_eq!(numbers(&mut executor, "total"), [12]);
 }
 
@@ -301,7 +304,7 @@ fn a_frame_that_was_encoded_before_a_change_is_reported_after_it() {
     };
     executor.encode(&mut encoder, &timed).unwrap();
     GPU.queue.submit([encoder.finish()]);
-    executor.submitted(&GPU.queue).unwrap();
+    executor.submitted().unwrap();
     let plan = planned(&counter("1u"), &request(&NoProvider));
     executor.replace_graph(plan, &mut NoProvider).unwrap();
     let report = executor.finish().unwrap();

@@ -430,10 +430,7 @@ fn clears_and_copies() {
     let files = files(
         &materials.join(", "),
         &format!("{passes}, {}", copies.join(", ")),
-        &format!(
-            "{}, \"kept\", \"items\"",
-            outputs.join(", ")
-        ),
+        &format!("{}, \"kept\", \"items\"", outputs.join(", ")),
     )
     .with(
         "number.wgsl",

@@ -1,58 +1,20 @@
 //! Cases where a frame could find something stale: what ran for another plan, what the host changed
 //! in between.
 
+#[path = "support/buffers.rs"]
+mod buffers;
 #[path = "support/host.rs"]
 mod host;
 #[path = "../../graph/tests/support/mod.rs"]
 mod support;
 
+use buffers::{INPUT, SEED, SEED_PARAM, compute, document, writes};
+use host::{GPU, encoder, executor, frame, numbers, planned, request, set, words};
+use skiagraph_gpu::{Executor, Frame, Provider, ProviderError, import};
 use skiagraph_graph::{
-    Capture, Executor, Frame, FrameReport, Import, NoProvider, ParamValue, Provided, Provider,
-    ProviderError,
+    Capture, Describe, NoProvider, ParamValue, Provided, ProvidedBinding,
 };
-use support::{
-    Files,
-    host::{GPU, encoder, executor, frame, numbers, planned, request},
-};
-
-/// A compute shader of one invocation.
-fn shader(globals: &str, body: &str) -> String {
-    format!("{globals} @compute @workgroup_size(1) fn main() {{ {body} }}")
-}
-
-const OUT: &str = "var<storage, read_write> out: array<u32>;";
-const INPUT: &str = "var<storage, read> input: array<u32>;";
-
-fn compute(name: &str, more: &str, bind: &str) -> String {
-    format!("Compute(name: \"{name}\", dispatch: Groups(1, 1, 1), {more} bind: {{{bind}}}),")
-}
-
-fn document(params: &str, buffers: &[&str], passes: &[String], outputs: &[&str]) -> Files {
-    let buffers: String = buffers
-        .iter()
-        .map(|name| format!("Buffer(name: \"{name}\", count: 1),"))
-        .collect();
-    let outputs: String = outputs
-        .iter()
-        .map(|name| format!("(name: \"{name}\"),"))
-        .collect();
-    let text = format!(
-        "(format: 2, params: [{params}], materials: [{buffers}], passes: [{}], outputs: \
-         [{outputs}])",
-        passes.concat()
-    );
-    Files::new([]).with("graph.ron", text)
-}
-
-fn set(executor: &mut Executor, name: &str, value: ParamValue) {
-    executor
-        .set_param(name, value, &mut NoProvider)
-        .unwrap_or_else(|error| panic!("{error}"));
-}
-
-fn first(report: &FrameReport, index: usize) -> u32 {
-    report.readbacks[index].content.as_u32().expect("numbers")[0]
-}
+use support::Files;
 
 /// ```text
 /// start ─▶ sum ⟲ add[0..times]      all OnChange
@@ -61,21 +23,15 @@ fn first(report: &FrameReport, index: usize) -> u32 {
 /// go.
 #[test]
 fn fewer_repeats_take_back_what_the_last_ones_added() {
-    let add = compute(
-        "add",
-        "run: OnChange, repeat: \"times\",",
-        "\"out\": \"sum\"",
-    );
+    let add = compute("add", r#"run: OnChange, repeat: "times","#, r#""out": "sum""#);
+    let start = r#"Clear(name: "start", run: OnChange, target: "sum"),"#;
     let files = document(
-        "U32(name: \"times\", default: 3, min: 1)",
+        r#"U32(name: "times", default: 3, min: 1)"#,
         &["sum"],
-        &[
-            "Clear(name: \"start\", run: OnChange, target: \"sum\"),".to_owned(),
-            add,
-        ],
+        &[start.to_owned(), add],
         &["sum"],
     )
-    .with("add.wgsl", shader(OUT, "out[0] = out[0] + 1u;"));
+    .with("add.wgsl", writes("", "out[0] + 1u"));
     let mut executor = executor(&files, &request(&NoProvider));
     for times in [3, 2, 2, 4, 1] {
         set(&mut executor, "times", ParamValue::U32(times));
@@ -90,7 +46,7 @@ struct Updated {
     items: u64,
 }
 
-impl Provider for Updated {
+impl Describe for Updated {
     fn names(&self) -> Vec<String> {
         vec!["host.value".to_owned()]
     }
@@ -99,10 +55,12 @@ impl Provider for Updated {
         (name == "host.value").then_some(Provided {
             items: Some(self.items),
             stride: 4,
-            uniform: false,
+            binding: ProvidedBinding::Storage,
         })
     }
+}
 
+impl Provider for Updated {
     fn version(&self, _: &str) -> u64 {
         self.value
     }
@@ -129,31 +87,39 @@ fn buffer(items: u64) -> wgpu::Buffer {
     })
 }
 
-/// What the provider changed in place is seen also if a change of the plan is what asks for it.
-#[test]
-fn a_change_in_place_is_seen_through_a_change_of_the_plan() {
-    let files = document(
-        "U32(name: \"other\", default: 0)",
-        &["seen"],
-        &[compute(
-            "take",
-            "run: OnChange,",
-            "\"input\": \"host.value\", \"out\": \"seen\"",
-        )],
-        &["seen"],
-    )
-    .with(
-        "take.wgsl",
-        shader(&format!("{INPUT}{OUT}"), "out[0] = input[0];"),
-    );
-    let mut provider = Updated {
+/// A provider of one number.
+fn one() -> Updated {
+    Updated {
         buffer: buffer(1),
         value: 1,
         items: 1,
-    };
-    let plan = planned(&files, &request(&provider));
-    let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider)
-        .unwrap_or_else(|error| panic!("{error}"));
+    }
+}
+
+/// An executor whose provider is that one.
+fn provided(files: &Files, provider: &mut Updated) -> Executor {
+    let plan = planned(files, &request(provider));
+    Executor::new(&GPU.device, &GPU.queue, plan, provider)
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// What the provider changed in place is seen also if a change of the plan is what asks for it.
+#[test]
+fn a_change_in_place_is_seen_through_a_change_of_the_plan() {
+    let take = compute(
+        "take",
+        "run: OnChange,",
+        r#""input": "host.value", "out": "seen""#,
+    );
+    let files = document(
+        r#"U32(name: "other", default: 0)"#,
+        &["seen"],
+        &[take],
+        &["seen"],
+    )
+    .with("take.wgsl", writes(INPUT, "input[0]"));
+    let mut provider = one();
+    let mut executor = provided(&files, &mut provider);
     assert_eq!(numbers(&mut executor, "seen"), [1]);
     provider.value = 2;
     executor
@@ -168,28 +134,15 @@ fn a_change_in_place_is_seen_through_a_change_of_the_plan() {
 /// The plan counts items; a provider that has others now cannot simply be refreshed.
 #[test]
 fn provided_items_that_the_plan_did_not_count_are_refused() {
-    let files = document(
-        "",
-        &["seen"],
-        &[
-            "Compute(name: \"take\", dispatch: Over(\"host.value\"), bind: {\"input\": \
-            \"host.value\", \"out\": \"seen\"}),"
-                .to_owned(),
-        ],
-        &["seen"],
-    )
-    .with(
-        "take.wgsl",
-        shader(&format!("{INPUT}{OUT}"), "out[0] = arrayLength(&input);"),
-    );
-    let mut provider = Updated {
-        buffer: buffer(1),
-        value: 1,
-        items: 1,
-    };
-    let plan = planned(&files, &request(&provider));
-    let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider)
-        .unwrap_or_else(|error| panic!("{error}"));
+    let take = r#"Compute(
+        name: "take",
+        dispatch: Over("host.value.count"),
+        bind: {"input": "host.value", "out": "seen"},
+    ),"#;
+    let files = document("", &["seen"], &[take.to_owned()], &["seen"])
+        .with("take.wgsl", writes(INPUT, "arrayLength(&input)"));
+    let mut provider = one();
+    let mut executor = provided(&files, &mut provider);
     assert_eq!(numbers(&mut executor, "seen"), [1]);
     (provider.buffer, provider.items, provider.value) = (buffer(3), 3, 2);
     let refused = executor.refresh(&mut provider);
@@ -207,24 +160,26 @@ fn provided_items_that_the_plan_did_not_count_are_refused() {
 #[test]
 fn an_import_outlives_a_plan_that_does_not_use_it() {
     let files = document(
-        "U32(name: \"times\", default: 0)",
+        r#"U32(name: "times", default: 0)"#,
         &["seen"],
         &[
-            "Clear(name: \"start\", target: \"seen\"),".to_owned(),
-            compute("make", "", "\"out\": \"seen\""),
+            r#"Clear(name: "start", target: "seen"),"#.to_owned(),
+            compute("make", "", r#""out": "seen""#),
             compute(
                 "take",
-                "repeat: \"times\",",
-                "\"input\": \"given\", \"out\": \"seen\"",
+                r#"repeat: "times","#,
+                r#""input": "given", "out": "seen""#,
             ),
         ],
         &["seen"],
     )
-    .with(
-        "take.wgsl",
-        shader(&format!("{INPUT}{OUT}"), "out[0] = input[0];"),
-    );
-    let files = files.with("make.wgsl", shader(OUT, "out[0] = 0u;"));
+    .edited(
+        "graph.ron",
+        "params:",
+        r#"inputs: [Buffer(name: "given")], params:"#,
+    )
+    .with("take.wgsl", writes(INPUT, "input[0]"))
+    .with("make.wgsl", writes("", "0u"));
     let given = buffer(1);
     GPU.queue.write_buffer(&given, 0, &7u32.to_le_bytes());
     let mut wanted = request(&NoProvider);
@@ -248,26 +203,20 @@ fn an_import_outlives_a_plan_that_does_not_use_it() {
 #[test]
 fn a_capture_after_a_skipped_pass_is_of_this_frame() {
     let files = document(
-        "U32(name: \"seed\", default: 1), Bool(name: \"on\", default: false)",
+        &format!(r#"{SEED_PARAM} Bool(name: "on", default: false)"#),
         &["m", "o", "p"],
         &[
-            compute("make", "", "\"out\": \"m\""),
-            compute("once", "run: Once, shader: \"make\",", "\"out\": \"o\""),
+            compute("make", "", r#""out": "m""#),
+            compute("once", r#"run: Once, shader: "make","#, r#""out": "o""#),
             compute(
                 "when",
-                "run: When(\"on\"), shader: \"make\",",
-                "\"out\": \"p\"",
+                r#"run: When("on"), shader: "make","#,
+                r#""out": "p""#,
             ),
         ],
         &["m", "o", "p"],
     )
-    .with(
-        "make.wgsl",
-        shader(
-            &format!("struct Params {{ seed: u32 }} var<uniform> params: Params; {OUT}"),
-            "out[0] = params.seed;",
-        ),
-    );
+    .with("make.wgsl", writes(SEED, "params.seed"));
     let mut wanted = request(&NoProvider);
     for pass in ["once", "when"] {
         wanted.captures.push(Capture {
@@ -279,7 +228,7 @@ fn a_capture_after_a_skipped_pass_is_of_this_frame() {
     for seed in 1..4 {
         set(&mut executor, "seed", ParamValue::U32(seed));
         let report = frame(&mut executor, &["m", "m@once", "m@when", "o"]);
-        let all = [0, 1, 2, 3].map(|index| first(&report, index));
+        let all = [0, 1, 2, 3].map(|index| words(&report, index)[0]);
         assert_eq!(all, [seed, seed, seed, 1], "{:?}", report.skipped);
     }
 }
@@ -287,28 +236,32 @@ fn a_capture_after_a_skipped_pass_is_of_this_frame() {
 /// Reading one mip while a pass below writes another is no reason to run again.
 #[test]
 fn another_part_written_below_is_no_change() {
-    let files = Files::new([])
-        .with(
-            "graph.ron",
-            "(format: 2, materials: [
-            Texture(name: \"t\", format: R32Uint, size: (2, 2), mips: 2, views: [(name: \
-                \"t0\", mip: 0, mips: 1), (name: \"t1\", mip: 1, mips: 1)]),
-            Buffer(name: \"seen\", count: 1)],
-          passes: [
-            Clear(name: \"zero\", run: Once, target: \"t0\", value: (3, 0, 0, 0)),
-            Compute(name: \"take\", run: OnChange, dispatch: Groups(1, 1, 1), bind: {\"input\": \
-                \"t0\", \"out\": \"seen\"}),
-            Clear(name: \"one\", run: Once, target: \"t1\"),
-          ], outputs: [\"seen\", \"t1\"])",
-        )
-        .with(
-            "take.wgsl",
-            shader(
-                &format!("var input: texture_2d<u32>; {OUT}"),
-                "out[0] = \
-        textureLoad(input, vec2(0u), 0).x;",
-            ),
-        );
+    let files = Files::graph(
+        r#"
+    materials: [
+        Texture(name: "t", format: R32Uint, size: 2, mips: 2),
+        Buffer(name: "seen", count: 1),
+    ],
+    passes: [
+        Clear(name: "zero", run: Once, target: "t.mip[0]", value: (3, 0, 0, 0)),
+        Compute(
+            name: "take",
+            run: OnChange,
+            dispatch: Groups(1, 1, 1),
+            bind: {"input": "t.mip[0]", "out": "seen"},
+        ),
+        Clear(name: "one", run: Once, target: "t.mip[1]"),
+    ],
+    outputs: ["seen", (name: "coarse", material: "t.mip[1]")],
+"#,
+    )
+    .with(
+        "take.wgsl",
+        writes(
+            "var input: texture_2d<u32>;",
+            "textureLoad(input, vec2(0u), 0).x",
+        ),
+    );
     let mut executor = executor(&files, &request(&NoProvider));
     assert_eq!(frame(&mut executor, &["seen"]).skipped, [""; 0]);
     assert_eq!(
@@ -320,38 +273,32 @@ fn another_part_written_below_is_no_change() {
 /// What runs once does not run again because something that it does not touch comes or goes.
 #[test]
 fn once_stays_once_when_other_materials_come_and_go() {
+    let inner = r#"
+    materials: [Buffer(name: "b", count: 1)],
+    passes: [
+        Clear(name: "c", target: "b"),
+        Compute(name: "d", dispatch: Groups(1, 1, 1), bind: {"out": "b"}),
+    ],
+    outputs: ["b"],
+"#;
     let files = document(
-        "U32(name: \"times\", default: 1)",
+        r#"U32(name: "times", default: 1)"#,
         &["seen"],
         &[
-            "Include(graph: \"inner.ron\", prefix: \"i\", repeat: \"times\"),".to_owned(),
+            r#"Include(graph: "inner.ron", name: "i", repeat: "times"),"#.to_owned(),
             compute(
                 "take",
                 "run: Once,",
-                "\"input\": \"host.value\", \"out\": \"seen\"",
+                r#""input": "host.value", "out": "seen""#,
             ),
         ],
         &["seen"],
     )
-    .with(
-        "inner.ron",
-        "(format: 2, materials: [Buffer(name: \"b\", count: 1)], passes: \
-        [Clear(name: \"c\", target: \"b\"), Compute(name: \"d\", dispatch: Groups(1, 1, 1), bind: \
-        {\"out\": \"b\"})], outputs: [\"b\"])",
-    )
-    .with("d.wgsl", shader(OUT, "out[0] = 1u;"))
-    .with(
-        "take.wgsl",
-        shader(&format!("{INPUT}{OUT}"), "out[0] = input[0];"),
-    );
-    let mut provider = Updated {
-        buffer: buffer(1),
-        value: 1,
-        items: 1,
-    };
-    let plan = planned(&files, &request(&provider));
-    let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider)
-        .unwrap_or_else(|error| panic!("{error}"));
+    .document("inner.ron", inner)
+    .with("d.wgsl", writes("", "1u"))
+    .with("take.wgsl", writes(INPUT, "input[0]"));
+    let mut provider = one();
+    let mut executor = provided(&files, &mut provider);
     assert_eq!(frame(&mut executor, &[]).skipped, [""; 0]);
     executor
         .set_param("times", ParamValue::U32(2), &mut provider)
@@ -362,20 +309,25 @@ fn once_stays_once_when_other_materials_come_and_go() {
 /// One param is one condition, in a group of an included document as outside of it.
 #[test]
 fn a_condition_is_the_same_in_a_group() {
-    let inner = "(format: 2, params: [Bool(name: \"on\", default: true)], materials: \
-        [Buffer(name: \"b\", count: 1)],
-        passes: [Clear(name: \"c\", run: When(\"on\"), target: \"b\"),
-                 Group(name: \"g\", passes: [Compute(name: \"d\", run: When(\"on\"), dispatch: \
-                     Groups(1, 1, 1), bind: {\"out\": \"b\"})])],
-        outputs: [\"b\"])";
-    let files = Files::new([])
-        .with(
-            "graph.ron",
-            "(format: 2, passes: [Include(graph: \"inner.ron\", prefix: \"i\")], \
-            outputs: [(name: \"o\", material: \"i.b\")])",
-        )
-        .with("inner.ron", inner)
-        .with("d.wgsl", shader(OUT, "out[0] = 1u;"));
+    let inner = r#"
+    params: [Bool(name: "on", default: true)],
+    materials: [Buffer(name: "b", count: 1)],
+    passes: [
+        Clear(name: "c", run: When("on"), target: "b"),
+        Group(name: "g", passes: [
+            Compute(name: "d", run: When("on"), dispatch: Groups(1, 1, 1), bind: {"out": "b"}),
+        ]),
+    ],
+    outputs: ["b"],
+"#;
+    let files = Files::graph(
+        r#"
+    passes: [Include(graph: "inner.ron", name: "i")],
+    outputs: [(name: "o", material: "i.b")],
+"#,
+    )
+    .document("inner.ron", inner)
+    .with("d.wgsl", writes("", "1u"));
     let mut executor = executor(&files, &request(&NoProvider));
     assert_eq!(numbers(&mut executor, "o"), [1]);
 }
@@ -383,19 +335,24 @@ fn a_condition_is_the_same_in_a_group() {
 /// Two params of one name, of two documents, are two conditions.
 #[test]
 fn params_of_two_documents_are_two_conditions() {
-    let inner = "(format: 2, params: [Bool(name: \"on\", default: true)], materials: \
-        [Buffer(name: \"b\", count: 1)],
-        passes: [Clear(name: \"c\", run: When(\"on\"), target: \"b\")], outputs: [\"b\"])";
-    let files = Files::new([])
-        .with(
-            "graph.ron",
-            "(format: 2, params: [Bool(name: \"on\", default: false)],
-            passes: [Include(graph: \"inner.ron\"), Compute(name: \"d\", run: When(\"on\"), \
-                dispatch: Groups(1, 1, 1), bind: {\"out\": \"b\"})],
-            outputs: [\"b\"])",
-        )
-        .with("inner.ron", inner)
-        .with("d.wgsl", shader(OUT, "out[0] = out[0] + 1u;"));
+    let inner = r#"
+    params: [Bool(name: "on", default: true)],
+    materials: [Buffer(name: "b", count: 1)],
+    passes: [Clear(name: "c", run: When("on"), target: "b")],
+    outputs: ["b"],
+"#;
+    let files = Files::graph(
+        r#"
+    params: [Bool(name: "on", default: false)],
+    passes: [
+        Include(graph: "inner.ron"),
+        Compute(name: "d", run: When("on"), dispatch: Groups(1, 1, 1), bind: {"out": "b"}),
+    ],
+    outputs: ["b"],
+"#,
+    )
+    .document("inner.ron", inner)
+    .with("d.wgsl", writes("", "out[0] + 1u"));
     let errors = support::plan(&files).expect_err("one runs, the other does not");
     assert!(
         errors
@@ -409,8 +366,8 @@ fn params_of_two_documents_are_two_conditions() {
 /// submission.
 #[test]
 fn calls_out_of_turn_are_no_panics() {
-    let files = document("", &["n"], &[compute("make", "", "\"out\": \"n\"")], &["n"])
-        .with("make.wgsl", shader(OUT, "out[0] = 5u;"));
+    let files = document("", &["n"], &[compute("make", "", r#""out": "n""#)], &["n"])
+        .with("make.wgsl", writes("", "5u"));
     let mut executor = executor(&files, &request(&NoProvider));
     executor.finish().unwrap_or_else(|error| panic!("{error}"));
     executor
@@ -445,7 +402,7 @@ fn calls_out_of_turn_are_no_panics() {
             .submitted()
             .unwrap_or_else(|error| panic!("{error}"));
         let report = executor.finish().unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(first(&report, 0), 5);
+        assert_eq!(words(&report, 0)[0], 5);
         assert_eq!(report.timing.is_some(), timing);
         let report = executor.finish().unwrap_or_else(|error| panic!("{error}"));
         assert!(report.readbacks.is_empty());
@@ -457,21 +414,22 @@ fn calls_out_of_turn_are_no_panics() {
 /// it.
 #[test]
 fn poison_shows_what_a_write_leaves_of_a_material_with_a_history() {
-    let files = Files::new([])
-        .with(
-            "graph.ron",
-            "(format: 2, materials: [Buffer(name: \"x\", count: 2), Buffer(name: \"y\", count: 1)],
-          passes: [
-            Compute(name: \"make\", dispatch: Groups(1, 1, 1), bind: {\"out\": \"x\"}),
-            Compute(name: \"take\", dispatch: Groups(1, 1, 1), bind: {\"input\": \"x.previous\", \
-                \"out\": \"y\"}),
-          ], outputs: [\"x\", \"y\"])",
-        )
-        .with("make.wgsl", shader(OUT, "out[0] = 5u;"))
-        .with(
-            "take.wgsl",
-            shader(&format!("{INPUT}{OUT}"), "out[0] = input[0];"),
-        );
+    let files = document(
+        "",
+        &["y"],
+        &[
+            compute("make", "", r#""out": "x""#),
+            compute("take", "", r#""input": "x.previous", "out": "y""#),
+        ],
+        &["x", "y"],
+    )
+    .edited(
+        "graph.ron",
+        "materials: [",
+        r#"materials: [Buffer(name: "x", count: 2), "#,
+    )
+    .with("make.wgsl", writes("", "5u"))
+    .with("take.wgsl", writes(INPUT, "input[0]"));
     let mut wanted = request(&NoProvider);
     wanted.poison = Some(0x11);
     let mut executor = executor(&files, &wanted);
@@ -481,6 +439,6 @@ fn poison_shows_what_a_write_leaves_of_a_material_with_a_history() {
             report.readbacks[0].content.as_u32(),
             Some(vec![5, 0x1111_1111])
         );
-        assert_eq!(first(&report, 1), before);
+        assert_eq!(words(&report, 1)[0], before);
     }
 }

@@ -136,7 +136,14 @@ fn a_param_costs_what_follows_from_it() {
         ("items", number(100), &[], &[], &["list"], 19),
         ("times", number(4), &[], &["add[2]", "add[3]"], &[], 19),
         ("times", number(3), &[], &[], &[], 19),
-        ("more", ParamValue::Bool(true), &[], &["one_more"], &["extra"], 19),
+        (
+            "more",
+            ParamValue::Bool(true),
+            &[],
+            &["one_more"],
+            &["extra"],
+            19,
+        ),
         ("more", ParamValue::Bool(false), &[], &[], &[], 19),
         ("enabled", ParamValue::Bool(false), &[], &[], &[], 19),
     ];

@@ -140,7 +140,11 @@ fn cached() -> Files {
     );
     let more = format!("{INPUT} var<storage, read> more: array<u32>;");
     files
-        .edited("graph.ron", "params:", r#"inputs: [Buffer(name: "host")], params:"#)
+        .edited(
+            "graph.ron",
+            "params:",
+            r#"inputs: [Buffer(name: "host")], params:"#,
+        )
         .with("first.wgsl", writes(SEED, "params.seed"))
         .with("second.wgsl", writes(SEED, "params.seed * 10u"))
         .with("third.wgsl", writes(&more, "input[0] + more[0]"))
@@ -192,7 +196,13 @@ fn what_did_not_change_is_not_made_again() {
     step(executor, false, "nothing changed", [55, 9], &cached);
     step(executor, true, "everything is asked for", [55, 9], &[]);
     set(executor, "other", ParamValue::U32(2));
-    step(executor, false, "a param that nobody reads", [55, 9], &cached);
+    step(
+        executor,
+        false,
+        "a param that nobody reads",
+        [55, 9],
+        &cached,
+    );
     // The first pass runs once: it keeps the seed that it saw.
     set(executor, "seed", ParamValue::U32(6));
     step(executor, false, "the seed", [65, 9], &["first", "fifth"]);

@@ -1,145 +1,35 @@
 //! Tiny graphs on the device: every value that comes back is known exactly.
 
-#[path = "support/host.rs"]
-mod host;
 #[path = "../../graph/tests/support/mod.rs"]
 mod support;
+#[path = "support/tiny.rs"]
+mod tiny;
 
-use skiagraph_graph::{
-    Capture, Content, ExecuteError, Executor, Frame, FrameReport, PlanRequest, Provider, gpu,
-    timing::{Trust, check},
-};
-use std::{
-    sync::LazyLock,
-    time::{Duration, Instant},
-};
-use support::{Files, Triangle, load};
+use support::Files;
+use tiny::{GPU, NUMBER, SIZE, covering, executor, f32s, pixels, run, run_with, u32s};
 
-static GPU: LazyLock<device::Gpu> =
-    LazyLock::new(|| device::open(None).unwrap_or_else(|error| panic!("{error}")));
-
-const SIZE: [u32; 2] = [13, 7];
-
-fn request(provider: &dyn Provider) -> PlanRequest<'_> {
-    let mut request = PlanRequest::new(SIZE, provider);
-    request.limits = GPU.device.limits();
-    request.features = GPU.device.features();
-    request
-}
-
-fn executor(files: &Files, captures: &[(&str, Option<&str>)]) -> Result<Executor, ExecuteError> {
-    let graph = load(files).unwrap_or_else(|errors| panic!("{errors}"));
-    let mut request = request(&Triangle);
-    let capture = |(material, after): &(&str, Option<&str>)| Capture {
-        material: (*material).to_owned(),
-        after: after.map(str::to_owned),
-    };
-    request.captures = captures.iter().map(capture).collect();
-    let plan = graph
-        .plan(&request)
-        .unwrap_or_else(|errors| panic!("{errors}"));
-    Executor::new(&GPU.device, &GPU.queue, plan, &mut Triangle)
-}
-
-fn frame(executor: &mut Executor, timing: bool, read: &[&str]) -> FrameReport {
-    let mut encoder = GPU
-        .device
-        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    executor
-        .encode(
-            &mut encoder,
-            &Frame {
-                timing,
-                read,
-                ..Frame::default()
-            },
-        )
-        .unwrap_or_else(|error| panic!("{error}"));
-    GPU.queue.submit([encoder.finish()]);
-    executor
-        .submitted()
-        .unwrap_or_else(|error| panic!("{error}"));
-    executor.finish().unwrap_or_else(|error| panic!("{error}"))
-}
-
-/// Runs two frames and hands out the contents, which must be the same.
-fn run(files: &Files, read: &[&str]) -> Vec<Content> {
-    run_with(files, &[], read)
-}
-
-fn run_with(files: &Files, captures: &[(&str, Option<&str>)], read: &[&str]) -> Vec<Content> {
-    let mut executor = executor(files, captures).unwrap_or_else(|error| panic!("{error}"));
-    let first = frame(&mut executor, false, read);
-    let second = frame(&mut executor, true, read);
-    assert_eq!(
-        first.readbacks, second.readbacks,
-        "two frames of one graph differ"
-    );
-    let names: Vec<&str> = second
-        .readbacks
-        .iter()
-        .map(|readback| readback.name.as_str())
-        .collect();
-    assert_eq!(names, read);
-    second
-        .readbacks
-        .into_iter()
-        .map(|readback| readback.content)
-        .collect()
-}
-
-fn document(materials: &str, passes: &str, outputs: &str) -> String {
-    format!("(format: 2, materials: [{materials}], passes: [{passes}], outputs: [{outputs}])")
-}
-
-fn files(materials: &str, passes: &str, outputs: &str) -> Files {
-    Files::new([]).with("graph.ron", document(materials, passes, outputs))
-}
-
-fn f32s(content: &Content) -> Vec<f32> {
-    content.as_f32().expect("it holds floats")
-}
-
-fn u32s(content: &Content) -> Vec<u32> {
-    content.as_u32().expect("it holds unsigned integers")
-}
-
-/// A value for each pixel, rows from the top.
-fn pixels<T>([width, height]: [u32; 2], value: impl Fn(u32, u32) -> T) -> Vec<T> {
-    (0..height)
-        .flat_map(|y| (0..width).map(move |x| (x, y)))
-        .map(|(x, y)| value(x, y))
-        .collect()
-}
-
-const NUMBER: &str =
-    "@fragment fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) f32 {
-    return floor(position.x) + 100.0 * floor(position.y);
-}";
-
+/// Additive blending on floats shows a pixel that is drawn twice; where the adapter cannot blend
+/// them, plain writing.
 #[test]
 fn a_full_screen_pass_writes_every_pixel_once() {
-    let files = files(
-        "Texture(name: \"image\", format: R32Float)",
-        "Fullscreen(name: \"number\", color: [(target: \"image\", blend: Additive)])",
-        "\"image\"",
-    )
-    .with("number.wgsl", NUMBER);
-    // Additive blending on floats shows a pixel that is drawn twice; where the adapter cannot blend
-    // them, plain writing.
     let blendable = wgpu::TextureFormat::R32Float
         .guaranteed_format_features(GPU.device.features())
         .flags;
-    let files = match blendable.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE) {
-        true => files,
-        false => Files(
-            files
-                .0
-                .into_iter()
-                .map(|(path, text)| (path, text.replace(", blend: Additive", "")))
-                .collect(),
-        ),
+    let blend = match blendable.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE) {
+        true => ", blend: Additive",
+        false => "",
     };
+    let files = Files::graph(&format!(
+        r#"
+    materials: [Texture(name: "image", format: R32Float)],
+    passes: [
+        Clear(name: "reset", target: "image"),
+        Fullscreen(name: "number", color: [(target: "image", load: Load{blend})]),
+    ],
+    outputs: ["image"],
+"#
+    ))
+    .with("number.wgsl", NUMBER);
     let expected = pixels(SIZE, |x, y| x as f32 + 100.0 * y as f32);
     assert_eq!(f32s(&run(&files, &["image"])[0]), expected);
 }
@@ -147,16 +37,31 @@ fn a_full_screen_pass_writes_every_pixel_once() {
 /// Vertices are pulled from the provider's buffers; one triangle covers everything at depth 0.25.
 #[test]
 fn a_triangle_of_the_provider_with_depth() {
-    let files = files(
-        "Texture(name: \"image\", format: R32Uint), Texture(name: \"depth\", \
-         format: Depth32Float)",
-        "Raster(name: \"draw\", fragment: \"fragment\", draw: \"scene.indices.count\", color: \
-         [(target: \"image\", load: Clear(9, 0, 0, 0))],
-            depth: (target: \"depth\", load: Clear(1.0), compare: Less)),
-         Raster(name: \"behind\", shader: \"draw\", fragment: \"other\", draw: \
-             \"scene.indices.count\", color: [(target: \"image\", load: Load)],
-            depth: (target: \"depth\", load: Load, compare: Less, write: false))",
-        "\"image\", \"depth\"",
+    let files = Files::graph(
+        r#"
+    materials: [
+        Texture(name: "image", format: R32Uint),
+        Texture(name: "depth", format: Depth32Float),
+    ],
+    passes: [
+        Raster(
+            name: "draw",
+            fragment: "fragment",
+            draw: "scene.indices.count",
+            color: [(target: "image", load: Clear(9))],
+            depth: (target: "depth", load: Clear(1), compare: Less),
+        ),
+        Raster(
+            name: "behind",
+            shader: "draw",
+            fragment: "other",
+            draw: "scene.indices.count",
+            color: [(target: "image", load: Load)],
+            depth: (target: "depth", load: Load, compare: Less, write: false),
+        ),
+    ],
+    outputs: ["image", "depth"],
+"#,
     )
     .with(
         "draw.wgsl",
@@ -165,7 +70,7 @@ fn a_triangle_of_the_provider_with_depth() {
          @vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
              return scene_positions[scene_indices[index]];
          }
-         @fragment fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) u32 { return 7u; }
+         @fragment fn fragment(@builtin(position) at: vec4<f32>) -> @location(0) u32 { return 7u; }
          @fragment fn other() -> @location(0) u32 { return 8u; }",
     );
     let contents = run(&files, &["image", "depth"]);
@@ -181,30 +86,33 @@ fn a_triangle_of_the_provider_with_depth() {
 /// tested against, read only.
 #[test]
 fn depth_only_and_depth_read_while_tested() {
-    let files = files(
-        "Texture(name: \"depth\", format: Depth32Float), Texture(name: \"image\", \
-         format: R32Float)",
-        "Raster(name: \"occlude\", draw: Vertices(3), depth: \"depth\"),
-         Raster(name: \"shade\", draw: Vertices(3), color: [(target: \"image\", load: Clear(5, 0, \
-             0, 0))],
-            depth: (target: \"depth\", load: Load, compare: LessEqual, write: false))",
-        "\"image\", \"depth\"",
+    let files = Files::graph(
+        r#"
+    materials: [
+        Texture(name: "depth", format: Depth32Float),
+        Texture(name: "image", format: R32Float),
+    ],
+    passes: [
+        Raster(name: "occlude", draw: 3, depth: "depth"),
+        Raster(
+            name: "shade",
+            draw: 3,
+            color: [(target: "image", load: Clear(5))],
+            depth: (target: "depth", load: Load, compare: LessEqual, write: false),
+        ),
+    ],
+    outputs: ["image", "depth"],
+"#,
     )
-    .with(
-        "occlude.wgsl",
-        "@vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-             return vec4<f32>(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.5, 1.0);
-         }",
-    )
+    .with("occlude.wgsl", covering(0.5))
     .with(
         "shade.wgsl",
-        "var depth: texture_depth_2d;
-         @vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-             return vec4<f32>(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.25, 1.0);
-         }
-         @fragment fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) f32 {
-             return textureLoad(depth, vec2<u32>(position.xy), 0) * 2.0;
-         }",
+        covering(0.25)
+            + "
+var depth: texture_depth_2d;
+@fragment fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) f32 {
+    return textureLoad(depth, vec2<u32>(position.xy), 0) * 2.0;
+}",
     );
     let contents = run(&files, &["image", "depth"]);
     assert_eq!(f32s(&contents[0]), pixels(SIZE, |_, _| 1.0));
@@ -219,28 +127,27 @@ fn depth_only_and_depth_read_while_tested() {
 /// colours; it discards and sets depths.
 #[test]
 fn a_depth_only_pass_runs_the_fragment_stage_without_colours() {
-    let files = files(
-        "Texture(name: \"depth\", format: Depth32Float)",
-        "Raster(name: \"halves\", draw: Vertices(3), depth: \"depth\")",
-        "\"depth\"",
+    let files = Files::graph(
+        r#"
+    materials: [Texture(name: "depth", format: Depth32Float)],
+    passes: [Raster(name: "halves", draw: 3, depth: "depth")],
+    outputs: ["depth"],
+"#,
     )
     .with(
         "halves.wgsl",
-        "@vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-             return vec4<f32>(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.5, 1.0);
-         }
-         @fragment fn coloured() -> @location(0) f32 { return 1.0; }
-         @fragment fn fragment(@builtin(position) position: vec4<f32>) -> @builtin(frag_depth) f32 {
-             if position.x > 3.0 { discard; }
-             return position.y / 64.0;
-         }",
+        covering(0.5)
+            + "
+@fragment fn coloured() -> @location(0) f32 { return 1.0; }
+@fragment fn fragment(@builtin(position) position: vec4<f32>) -> @builtin(frag_depth) f32 {
+    if position.x > 3.0 { discard; }
+    return position.y / 64.0;
+}",
     );
-    let expected = pixels(
-        SIZE,
-        |x, y| {
-            if x < 3 { (y as f32 + 0.5) / 64.0 } else { 1.0 }
-        },
-    );
+    let expected = pixels(SIZE, |x, y| match x < 3 {
+        true => (y as f32 + 0.5) / 64.0,
+        false => 1.0,
+    });
     assert_eq!(f32s(&run(&files, &["depth"])[0]), expected);
 }
 
@@ -249,68 +156,67 @@ fn a_depth_only_pass_runs_the_fragment_stage_without_colours() {
 #[test]
 fn several_targets_of_several_formats() {
     let formats = [
-        "R8Uint",
-        "R32Uint",
-        "R16Float",
-        "R8Unorm",
-        "Rgba8Unorm",
-        "R16Uint",
-        "Rg32Float",
+        ("byte", "R8Uint"),
+        ("word", "R32Uint"),
+        ("half", "R16Float"),
+        ("fraction", "R8Unorm"),
+        ("rgba", "Rgba8Unorm"),
+        ("short", "R16Uint"),
+        ("pair", "Rg32Float"),
     ];
-    let materials: Vec<String> = formats
-        .map(|format| format!("Texture(name: \"t{format}\", format: {format})"))
-        .to_vec();
-    let targets: Vec<String> = formats
-        .map(|format| format!("(target: \"t{format}\")"))
-        .to_vec();
-    let outputs: Vec<String> = formats
-        .map(|format| format!("(name: \"t{format}\")"))
-        .to_vec();
-    let pass = format!("Fullscreen(name: \"all\", color: [{}])", targets.join(", "));
-    let files = files(&materials.join(", "), &pass, &outputs.join(", ")).with(
+    let materials: String = formats
+        .iter()
+        .map(|(name, format)| format!("Texture(name: \"{name}\", format: {format}), "))
+        .collect();
+    let names = formats.map(|(name, _)| name);
+    let files = Files::graph(&format!(
+        "materials: [{materials}], passes: [Fullscreen(name: \"all\", color: {names:?})], \
+         outputs: {names:?}"
+    ))
+    .with(
         "all.wgsl",
         "struct Outputs {
-             @location(0) byte: u32, @location(1) word: u32, @location(2) half: f32, @location(3) fraction: f32,
-             @location(4) rgba: vec4<f32>, @location(5) short: u32, @location(6) pair: vec2<f32>,
+             @location(0) byte: u32, @location(1) word: u32, @location(2) half: f32,
+             @location(3) fraction: f32, @location(4) rgba: vec4<f32>, @location(5) short: u32,
+             @location(6) pair: vec2<f32>,
          }
          @fragment fn fragment(@builtin(position) position: vec4<f32>) -> Outputs {
              let x = u32(position.x);
              let y = u32(position.y);
-             return Outputs(x + 16u * y, 0xfffffff0u + x, f32(x) * 0.5 - 2.0, f32(x) / 255.0,
-                 vec4<f32>(f32(x), f32(y), 255.0, 0.0) / 255.0, 60000u + x, vec2<f32>(f32(x), f32(y)));
+             let at = vec2<f32>(f32(x), f32(y));
+             return Outputs(x + 16u * y, 0xfffffff0u + x, at.x * 0.5 - 2.0, at.x / 255.0,
+                 vec4<f32>(at, 255.0, 0.0) / 255.0, 60000u + x, at);
          }",
     );
-    let names: Vec<String> = formats.map(|format| format!("t{format}")).to_vec();
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let contents = run(&files, &names);
-    assert_eq!(u32s(&contents[0]), pixels(SIZE, |x, y| x + 16 * y));
-    assert_eq!(u32s(&contents[1]), pixels(SIZE, |x, _| 0xffff_fff0 + x));
-    assert_eq!(
-        f32s(&contents[2]),
-        pixels(SIZE, |x, _| x as f32 * 0.5 - 2.0)
-    );
-    assert_eq!(f32s(&contents[3]), pixels(SIZE, |x, _| x as f32 / 255.0));
-    assert_eq!(
-        contents[4].bytes(),
-        pixels(SIZE, |x, y| [x as u8, y as u8, 255, 0]).concat()
-    );
-    assert_eq!(u32s(&contents[5]), pixels(SIZE, |x, _| 60_000 + x));
-    assert_eq!(
-        f32s(&contents[6]),
-        pixels(SIZE, |x, y| [x as f32, y as f32]).concat()
-    );
-    assert_eq!(contents[4].as_u32(), None);
-    assert_eq!(contents[0].as_f32(), None);
+    let [byte, word, half, fraction, rgba, short, pair] = contents.as_slice() else {
+        panic!("{} contents", contents.len());
+    };
+    assert_eq!(u32s(byte), pixels(SIZE, |x, y| x + 16 * y));
+    assert_eq!(u32s(word), pixels(SIZE, |x, _| 0xffff_fff0 + x));
+    assert_eq!(f32s(half), pixels(SIZE, |x, _| x as f32 * 0.5 - 2.0));
+    assert_eq!(f32s(fraction), pixels(SIZE, |x, _| x as f32 / 255.0));
+    let bytes = pixels(SIZE, |x, y| [x as u8, y as u8, 255, 0]).concat();
+    assert_eq!(rgba.bytes(), bytes);
+    assert_eq!(u32s(short), pixels(SIZE, |x, _| 60_000 + x));
+    let floats = pixels(SIZE, |x, y| [x as f32, y as f32]).concat();
+    assert_eq!(f32s(pair), floats);
+    assert_eq!(rgba.as_u32(), None);
+    assert_eq!(byte.as_f32(), None);
 }
 
 /// 13×7 texels in workgroups of 8×4: the ones that hang over must not be lost, nor written twice.
 #[test]
 fn compute_over_a_texture_that_is_no_multiple_of_the_workgroup() {
-    let files = files(
-        "Texture(name: \"image\", format: R32Uint), Buffer\"runs\"",
-        "Clear(name: \"reset\", target: \"runs\"), Compute(name: \"number\", dispatch: \
-         Over(\"image\"))",
-        "\"image\", \"runs\"",
+    let files = Files::graph(
+        r#"
+    materials: [Texture(name: "image", format: R32Uint), Buffer(name: "runs")],
+    passes: [
+        Clear(name: "reset", target: "runs"),
+        Compute(name: "number", dispatch: Over("image.size")),
+    ],
+    outputs: ["image", "runs"],
+"#,
     )
     .with(
         "number.wgsl",
@@ -332,37 +238,71 @@ fn compute_over_a_texture_that_is_no_multiple_of_the_workgroup() {
 #[test]
 fn compute_over_more_items_than_one_dimension_has_workgroups() {
     let items = 70_000u32;
-    let files = files(
-        &format!("Buffer(name: \"items\", count: {items})"),
-        "Clear(name: \"reset\", target: \"items\"), Compute(name: \"number\", dispatch: \
-         Over(\"items\"))",
-        "\"items\"",
-    )
+    let files = Files::graph(&format!(
+        r#"
+    materials: [Buffer(name: "items", count: {items})],
+    passes: [
+        Clear(name: "reset", target: "items"),
+        Compute(name: "number", dispatch: Over("items.count")),
+    ],
+    outputs: ["items"],
+"#
+    ))
     .with(
         "number.wgsl",
         "var<storage, read_write> items: array<atomic<u32>>;
-         @compute @workgroup_size(1) fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+         @compute @workgroup_size(1) fn main(
+             @builtin(workgroup_id) group: vec3<u32>,
+             @builtin(num_workgroups) groups: vec3<u32>,
+         ) {
              let item = group.y * groups.x + group.x;
              if item < arrayLength(&items) { atomicAdd(&items[item], item + 1u); }
          }",
     );
-    assert_eq!(
-        u32s(&run(&files, &["items"])[0]),
-        (1..=items).collect::<Vec<_>>()
+    let expected: Vec<u32> = (1..=items).collect();
+    assert_eq!(u32s(&run(&files, &["items"])[0]), expected);
+}
+
+/// Workgroups that the document counts are dispatched once in a frame, not twice.
+#[test]
+fn counted_workgroups_run_once_a_frame() {
+    let files = Files::graph(
+        r#"
+    materials: [Buffer(name: "runs")],
+    passes: [
+        Clear(name: "reset", target: "runs"),
+        Compute(name: "count", dispatch: Groups(2, 3, 4)),
+    ],
+    outputs: ["runs"],
+"#,
+    )
+    .with(
+        "count.wgsl",
+        "var<storage, read_write> runs: atomic<u32>;
+         @compute @workgroup_size(5) fn main() { atomicAdd(&runs, 1u); }",
     );
+    assert_eq!(u32s(&run(&files, &["runs"])[0]), [2 * 3 * 4 * 5]);
 }
 
 /// Sizes of a dispatch and of a draw that an earlier pass wrote.
 #[test]
 fn indirect_dispatch_and_draw() {
-    let files = files(
-        "Buffer\"groups\", Buffer\"vertices\", Buffer(name: \"items\", count: 8),
-         Texture(name: \"image\", format: R32Uint)",
-        "Compute(name: \"decide\", dispatch: Groups(1, 1, 1)), Clear(name: \"reset\", target: \
-         \"items\"),
-         Compute(name: \"work\", dispatch: Indirect(\"groups\")),
-         Raster(name: \"draw\", draw: Indirect(\"vertices\"), color: [\"image\"])",
-        "\"items\", \"image\"",
+    let files = Files::graph(
+        r#"
+    materials: [
+        Buffer(name: "groups"),
+        Buffer(name: "vertices"),
+        Buffer(name: "items", count: 8),
+        Texture(name: "image", format: R32Uint),
+    ],
+    passes: [
+        Compute(name: "decide", dispatch: Groups(1, 1, 1)),
+        Clear(name: "reset", target: "items"),
+        Compute(name: "work", dispatch: Indirect("groups")),
+        Raster(name: "draw", draw: Indirect("vertices"), color: ["image"]),
+    ],
+    outputs: ["items", "image"],
+"#,
     )
     .with(
         "decide.wgsl",
@@ -376,14 +316,13 @@ fn indirect_dispatch_and_draw() {
     .with(
         "work.wgsl",
         "var<storage, read_write> items: array<u32>;
-         @compute @workgroup_size(1) fn main(@builtin(workgroup_id) group: vec3<u32>) { items[group.x] = 10u + group.x; }",
+         @compute @workgroup_size(1) fn main(@builtin(workgroup_id) group: vec3<u32>) {
+             items[group.x] = 10u + group.x;
+         }",
     )
     .with(
         "draw.wgsl",
-        "@vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-             return vec4<f32>(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.5, 1.0);
-         }
-         @fragment fn fragment() -> @location(0) u32 { return 3u; }",
+        covering(0.5) + "@fragment fn fragment() -> @location(0) u32 { return 3u; }",
     );
     let contents = run(&files, &["items", "image"]);
     assert_eq!(u32s(&contents[0]), [10, 11, 12, 13, 14, 0, 0, 0]);
@@ -393,45 +332,38 @@ fn indirect_dispatch_and_draw() {
 #[test]
 fn clears_and_copies() {
     let textures = [
-        "R32Uint",
-        "R32Float",
-        "Depth32Float",
-        "R8Uint",
-        "Rgba32Float",
+        ("word", "R32Uint", "4294967295"),
+        ("number", "R32Float", "-0.5"),
+        ("depth", "Depth32Float", "0.75"),
+        ("byte", "R8Uint", "255"),
+        ("four", "Rgba32Float", "(1, 2, 3, 4)"),
     ];
-    let texture = |format: &&str| {
-        format!(
-            "Texture(name: \"a{format}\", format: {format}), Texture(name: \
-             \"b{format}\", format: {format})"
-        )
-    };
-    let mut materials: Vec<String> = textures.iter().map(texture).collect();
-    materials
-        .push("Buffer(name: \"items\", count: 5), Buffer(name: \"kept\", count: 5)".to_owned());
-    let passes = "Clear(name: \"c0\", target: \"aR32Uint\", value: (4294967295, 0, 0, 0)),
-        Clear(name: \"c1\", target: \"aR32Float\", value: (-0.5, 0, 0, 0)),
-        Clear(name: \"c2\", target: \"aDepth32Float\", value: (0.75, 0, 0, 0)),
-        Clear(name: \"c3\", target: \"aR8Uint\", value: (255, 0, 0, 0)),
-        Clear(name: \"c4\", target: \"aRgba32Float\", value: (1, 2, 3, 4)),
-        Compute(name: \"number\", dispatch: Over(\"items\")),
-        Copy(name: \"keep\", from: \"items\", to: \"kept\"),
-        Clear(name: \"wipe\", target: \"items\")"
-        .to_owned();
-    let copies: Vec<String> = textures
-        .iter()
-        .map(|format| {
-            format!("Copy(name: \"copy{format}\", from: \"a{format}\", to: \"b{format}\")")
-        })
-        .collect();
-    let outputs: Vec<String> = textures
-        .iter()
-        .map(|format| format!("(name: \"b{format}\")"))
-        .collect();
-    let files = files(
-        &materials.join(", "),
-        &format!("{passes}, {}", copies.join(", ")),
-        &format!("{}, \"kept\", \"items\"", outputs.join(", ")),
-    )
+    let (mut materials, mut passes) = (String::new(), String::new());
+    for (name, format, value) in textures {
+        materials += &format!(
+            "Texture(name: \"{name}\", format: {format}), \
+             Texture(name: \"{name}_copy\", format: {format}), "
+        );
+        passes += &format!(
+            "Clear(name: \"clear_{name}\", target: \"{name}\", value: {value}), \
+             Copy(name: \"copy_{name}\", from: \"{name}\", to: \"{name}_copy\"), "
+        );
+    }
+    let copies = textures.map(|(name, ..)| format!("{name}_copy"));
+    let mut read: Vec<&str> = copies.iter().map(String::as_str).collect();
+    read.extend(["kept", "items"]);
+    let files = Files::graph(&format!(
+        r#"
+    materials: [{materials} Buffer(name: "items", count: 5), Buffer(name: "kept", count: 5)],
+    passes: [
+        {passes}
+        Compute(name: "number", dispatch: Over("items.count")),
+        Copy(name: "keep", from: "items", to: "kept"),
+        Clear(name: "wipe", target: "items"),
+    ],
+    outputs: {read:?},
+"#
+    ))
     .with(
         "number.wgsl",
         "var<storage, read_write> items: array<u32>;
@@ -439,50 +371,43 @@ fn clears_and_copies() {
              if id.x < arrayLength(&items) { items[id.x] = id.x + 1u; }
          }",
     );
-    let contents = run(
-        &files,
-        &[
-            "bR32Uint",
-            "bR32Float",
-            "bDepth32Float",
-            "bR8Uint",
-            "bRgba32Float",
-            "kept",
-            "items",
-        ],
-    );
+    let contents = run(&files, &read);
     assert_eq!(u32s(&contents[0]), pixels(SIZE, |_, _| u32::MAX));
     assert_eq!(f32s(&contents[1]), pixels(SIZE, |_, _| -0.5));
     assert_eq!(f32s(&contents[2]), pixels(SIZE, |_, _| 0.75));
     assert_eq!(u32s(&contents[3]), pixels(SIZE, |_, _| 255));
-    assert_eq!(
-        f32s(&contents[4]),
-        pixels(SIZE, |_, _| [1.0, 2.0, 3.0, 4.0]).concat()
-    );
+    let four = pixels(SIZE, |_, _| [1.0, 2.0, 3.0, 4.0]).concat();
+    assert_eq!(f32s(&contents[4]), four);
     assert_eq!(u32s(&contents[5]), [1, 2, 3, 4, 5]);
     assert_eq!(u32s(&contents[6]), [0; 5]);
 }
 
-/// Mip 0 is drawn, mip 1 made of it, layer by layer; views name the parts. Sampled as an array,
-/// read back by view.
+/// Mip 0 is drawn, mip 1 made of it, layer by layer. Sampled as an array, read back in parts.
 #[test]
-fn mips_and_layers_through_views() {
-    let files = files(
-        "Texture(name: \"pyramid\", format: R32Float, size: 4, mips: 2, layers: 2, views: [
-             (name: \"l0m0\", mip: 0, mips: 1, layer: 0, layers: 1), (name: \"l0m1\", mip: 1, \
-                 mips: 1, layer: 0, layers: 1),
-             (name: \"l1m0\", mip: 0, mips: 1, layer: 1, layers: 1), (name: \"l1m1\", mip: 1, \
-                 mips: 1, layer: 1, layers: 1)]),
-         Texture(name: \"sum\", format: R32Float, size: 2)",
-        "Fullscreen(name: \"number\", color: [\"l0m0\"]),
-         Clear(name: \"flat\", target: \"l1m0\", value: (4, 0, 0, 0)),
-         Fullscreen(name: \"reduce0\", shader: \"reduce\", bind: {\"fine\": \"l0m0\"}, color: \
-             [\"l0m1\"]),
-         Fullscreen(name: \"reduce1\", shader: \"reduce\", bind: {\"fine\": \"l1m0\"}, color: \
-             [\"l1m1\"]),
-         Fullscreen(name: \"add\", color: [\"sum\"])",
-        "\"sum\", (name: \"coarse\", material: \"l0m1\"), (name: \"flat\", material: \
-         \"l1m1\")",
+fn mips_and_layers_by_reference() {
+    let files = Files::graph(
+        r#"
+    materials: [
+        Texture(name: "pyramid", format: R32Float, size: 4, mips: 2, layers: 2),
+        Texture(name: "sum", format: R32Float, size: 2),
+    ],
+    passes: [
+        Fullscreen(name: "number", color: ["pyramid[0].mip[0]"]),
+        Clear(name: "flat", target: "pyramid[1].mip[0]", value: 4),
+        Fullscreen(
+            name: "reduce",
+            repeat: 2,
+            bind: {"fine": "pyramid[index].mip[0]"},
+            color: ["pyramid[index].mip[1]"],
+        ),
+        Fullscreen(name: "add", color: ["sum"]),
+    ],
+    outputs: [
+        "sum",
+        (name: "coarse", material: "pyramid[0].mip[1]"),
+        (name: "flat", material: "pyramid[1].mip[1]"),
+    ],
+"#,
     )
     .with("number.wgsl", NUMBER)
     .with(
@@ -509,22 +434,30 @@ fn mips_and_layers_through_views() {
 
 #[test]
 fn samplers() {
-    let files = files(
-        "Texture(name: \"source\", format: R8Unorm, size: (2, 1)), Texture(name: \"depth\", \
-         format: Depth32Float, size: 1),
-         Texture(name: \"image\", format: Rgba32Float, size: 1),
-         Sampler\"near\", Sampler(name: \"linear\", filter: Linear), Sampler(name: \
-             \"around\", address: Repeat),
-         Sampler(name: \"shadow\", filter: Linear, compare: LessEqual)",
-        "Fullscreen(name: \"step\", color: [\"source\"]), Clear(name: \"reset\", \
-         target: \"depth\", value: (0.5, 0, 0, 0)),
-         Fullscreen(name: \"sample\", color: [\"image\"])",
-        "\"image\"",
+    let files = Files::graph(
+        r#"
+    materials: [
+        Texture(name: "source", format: R8Unorm, size: (2, 1)),
+        Texture(name: "depth", format: Depth32Float, size: 1),
+        Texture(name: "image", format: Rgba32Float, size: 1),
+        Sampler(name: "near"),
+        Sampler(name: "linear", filter: Linear),
+        Sampler(name: "around", address: Repeat),
+        Sampler(name: "shadow", filter: Linear, compare: LessEqual),
+    ],
+    passes: [
+        Fullscreen(name: "step", color: ["source"]),
+        Clear(name: "reset", target: "depth", value: 0.5),
+        Fullscreen(name: "sample", color: ["image"]),
+    ],
+    outputs: ["image"],
+"#,
     )
     .with(
         "step.wgsl",
-        "@fragment fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) f32 { \
-         return floor(position.x); }",
+        "@fragment fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) f32 {
+             return floor(position.x);
+         }",
     )
     .with(
         "sample.wgsl",
@@ -536,31 +469,43 @@ fn samplers() {
          var shadow: sampler_comparison;
          @fragment fn fragment() -> @location(0) vec4<f32> {
              let at = vec2<f32>(0.5, 0.5);
-             return vec4<f32>(textureSample(source, near, vec2<f32>(0.9, 0.5)).x, textureSample(source, linear, at).x,
-                 textureSample(source, around, vec2<f32>(1.25, 0.5)).x, textureSampleCompare(depth, shadow, at, 0.25));
+             return vec4<f32>(
+                 textureSample(source, near, vec2<f32>(0.9, 0.5)).x,
+                 textureSample(source, linear, at).x,
+                 textureSample(source, around, vec2<f32>(1.25, 0.5)).x,
+                 textureSampleCompare(depth, shadow, at, 0.25),
+             );
          }",
     );
     let sampled = f32s(&run(&files, &["image"])[0]);
     assert_eq!([sampled[0], sampled[2], sampled[3]], [1.0, 0.0, 1.0]);
+    let half = sampled[1];
     assert!(
-        (sampled[1] - 0.5).abs() <= 1.0 / 255.0,
-        "half way between 0 and 1 lies {}",
-        sampled[1]
+        (half - 0.5).abs() <= 1.0 / 255.0,
+        "half way between 0 and 1 lies {half}"
     );
 }
 
 /// A material as it stood after each of the passes that change it.
 #[test]
 fn captures() {
-    let files = files(
-        "Buffer\"total\", Buffer\"unused\"",
-        "Clear(name: \"wipe\", target: \"unused\"),
-         Clear(name: \"reset\", target: \"total\"), Compute(name: \"add1\", shader: \"add\", \
-             dispatch: Groups(1, 1, 1)),
-         Compute(name: \"add2\", shader: \"add\", dispatch: Groups(1, 1, 1)),
-         Compute(name: \"aside\", shader: \"add\", bind: {\"total\": \"unused\"}, dispatch: \
-             Groups(1, 1, 1))",
-        "\"total\"",
+    let files = Files::graph(
+        r#"
+    materials: [Buffer(name: "total"), Buffer(name: "unused")],
+    passes: [
+        Clear(name: "wipe", target: "unused"),
+        Clear(name: "reset", target: "total"),
+        Compute(name: "add1", shader: "add", dispatch: Groups(1, 1, 1)),
+        Compute(name: "add2", shader: "add", dispatch: Groups(1, 1, 1)),
+        Compute(
+            name: "aside",
+            shader: "add",
+            bind: {"total": "unused"},
+            dispatch: Groups(1, 1, 1),
+        ),
+    ],
+    outputs: ["total"],
+"#,
     )
     .with(
         "add.wgsl",
@@ -575,292 +520,12 @@ fn captures() {
         ("total", None),
     ];
     let read = ["total@reset", "total@add1", "total", "unused"];
-    let values: Vec<u32> = run_with(&files, &captures, &read)
-        .iter()
-        .map(|content| u32s(content)[0])
-        .collect();
+    let contents = run_with(&files, &captures, &read);
+    let values: Vec<u32> = contents.iter().map(|content| u32s(content)[0]).collect();
     assert_eq!(values, [0, 1, 2, 1]);
     let culled = executor(&files, &[]).unwrap_or_else(|error| panic!("{error}"));
-    let names: Vec<&str> = culled
-        .plan()
-        .culled()
-        .iter()
-        .map(|pass| pass.name.as_str())
-        .collect();
-    assert_eq!(
-        names,
-        ["wipe", "aside"],
-        "without the capture nobody needs it"
-    );
-}
-
-#[test]
-fn every_pass_is_timed_or_the_reason_is_known() {
-    let files = files(
-        "Texture(name: \"image\", format: R32Float), Texture(name: \"copy\", \
-         format: R32Float)",
-        "Fullscreen(name: \"number\", color: [\"image\"]), Copy(name: \"keep\", from: \
-         \"image\", to: \"copy\")",
-        "\"copy\"",
-    )
-    .with("number.wgsl", NUMBER);
-    let mut executor = executor(&files, &[]).unwrap_or_else(|error| panic!("{error}"));
-    for timing in [false, true, false, true, true] {
-        let report = frame(&mut executor, timing, &[]);
-        assert_eq!(report.timing.is_some(), timing);
-        let Some(times) = report.timing else { continue };
-        let names: Vec<&str> = times.passes.iter().map(|pass| pass.name.as_str()).collect();
-        assert_eq!(names, ["number", "keep"]);
-        // A copy is timed between passes, which not every adapter can.
-        let features = GPU.device.features();
-        let times_copies = features.contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
-        let mut timed = times.passes.iter();
-        let untimed = timed.any(|pass| pass.gpu.is_none() && (times_copies || pass.name != "keep"));
-        if untimed {
-            match check(&GPU.device, &GPU.queue).unwrap_or_else(|error| panic!("{error}")) {
-                Trust::Untrusted { reason } => assert!(!reason.is_empty()),
-                Trust::Trusted => panic!("timestamps are trusted, but a pass has none"),
-            }
-        } else {
-            let longest = times.passes.iter().filter_map(|pass| pass.gpu).max();
-            assert!(
-                times.gpu() >= longest,
-                "the frame is as long as its longest pass"
-            );
-            let begins = times.passes.iter().filter_map(|pass| pass.begin);
-            assert_eq!(begins.min(), Some(Duration::ZERO));
-            let ends = times
-                .passes
-                .iter()
-                .map(|pass| Some(pass.begin? + pass.gpu?));
-            assert_eq!(
-                ends.max(),
-                Some(times.gpu()),
-                "the frame ends with its last pass"
-            );
-        }
-    }
-}
-
-/// A host may submit several frames before it asks, and one that drops an encoder, which it should
-/// not, still gets what it asked for.
-#[test]
-fn frames_that_are_not_finished_one_by_one() {
-    let files = files(
-        "Texture(name: \"image\", format: R32Float)",
-        "Fullscreen(name: \"number\", color: [\"image\"])",
-        "\"image\"",
-    )
-    .with("number.wgsl", NUMBER);
-    let mut executor = executor(&files, &[]).unwrap_or_else(|error| panic!("{error}"));
-    let mut start = Instant::now();
-    for timing in [true, false, true] {
-        start = Instant::now();
-        let mut dropped = GPU
-            .device
-            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        executor
-            .encode(
-                &mut dropped,
-                &Frame {
-                    timing,
-                    read: &["image"],
-                    ..Frame::default()
-                },
-            )
-            .unwrap_or_else(|error| panic!("{error}"));
-        drop(dropped);
-        let mut encoder = GPU
-            .device
-            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        executor
-            .encode(
-                &mut encoder,
-                &Frame {
-                    timing,
-                    read: &["image"],
-                    ..Frame::default()
-                },
-            )
-            .unwrap_or_else(|error| panic!("{error}"));
-        GPU.queue.submit([encoder.finish()]);
-        // Once is enough, twice is harmless.
-        for _ in 0..2 {
-            executor
-                .submitted()
-                .unwrap_or_else(|error| panic!("{error}"));
-        }
-    }
-    let report = executor.finish().unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(report.readbacks.len(), 1);
-    let times = report.timing.expect("the last frame is timed");
-    if GPU
-        .device
-        .features()
-        .contains(wgpu::Features::TIMESTAMP_QUERY)
-    {
-        // Its own times, not from the begin of a dropped frame that never ran.
-        let gpu = times.gpu().expect("a pass that draws has times");
-        assert!(gpu < 2 * start.elapsed(), "{gpu:?}");
-    }
-    // Nothing is under way now.
-    assert!(
-        executor
-            .finish()
-            .unwrap_or_else(|error| panic!("{error}"))
-            .readbacks
-            .is_empty()
-    );
-}
-
-#[test]
-fn an_output_that_the_plan_does_not_have() {
-    let files = files(
-        "Texture(name: \"image\", format: R32Float)",
-        "Fullscreen(name: \"number\", color: [\"image\"])",
-        "\"image\"",
-    )
-    .with("number.wgsl", NUMBER);
-    let mut executor = executor(&files, &[]).unwrap_or_else(|error| panic!("{error}"));
-    let mut encoder = GPU
-        .device
-        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let error = executor
-        .encode(
-            &mut encoder,
-            &Frame {
-                timing: false,
-                read: &["imgae"],
-                ..Frame::default()
-            },
-        )
-        .expect_err("there is none");
-    assert_eq!(
-        error.to_string(),
-        "the plan has no output `imgae`; it has image"
-    );
-}
-
-/// Right as WGSL, but this device was not opened with what it needs: an error that names the pass,
-/// and no panic.
-#[test]
-fn a_shader_that_the_device_refuses() {
-    let files = files(
-        "Buffer\"total\"",
-        "Compute(name: \"precise\", dispatch: Groups(1, 1, 1))",
-        "\"total\"",
-    )
-    .with(
-        "precise.wgsl",
-        "var<storage, read_write> total: f32;
-         @compute @workgroup_size(1) fn main() { var sum: f64 = 1.0lf; sum = sum * 0.1lf; total = f32(sum); }",
-    );
-    match executor(&files, &[]).expect_err("f64 was not asked for") {
-        ExecuteError::Gpu {
-            pass,
-            place,
-            message,
-        } => {
-            assert_eq!(pass, "precise");
-            assert!(place.starts_with("graph.ron:1:"), "{place}");
-            assert!(!message.is_empty());
-        }
-        other => panic!("{other}"),
-    }
-}
-
-/// What a provider hands out is checked when it is bound; what it refuses is told in its words.
-#[test]
-fn a_provider_that_fails() {
-    struct Broken;
-    impl Provider for Broken {
-        fn names(&self) -> Vec<String> {
-            vec!["items".to_owned()]
-        }
-        fn describe(&self, name: &str) -> Option<skiagraph_graph::Provided> {
-            (name == "items").then_some(skiagraph_graph::Provided {
-                items: Some(4),
-                stride: 4,
-                uniform: false,
-            })
-        }
-        fn build(
-            &mut self,
-            _: &str,
-            device: &wgpu::Device,
-            _: &wgpu::Queue,
-        ) -> Result<wgpu::Buffer, skiagraph_graph::ProviderError> {
-            // A buffer without the usage that binding needs.
-            Ok(device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("items"),
-                size: 16,
-                usage: wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }))
-        }
-    }
-    let files = files(
-        "Buffer\"total\"",
-        "Compute(name: \"sum\", dispatch: Groups(1, 1, 1))",
-        "\"total\"",
-    )
-    .with(
-        "sum.wgsl",
-        "var<storage, read> items: array<u32>;
-         var<storage, read_write> total: u32;
-         @compute @workgroup_size(1) fn main() { total = items[0]; }",
-    );
-    let graph = load(&files).unwrap_or_else(|errors| panic!("{errors}"));
-    let plan = graph
-        .plan(&request(&Broken))
-        .unwrap_or_else(|errors| panic!("{errors}"));
-    match Executor::new(&GPU.device, &GPU.queue, plan, &mut Broken).expect_err("it cannot be bound")
-    {
-        ExecuteError::Gpu { pass, .. } => assert_eq!(pass, "sum"),
-        other => panic!("{other}"),
-    }
-    let plan = graph
-        .plan(&request(&Broken))
-        .unwrap_or_else(|errors| panic!("{errors}"));
-    let error = Executor::new(
-        &GPU.device,
-        &GPU.queue,
-        plan,
-        &mut skiagraph_graph::NoProvider,
-    )
-    .expect_err("nothing is provided");
-    assert!(
-        matches!(&error, ExecuteError::Provider { name, .. } if name == "items"),
-        "{error}"
-    );
-}
-
-/// Terabytes: an error that names the texture, with the planner's table of what takes the most.
-#[test]
-fn more_memory_than_there_is() {
-    let limits = GPU.device.limits();
-    let (edge, layers) = (
-        limits.max_texture_dimension_2d,
-        limits.max_texture_array_layers,
-    );
-    let files = files(
-        &format!(
-            "Texture(name: \"image\", format: Rgba32Float, size: Square({edge}), layers: {layers})"
-        ),
-        "Clear(name: \"reset\", target: \"image\")",
-        "\"image\"",
-    );
-    match executor(&files, &[]).expect_err("no device has as much") {
-        ExecuteError::OutOfMemory { name, table } => {
-            assert_eq!(name, "image");
-            let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
-            let gib = (u64::from(edge).pow(2) * u64::from(layers) * 16) >> 30;
-            let rows = [
-                format!("image {edge}×{edge}, {layers} layers Rgba32Float {gib}.00 GiB"),
-                format!("all together {gib}.00 GiB"),
-            ];
-            assert_eq!(table.lines().map(words).collect::<Vec<_>>(), rows);
-        }
-        other => panic!("{other}"),
-    }
+    let culled = culled.plan().culled().iter();
+    let names: Vec<&str> = culled.map(|pass| pass.name.as_str()).collect();
+    let why = "without the capture nobody needs it";
+    assert_eq!(names, ["wipe", "aside"], "{why}");
 }

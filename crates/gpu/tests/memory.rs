@@ -94,11 +94,7 @@ fn what_may_be_written_in_part_has_its_own_memory() {
             compute("all", r#"overwrites: ["a"],"#, r#""out": "a""#),
             compute("sum", "", r#""input": "a", "out": "m""#),
             compute("half", "", r#""out": "b""#),
-            compute(
-                "whole",
-                r#"shader: "sum","#,
-                r#""input": "b", "out": "e""#,
-            ),
+            compute("whole", r#"shader: "sum","#, r#""input": "b", "out": "e""#),
         ],
         &["m", "e"],
     )

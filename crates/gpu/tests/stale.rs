@@ -11,9 +11,7 @@ mod support;
 use buffers::{INPUT, SEED, SEED_PARAM, compute, document, writes};
 use host::{GPU, encoder, executor, frame, numbers, planned, request, set, words};
 use skiagraph_gpu::{Executor, Frame, Provider, ProviderError, import};
-use skiagraph_graph::{
-    Capture, Describe, NoProvider, ParamValue, Provided, ProvidedBinding,
-};
+use skiagraph_graph::{Capture, Describe, NoProvider, ParamValue, Provided, ProvidedBinding};
 use support::Files;
 
 /// ```text
@@ -23,7 +21,11 @@ use support::Files;
 /// go.
 #[test]
 fn fewer_repeats_take_back_what_the_last_ones_added() {
-    let add = compute("add", r#"run: OnChange, repeat: "times","#, r#""out": "sum""#);
+    let add = compute(
+        "add",
+        r#"run: OnChange, repeat: "times","#,
+        r#""out": "sum""#,
+    );
     let start = r#"Clear(name: "start", run: OnChange, target: "sum"),"#;
     let files = document(
         r#"U32(name: "times", default: 3, min: 1)"#,
@@ -99,8 +101,7 @@ fn one() -> Updated {
 /// An executor whose provider is that one.
 fn provided(files: &Files, provider: &mut Updated) -> Executor {
     let plan = planned(files, &request(provider));
-    Executor::new(&GPU.device, &GPU.queue, plan, provider)
-        .unwrap_or_else(|error| panic!("{error}"))
+    Executor::new(&GPU.device, &GPU.queue, plan, provider).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// What the provider changed in place is seen also if a change of the plan is what asks for it.

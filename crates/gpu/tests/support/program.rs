@@ -62,7 +62,11 @@ impl Pass {
             true => format!("overwrites: [\"m{target}\"],"),
             false => String::new(),
         };
-        let pass = compute(&format!("p{index}"), &format!("run: {run}, {overwrites}"), &bind);
+        let pass = compute(
+            &format!("p{index}"),
+            &format!("run: {run}, {overwrites}"),
+            &bind,
+        );
         let value = format!("({sum}) * 2654435761u");
         (pass, each(&globals, self.items(), &value))
     }

@@ -295,7 +295,7 @@ fn a_frame_that_was_encoded_before_a_change_is_reported_after_it() {
     let plan = planned(&counter("1u"), &request(&NoProvider));
     executor.replace_graph(plan, &mut NoProvider).unwrap();
     let report = executor.finish().unwrap();
-    let timing = report.timing.expect("times were asked for");
+    let timing = report.timing.as_ref().expect("times were asked for");
     let names: Vec<&str> = timing
         .passes
         .iter()

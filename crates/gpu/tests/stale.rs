@@ -12,7 +12,7 @@ use buffers::{INPUT, SEED, SEED_PARAM, compute, document, writes};
 use host::{GPU, encoder, executor, frame, numbers, planned, request, set, words};
 use skiagraph_gpu::{Executor, Frame, Provider, ProviderError, import};
 use skiagraph_graph::{Capture, Describe, NoProvider, ParamValue, Provided, ProvidedBinding};
-use support::Files;
+use support::{Files, wrong};
 
 /// ```text
 /// start ─▶ sum ⟲ add[0..times]      all OnChange
@@ -333,6 +333,35 @@ fn a_condition_is_the_same_in_a_group() {
     assert_eq!(numbers(&mut executor, "o"), [1]);
 }
 
+/// The same words are another condition in each repetition.
+#[test]
+fn a_condition_over_the_index_is_one_for_each_repetition() {
+    let files = Files::graph(
+        r#"
+    params: [U32(name: "chosen", default: 0)],
+    materials: [Buffer(name: "b", count: 1)],
+    passes: [
+        Compute(
+            name: "d",
+            repeat: 2,
+            run: When("index == chosen"),
+            dispatch: Groups(1, 1, 1),
+            bind: {"out": "b"},
+        ),
+    ],
+    outputs: ["b"],
+"#,
+    )
+    .with("d.wgsl", writes("", "1u"));
+    let errors = wrong(support::plan(&files));
+    assert!(
+        errors
+            .to_string()
+            .contains("must run or be skipped together"),
+        "{errors}"
+    );
+}
+
 /// Two params of one name, of two documents, are two conditions.
 #[test]
 fn params_of_two_documents_are_two_conditions() {
@@ -354,7 +383,7 @@ fn params_of_two_documents_are_two_conditions() {
     )
     .document("inner.ron", inner)
     .with("d.wgsl", writes("", "out[0] + 1u"));
-    let errors = support::plan(&files).expect_err("one runs, the other does not");
+    let errors = wrong(support::plan(&files));
     assert!(
         errors
             .to_string()

@@ -70,7 +70,7 @@ const BLUR: &str = r#"(
             name: "y",
             shader: "blur",
             bind: {"fine": "across", "old": "image.previous"},
-            color: [(target: "image", load: Load, blend: Max)],
+            color: [(target: "image", load: Load)],
             area: (0, 0, 1, 1),
         ),
     ],

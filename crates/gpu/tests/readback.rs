@@ -7,7 +7,7 @@ mod tiny;
 
 use skiagraph_gpu::Content;
 use support::Files;
-use tiny::{frame, made, run, u32s};
+use tiny::{frame, made, run, run_with, u32s};
 
 /// Every texel says where it is.
 const PLACE: &str = "
@@ -206,4 +206,83 @@ fn views_of_outputs_are_as_the_output_is() {
     for name in ["maps", "one", "volume"] {
         assert!(executor.output_view(name).is_some(), "{name}");
     }
+}
+
+/// A part as it stood after the pass that wrote it, before the last one wrote over it.
+#[test]
+fn parts_are_captured_as_they_stood_after_a_pass() {
+    let files = Files::graph(
+        r#"
+    materials: [
+        Texture(name: "maps", format: R32Uint, size: (3, 2), layers: 3, mips: 2),
+        Texture(name: "volume", format: R32Uint, size: (3, 2, 4)),
+        Buffer(name: "items", count: 2),
+    ],
+    passes: [
+        Fullscreen(
+            name: "maps",
+            shader: "place",
+            repeat: 6,
+            set: {"layer": "index % 3", "mip": "index / 3"},
+            color: ["maps[index % 3].mip[index / 3]"],
+        ),
+        Fullscreen(
+            name: "volume",
+            shader: "place",
+            repeat: 4,
+            set: {"layer": "index", "mip": 0},
+            color: ["volume[index]"],
+        ),
+        Compute(name: "start", dispatch: Over("items.count")),
+        Compute(name: "items", repeat: 2, dispatch: Groups(1, 1, 1), bind: {"item": "items[index]"}),
+        Clear(name: "wipe_maps", target: "maps"),
+        Clear(name: "wipe_volume", target: "volume"),
+        Clear(name: "wipe_items", target: "items"),
+    ],
+    outputs: ["maps", "volume", "items"],
+"#,
+    )
+    .with("place.wgsl", PLACE)
+    .with(
+        "start.wgsl",
+        "var<storage, read_write> items: array<array<u32, 64>>;
+         @compute @workgroup_size(2) fn main(@builtin(local_invocation_index) at: u32) {
+             items[at][0] = 9u;
+         }",
+    )
+    .with(
+        "items.wgsl",
+        "struct Params { index: u32 } var<uniform> params: Params;
+         var<storage, read_write> item: array<u32, 64>;
+         @compute @workgroup_size(64) fn main(@builtin(local_invocation_index) at: u32) {
+             item[at] = 100u * params.index + at;
+         }",
+    );
+    let captures = [
+        ("maps[1]", Some("maps[5]")),
+        ("maps[0..2].mip[0]", Some("maps[1]")),
+        ("volume[2]", Some("volume[3]")),
+        ("volume[1..3]", Some("volume[3]")),
+        ("volume", Some("volume[3]")),
+        ("items[1]", Some("items[1]")),
+        ("items[1]", None),
+    ];
+    let read = [
+        "maps[1]@maps[5]",
+        "maps[0..2].mip[0]@maps[1]",
+        "volume[2]@volume[3]",
+        "volume[1..3]@volume[3]",
+        "volume@volume[3]",
+        "items[1]@items[1]",
+        "items[1]",
+    ];
+    let contents = run_with(&files, &captures, &read);
+    let fine = [3, 2];
+    is(&contents[0], &[(0, 1, fine), (1, 1, [1, 1])]);
+    is(&contents[1], &[(0, 0, fine), (0, 1, fine)]);
+    is(&contents[2], &[(0, 2, fine)]);
+    is(&contents[3], &[(0, 1, fine), (0, 2, fine)]);
+    is(&contents[4], &[0, 1, 2, 3].map(|slice| (0, slice, fine)));
+    assert_eq!(u32s(&contents[5]), (100..164).collect::<Vec<_>>());
+    assert_eq!(u32s(&contents[6]), [0; 64], "at the end it is cleared");
 }

@@ -1,5 +1,5 @@
-//! What passes find from frame to frame: last frame's versions, skipped passes; and random documents
-//! against an interpreter.
+//! What passes find from frame to frame: last frame's versions, skipped passes; and random
+//! documents against an interpreter.
 
 #[path = "support/buffers.rs"]
 mod buffers;

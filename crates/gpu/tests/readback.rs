@@ -142,7 +142,11 @@ fn an_item_of_a_buffer_comes_back_alone() {
         ),
         Compute(name: "sum", dispatch: Over("items.count")),
     ],
-    outputs: ["items", (name: "second", material: "items[1]"), (name: "rest", material: "items[1..3]")],
+    outputs: [
+        "items",
+        (name: "second", material: "items[1]"),
+        (name: "rest", material: "items[1..3]"),
+    ],
 "#,
     )
     .with(
@@ -234,7 +238,12 @@ fn parts_are_captured_as_they_stood_after_a_pass() {
             color: ["volume[index]"],
         ),
         Compute(name: "start", dispatch: Over("items.count")),
-        Compute(name: "items", repeat: 2, dispatch: Groups(1, 1, 1), bind: {"item": "items[index]"}),
+        Compute(
+            name: "items",
+            repeat: 2,
+            dispatch: Groups(1, 1, 1),
+            bind: {"item": "items[index]"},
+        ),
         Clear(name: "wipe_maps", target: "maps"),
         Clear(name: "wipe_volume", target: "volume"),
         Clear(name: "wipe_items", target: "items"),

@@ -1,4 +1,5 @@
-//! GPU timestamps are true, or the adapter is not trusted with a reason; and every frame has its own.
+//! GPU timestamps are true, or the adapter is not trusted with a reason; and every frame has its
+//! own.
 
 #[path = "../../graph/tests/support/mod.rs"]
 mod support;

@@ -198,9 +198,10 @@ proptest! {
         mips in any::<u32>(),
         layers in any::<u32>(),
     ) {
+        let small = format!("viewport.size * {factor:e}");
         let image = format!("mips: {}, layers: {}", mips % 40, layers % 3000);
         let files = files()
-            .edited("graph.ron", "max(viewport.size / 2, 1)", &format!("viewport.size * {factor:e}"))
+            .edited("graph.ron", "max(viewport.size / 2, 1)", &small)
             .edited("graph.ron", "2 * small.count", &format!("{count} * small.count"))
             .edited("graph.ron", "mips: 2, layers: 1", &image)
             .edited("graph.ron", "image.mip[0]", &format!("image.mip[{}]", mips % 3));

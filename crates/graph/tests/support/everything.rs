@@ -35,14 +35,21 @@ pub const DOCUMENT: &str = r#"(
         Clear(name: "reset", target: "total"),
         Compute(name: "number", dispatch: Over("items.count")),
         Copy(name: "keep", from: "items", to: "kept"),
-        Compute(name: "again", shader: "number", bind: {"items": "kept"}, dispatch: Groups(1, 2, 3)),
+        Compute(
+            name: "again",
+            shader: "number",
+            bind: {"items": "kept"},
+            dispatch: Groups(1, 2, 3),
+        ),
         Fullscreen(name: "shade", color: [(target: "image.mip[0]", load: Clear(0, 0, 0, 0))]),
         Fullscreen(name: "reduce", bind: {"fine": "image.mip[0]"}, color: ["small"]),
         Copy(name: "copy", from: "small", to: "same"),
         Group(
             name: "ring",
             repeat: "twice ? 2 : 1",
-            passes: [Include(graph: "blur.ron", bind: {"image": "same"}, set: {"radius": "index + 1"})],
+            passes: [
+                Include(graph: "blur.ron", bind: {"image": "same"}, set: {"radius": "index + 1"}),
+            ],
         ),
     ],
     outputs: [

@@ -223,8 +223,8 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// Culling, order, sharing, two versions, skipped passes, uploads: none of it may be seen in a
-    /// value.
+    /// Culling, order, sharing, two versions, skipped passes, uploads, passes that come and go: none
+    /// of it may be seen in a value.
     #[test]
     fn frames_mean_what_the_file_says(program in any_program()) {
         let host = host_buffer(ITEMS, 9);
@@ -253,6 +253,7 @@ proptest! {
                 Event::Nothing => {}
                 Event::Seed(value) => set(&mut executor, "seed", ParamValue::U32(value)),
                 Event::Flag(value) => set(&mut executor, "flag", ParamValue::Bool(value)),
+                Event::Extra(value) => set(&mut executor, "extra", ParamValue::Bool(value)),
                 Event::Host(value) => {
                     fill(&host, value);
                     let touched = executor.touch("host");

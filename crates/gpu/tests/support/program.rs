@@ -21,6 +21,8 @@ pub struct Pass {
     /// Written: which material, all of it or its first half.
     target: usize,
     whole: bool,
+    /// It is there only while the param `extra` is true.
+    optional: bool,
 }
 
 /// A shader with an invocation for each of so many items of `out`.
@@ -62,11 +64,12 @@ impl Pass {
             true => format!("overwrites: [\"m{target}\"],"),
             false => String::new(),
         };
-        let pass = compute(
-            &format!("p{index}"),
-            &format!("run: {run}, {overwrites}"),
-            &bind,
-        );
+        let condition = match self.optional {
+            true => "if: \"extra\",",
+            false => "",
+        };
+        let more = format!("run: {run}, {overwrites} {condition}");
+        let pass = compute(&format!("p{index}"), &more, &bind);
         let value = format!("({sum}) * 2654435761u");
         (pass, each(&globals, self.items(), &value))
     }
@@ -78,6 +81,7 @@ pub enum Event {
     Nothing,
     Seed(u32),
     Flag(bool),
+    Extra(bool),
     Host(u32),
     Resize(u32),
 }
@@ -132,7 +136,8 @@ impl Program {
         files.document(
             "graph.ron",
             &format!(
-                "\n    params: [{SEED_PARAM} Bool(name: \"flag\", default: true)],\n    \
+                "\n    params: [{SEED_PARAM} Bool(name: \"flag\", default: true), \
+                 Bool(name: \"extra\", default: true)],\n    \
                  inputs: [Buffer(name: \"host\")],\n    materials: [{materials}],\n    \
                  passes: [\n{passes}    ],\n    outputs: {outputs:?},\n"
             ),
@@ -145,12 +150,13 @@ impl Program {
     pub fn interpret(&self) -> Vec<Vec<Value>> {
         let mut now = [[0u32; ITEMS]; MATERIALS];
         let mut before = now;
-        let (mut seed, mut flag, mut host) = (5u32, true, 9u32);
+        let (mut seed, mut flag, mut extra, mut host) = (5u32, true, true, 9u32);
         let mut frames = Vec::new();
         for (number, event) in self.events.iter().enumerate() {
             match *event {
                 Event::Seed(value) => seed = value,
                 Event::Flag(value) => flag = value,
+                Event::Extra(value) => extra = value,
                 Event::Host(value) => host = value,
                 Event::Nothing | Event::Resize(_) => {}
             }
@@ -168,7 +174,7 @@ impl Program {
                 .passes
                 .iter()
                 .enumerate()
-                .filter(|(_, pass)| runs(pass.target))
+                .filter(|(_, pass)| runs(pass.target) && (extra || !pass.optional))
             {
                 let values: Vec<Value> = pass
                     .reads
@@ -206,14 +212,21 @@ fn any_pass() -> impl Strategy<Value = Pass> {
         prop::collection::vec(read, 0..3),
         0..MATERIALS,
         prop::bool::weighted(0.7),
+        prop::bool::weighted(0.2),
     )
-        .prop_map(|(mut reads, target, whole)| {
+        .prop_map(|(mut reads, target, whole, optional)| {
+            // A history begins with the plan in which somebody reads it: neither does a pass that
+            // comes and goes, nor are others needed or not because of it.
+            let whole = whole && !optional;
+            let keeps = |read: &Read| !(optional && matches!(read, Read::Before(_)));
+            reads.retain(keeps);
             // A pass cannot bind what it writes a second time.
             reads.retain(|read| *read != Read::Now(target));
             Pass {
                 reads,
                 target,
                 whole,
+                optional,
             }
         })
 }
@@ -223,6 +236,7 @@ fn any_event() -> impl Strategy<Value = Event> {
         3 => Just(Event::Nothing),
         2 => any::<u32>().prop_map(Event::Seed),
         1 => any::<bool>().prop_map(Event::Flag),
+        2 => any::<bool>().prop_map(Event::Extra),
         2 => any::<u32>().prop_map(Event::Host),
         1 => (1..9u32).prop_map(Event::Resize),
     ]
@@ -239,11 +253,21 @@ pub fn any_program() -> impl Strategy<Value = Program> {
         prop::collection::vec(any_event(), 3..7),
         prop_oneof![Just(None), Just(Some(0xa5))],
     )
-        .prop_map(|(runs, passes, outputs, events, poison)| Program {
-            runs,
-            passes,
-            outputs: outputs.into_iter().collect(),
-            events,
-            poison,
+        .prop_map(|(runs, mut passes, mut outputs, events, poison)| {
+            for pass in &mut passes {
+                // What ran once stays as it is only while the same passes make it.
+                pass.optional &= RUNS[runs[pass.target]] != "Once";
+            }
+            // What only a pass reads that goes would be lost with it.
+            if passes.iter().any(|pass| pass.optional) {
+                outputs.extend(0..MATERIALS);
+            }
+            Program {
+                runs,
+                passes,
+                outputs: outputs.into_iter().collect(),
+                events,
+                poison,
+            }
         })
 }

@@ -8,10 +8,10 @@ mod host;
 #[path = "../../graph/tests/support/mod.rs"]
 mod support;
 
-use given::{KIND, Kind, STORAGE, buffer, content, sums, sums_request, texture};
+use given::{KIND, Kind, SAMPLED, STORAGE, buffer, content, sums, sums_request, texture};
 use host::{GPU, encoder, executor, frame, numbers, planned, request};
 use skiagraph_gpu::{ExecuteError, Frame, import};
-use skiagraph_graph::NoProvider;
+use skiagraph_graph::{Filter, Import, NoProvider};
 use support::{Files, names};
 
 #[test]
@@ -247,4 +247,112 @@ fn another_viewport_with_other_imports() {
         [42; 256],
         "more stayed as it was"
     );
+}
+
+/// A texture of one texel on each of its layers or slices.
+fn stack(
+    dimension: wgpu::TextureDimension,
+    format: wgpu::TextureFormat,
+    bytes: &[u8],
+) -> wgpu::Texture {
+    let texel = format.block_copy_size(None).expect("it can be copied");
+    let size = wgpu::Extent3d {
+        width: 1,
+        height: 1,
+        depth_or_array_layers: bytes.len() as u32 / texel,
+    };
+    let texture = GPU.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension,
+        format,
+        usage: SAMPLED | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(texel),
+        rows_per_image: Some(1),
+    };
+    GPU.queue
+        .write_texture(texture.as_image_copy(), bytes, layout, size);
+    texture
+}
+
+/// A sampler, the slices of a 3D texture and the layers of an array come in as textures and buffers
+/// do.
+#[test]
+fn samplers_slices_and_layers_come_in() {
+    let files = Files::graph(
+        r#"
+    inputs: [
+        Sampler(name: "soft"),
+        Texture(name: "volume", format: R8Unorm),
+        Texture(name: "maps", format: R32Uint),
+    ],
+    materials: [Texture(name: "image", format: Rgba32Float, size: 1)],
+    passes: [Fullscreen(name: "look", color: ["image"])],
+    outputs: ["image"],
+"#,
+    )
+    .with(
+        "look.wgsl",
+        "var soft: sampler;
+         var volume: texture_3d<f32>;
+         var maps: texture_2d_array<u32>;
+         @fragment fn fragment() -> @location(0) vec4<f32> {
+             let middle = textureSampleLevel(volume, soft, vec3(0.5), 0.0).x;
+             let layer = textureNumLayers(maps) - 1u;
+             return vec4(middle, f32(textureLoad(maps, vec2(0u), layer, 0).x), f32(layer), 0.0);
+         }",
+    );
+    let volume = stack(
+        wgpu::TextureDimension::D3,
+        wgpu::TextureFormat::R8Unorm,
+        &[0, 255],
+    );
+    let numbers = [5u32, 6, 7];
+    let maps = stack(
+        wgpu::TextureDimension::D2,
+        wgpu::TextureFormat::R32Uint,
+        bytemuck::cast_slice(&numbers),
+    );
+    let soft = Import::Sampler {
+        filter: Filter::Linear,
+        compare: false,
+    };
+    let mut request = request(&NoProvider);
+    request.imports.extend([
+        ("soft".to_owned(), soft),
+        ("volume".to_owned(), import::texture(&volume)),
+        ("maps".to_owned(), import::texture(&maps)),
+    ]);
+    let mut executor = executor(&files, &request);
+    let sampler = GPU.device.create_sampler(&wgpu::SamplerDescriptor {
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..Default::default()
+    });
+    executor.import_sampler("soft", &sampler).unwrap();
+    executor.import_texture("volume", &volume).unwrap();
+    executor.import_texture("maps", &maps).unwrap();
+    let report = frame(&mut executor, &["image"]);
+    let [middle, layer, last, _] = report.readbacks[0].content.as_f32().unwrap()[..] else {
+        panic!("it is one texel of four channels");
+    };
+    assert!((middle - 0.5).abs() <= 1.0 / 255.0, "{middle}");
+    assert_eq!([layer, last], [7.0, 2.0]);
+    // One dimension is not the other.
+    let error = executor
+        .import_texture("volume", &maps)
+        .expect_err("these are layers");
+    let error = error.to_string();
+    assert!(error.contains("its dimension is D2, not D3"), "{error}");
+    let error = executor
+        .import_sampler("maps", &sampler)
+        .expect_err("that is a texture");
+    let error = error.to_string();
+    assert!(error.contains("it is a sampler, not a texture"), "{error}");
 }

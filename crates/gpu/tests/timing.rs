@@ -7,12 +7,12 @@ mod support;
 mod tiny;
 
 use skiagraph_gpu::{
-    Frame, device,
+    ExecuteError, Frame, device,
     timing::{Trust, check},
 };
 use std::time::{Duration, Instant};
 use support::Files;
-use tiny::{GPU, NUMBER, encoder, frame, made};
+use tiny::{GPU, NUMBER, encoder, frame, made, u32s};
 
 #[test]
 fn a_long_dispatch_after_a_raster_pass_is_timed_truly_or_not_at_all() {
@@ -140,4 +140,49 @@ fn frames_that_are_not_finished_one_by_one() {
             .readbacks
             .is_empty()
     );
+}
+
+/// A host that waited long enough is told what ran, and may go on waiting.
+#[test]
+fn a_frame_that_is_not_done_in_time_is_waited_for_again() {
+    let files = Files::graph(
+        r#"
+    materials: [Buffer(name: "sums", count: 4096)],
+    passes: [Compute(name: "work", dispatch: Over("sums.count"))],
+    outputs: ["sums"],
+"#,
+    )
+    .with(
+        "work.wgsl",
+        "var<storage, read_write> sums: array<u32>;
+         @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+             var sum = id.x;
+             for (var round = 0u; round < 20000u; round++) { sum = sum * 1664525u + 1013904223u; }
+             sums[id.x] = sum;
+         }",
+    );
+    let mut executor = made(&files);
+    let mut commands = encoder();
+    let wanted = Frame {
+        read: &["sums"],
+        ..Frame::default()
+    };
+    executor
+        .encode(&mut commands, &wanted)
+        .unwrap_or_else(|error| panic!("{error}"));
+    GPU.queue.submit([commands.finish()]);
+    executor
+        .submitted()
+        .unwrap_or_else(|error| panic!("{error}"));
+    match executor.finish_within(Some(Duration::ZERO)) {
+        Err(ExecuteError::Unfinished { passes, .. }) => assert_eq!(passes, "work"),
+        other => panic!("{other:?}"),
+    }
+    let report = executor.finish().unwrap_or_else(|error| panic!("{error}"));
+    let expected = |first: u32| {
+        let step = |sum: u32, _| sum.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (0..20_000).fold(first, step)
+    };
+    let sums: Vec<u32> = (0..4096).map(expected).collect();
+    assert_eq!(u32s(&report.readbacks[0].content), sums);
 }

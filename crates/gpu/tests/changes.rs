@@ -23,6 +23,7 @@ const PARAMS: &str = r#"
         U32(name: "layers", default: 2, min: 2),
         U32(name: "items", default: 64, min: 1),
         U32(name: "corners", default: 3),
+        U32(name: "groups", default: 1),
         U32(name: "times", default: 2),
         Bool(name: "enabled", default: true),
         Bool(name: "more", default: false),
@@ -43,7 +44,7 @@ const PARAMS: &str = r#"
             cull: "face",
             depth: (target: "depth", load: Clear("far"), bias: (slope_scale: "slope")),
         ),
-        Compute(name: "pile", dispatch: Over("stack.size")),
+        Compute(name: "pile", dispatch: Groups(1, 1, "groups")),
         Compute(name: "fill", dispatch: Over("list.count")),
         Clear(name: "zero", target: "sum"),
         Fullscreen(
@@ -121,7 +122,7 @@ fn a_param_costs_what_follows_from_it() {
     let number = ParamValue::U32;
     let word = |word: &str| ParamValue::Choice(word.to_owned());
     type Names<'a> = &'a [&'a str];
-    let rows: [(&str, ParamValue, Names, Names, Names, u32); 16] = [
+    let rows: [(&str, ParamValue, Names, Names, Names, u32); 17] = [
         // param, value, uploads, pipelines, resources, image
         ("gain", number(2), &["shade"], &[], &[], 14),
         ("gain", number(2), &[], &[], &[], 14),
@@ -131,6 +132,7 @@ fn a_param_costs_what_follows_from_it() {
         ("slope", ParamValue::F32(1.5), &[], &["draw"], &[], 19),
         ("far", ParamValue::F32(0.75), &[], &[], &[], 19),
         ("corners", number(6), &[], &[], &[], 19),
+        ("groups", number(2), &[], &[], &[], 19),
         ("edge", number(32), &[], &[], &["depth"], 19),
         ("layers", number(4), &[], &[], &["stack"], 19),
         ("items", number(100), &[], &[], &["list"], 19),
@@ -170,7 +172,7 @@ fn a_param_costs_what_follows_from_it() {
     assert_eq!(words(&report, 1).len(), 100);
     assert_eq!(
         words(&report, 2),
-        [16],
+        [17],
         "it ran in each frame until it was switched off"
     );
     assert_eq!(report.readbacks[3].content.as_f32().unwrap(), [3.0]);

@@ -6,6 +6,7 @@
 pub mod device;
 mod error;
 mod frame;
+pub mod import;
 mod memory;
 mod pipelines;
 mod provider;

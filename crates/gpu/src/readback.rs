@@ -3,10 +3,15 @@
 
 use crate::{
     error::ExecuteError,
-    memory::{allocation::extent, memory::Memory, physical::PingPong},
+    memory::{
+        allocation::extent,
+        memory::{Memory, bytes as byte_range},
+        physical::PingPong,
+    },
 };
 use skiagraph_graph::{Plan, ResourceKind, Target, Texture};
 use std::{
+    ops::Range,
     sync::mpsc::{Receiver, channel},
     time::Duration,
 };
@@ -33,7 +38,7 @@ pub enum Content {
         /// Rows from the top, tightly packed, one part after the other.
         bytes: Vec<u8>,
     },
-    /// The whole buffer.
+    /// The buffer, or those of its items that the output is.
     Buffer(Vec<u8>),
 }
 
@@ -149,7 +154,7 @@ enum Kind {
 fn layout(format: wgpu::TextureFormat) -> Option<(Kind, usize)> {
     use wgpu::TextureFormat as F;
     Some(match format {
-        F::R8Uint | F::Rg8Uint | F::Rgba8Uint => (Kind::Uint, 1),
+        F::R8Uint | F::Rg8Uint | F::Rgba8Uint | F::Stencil8 => (Kind::Uint, 1),
         F::R16Uint | F::Rg16Uint | F::Rgba16Uint => (Kind::Uint, 2),
         F::R32Uint | F::Rg32Uint | F::Rgba32Uint => (Kind::Uint, 4),
         F::R8Sint | F::Rg8Sint | F::Rgba8Sint => (Kind::Sint, 1),
@@ -194,7 +199,8 @@ struct MipCopy {
 /// What is read back.
 enum Source {
     Texture(wgpu::Texture, Vec<MipCopy>),
-    Buffer(wgpu::Buffer),
+    /// Of a buffer these bytes.
+    Buffer(wgpu::Buffer, Range<u64>),
 }
 
 /// A readback under way.
@@ -245,8 +251,10 @@ impl Pending {
                 if !buffer.usage().contains(wgpu::BufferUsages::COPY_SRC) {
                     return Err(refuse("BufferUsages::COPY_SRC"));
                 }
-                let size = buffer.size();
-                (Source::Buffer(buffer), size)
+                let whole = buffer.size();
+                let bytes = byte_range(plan.resource(target.id), &target.part, whole);
+                let copied = copied(&bytes);
+                (Source::Buffer(buffer, bytes), copied.end - copied.start)
             }
         };
         let staging = device.create_buffer(&wgpu::BufferDescriptor {
@@ -267,8 +275,9 @@ impl Pending {
     pub fn copy(&self, encoder: &mut wgpu::CommandEncoder) {
         let (texture, mips) = match &self.source {
             Source::Texture(texture, mips) => (texture, mips),
-            Source::Buffer(buffer) => {
-                encoder.copy_buffer_to_buffer(buffer, 0, &self.staging, 0, buffer.size());
+            Source::Buffer(buffer, bytes) => {
+                let Range { start, end } = copied(bytes);
+                encoder.copy_buffer_to_buffer(buffer, start, &self.staging, 0, end - start);
                 return;
             }
         };
@@ -322,13 +331,24 @@ impl Pending {
             .to_vec();
         let content = match self.source {
             Source::Texture(texture, mips) => unpadded(texture.format(), &mips, &bytes),
-            Source::Buffer(_) => Content::Buffer(bytes),
+            Source::Buffer(_, asked) => {
+                let start = (asked.start - copied(&asked).start) as usize;
+                let length = (asked.end - asked.start) as usize;
+                Content::Buffer(bytes[start..][..length].to_vec())
+            }
         };
         Ok(Readback {
             name: self.name,
             content,
         })
     }
+}
+
+/// The bytes that are copied for those that are asked for: items may be smaller than what can be
+/// copied.
+fn copied(bytes: &Range<u64>) -> Range<u64> {
+    let least = wgpu::COPY_BUFFER_ALIGNMENT;
+    bytes.start / least * least..bytes.end.next_multiple_of(least)
 }
 
 /// The mips of a part of a texture in a staging buffer, and the bytes of all.

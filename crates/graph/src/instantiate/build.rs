@@ -507,13 +507,23 @@ impl<'a> Builder<'a, '_> {
         };
         let enabled = condition.boolean(&mut self.world.at(place, None, self.reports))?;
         let instance = self.world.frames.document(place.frame);
-        // Conditions of two documents are one if they are made of the same params of the root.
-        let text = condition.canonical(&|name| {
-            let root = instance
-                .params
-                .bound(name)
-                .and_then(|bound| bound.root.clone());
-            root.unwrap_or_else(|| format!("{}{name}", around.prefix))
+        let params = Arc::clone(&instance.params);
+        let outer = instance.outer.as_ref();
+        let private = outer.map_or(String::new(), |outer| outer.private.clone());
+        // Conditions of two documents are one if they are made of the same params of the root;
+        // attributes (`index` is one) are what they are here.
+        let text = condition.canonical(&mut |leaf| match leaf.as_param() {
+            Some(name) => match params.bound(name) {
+                Some(bound) => match &bound.root {
+                    Some(root) => root.clone(),
+                    None => format!("{private}{name}"),
+                },
+                None => name.to_owned(),
+            },
+            None => {
+                let value = leaf.value(&mut self.world.at(place, None, self.reports));
+                value.map_or_else(|_| leaf.text().to_owned(), |value| value.to_string())
+            }
         });
         Ok(Some((Run::When(text), enabled)))
     }

@@ -1,6 +1,6 @@
 //! What a pass kind is: a type that deserialises its own body and lowers it to [`Step`]s.
 
-use super::step::{Names, Operand, Program, Scratch, Step};
+use super::step::{Names, Operand, Program, Scratch, Step, Threads};
 use crate::{
     diagnostics::{code::Code, diagnostic::Diagnostic, reports::Reported},
     document::fields::Chosen,
@@ -8,7 +8,7 @@ use crate::{
     language::{
         eval::Environment,
         name::Name,
-        syntax::{Expr, Reference},
+        syntax::{Attribute, Expr, ExprKind, Reference, Subject},
         value::{Scalar, Value},
     },
     source::span::Located,
@@ -152,6 +152,18 @@ impl<'a> Lowering<'a> {
                 _ => vec![expr.scalar(environment)?],
             })
         })
+    }
+
+    /// A thread for each texel of a texture; one where the document is only read.
+    pub fn texels(&mut self, texture: &Reference) -> Threads {
+        let of = Subject::Material(Box::new(texture.clone()));
+        let size = ExprKind::Attribute(of, Attribute::Size);
+        let size = self.list(&Expr::new(size, texture.span.clone()));
+        let edge = |edge: usize| match size.get(edge) {
+            Some(Scalar::Whole(whole)) => u64::try_from(*whole).unwrap_or(1),
+            _ => 1,
+        };
+        Threads::Texels([edge(0), edge(1), edge(2)])
     }
 
     /// A word of the language that may be that of a `Choice` param, all of whose words must be in

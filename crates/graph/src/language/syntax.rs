@@ -289,29 +289,29 @@ impl Expr {
         }
     }
 
-    /// A text that is equal for equal expressions; `param` says which param of the whole graph a
-    /// name stands for.
-    pub(crate) fn canonical(&self, param: &dyn Fn(&str) -> String) -> String {
-        let list = |list: &[Expr]| -> String {
-            let list: Vec<String> = list.iter().map(|expr| expr.canonical(param)).collect();
+    /// A text that is equal for equal expressions; `leaf` says what a param or an attribute is in
+    /// the whole graph.
+    pub(crate) fn canonical(&self, leaf: &mut dyn FnMut(&Expr) -> String) -> String {
+        let mut list = |list: &[Expr]| -> String {
+            let list: Vec<String> = list.iter().map(|expr| expr.canonical(leaf)).collect();
             list.join(", ")
         };
         match &self.kind {
-            ExprKind::Param(name) => param(name),
+            ExprKind::Param(_) | ExprKind::Attribute(..) => leaf(self),
             ExprKind::Tuple(of) => format!("({})", list(of)),
             ExprKind::Call(function, of) => format!("{}({})", function.as_str(), list(of)),
-            ExprKind::Unary(Unary::Minus, of) => format!("-{}", of.canonical(param)),
-            ExprKind::Unary(Unary::Not, of) => format!("!{}", of.canonical(param)),
+            ExprKind::Unary(Unary::Minus, of) => format!("-{}", of.canonical(leaf)),
+            ExprKind::Unary(Unary::Not, of) => format!("!{}", of.canonical(leaf)),
             ExprKind::Binary(operator, of) => {
                 let [a, b] = &**of;
-                let (a, b) = (a.canonical(param), b.canonical(param));
+                let (a, b) = (a.canonical(leaf), b.canonical(leaf));
                 format!("({a} {} {b})", operator.as_str())
             }
             ExprKind::Ternary(of) => {
                 let mut text = String::new();
                 for (expr, sign) in of.iter().zip(["?", ":", ""]) {
                     // Writing to a String cannot fail.
-                    let _ = write!(text, "({}){sign}", expr.canonical(param));
+                    let _ = write!(text, "({}){sign}", expr.canonical(leaf));
                 }
                 text
             }

@@ -65,7 +65,11 @@ impl Plan {
                     texture.mip_size(target.part.mips.start),
                 ),
                 ResourceKind::Buffer(buffer) => {
-                    (None, [u32::try_from(buffer.bytes).unwrap_or(u32::MAX), 1])
+                    let items = target.part.items();
+                    let bytes = items.map_or(buffer.bytes, |items| {
+                        buffer.stride.saturating_mul(items.len() as u64)
+                    });
+                    (None, [u32::try_from(bytes).unwrap_or(u32::MAX), 1])
                 }
                 _ => (None, [0, 0]),
             };

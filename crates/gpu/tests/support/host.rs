@@ -1,20 +1,23 @@
 //! A host program in small: a device, frames that are submitted and waited for.
 
-use super::{Files, load};
-use skiagraph_graph::{Executor, Frame, FrameReport, NoProvider, Plan, PlanRequest, Provider, gpu};
+#![allow(dead_code, reason = "each test file uses a part of it")]
+
+use crate::support::{Files, load, right};
+use skiagraph_gpu::{Executor, Frame, FrameReport, device};
+use skiagraph_graph::{Describe, NoProvider, ParamValue, Plan, PlanRequest};
 use std::sync::LazyLock;
 
 /// A device of wgpu's default limits, whatever the adapter could do, so that it is known what it
 /// refuses.
-pub static GPU: LazyLock<gpu::Gpu> = LazyLock::new(|| {
-    let mut gpu = gpu::open(None).unwrap_or_else(|error| panic!("{error}"));
+pub static GPU: LazyLock<device::Gpu> = LazyLock::new(|| {
+    let mut gpu = device::open(None).unwrap_or_else(|error| panic!("{error}"));
     let made = pollster::block_on(gpu.adapter.request_device(&Default::default()));
     (gpu.device, gpu.queue) = made.unwrap_or_else(|error| panic!("{error}"));
     gpu
 });
 
 /// A request for 8×8 pixels and the limits of [`GPU`].
-pub fn request(provider: &dyn Provider) -> PlanRequest<'_> {
+pub fn request(provider: &dyn Describe) -> PlanRequest<'_> {
     let mut request = PlanRequest::new([8, 8], provider);
     request.limits = GPU.device.limits();
     request
@@ -22,10 +25,7 @@ pub fn request(provider: &dyn Provider) -> PlanRequest<'_> {
 
 /// The plan of `graph.ron` of the files.
 pub fn planned(files: &Files, request: &PlanRequest<'_>) -> Plan {
-    let graph = load(files).unwrap_or_else(|errors| panic!("{errors}"));
-    graph
-        .plan(request)
-        .unwrap_or_else(|errors| panic!("{errors}"))
+    right(right(load(files)).plan(request))
 }
 
 /// An executor of `graph.ron` of the files, which needs no provider.
@@ -42,17 +42,22 @@ pub fn encoder() -> wgpu::CommandEncoder {
 
 /// A frame that is submitted and waited for.
 pub fn frame(executor: &mut Executor, read: &[&str]) -> FrameReport {
-    let mut encoder = encoder();
     let frame = Frame {
         read,
         ..Frame::default()
     };
+    submit(executor, &frame)
+}
+
+/// A frame of every kind that is submitted and waited for.
+pub fn submit(executor: &mut Executor, frame: &Frame<'_>) -> FrameReport {
+    let mut encoder = encoder();
     executor
-        .encode(&mut encoder, &frame)
+        .encode(&mut encoder, frame)
         .unwrap_or_else(|error| panic!("{error}"));
     GPU.queue.submit([encoder.finish()]);
     executor
-        .submitted(&GPU.queue)
+        .submitted()
         .unwrap_or_else(|error| panic!("{error}"));
     executor.finish().unwrap_or_else(|error| panic!("{error}"))
 }
@@ -60,8 +65,18 @@ pub fn frame(executor: &mut Executor, read: &[&str]) -> FrameReport {
 /// The numbers of an output after a frame.
 pub fn numbers(executor: &mut Executor, output: &str) -> Vec<u32> {
     let report = frame(executor, &[output]);
-    report.readbacks[0]
-        .content
-        .as_u32()
-        .expect("it holds numbers")
+    words(&report, 0)
+}
+
+/// The numbers of a readback.
+pub fn words(report: &FrameReport, index: usize) -> Vec<u32> {
+    let content = &report.readbacks[index].content;
+    content.as_u32().expect("it holds numbers")
+}
+
+/// Sets a param of a graph that needs no provider.
+pub fn set(executor: &mut Executor, name: &str, value: ParamValue) {
+    executor
+        .set_param(name, value, &mut NoProvider)
+        .unwrap_or_else(|error| panic!("{error}"));
 }

@@ -1,4 +1,4 @@
-//! A pass kind of a host's own crate, used from RON: `cargo run -p skiagraph-graph --example
+//! A pass kind of a host's own crate, used from RON: `cargo run -p skiagraph-gpu --example
 //! custom_pass`.
 //!
 //! `Equalize` spreads the brightness of a picture over the whole range. It becomes three steps:
@@ -6,36 +6,36 @@
 //! through it. Its shader comes with the kind.
 
 use serde::Deserialize;
+use skiagraph_gpu::{Executor, Frame, device};
 use skiagraph_graph::{
-    Code, Diagnostic, Dispatch, Executor, FolderSources, Frame, Graph, Groups, LayeredSources,
-    Located, Lowering, NoProvider, ParamValue, PassKind, PlanRequest, Program, Registry, Sources,
-    Step, document::value::Value, gpu,
+    Code, Diagnostic, Expr, FolderSources, Graph, LayeredSources, Lowering, NoProvider, ParamValue,
+    PassKind, PlanRequest, Reference, Registry, Sources,
+    step::{Dispatch, Groups, Operand, Program, Step},
 };
 use std::{error::Error, sync::Arc};
 
-/// The body of an `Equalize` pass: what its RON entry holds beside `name`, `shader`, `bind` and
-/// `run`.
+/// The body of an `Equalize` pass: what its RON entry holds beside the fields that every pass has.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Equalize {
-    from: Located<String>,
-    to: Located<String>,
-    bins: Located<Value<u32>>,
+    from: Reference,
+    to: Reference,
+    bins: Expr,
 }
 
 impl PassKind for Equalize {
     fn lower(&self, pass: &mut Lowering<'_>) {
         const MOST: u32 = 4096;
-        let mut bins = pass.value(&self.bins.value, 1);
+        let mut bins = pass.count32(&self.bins);
         if bins == 0 || bins > MOST {
             pass.report(
                 Diagnostic::error(Code::Size, format!("a histogram of {bins} bins"))
-                    .at(self.bins.span.clone(), "this many")
+                    .at(self.bins.span().clone(), "this many")
                     .help(format!("give it 1 to {MOST}")),
             );
             bins = 1; // so that what else is wrong with the pass is found too
         }
-        let histogram = pass.scratch("histogram", u64::from(bins) * 4);
+        let histogram = Operand::from(pass.scratch("histogram", u64::from(bins) * 4));
         pass.step(Step::Clear {
             target: histogram.clone(),
             value: [0.0; 4],
@@ -46,14 +46,14 @@ impl PassKind for Equalize {
                 constants: vec![("BINS".to_owned(), f64::from(bins))],
                 ..pass.program_of("equalize")
             };
-            for (global, resource) in [
-                ("source", &self.from),
-                ("result", &self.to),
-                ("histogram", &histogram),
+            for (global, operand) in [
+                ("source", Operand::from(&self.from)),
+                ("result", Operand::from(&self.to)),
+                ("histogram", histogram.clone()),
             ] {
-                program.bind.push((pass.named(global), resource.clone()));
+                program.bind.push((pass.named(global), operand));
             }
-            let groups = Groups::Over(self.from.clone());
+            let groups = Groups::Direct(pass.texels(&self.from));
             pass.step(Step::Dispatch(Dispatch { program, groups }));
         }
     }
@@ -93,7 +93,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     println!("{wrong}");
 
-    let gpu::Gpu { device, queue, .. } = gpu::open(None)?;
+    let device::Gpu { device, queue, .. } = device::open(None)?;
     request.params.clear();
     request.limits = device.limits();
     let mut executor = Executor::new(&device, &queue, graph.plan(&request)?, &mut NoProvider)?;
@@ -104,7 +104,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     executor.encode(&mut encoder, &frame)?;
     queue.submit([encoder.finish()]);
-    executor.submitted(&queue)?;
+    executor.submitted()?;
 
     let mut ranges = Vec::new();
     for readback in executor.finish()?.readbacks {

@@ -1,13 +1,14 @@
 //! A host program with its own device, G-buffer and shading has its shadows from a graph, in one
-//! encoder with all the rest: `cargo run -p skiagraph-graph --example embed`.
+//! encoder with all the rest: `cargo run -p skiagraph-gpu --example embed`.
 //!
 //! The scene is a box on a ground, seen from straight above, so that the area of the shadow is
 //! known: a box of edge w and height h under a light that travels along (x, -1, z) shades w·h·(|x|
 //! + |z|) of the ground around it.
 
+use skiagraph_gpu::{ExecuteError, Executor, Frame, FrameReport, Provider, ProviderError, import};
 use skiagraph_graph::{
-    ExecuteError, Executor, FolderSources, Frame, FrameReport, Graph, Import, ParamValue,
-    PlanRequest, Provided, Provider, ProviderError, Registry,
+    Describe, FolderSources, Graph, Import, ParamValue, PlanRequest, Provided, ProvidedBinding,
+    Registry,
 };
 use std::error::Error;
 
@@ -53,9 +54,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let report = frame(&host, encoder, &gbuffer, &mut executor)?;
     expect("the light moved", &report, &[])?;
 
-    let renewed = executor.set_param("map_size", ParamValue::U32(1024), &mut host.scene)?;
-    println!("a larger map: {renewed:?}\n");
-    assert_eq!(renewed.resources, ["shadow_map"]);
+    let report = executor.set_param("map_size", ParamValue::U32(1024), &mut host.scene)?;
+    println!("a larger map: {report:?}\n");
+    assert_eq!(report.resources, ["shadow_map"]);
 
     // Another size: the imports follow it, so both change at once.
     let gbuffer = host.gbuffer([96, 48]);
@@ -84,7 +85,7 @@ fn frame(
         .ok_or("the graph has no visibility")?;
     let letters = host.shade(&mut encoder, gbuffer, &visibility);
     host.queue.submit([encoder.finish()]);
-    executor.submitted(&host.queue)?;
+    executor.submitted()?;
     // waits; a host that wants neither times nor readbacks need not call it
     let report = executor.finish()?;
     judge(host, &letters, gbuffer.position.width())?;
@@ -118,27 +119,28 @@ fn expect(what: &str, report: &FrameReport, skipped: &[&str]) -> Result<(), Box<
     }
 }
 
-/// What the graph is given by name, instead of importing it: described for planning, handed out
-/// when a live pass binds it.
-impl Provider for Scene {
+/// What the graph is given by name, instead of importing it, described for planning.
+impl Describe for Scene {
     fn names(&self) -> Vec<String> {
         vec!["scene.vertices".to_owned(), "light".to_owned()]
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {
-        let (stride, uniform) = match name {
-            "scene.vertices" => (16, false),
-            "light" => (64, true),
+        let (items, stride, binding) = match name {
+            "scene.vertices" => (self.vertices.size() / 16, 16, ProvidedBinding::Storage),
+            "light" => (1, 64, ProvidedBinding::Uniform),
             _ => return None,
         };
-        let items = (!uniform).then(|| self.vertices.size() / stride);
         Some(Provided {
-            items,
+            items: Some(items),
             stride,
-            uniform,
+            binding,
         })
     }
+}
 
+/// The buffers themselves, handed out when a live pass binds them.
+impl Provider for Scene {
     fn build(
         &mut self,
         name: &str,
@@ -156,16 +158,13 @@ impl Provider for Scene {
 impl GBuffer {
     fn describe(&self) -> [(String, Import); 2] {
         [
-            ("gbuffer.depth".to_owned(), Import::texture(&self.depth)),
-            (
-                "gbuffer.position".to_owned(),
-                Import::texture(&self.position),
-            ),
+            ("depth".to_owned(), import::texture(&self.depth)),
+            ("position".to_owned(), import::texture(&self.position)),
         ]
     }
 
     fn hand_over(&self, executor: &mut Executor) -> Result<(), ExecuteError> {
-        executor.import_texture("gbuffer.depth", &self.depth)?;
-        executor.import_texture("gbuffer.position", &self.position)
+        executor.import_texture("depth", &self.depth)?;
+        executor.import_texture("position", &self.position)
     }
 }

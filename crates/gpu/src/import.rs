@@ -1,0 +1,26 @@
+//! Descriptions of what a host hands over, for
+//! [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports).
+
+use skiagraph_graph::Import;
+
+/// The description of a texture.
+pub fn texture(texture: &wgpu::Texture) -> Import {
+    Import::Texture {
+        format: texture.format(),
+        size: [texture.width(), texture.height()],
+        mips: texture.mip_level_count(),
+        layers: texture.depth_or_array_layers(),
+        is_3d: texture.dimension() == wgpu::TextureDimension::D3,
+        samples: texture.sample_count(),
+        usage: texture.usage(),
+    }
+}
+
+/// The description of a buffer; `items` where a pass is dispatched over them or counts them.
+pub fn buffer(buffer: &wgpu::Buffer, items: Option<u64>) -> Import {
+    Import::Buffer {
+        bytes: buffer.size(),
+        items,
+        usage: buffer.usage(),
+    }
+}

@@ -1,0 +1,273 @@
+//! Random documents, and an interpreter that runs them from top to bottom.
+
+use crate::{
+    buffers::{OUT, SEED, SEED_PARAM, compute},
+    support::Files,
+};
+use proptest::prelude::*;
+use std::fmt::Write as _;
+
+/// How a pass of a random document reads a material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Read {
+    Now(usize),
+    Before(usize),
+    Host,
+}
+
+#[derive(Clone, Debug)]
+pub struct Pass {
+    reads: Vec<Read>,
+    /// Written: which material, all of it or its first half.
+    target: usize,
+    whole: bool,
+    /// It is there only while the param `extra` is true.
+    optional: bool,
+}
+
+/// A shader with an invocation for each of so many items of `out`.
+fn each(globals: &str, items: usize, value: &str) -> String {
+    format!(
+        "{globals}
+         @compute @workgroup_size({items}) fn main(@builtin(local_invocation_index) i: u32) {{
+             out[i] = {value};
+         }}"
+    )
+}
+
+impl Pass {
+    /// How many items it writes.
+    fn items(&self) -> usize {
+        match self.whole {
+            true => ITEMS,
+            false => ITEMS / 2,
+        }
+    }
+
+    /// The entry of the document and the shader: a sum of what is read, times a large number.
+    fn texts(&self, index: usize, run: &str) -> (String, String) {
+        let target = self.target;
+        let mut bind = format!("\"out\": \"m{target}\"");
+        let mut globals = format!("{SEED} {OUT}\n");
+        let mut sum = format!("{}u + params.seed", index + 1);
+        for (number, read) in self.reads.iter().enumerate() {
+            let of = match read {
+                Read::Now(material) => format!("m{material}"),
+                Read::Before(material) => format!("m{material}.previous"),
+                Read::Host => "host".to_owned(),
+            };
+            let _ = write!(bind, ", \"r{number}\": \"{of}\"");
+            let _ = writeln!(globals, "var<storage, read> r{number}: array<u32>;");
+            let _ = write!(sum, " + {}u * r{number}[i]", 2 * number + 3);
+        }
+        let overwrites = match self.whole {
+            true => format!("overwrites: [\"m{target}\"],"),
+            false => String::new(),
+        };
+        let condition = match self.optional {
+            true => "if: \"extra\",",
+            false => "",
+        };
+        let more = format!("run: {run}, {overwrites} {condition}");
+        let pass = compute(&format!("p{index}"), &more, &bind);
+        let value = format!("({sum}) * 2654435761u");
+        (pass, each(&globals, self.items(), &value))
+    }
+}
+
+/// What happens before a frame.
+#[derive(Clone, Copy, Debug)]
+pub enum Event {
+    Nothing,
+    Seed(u32),
+    Flag(bool),
+    Extra(bool),
+    Host(u32),
+    Resize(u32),
+}
+
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// Run condition of whoever writes a material.
+    runs: Vec<usize>,
+    passes: Vec<Pass>,
+    pub outputs: Vec<usize>,
+    pub events: Vec<Event>,
+    pub poison: Option<u8>,
+}
+
+const MATERIALS: usize = 4;
+pub const ITEMS: usize = 4;
+const RUNS: [&str; 4] = ["Always", "OnChange", "Once", "When(\"flag\")"];
+
+pub type Value = [u32; ITEMS];
+
+impl Program {
+    /// The document: every material is set to zero before it is first used, so that lifetimes are
+    /// short and memory is shared.
+    pub fn files(&self) -> Files {
+        let mut passes = String::new();
+        let mut fresh: Vec<usize> = (0..MATERIALS).collect();
+        let mut zero = |passes: &mut String, used: &dyn Fn(usize) -> bool| {
+            for material in fresh.extract_if(.., |material| used(*material)) {
+                let more = format!(
+                    "shader: \"zero\", run: {}, overwrites: [\"m{material}\"],",
+                    RUNS[self.runs[material]]
+                );
+                let bind = format!("\"out\": \"m{material}\"");
+                passes.push_str(&compute(&format!("zero{material}"), &more, &bind));
+            }
+        };
+        // A shader, not `Clear`: the size of a buffer comes from the shaders that see it.
+        let mut files = Files::default().with("zero.wgsl", each(OUT, ITEMS, "0u"));
+        for (index, pass) in self.passes.iter().enumerate() {
+            zero(&mut passes, &|material| {
+                material == pass.target || pass.reads.contains(&Read::Now(material))
+            });
+            let (pass, shader) = pass.texts(index, RUNS[self.runs[pass.target]]);
+            passes.push_str(&pass);
+            files = files.with(&format!("p{index}.wgsl"), shader);
+        }
+        zero(&mut passes, &|_| true);
+        let materials: String = (0..MATERIALS)
+            .map(|material| format!("Buffer(name: \"m{material}\", count: {ITEMS}), "))
+            .collect();
+        let outputs: Vec<String> = self.outputs.iter().map(|at| format!("m{at}")).collect();
+        files.document(
+            "graph.ron",
+            &format!(
+                "\n    params: [{SEED_PARAM} Bool(name: \"flag\", default: true), \
+                 Bool(name: \"extra\", default: true)],\n    \
+                 inputs: [Buffer(name: \"host\")],\n    materials: [{materials}],\n    \
+                 passes: [\n{passes}    ],\n    outputs: {outputs:?},\n"
+            ),
+        )
+    }
+
+    /// The outputs after each frame when every pass is run in file order, those that run `Once` in
+    /// the first frame only and those that run by the flag when it is set. That `OnChange` saves
+    /// work must not be seen.
+    pub fn interpret(&self) -> Vec<Vec<Value>> {
+        let mut now = [[0u32; ITEMS]; MATERIALS];
+        let mut before = now;
+        let (mut seed, mut flag, mut extra, mut host) = (5u32, true, true, 9u32);
+        let mut frames = Vec::new();
+        for (number, event) in self.events.iter().enumerate() {
+            match *event {
+                Event::Seed(value) => seed = value,
+                Event::Flag(value) => flag = value,
+                Event::Extra(value) => extra = value,
+                Event::Host(value) => host = value,
+                Event::Nothing | Event::Resize(_) => {}
+            }
+            let runs = |material: usize| match self.runs[material] {
+                2 => number == 0,
+                3 => flag,
+                _ => true,
+            };
+            for (material, value) in now.iter_mut().enumerate() {
+                if runs(material) {
+                    *value = [0; ITEMS];
+                }
+            }
+            for (index, pass) in self
+                .passes
+                .iter()
+                .enumerate()
+                .filter(|(_, pass)| runs(pass.target) && (extra || !pass.optional))
+            {
+                let values: Vec<Value> = pass
+                    .reads
+                    .iter()
+                    .map(|read| match read {
+                        Read::Now(material) => now[*material],
+                        Read::Before(material) => before[*material],
+                        Read::Host => [host; ITEMS],
+                    })
+                    .collect();
+                for item in 0..pass.items() {
+                    let sum = values.iter().enumerate().fold(
+                        (index as u32 + 1).wrapping_add(seed),
+                        |sum, (number, value)| {
+                            sum.wrapping_add((2 * number as u32 + 3).wrapping_mul(value[item]))
+                        },
+                    );
+                    now[pass.target][item] = sum.wrapping_mul(2_654_435_761);
+                }
+            }
+            frames.push(self.outputs.iter().map(|material| now[*material]).collect());
+            before = now;
+        }
+        frames
+    }
+}
+
+fn any_pass() -> impl Strategy<Value = Pass> {
+    let read = prop_oneof![
+        3 => (0..MATERIALS).prop_map(Read::Now),
+        2 => (0..MATERIALS).prop_map(Read::Before),
+        1 => Just(Read::Host),
+    ];
+    (
+        prop::collection::vec(read, 0..3),
+        0..MATERIALS,
+        prop::bool::weighted(0.7),
+        prop::bool::weighted(0.2),
+    )
+        .prop_map(|(mut reads, target, whole, optional)| {
+            // A history begins with the plan in which somebody reads it: neither does a pass that
+            // comes and goes, nor are others needed or not because of it.
+            let whole = whole && !optional;
+            let keeps = |read: &Read| !(optional && matches!(read, Read::Before(_)));
+            reads.retain(keeps);
+            // A pass cannot bind what it writes a second time.
+            reads.retain(|read| *read != Read::Now(target));
+            Pass {
+                reads,
+                target,
+                whole,
+                optional,
+            }
+        })
+}
+
+fn any_event() -> impl Strategy<Value = Event> {
+    prop_oneof![
+        3 => Just(Event::Nothing),
+        2 => any::<u32>().prop_map(Event::Seed),
+        1 => any::<bool>().prop_map(Event::Flag),
+        2 => any::<bool>().prop_map(Event::Extra),
+        2 => any::<u32>().prop_map(Event::Host),
+        1 => (1..9u32).prop_map(Event::Resize),
+    ]
+}
+
+pub fn any_program() -> impl Strategy<Value = Program> {
+    (
+        prop::collection::vec(
+            prop_oneof![3 => Just(0usize), 3 => Just(1), 1 => Just(2), 1 => Just(3)],
+            MATERIALS,
+        ),
+        prop::collection::vec(any_pass(), 1..7),
+        prop::collection::btree_set(0..MATERIALS, 1..3),
+        prop::collection::vec(any_event(), 3..7),
+        prop_oneof![Just(None), Just(Some(0xa5))],
+    )
+        .prop_map(|(runs, mut passes, mut outputs, events, poison)| {
+            for pass in &mut passes {
+                // What ran once stays as it is only while the same passes make it.
+                pass.optional &= RUNS[runs[pass.target]] != "Once";
+            }
+            // What only a pass reads that goes would be lost with it.
+            if passes.iter().any(|pass| pass.optional) {
+                outputs.extend(0..MATERIALS);
+            }
+            Program {
+                runs,
+                passes,
+                outputs: outputs.into_iter().collect(),
+                events,
+                poison,
+            }
+        })
+}

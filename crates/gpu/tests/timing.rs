@@ -1,0 +1,188 @@
+//! GPU timestamps are true, or the adapter is not trusted with a reason; and every frame has its
+//! own.
+
+#[path = "../../graph/tests/support/mod.rs"]
+mod support;
+#[path = "support/tiny.rs"]
+mod tiny;
+
+use skiagraph_gpu::{
+    ExecuteError, Frame, device,
+    timing::{Trust, check},
+};
+use std::time::{Duration, Instant};
+use support::Files;
+use tiny::{GPU, NUMBER, encoder, frame, made, u32s};
+
+#[test]
+fn a_long_dispatch_after_a_raster_pass_is_timed_truly_or_not_at_all() {
+    let gpu = device::open(None).unwrap_or_else(|error| panic!("{error}"));
+    let adapter = gpu.adapter.get_info().name;
+    match check(&gpu.device, &gpu.queue).expect("the check's graph runs") {
+        Trust::Trusted => {}
+        // The software adapter of CI has the trap and the way around it, so there is no excuse.
+        Trust::Untrusted { reason } => assert!(
+            !adapter.contains("llvmpipe") && !reason.is_empty(),
+            "{adapter}: {reason}"
+        ),
+    }
+}
+
+fn image() -> Files {
+    Files::graph(
+        r#"
+    materials: [Texture(name: "image", format: R32Float)],
+    passes: [Fullscreen(name: "number", color: ["image"])],
+    outputs: ["image"],
+"#,
+    )
+    .with("number.wgsl", NUMBER)
+}
+
+#[test]
+fn every_pass_is_timed_or_the_reason_is_known() {
+    let files = Files::graph(
+        r#"
+    materials: [Texture(name: "image", format: R32Float), Texture(name: "copy", format: R32Float)],
+    passes: [
+        Fullscreen(name: "number", color: ["image"]),
+        Copy(name: "keep", from: "image", to: "copy"),
+    ],
+    outputs: ["copy"],
+"#,
+    )
+    .with("number.wgsl", NUMBER);
+    let mut executor = made(&files);
+    for timing in [false, true, false, true, true] {
+        let report = frame(&mut executor, timing, &[]);
+        assert_eq!(report.timing.is_some(), timing);
+        let Some(times) = report.timing else { continue };
+        let names: Vec<&str> = times.passes.iter().map(|pass| pass.name.as_str()).collect();
+        assert_eq!(names, ["number", "keep"]);
+        // A copy is timed between passes, which not every adapter can.
+        let features = GPU.device.features();
+        let times_copies = features.contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
+        let mut timed = times.passes.iter();
+        let untimed = timed.any(|pass| pass.gpu.is_none() && (times_copies || pass.name != "keep"));
+        if untimed {
+            match check(&GPU.device, &GPU.queue).unwrap_or_else(|error| panic!("{error}")) {
+                Trust::Untrusted { reason } => assert!(!reason.is_empty()),
+                Trust::Trusted => panic!("timestamps are trusted, but a pass has none"),
+            }
+        } else {
+            let longest = times.passes.iter().filter_map(|pass| pass.gpu).max();
+            assert!(
+                times.gpu() >= longest,
+                "the frame is as long as its longest pass"
+            );
+            let begins = times.passes.iter().filter_map(|pass| pass.begin);
+            assert_eq!(begins.min(), Some(Duration::ZERO));
+            let ends = times
+                .passes
+                .iter()
+                .map(|pass| Some(pass.begin? + pass.gpu?));
+            assert_eq!(
+                ends.max(),
+                Some(times.gpu()),
+                "the frame ends with its last pass"
+            );
+        }
+    }
+}
+
+/// A host may submit several frames before it asks, and one that drops an encoder, which it should
+/// not, still gets what it asked for.
+#[test]
+fn frames_that_are_not_finished_one_by_one() {
+    let mut executor = made(&image());
+    let mut start = Instant::now();
+    for timing in [true, false, true] {
+        start = Instant::now();
+        let wanted = Frame {
+            timing,
+            read: &["image"],
+            ..Frame::default()
+        };
+        let mut dropped = encoder();
+        executor
+            .encode(&mut dropped, &wanted)
+            .unwrap_or_else(|error| panic!("{error}"));
+        drop(dropped);
+        let mut commands = encoder();
+        executor
+            .encode(&mut commands, &wanted)
+            .unwrap_or_else(|error| panic!("{error}"));
+        GPU.queue.submit([commands.finish()]);
+        // Once is enough, twice is harmless.
+        for _ in 0..2 {
+            executor
+                .submitted()
+                .unwrap_or_else(|error| panic!("{error}"));
+        }
+    }
+    let report = executor.finish().unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(report.readbacks.len(), 1);
+    let times = report.timing.expect("the last frame is timed");
+    if GPU
+        .device
+        .features()
+        .contains(wgpu::Features::TIMESTAMP_QUERY)
+    {
+        // Its own times, not from the begin of a dropped frame that never ran.
+        let gpu = times.gpu().expect("a pass that draws has times");
+        assert!(gpu < 2 * start.elapsed(), "{gpu:?}");
+    }
+    // Nothing is under way now.
+    assert!(
+        executor
+            .finish()
+            .unwrap_or_else(|error| panic!("{error}"))
+            .readbacks
+            .is_empty()
+    );
+}
+
+/// A host that waited long enough is told what ran, and may go on waiting.
+#[test]
+fn a_frame_that_is_not_done_in_time_is_waited_for_again() {
+    let files = Files::graph(
+        r#"
+    materials: [Buffer(name: "sums", count: 4096)],
+    passes: [Compute(name: "work", dispatch: Over("sums.count"))],
+    outputs: ["sums"],
+"#,
+    )
+    .with(
+        "work.wgsl",
+        "var<storage, read_write> sums: array<u32>;
+         @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+             var sum = id.x;
+             for (var round = 0u; round < 20000u; round++) { sum = sum * 1664525u + 1013904223u; }
+             sums[id.x] = sum;
+         }",
+    );
+    let mut executor = made(&files);
+    let mut commands = encoder();
+    let wanted = Frame {
+        read: &["sums"],
+        ..Frame::default()
+    };
+    executor
+        .encode(&mut commands, &wanted)
+        .unwrap_or_else(|error| panic!("{error}"));
+    GPU.queue.submit([commands.finish()]);
+    executor
+        .submitted()
+        .unwrap_or_else(|error| panic!("{error}"));
+    match executor.finish_within(Some(Duration::ZERO)) {
+        Err(ExecuteError::Unfinished { passes, .. }) => assert_eq!(passes, "work"),
+        other => panic!("{other:?}"),
+    }
+    let report = executor.finish().unwrap_or_else(|error| panic!("{error}"));
+    let expected = |first: u32| {
+        let step = |sum: u32, _| sum.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (0..20_000).fold(first, step)
+    };
+    let sums: Vec<u32> = (0..4096).map(expected).collect();
+    assert_eq!(u32s(&report.readbacks[0].content), sums);
+}

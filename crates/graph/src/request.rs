@@ -2,7 +2,7 @@
 
 use crate::{
     document::params::ParamValue,
-    provider::{Describe, Described, Import, NoProvider},
+    provider::{Describe, Described, Import},
 };
 use std::collections::BTreeMap;
 
@@ -56,9 +56,47 @@ impl<'a> PlanRequest<'a> {
     }
 }
 
-impl PlanRequest<'_> {
-    /// The same request with another provider.
-    fn with_provider<'b>(&self, provider: &'b dyn Describe) -> PlanRequest<'b> {
+/// A [`PlanRequest`] that a plan keeps, so that it can be made again with something changed. (One
+/// with a provider that only lists could not be sent to another thread.)
+#[derive(Clone, Debug)]
+pub(crate) struct Request {
+    pub viewport: [u32; 2],
+    pub imports: BTreeMap<String, Import>,
+    pub poison: Option<u8>,
+    params: BTreeMap<String, ParamValue>,
+    outputs: Option<Vec<String>>,
+    captures: Vec<Capture>,
+    limits: wgt::Limits,
+    features: wgt::Features,
+    memory_limit: Option<u64>,
+    any_adapter: bool,
+    provider: Described,
+}
+
+impl Request {
+    pub fn of(request: &PlanRequest<'_>) -> Self {
+        Self {
+            viewport: request.viewport,
+            imports: request.imports.clone(),
+            poison: request.poison,
+            params: request.params.clone(),
+            outputs: request.outputs.clone(),
+            captures: request.captures.clone(),
+            limits: request.limits.clone(),
+            features: request.features,
+            memory_limit: request.memory_limit,
+            any_adapter: request.any_adapter,
+            provider: Described::by(request.provider),
+        }
+    }
+
+    /// Whether the host imports or provides something under this name.
+    pub fn offers(&self, name: &str) -> bool {
+        self.imports.contains_key(name) || self.provider.0.contains_key(name)
+    }
+
+    /// The request to plan with; provided resources are as they were described.
+    pub fn again(&self) -> PlanRequest<'_> {
         PlanRequest {
             viewport: self.viewport,
             params: self.params.clone(),
@@ -70,34 +108,8 @@ impl PlanRequest<'_> {
             imports: self.imports.clone(),
             poison: self.poison,
             any_adapter: self.any_adapter,
-            provider,
+            provider: &self.provider,
         }
-    }
-}
-
-/// A [`PlanRequest`] that a plan keeps, so that it can be made again with something changed.
-#[derive(Clone, Debug)]
-pub(crate) struct Request {
-    pub asked: PlanRequest<'static>,
-    provider: Described,
-}
-
-impl Request {
-    pub fn of(request: &PlanRequest<'_>) -> Self {
-        Self {
-            asked: request.with_provider(&NoProvider),
-            provider: Described::by(request.provider),
-        }
-    }
-
-    /// Whether the host imports or provides something under this name.
-    pub fn offers(&self, name: &str) -> bool {
-        self.asked.imports.contains_key(name) || self.provider.0.contains_key(name)
-    }
-
-    /// The request to plan with; provided resources are as they were described.
-    pub fn again(&self) -> PlanRequest<'_> {
-        self.asked.with_provider(&self.provider)
     }
 }
 

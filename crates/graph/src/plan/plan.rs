@@ -89,12 +89,12 @@ impl Plan {
 
     /// What the host said that it would import, by name.
     pub fn imports(&self) -> &BTreeMap<String, Import> {
-        &self.request.asked.imports
+        &self.request.imports
     }
 
     /// The byte that memory is filled with between uses, if it is.
     pub fn poison(&self) -> Option<u8> {
-        self.request.asked.poison
+        self.request.poison
     }
 
     /// Whether the host imports or provides something under this name.

@@ -89,7 +89,7 @@ impl Plan {
 
     /// Width and height of the viewport in pixels.
     pub fn viewport(&self) -> [u32; 2] {
-        self.request.asked.viewport
+        self.request.viewport
     }
 
     /// The value of a param in this plan.

@@ -1,16 +1,17 @@
 //! Order, culling and schedule on bare lists of accesses: each graph is drawn above its case.
 
-use crate::{
+use super::{
     cull,
-    diagnostics::{Code, Diagnostic},
-    document::{Run, located::Located},
-    link::{Access, LinkedPass, Usage},
     order::{Hazard, Order, order, order_of_live},
-    provider::NoProvider,
-    registry::Params,
-    resolve::{Buffer, Environment, Part, ResourceId, ResourceKind, Resources, Target, resolve},
-    schedule::schedule,
-    source::SourceFile,
+    schedule::sequence,
+    work::Work,
+};
+use crate::{
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Reports},
+    instantiate::build::Run,
+    link::pass::{Access, LinkedPass, PassId, Usage},
+    resource::{Buffer, Origin, Resource, ResourceId, ResourceKind, SubresourceRange, Target},
+    source::span::{Located, SourceFile},
 };
 use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -39,6 +40,7 @@ const RESOURCES: usize = 4;
 
 struct Case {
     passes: Vec<LinkedPass>,
+    resources: Vec<Resource>,
     order: Order,
     diagnostics: Vec<Diagnostic>,
 }
@@ -50,24 +52,23 @@ fn edges(order: &Order) -> BTreeSet<(usize, usize, Hazard)> {
         .collect()
 }
 
-/// Calls `use_them` with some buffers.
-fn with_resources<T>(use_them: impl FnOnce(&Resources<'_>) -> T) -> T {
-    let params = Params::default();
-    let environment = Environment {
-        viewport: [8, 8],
-        limits: &wgpu::Limits::default(),
-        provider: &NoProvider,
-        imports: &BTreeMap::new(),
+/// Some buffers.
+fn resources() -> Vec<Resource> {
+    let buffer = |index| Resource {
+        name: format!("r{index}"),
+        declared: None,
+        kind: ResourceKind::Buffer(Buffer::default()),
+        origin: Origin::Own,
     };
-    let mut resources: Resources<'_> = resolve(&[], &[], &params, &environment, &mut Vec::new());
-    for index in 0..RESOURCES {
-        resources.add(
-            format!("r{index}"),
-            None,
-            ResourceKind::Buffer(Buffer::default()),
-        );
+    (0..RESOURCES).map(buffer).collect()
+}
+
+fn part(mips: &std::ops::Range<u32>, layers: &std::ops::Range<u32>) -> SubresourceRange {
+    SubresourceRange {
+        mips: mips.clone(),
+        layers: layers.clone(),
+        aspect: wgt::TextureAspect::All,
     }
-    use_them(&resources)
 }
 
 fn case(uses: &[Vec<Use>]) -> Case {
@@ -81,10 +82,7 @@ fn case(uses: &[Vec<Use>]) -> Case {
         let span = file.span(at..at + names[index].len());
         let access = |(resource, how, mips, layers): &Use| Access {
             resource: ResourceId(*resource),
-            part: Part {
-                mips: mips.clone(),
-                layers: layers.clone(),
-            },
+            part: part(mips, layers),
             reads: matches!(how, Read | Change),
             writes: *how != Read,
             covers: *how == Write,
@@ -103,13 +101,18 @@ fn case(uses: &[Vec<Use>]) -> Case {
         }
     };
     let passes: Vec<LinkedPass> = uses.iter().enumerate().map(pass).collect();
-    let mut diagnostics = Vec::new();
-    let order =
-        with_resources(|resources| order(&passes, passes.len(), resources, &mut diagnostics));
+    let mut reports = Reports::default();
+    let resources = resources();
+    let work = Work {
+        passes: &passes,
+        resources: &resources,
+    };
+    let order = order(work, passes.len(), &mut reports);
     Case {
         passes,
+        resources,
         order,
-        diagnostics,
+        diagnostics: reports.into_list(),
     }
 }
 
@@ -121,23 +124,24 @@ impl Case {
     /// Live passes for the final versions of the resources, and the order among them.
     fn live(&self, wanted: &[Use]) -> (Vec<bool>, Order) {
         let roots = wanted.iter().flat_map(|(resource, _, mips, layers)| {
-            let part = Part {
-                mips: mips.clone(),
-                layers: layers.clone(),
-            };
             self.order.final_writers(&Target {
                 id: ResourceId(*resource),
-                part,
+                part: part(mips, layers),
             })
         });
         let live = cull::live(&self.order, roots, |_| None);
-        let order = with_resources(|resources| order_of_live(&self.passes, resources, &live));
+        let work = Work {
+            passes: &self.passes,
+            resources: &self.resources,
+        };
+        let order = order_of_live(work, &live);
         (live, order)
     }
 
     fn schedule(&self, wanted: &[Use]) -> Vec<usize> {
         let (live, order) = self.live(wanted);
-        schedule(&order, &live)
+        let sequence = sequence(&order, &live);
+        sequence.into_iter().map(PassId::index).collect()
     }
 
     fn codes(&self) -> Vec<Code> {

@@ -318,7 +318,7 @@ fn sizes_without_end() {
         (texture("(1, 0)"), "a texture of no texels"),
         (
             texture("1").replace("size:", "layers: 4294967295, size:"),
-            "layers are more than the adapter can hold",
+            "slices are more than the adapter can hold",
         ),
         (
             texture("1").replace("size:", "mips: 4294967295, size:"),

@@ -121,6 +121,28 @@ fn an_import_is_there_once() {
     }
 }
 
+/// What stands in a comment is no import, and a comment that was closed hides none.
+#[test]
+fn an_import_in_a_comment_is_none() {
+    let main = "@fragment fn f() -> @location(0) f32 { return one(); }";
+    let one = "fn one() -> f32 { return 1.0; }";
+    for (comment, is_imported) in [
+        ("/*\n#import \"a.wgsl\"\n*/", false),
+        ("/* /* */\n#import \"a.wgsl\"\n*/", false),
+        ("/* // */ /*\n  #import \"a.wgsl\"\n*/", false),
+        ("// #import \"a.wgsl\"", false),
+        ("// /*\n#import \"a.wgsl\"", true),
+        ("/* /* */ */\n#import \"a.wgsl\" // /*", true),
+    ] {
+        let shader = format!("{comment}\n{main}");
+        let here = one_pass(&shader).with("a.wgsl", one);
+        assert_eq!(load(&here).is_ok(), is_imported, "{comment}");
+        // Nobody looks for the file, either.
+        let beside = one_pass(&format!("{shader}\n{one}"));
+        assert_eq!(load(&beside).is_ok(), !is_imported, "{comment}");
+    }
+}
+
 /// Shaders stand beside the document, beside its folder in `shaders/`, or in the store's
 /// `shaders/`; imports likewise.
 #[test]
@@ -336,7 +358,8 @@ fn params_and_overrides_are_laid_out() {
         override own: u32 = 77;
         @compute @workgroup_size(1) fn main() {
             words[0] = params.scale + params.sun.x + params.tint.y + bend;
-            words[1] = f32(steps + own + params.cull + u32(shift)); words[2] = select(0.0, 1.0, hard);
+            words[1] = f32(steps + own + params.cull + u32(shift));
+            words[2] = select(0.0, 1.0, hard);
         }";
     let graph = right(load(&Files::graph(sections).with("main.wgsl", shader)));
     // The words of the uniform, and the overrides that have a value of the document.

@@ -302,6 +302,14 @@ impl Shader {
             })
     }
 
+    /// The numbers that an override holds; `None` of a `bool`.
+    pub(crate) fn override_class(&self, name: &str) -> Option<ScalarClass> {
+        let mut overrides = self.module.overrides.iter();
+        let (_, found) = overrides.find(|(_, found)| found.name.as_deref() == Some(name))?;
+        let scalar = self.module.types[found.ty].inner.scalar()?;
+        ScalarClass::of(scalar.kind)
+    }
+
     /// The value of a scalar module-scope constant.
     pub(crate) fn constant(&self, name: &str) -> Option<Scalar> {
         let mut constants = self.module.constants.iter();

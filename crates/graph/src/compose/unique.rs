@@ -73,7 +73,15 @@ fn check_entries(
                 let Some(document) = include.document() else {
                     continue;
                 };
-                for output in &document.outputs {
+                for (number, output) in document.outputs.iter().enumerate() {
+                    // Two of a name are told in that document.
+                    let others = &document.outputs[..number];
+                    if others
+                        .iter()
+                        .any(|other| other.name.value == output.name.value)
+                    {
+                        continue;
+                    }
                     let is_own = |input: &crate::document::materials::Input| {
                         input.name.value == output.name.value
                     };

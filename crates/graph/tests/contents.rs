@@ -88,7 +88,11 @@ fn a_3d_texture_is_bound_whole_and_drawn_to_by_slices() {
         ),
         (files(&fill("fog"), solid, mip), Code::ResourceKind),
         (
-            files(&whole, "var fog: texture_2d_array<f32>;", mip),
+            files(&whole, "var fog: texture_2d_array<f32>;", mip).edited(
+                "look.wgsl",
+                "vec3(0u), 0",
+                "vec2(0u), 0, 0",
+            ),
             Code::ResourceKind,
         ),
         (
@@ -340,8 +344,11 @@ fn items_of_buffers_are_bound_in_place() {
     assert_eq!(bound, Some(Some(2..3)));
     assert_eq!(codes(&checked(&files(32, "slots[2]"))), [Code::Alignment]);
     assert_eq!(codes(&checked(&files(256, "slots[3]"))), [Code::Range]);
-    // What is bound whole lies at the begin of the buffer, whatever the size of an item.
-    assert_eq!(codes(&checked(&files(32, "slots"))), []);
+    // All items are another type than one of them.
+    assert_eq!(
+        codes(&checked(&files(256, "slots"))),
+        [Code::LayoutMismatch]
+    );
 }
 
 /// A binding is visible to the stages whose entry points use it, and to no other.
@@ -489,10 +496,10 @@ fn a_kinds_own_buffer_is_no_material() {
     let shader = "var<storage, read_write> items: array<u32>;
         @compute @workgroup_size(1) fn main() { items[0] = 1u; }";
     let files = Files::graph(
-        r#"materials: [Buffer(name: "items", count: 4), Buffer(name: "count", count: 2)],
+        r#"materials: [Buffer(name: "items", count: 4), Buffer(name: "own", count: 2)],
         passes: [
             Clear(name: "reset", target: "items"), Compute(name: "use", dispatch: Groups(1, 1, 1)),
-            Count(name: "count"), Count(name: "items"),
+            Count(name: "own"), Count(name: "items"),
         ],
         outputs: ["items"]"#,
     )
@@ -505,7 +512,7 @@ fn a_kinds_own_buffer_is_no_material() {
         .iter()
         .map(|pass| found.resource(pass.accesses[0].resource).name.as_str())
         .collect();
-    assert_eq!(used, ["items", "items", "count.items", "items.items"]);
+    assert_eq!(used, ["items", "items", "own/items", "items/items"]);
     let ids: Vec<usize> = passes
         .iter()
         .map(|pass| pass.accesses[0].resource.index())

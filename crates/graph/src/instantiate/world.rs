@@ -107,11 +107,12 @@ impl<'a> World<'a> {
         if target.part == SubresourceRange::WHOLE {
             target = self.whole(target.id);
         }
-        if let Some(selection) = selection {
-            self.select_layers(&mut target, selection, reference, place, reports)?;
-        }
+        // Mips first: of a 3D texture they have fewer slices.
         if let Some(mips) = &reference.mips {
             self.select_mips(&mut target, mips, reference, place, reports)?;
+        }
+        if let Some(selection) = selection {
+            self.select_layers(&mut target, selection, reference, place, reports)?;
         }
         if reference.previous {
             let id = self.previous(target.id);

@@ -364,7 +364,8 @@ fn a_diamond_of_documents() {
     .document("base.ron", BASE)
     .document(
         "left.ron",
-        r#"extends: "base.ron", set: {"value": 2}, outputs: [(name: "of_left", material: "second")]"#,
+        r#"extends: "base.ron", set: {"value": 2},
+        outputs: [(name: "of_left", material: "second")]"#,
     )
     .document(
         "right.ron",

@@ -239,8 +239,8 @@ impl Shape {
     }
 }
 
-/// Everything that decides what a frame does: the passes with all they access, and which of them run
-/// in which order.
+/// Everything that decides what a frame does: the passes with all they access, and which of them
+/// run in which order.
 fn behaviour(files: Files) -> Result<Vec<String>, Vec<Code>> {
     let fill = "@fragment fn fragment() -> @location(0) f32 { return 1.0; }";
     let blur = "var image: texture_2d<f32>;

@@ -527,18 +527,21 @@ proptest! {
         let uses: Vec<Vec<Use>> = std::iter::once(clears).chain(uses).collect();
         let case = case(&uses);
         prop_assert!(case.diagnostics.is_empty());
-        let outputs: Vec<Use> = wanted.iter().map(|&resource| (resource, Read, 0..2, 0..2)).collect();
+        let output = |&resource: &usize| (resource, Read, 0..2, 0..2);
+        let outputs: Vec<Use> = wanted.iter().map(output).collect();
         let schedule = case.schedule(&outputs);
 
         let live: BTreeSet<usize> = schedule.iter().copied().collect();
         prop_assert_eq!(live.len(), schedule.len(), "each pass runs once");
-        let place: BTreeMap<usize, usize> = schedule.iter().enumerate().map(|(at, &pass)| (pass, at)).collect();
+        let places = schedule.iter().enumerate().map(|(at, &pass)| (pass, at));
+        let place: BTreeMap<usize, usize> = places.collect();
         for (from, to, hazard) in case.edges() {
             prop_assert!(from < to, "edges follow the file");
             if let (Some(from), Some(to)) = (place.get(&from), place.get(&to)) {
                 prop_assert!(from < to);
             } else {
-                prop_assert!(hazard != RAW || !live.contains(&to), "a live pass needs a culled one");
+                let is_needed = hazard == RAW && live.contains(&to);
+                prop_assert!(!is_needed, "a live pass needs a culled one");
             }
         }
         let file: Vec<usize> = (0..uses.len()).collect();
@@ -549,12 +552,13 @@ proptest! {
             let (seen, end) = interpret(&case.passes, &sequence);
             prop_assert_eq!(sequence.len(), live.len(), "each live pass runs");
             for (read, version) in &seen {
-                prop_assert_eq!(version, &in_file[read], "{:?} sees another version in {:?}", read, &sequence);
+                let expected = &in_file[read];
+                prop_assert_eq!(version, expected, "{:?} differs in {:?}", read, &sequence);
             }
             for &resource in &wanted {
                 for (cell, writer) in end_of_file.iter().filter(|(cell, _)| cell.0 == resource) {
-                    prop_assert_eq!(end.get(cell), Some(writer), "an output ends with another \
-                        version");
+                    let end = end.get(cell);
+                    prop_assert_eq!(end, Some(writer), "an output ends with another version");
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 mod support;
 
-use skiagraph_graph::{Code, Diagnostic, PlanRequest, Run};
+use skiagraph_graph::{Code, Diagnostic, PlanRequest, Run, Severity};
 use support::{Files, Triangle, checked, codes, load, names, plan, right};
 
 const FILL: &str = "struct Params { value: f32 } var<uniform> params: Params;
@@ -21,7 +21,7 @@ fn files(passes: &str, outputs: &str) -> Files {
         ],
         materials: [
             Texture(name: "image", format: R32Float), Texture(name: "blurred", format: R32Float),
-            Texture(name: "layers", format: R32Float, layers: 2),
+            Texture(name: "maps", format: R32Float, layers: 2),
         ],
         passes: [{passes}], outputs: [{outputs}]"#
     );
@@ -109,7 +109,10 @@ fn check_looks_at_every_value_of_a_condition() {
                 .0
                 .to_owned()
         };
-        found.iter().map(condition).collect()
+        let errors = found
+            .iter()
+            .filter(|found| found.severity == Severity::Error);
+        errors.map(condition).collect()
     };
     assert_eq!(told(r#""soft""#), ["with `soft` = false"]);
     assert_eq!(told(r#""engine == plain""#), ["with `engine` = fancy"]);
@@ -123,30 +126,37 @@ fn check_looks_at_every_value_of_a_condition() {
     assert_eq!(told(r#""soft || radius < 9""#), [""; 0]);
 }
 
-/// A group's `if`, `repeat` and `run` are for all of its entries, its `bind` and `set` for each that
-/// asks for such a name.
+/// A group's `if`, `repeat` and `run` are for all of its entries, its `bind` and `set` for each
+/// that asks for such a name.
 #[test]
 fn what_a_group_says() {
     let passes = |group: &str, inside: &str| {
         let passes = format!(
-            r#"{FIRST} Group(name: "all", {group} passes: [
+            r#"Clear(name: "reset", target: "maps"), {FIRST} Group(name: "all", {group} passes: [
                 Fullscreen(name: "one", shader: "blur", color: ["blurred"]{inside}),
-                Fullscreen(name: "two", shader: "fill", color: ["layers[0]"]),
+                Fullscreen(name: "two", shader: "fill", color: ["spare"]),
             ])"#
         );
-        files(&passes, r#""image", "blurred", "layers""#).edited(
-            "graph.ron",
-            "passes: [",
-            r#"passes: [Clear(name: "reset", target: "layers"),"#,
-        )
+        let files = files(&passes, r#""image", "blurred", "maps", "spare""#);
+        let spare = r#"materials: [Texture(name: "spare", format: R32Float),"#;
+        files.edited("graph.ron", "materials: [", spare)
     };
     let plan_of = |group: &str| right(plan(&passes(group, "")));
-    let plain = plan_of("");
-    assert_eq!(names(&plain), ["reset", "fill", "all.one", "all.two"]);
-    assert_eq!(
-        names(&plan_of("repeat: 2,"))[2..4],
-        ["all[0].one", "all[0].two"][..2]
+    assert_eq!(names(&plan_of("")), ["reset", "fill", "all.one", "all.two"]);
+    let twice = plan_of("repeat: 2,");
+    let all: Vec<&str> = twice
+        .all_passes()
+        .iter()
+        .map(|pass| pass.name.as_str())
+        .collect();
+    let each = ["all[0].one", "all[0].two", "all[1].one", "all[1].two"];
+    assert_eq!(all[2..], each);
+    let none = passes("if: false,", "").edited(
+        "graph.ron",
+        r#", "blurred", "maps", "spare"]"#,
+        r#", "maps"]"#,
     );
+    assert_eq!(names(&right(plan(&none))), ["reset", "fill"]);
     let run = |group: &str, pass: usize| plan_of(group).all_passes()[pass].run.clone();
     assert_eq!(
         (run("", 2), run("run: Once,", 2), run("run: Once,", 1)),
@@ -157,9 +167,9 @@ fn what_a_group_says() {
         (&own.all_passes()[2].run, &own.all_passes()[3].run),
         (&Run::OnChange, &Run::Once)
     );
-    let bound = plan_of(r#"bind: {"image": "layers[1]"}, set: {"value": 5},"#);
+    let bound = plan_of(r#"bind: {"image": "maps[1]"}, set: {"value": 5},"#);
     let read = &bound.all_passes()[2].accesses[0];
-    assert_eq!(bound.resource(read.resource).name, "layers");
+    assert_eq!(bound.resource(read.resource).name, "maps");
     assert_eq!(read.part.layers, 1..2);
     assert_eq!(
         bound.all_passes()[3].steps[0]
@@ -167,15 +177,12 @@ fn what_a_group_says() {
             .map(|b| b[..4].to_vec()),
         Some(5f32.to_le_bytes().to_vec())
     );
-    // What the entry says itself stands.
-    let own = right(plan(&passes(
-        r#"bind: {"image": "layers[1]"},"#,
+    // What the entry says itself stands, and leaves nobody who asks the group.
+    let own = passes(
+        r#"bind: {"image": "maps[1]"},"#,
         r#", bind: {"image": "image"}"#,
-    )));
-    assert_eq!(
-        own.resource(own.all_passes()[2].accesses[0].resource).name,
-        "image"
     );
+    assert_eq!(codes(&checked(&own)), [Code::Unasked]);
     for (group, code) in [
         (r#"bind: {"picture": "image"},"#, Code::Unasked),
         (r#"set: {"vlaue": 1},"#, Code::Unasked),
@@ -198,7 +205,7 @@ fn repetitions_and_their_names() {
         let passes = format!(
             r#"Group(name: "each", repeat: {repeat}, passes: [
                 Include(graph: "inner.ron"),
-                Copy(name: "keep", from: "made", to: "layers[index]"),
+                Copy(name: "keep", from: "made", to: "maps[index]"),
             ]),
             Copy(name: "take", from: "{reference}", to: "image")"#
         );

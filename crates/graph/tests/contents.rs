@@ -168,13 +168,18 @@ fn a_texture_that_holds_a_picture() {
     }
 }
 
+/// A buffer of constant numbers, and a shader that sees it.
+fn constant(data: &str, declaration: &str, body: &str) -> Files {
+    let buffer = format!(r#"Buffer(name: "kernel", data: {data})"#);
+    looking(&buffer, "", declaration, body)
+}
+
+fn array(ty: &str) -> String {
+    format!("var<storage, read> kernel: array<{ty}>;")
+}
+
 #[test]
 fn a_buffer_that_holds_numbers_is_laid_out_as_its_shader_sees_it() {
-    let files = |data: &str, declaration: &str, body: &str| {
-        let buffer = format!(r#"Buffer(name: "kernel", data: {data})"#);
-        looking(&buffer, "", declaration, body)
-    };
-    let array = |ty: &str| format!("var<storage, read> kernel: array<{ty}>;");
     let item = "struct Item { weight: f32, at: vec2<i32> }";
     let words = |files: &Files| -> Vec<u32> {
         let found = right(plan(files));
@@ -227,11 +232,15 @@ fn a_buffer_that_holds_numbers_is_laid_out_as_its_shader_sees_it() {
         ),
     ] {
         assert_eq!(
-            words(&files(data, &declaration, body)),
+            words(&constant(data, &declaration, body)),
             expected,
             "{declaration}"
         );
     }
+}
+
+#[test]
+fn numbers_that_do_not_fit_their_shader() {
     for (data, declaration, body, code) in [
         (
             "[0.5]",
@@ -263,7 +272,7 @@ fn a_buffer_that_holds_numbers_is_laid_out_as_its_shader_sees_it() {
             Code::ResourceKind,
         ),
     ] {
-        let found = checked(&files(data, &declaration, body));
+        let found = checked(&constant(data, &declaration, body));
         assert_eq!(
             found.first().map(|found| found.code),
             Some(code),

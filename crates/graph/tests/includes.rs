@@ -156,136 +156,162 @@ fn a_param_with_a_default_is_the_included_documents_own() {
     assert_eq!(codes(&checked(&unknown)), [Code::UnknownParam]);
 }
 
+/// What an include says, what is edited (of `inner.ron` or `graph.ron`), and what is said of that.
+type Wrong<'t> = (&'t str, &'t [[&'t str; 3]], Code, &'t str);
+
+#[track_caller]
+fn assert_wrong(rows: &[Wrong<'_>]) {
+    for (fields, edits, code, message) in rows {
+        let include = format!(r#"Include(graph: "inner.ron"{fields})"#);
+        let files = edits
+            .iter()
+            .fold(outer(&include, r#""result""#), |files, edit| {
+                let [file, from, to] = *edit;
+                files.edited(file, from, to)
+            });
+        let found = checked(&files);
+        assert_eq!(found[0].code, *code, "{message}: {found:?}");
+        assert_eq!(found[0].message, *message);
+    }
+}
+
+const INNER_IMAGE: &str = r#"inputs: [Texture(name: "image", format: R32Float)"#;
+const INNER_VALUE: &str = r#"F32(name: "value")"#;
+const OUTER_OUTPUTS: &str = r#"outputs: ["result"]"#;
+
 #[test]
-fn what_does_not_pass_the_border_is_told_at_both_of_its_ends() {
-    let include = |fields: &str| {
-        outer(
-            &format!(r#"Include(graph: "inner.ron"{fields})"#),
-            r#""result""#,
-        )
-    };
-    let plain = include("");
-    for (files, code, message) in [
+fn an_input_is_of_the_kind_and_format_that_is_asked_for() {
+    assert_wrong(&[
         (
-            plain
-                .clone()
-                .edited("graph.ron", r#"name: "image""#, r#"name: "picture""#)
-                .edited("graph.ron", r#"color: ["image"]"#, r#"color: ["picture"]"#),
+            "",
+            &[
+                ["graph.ron", r#"name: "image""#, r#"name: "picture""#],
+                ["graph.ron", r#"color: ["image"]"#, r#"color: ["picture"]"#],
+            ],
             Code::Input,
             "`inner.ron` asks for `image`, a texture R32Float",
         ),
         (
-            plain.clone().edited(
+            "",
+            &[[
                 "inner.ron",
-                "R32Float)],\n    materials",
-                "R32Uint)],\n    materials",
-            ),
+                INNER_IMAGE,
+                r#"inputs: [Texture(name: "image", format: R32Uint)"#,
+            ]],
             Code::Input,
             "`inner.ron` asks for `image`, a texture R32Uint; here it is a texture R32Float",
         ),
         (
-            plain.clone().edited(
+            "",
+            &[[
                 "inner.ron",
-                r#"inputs: [Texture(name: "image", format: R32Float)"#,
+                INNER_IMAGE,
                 r#"inputs: [Buffer(name: "image")"#,
-            ),
+            ]],
             Code::Input,
             "`inner.ron` asks for `image`, a buffer; here it is a texture R32Float",
         ),
         (
-            plain.clone().edited(
+            "",
+            &[
+                ["inner.ron", r#"color: ["own"]"#, r#"color: ["image"]"#],
+                ["inner.ron", r#"bind: {"image": "own"}"#, r#"bind: {}"#],
+                ["inner.ron", r#"shader: "look""#, r#"shader: "fill""#],
+                [
+                    "inner.ron",
+                    r#"name: "look""#,
+                    r#"name: "look", shader: "fill""#,
+                ],
+            ],
+            Code::Input,
+            "the input `image` is written, and is no output",
+        ),
+    ]);
+}
+
+#[test]
+fn a_param_goes_where_all_of_its_values_may() {
+    let misfit = "`value` here may be what `value` there may not";
+    assert_wrong(&[
+        (
+            "",
+            &[[
                 "inner.ron",
-                r#"F32(name: "value")"#,
+                INNER_VALUE,
                 r#"F32(name: "weight"), F32(name: "value", default: 1)"#,
-            ),
+            ]],
             Code::ParamValue,
             "`inner.ron` asks for the param `weight`",
         ),
         (
-            plain.clone().edited(
-                "inner.ron",
-                r#"F32(name: "value")"#,
-                r#"F32(name: "value", max: 2)"#,
-            ),
+            "",
+            &[["inner.ron", INNER_VALUE, r#"F32(name: "value", max: 2)"#]],
             Code::ParamValue,
-            "`value` here may be what `value` there may not",
+            misfit,
         ),
         (
-            plain
-                .clone()
-                .edited("graph.ron", "F32(name: \"value\"", "U32(name: \"value\"")
-                .edited(
+            "",
+            &[
+                ["graph.ron", r#"F32(name: "value""#, r#"U32(name: "value""#],
+                [
                     "graph.ron",
-                    "Fullscreen(name: \"fill\", color: [\"image\"])",
-                    "Clear(name: \"fill\", target: \"image\")",
-                ),
+                    r#"Fullscreen(name: "fill", color: ["image"])"#,
+                    FILLED,
+                ],
+            ],
             Code::ParamValue,
-            "`value` here may be what `value` there may not",
+            misfit,
         ),
         (
-            include(r#", set: {"edge": 65}"#),
+            r#", set: {"edge": 65}"#,
+            &[],
             Code::ParamValue,
             "the value for param `edge` does not fit",
         ),
+    ]);
+}
+
+const FILLED: &str = r#"Clear(name: "fill", target: "image")"#;
+
+#[test]
+fn nothing_else_crosses_the_border() {
+    let output = |material: &'static str| ["graph.ron", OUTER_OUTPUTS, material];
+    assert_wrong(&[
         (
-            include(r#", bind: {"own": "image"}"#),
+            r#", bind: {"own": "image"}"#,
+            &[],
             Code::Unasked,
             "`inner.ron` has no input, output or param `own`",
         ),
         (
-            include(r#", set: {"vlaue": 1}"#),
+            r#", set: {"vlaue": 1}"#,
+            &[],
             Code::Unasked,
             "`inner.ron` has no input, output or param `vlaue`",
         ),
         (
-            plain.clone().edited(
-                "graph.ron",
-                "outputs: [\"result\"]",
-                "outputs: [(name: \"result\", material: \"own\")]",
-            ),
+            "",
+            &[output(r#"outputs: ["own"]"#)],
             Code::UnknownResource,
             "nothing is called `own`",
         ),
         (
-            include(r#", name: "left""#).edited(
-                "graph.ron",
-                "outputs: [\"result\"]",
-                "outputs: [(name: \"result\", material: \"left.own\")]",
-            ),
+            r#", name: "left""#,
+            &[output(r#"outputs: [(name: "own", material: "left.own")]"#)],
             Code::UnknownResource,
             "`left` gives no `own`",
         ),
         (
-            plain.clone().edited(
+            "",
+            &[[
                 "inner.ron",
-                r#"bind: {"image": "own"}"#,
-                r#"bind: {"image": "other[0]"}"#,
-            ),
+                r#"{"image": "own"}"#,
+                r#"{"image": "other[0]"}"#,
+            ]],
             Code::UnknownResource,
             "nothing is called `other`",
         ),
-        (
-            plain
-                .clone()
-                .edited("inner.ron", r#"color: ["own"]"#, r#"color: ["image"]"#)
-                .edited(
-                    "inner.ron",
-                    r#"shader: "look", color: ["result"], bind: {"image": "own"}"#,
-                    r#"shader: "fill", color: ["result"]"#,
-                )
-                .edited(
-                    "inner.ron",
-                    r#"name: "look""#,
-                    r#"name: "look", shader: "fill""#,
-                ),
-            Code::Input,
-            "the input `image` is written, and is no output",
-        ),
-    ] {
-        let found = checked(&files);
-        assert_eq!(found[0].code, code, "{message}: {found:?}");
-        assert_eq!(found[0].message, message);
-    }
+    ]);
 }
 
 /// An included document is judged by its outputs as any other is.

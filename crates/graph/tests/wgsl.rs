@@ -225,6 +225,75 @@ fn binding_numbers() {
     right(with(module, clash, "a[0] = b[0] + c[0];"));
 }
 
+const STORAGE: &str = "var<storage, read_write> items: array<u32>;";
+const ATOMIC: &str = "var<storage, read_write> items: array<atomic<u32>>;";
+const WRITE_ONLY: &str = "var items: texture_storage_2d<r32uint, write>;";
+const READ_WRITE: &str = "var items: texture_storage_2d<r32uint, read_write>;";
+const SAMPLED: &str = "var items: texture_2d<u32>;";
+
+/// What a shader does to `items`, its declaration and body, and whether that needs a write before.
+const ACCESSES: &[(&str, &str, &str, bool)] = &[
+    ("a read", STORAGE, "total = items[0];", true),
+    (
+        "a read of a read-only buffer",
+        "var<storage, read> items: array<u32>;",
+        "total = items[0];",
+        true,
+    ),
+    ("a write", STORAGE, "items[0] = 1u;", false),
+    ("a read and a write", STORAGE, "items[0] += 1u;", true),
+    (
+        "a write through a pointer",
+        STORAGE,
+        "let p = &items[1]; *p = 2u;",
+        false,
+    ),
+    (
+        "an atomic addition",
+        ATOMIC,
+        "atomicAdd(&items[0], 1u);",
+        true,
+    ),
+    (
+        "an atomic load",
+        ATOMIC,
+        "total = atomicLoad(&items[0]);",
+        true,
+    ),
+    (
+        "an atomic store",
+        ATOMIC,
+        "atomicStore(&items[0], 1u);",
+        false,
+    ),
+    ("its length", STORAGE, "total = arrayLength(&items);", false),
+    (
+        "a texture store",
+        WRITE_ONLY,
+        "textureStore(items, vec2<u32>(0u), vec4<u32>(1u));",
+        false,
+    ),
+    (
+        "a texture load and store",
+        READ_WRITE,
+        "textureStore(items, vec2<u32>(0u), textureLoad(items, vec2<u32>(0u)));",
+        true,
+    ),
+    (
+        "a texture load",
+        SAMPLED,
+        "total = textureLoad(items, vec2<u32>(0u), 0).x;",
+        true,
+    ),
+    (
+        "a texture's size",
+        SAMPLED,
+        "total = textureDimensions(items).x;",
+        false,
+    ),
+    ("a global that nobody uses", SAMPLED, "", false),
+];
+
 /// What a pass does to `items`, told by what the graph demands: a read or a change needs a write
 /// before.
 #[test]
@@ -249,73 +318,7 @@ fn access_is_derived_from_the_shader() {
         );
         plan(&Files::graph(&sections).with("main.wgsl", shader))
     };
-    let storage = "var<storage, read_write> items: array<u32>;";
-    let atomic = "var<storage, read_write> items: array<atomic<u32>>;";
-    let write_only = "var items: texture_storage_2d<r32uint, write>;";
-    let read_write = "var items: texture_storage_2d<r32uint, read_write>;";
-    let sampled = "var items: texture_2d<u32>;";
-    let table = [
-        ("a read", storage, "total = items[0];", true),
-        (
-            "a read of a read-only buffer",
-            "var<storage, read> items: array<u32>;",
-            "total = items[0];",
-            true,
-        ),
-        ("a write", storage, "items[0] = 1u;", false),
-        ("a read and a write", storage, "items[0] += 1u;", true),
-        (
-            "a write through a pointer",
-            storage,
-            "let p = &items[1]; *p = 2u;",
-            false,
-        ),
-        (
-            "an atomic addition",
-            atomic,
-            "atomicAdd(&items[0], 1u);",
-            true,
-        ),
-        (
-            "an atomic load",
-            atomic,
-            "total = atomicLoad(&items[0]);",
-            true,
-        ),
-        (
-            "an atomic store",
-            atomic,
-            "atomicStore(&items[0], 1u);",
-            false,
-        ),
-        ("its length", storage, "total = arrayLength(&items);", false),
-        (
-            "a texture store",
-            write_only,
-            "textureStore(items, vec2<u32>(0u), vec4<u32>(1u));",
-            false,
-        ),
-        (
-            "a texture load and store",
-            read_write,
-            "textureStore(items, vec2<u32>(0u), textureLoad(items, vec2<u32>(0u)));",
-            true,
-        ),
-        (
-            "a texture load",
-            sampled,
-            "total = textureLoad(items, vec2<u32>(0u), 0).x;",
-            true,
-        ),
-        (
-            "a texture's size",
-            sampled,
-            "total = textureDimensions(items).x;",
-            false,
-        ),
-        ("a global that nobody uses", sampled, "", false),
-    ];
-    for (what, declaration, body, reads) in table {
+    for &(what, declaration, body, reads) in ACCESSES {
         let without = needs_clear(declaration, body, false);
         match (without, reads) {
             (Ok(_), false) => {}

@@ -1,11 +1,16 @@
 #import "shared/receiver.wgsl"
-var count: texture_2d<u32>;
+var depth_stencil: texture_2d<u32>;
+var crossed: texture_2d<f32>;
 struct Answer { @location(0) visibility: u32, @location(1) status: u32 }
-@fragment fn fragment(@builtin(position) centre: vec4<f32>) -> Answer {
-    let pixel = vec2<u32>(centre.xy);
+
+fn answer(pixel: vec2<u32>, shadow: bool) -> Answer {
     var status = initial_status(pixel, textureLoad(position, pixel, 0));
-    if status == STATUS_UNCERTAIN {
-        status = select(STATUS_LIGHT, STATUS_SHADOW, textureLoad(count, pixel, 0).x != 0u);
-    }
+    if status == STATUS_UNCERTAIN { status = select(STATUS_LIGHT, STATUS_SHADOW, shadow); }
     return Answer(initial_visibility(status), status);
+}
+@fragment fn stencil(@builtin(position) centre: vec4<f32>) -> Answer {
+    return answer(vec2<u32>(centre.xy), textureLoad(depth_stencil, vec2<u32>(centre.xy), 0).x != 0u);
+}
+@fragment fn additive(@builtin(position) centre: vec4<f32>) -> Answer {
+    return answer(vec2<u32>(centre.xy), textureLoad(crossed, vec2<u32>(centre.xy), 0).x > 0.5);
 }

@@ -100,7 +100,6 @@ fn a_depth_is_cleared_kept_and_written_as_its_fields_say() {
             "#
         ));
         let files = files.with("cover.wgsl", COVER);
-        let files = files.edited("cover.wgsl", "@location(0) f32 { return 1.0; }", "@location(0) f32 { return 1.0; }");
         assert_eq!(floats(&files, "depth"), [expected; 16], "{fields}");
     }
 }
@@ -108,7 +107,11 @@ fn a_depth_is_cleared_kept_and_written_as_its_fields_say() {
 #[test]
 fn what_lies_behind_the_far_plane_is_drawn_where_nothing_is_clipped() {
     let depth = r#"Texture(name: "depth", format: Depth32Float)"#;
-    assert!(GPU.device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL));
+    assert!(
+        GPU.device
+            .features()
+            .contains(wgpu::Features::DEPTH_CLIP_CONTROL)
+    );
     for (unclipped, expected) in [(true, 1.0), (false, 0.0)] {
         let fields = format!(
             r#"set: {{"z": 1.5, "turned": false}}, unclipped: {unclipped},
@@ -157,11 +160,31 @@ fn the_stencil_is_written_and_tested() {
         (0, "front: (pass: DecrementClamp)", 0),
         (0, "front: (pass: DecrementWrap)", 255),
         (7, "front: (compare: Never, fail: Zero, pass: Invert)", 0),
-        (7, "front: (compare: Equal, fail: Zero, pass: Invert), reference: 7", 248),
-        (7, "front: (compare: Less, fail: Zero, pass: Invert), reference: 7", 0),
-        (7, "front: (compare: Less, fail: Zero, pass: Invert), reference: 6", 248),
-        (0x17, "front: (compare: Equal, pass: Zero), reference: 7, read_mask: 15", 0),
-        (0x70, "front: (pass: Replace), reference: 255, write_mask: 15", 0x7f),
+        (
+            7,
+            "front: (compare: Equal, fail: Zero, pass: Invert), reference: 7",
+            248,
+        ),
+        (
+            7,
+            "front: (compare: Less, fail: Zero, pass: Invert), reference: 7",
+            0,
+        ),
+        (
+            7,
+            "front: (compare: Less, fail: Zero, pass: Invert), reference: 6",
+            248,
+        ),
+        (
+            0x17,
+            "front: (compare: Equal, pass: Zero), reference: 7, read_mask: 15",
+            0,
+        ),
+        (
+            0x70,
+            "front: (pass: Replace), reference: 255, write_mask: 15",
+            0x7f,
+        ),
         (7, "front: (depth_fail: Zero)", 7),
         (7, "back: (pass: Zero)", 7),
     ] {
@@ -220,7 +243,10 @@ fn both_aspects_of_one_texture_are_bound() {
             let pixel = vec2<u32>(centre.xy);
             return vec2(textureLoad(depth, pixel, 0), f32(textureLoad(stencil, pixel, 0).x));
         }";
-    assert_eq!(floats(&files.with("see.wgsl", see), "seen"), [1.0, 200.0].repeat(16));
+    assert_eq!(
+        floats(&files.with("see.wgsl", see), "seen"),
+        [1.0, 200.0].repeat(16)
+    );
 }
 
 /// Where the triangle's parameter is 0 at the rectangle's left and 1 at its right.
@@ -468,7 +494,14 @@ fn each_layer_and_mip_is_a_target() {
     let parts = content.split();
     let parts: Vec<Vec<f32>> = parts.iter().filter_map(|part| part.as_f32()).collect();
     // The layers of mip 0, then those of mip 1.
-    let expected = [(16, -1.0), (16, 10.0), (16, -1.0), (4, -1.0), (4, -1.0), (4, 20.0)];
+    let expected = [
+        (16, -1.0),
+        (16, 10.0),
+        (16, -1.0),
+        (4, -1.0),
+        (4, -1.0),
+        (4, 20.0),
+    ];
     assert_eq!(parts, expected.map(|(texels, value)| vec![value; texels]));
 }
 
@@ -498,7 +531,9 @@ fn a_fragment_shader_writes_a_buffer_and_a_texture() {
         }";
     let mut running = Running::new(&files.with("write.wgsl", write));
     assert_eq!(running.words("seen"), [100, 101, 102, 103].repeat(4));
-    let swapped = (0..16).map(|at| 10 * (at % 4) + at / 4).collect::<Vec<u32>>();
+    let swapped = (0..16)
+        .map(|at| 10 * (at % 4) + at / 4)
+        .collect::<Vec<u32>>();
     assert_eq!(running.words("swapped"), swapped);
     assert_eq!(running.floats("image"), [1.0; 16]);
 }
@@ -556,8 +591,10 @@ fn a_pass_names_its_entry_points() {
         params: [Bool(name: "negative", default: false)],
         materials: [Texture(name: "image", format: R32Float)],
         passes: [
-            Fullscreen(name: "one", if: "!negative", shader: "two", fragment: "plus", color: ["image"]),
-            Fullscreen(name: "other", if: "negative", shader: "two", fragment: "minus", color: ["image"]),
+            Fullscreen(name: "one", if: "!negative", shader: "two", fragment: "plus",
+                color: ["image"]),
+            Fullscreen(name: "other", if: "negative", shader: "two", fragment: "minus",
+                color: ["image"]),
         ],
         outputs: ["image"],
         "#,
@@ -567,6 +604,9 @@ fn a_pass_names_its_entry_points() {
     let files = files.with("two.wgsl", two);
     for (negative, expected) in [(false, 1.0), (true, -1.0)] {
         let params = [("negative", ParamValue::Bool(negative))];
-        assert_eq!(Running::with(&files, &params).floats("image"), [expected; 16]);
+        assert_eq!(
+            Running::with(&files, &params).floats("image"),
+            [expected; 16]
+        );
     }
 }

@@ -1,0 +1,634 @@
+//! Materials, params, conditions and dispatches: each feature by itself on the device, to the bit.
+
+mod featured;
+#[path = "../../graph/tests/support/mod.rs"]
+mod support;
+
+use featured::{Running, VALUE, buffer_floats, floats, words};
+use skiagraph_graph::ParamValue;
+use support::Files;
+
+/// Writes what `source` holds in the same place, in mip 0 of what is bound.
+const READ: &str = "var source: texture_2d<f32>;
+    @fragment fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) f32 {
+        return textureLoad(source, vec2<u32>(centre.xy), 0).x;
+    }";
+
+/// Writes 4 · row + column.
+const COUNT: &str = "@fragment fn fragment(@builtin(position) centre: vec4<f32>)
+    -> @location(0) f32 {
+        return 4.0 * floor(centre.y) + floor(centre.x);
+    }";
+
+#[test]
+fn a_solid_texture_is_written_by_slice_and_by_texel_and_read_everywhere() {
+    let files = Files::graph(
+        r#"
+        materials: [
+            Texture(name: "solid", format: R32Float, size: (4, 2, 3)),
+            Texture(name: "slice", format: R32Float, size: (4, 2)),
+            Texture(name: "sum", format: R32Float, size: (4, 2)),
+        ],
+        passes: [
+            Compute(name: "fill", dispatch: Over("solid.size"), overwrites: ["solid"]),
+            Fullscreen(name: "value", color: ["solid[1]"], set: {"value": 1000}),
+            Copy(name: "take", from: "solid[2]", to: "slice"),
+            Fullscreen(name: "add", color: ["sum"]),
+        ],
+        outputs: ["solid", "slice", "sum"],
+        "#,
+    );
+    let fill = "var solid: texture_storage_3d<r32float, write>;
+        @compute @workgroup_size(2, 2, 2) fn main(@builtin(global_invocation_id) at: vec3<u32>) {
+            if all(at < textureDimensions(solid)) {
+                textureStore(solid, at, vec4(f32(at.x + 10u * at.y + 100u * at.z)));
+            }
+        }";
+    let add = "var solid: texture_3d<f32>;
+        @fragment fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) f32 {
+            let at = vec2<u32>(centre.xy);
+            return textureLoad(solid, vec3(at, 0u), 0).x + textureLoad(solid, vec3(at, 1u), 0).x
+                + textureLoad(solid, vec3(at, 2u), 0).x;
+        }";
+    let files = files.with("fill.wgsl", fill).with("add.wgsl", add);
+    let mut running = Running::new(&files.with("value.wgsl", VALUE));
+    let first = [0.0, 1.0, 2.0, 3.0, 10.0, 11.0, 12.0, 13.0];
+    let last = first.map(|value| value + 200.0);
+    let all = [first, [1000.0; 8], last].concat();
+    assert_eq!(running.floats("solid"), all);
+    assert_eq!(running.floats("slice"), last);
+    let sum: Vec<f32> = (0..8).map(|at| first[at] + 1000.0 + last[at]).collect();
+    assert_eq!(running.floats("sum"), sum);
+}
+
+#[test]
+fn a_texture_from_a_file_holds_its_picture() {
+    let files = Files::graph(
+        r#"
+        materials: [
+            Texture(name: "noise", format: R8Unorm, file: "noise.png"),
+            Texture(name: "image", format: R32Float, size: "noise.size"),
+        ],
+        passes: [
+            Fullscreen(name: "read", color: ["image"], bind: {"source": "noise"}),
+        ],
+        outputs: ["image"],
+        "#,
+    );
+    let files = files.picture("noise.png", 3, &[0, 51, 102, 153, 204, 255]);
+    let found = floats(&files.with("read.wgsl", READ), "image");
+    assert_eq!(found, [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]);
+}
+
+#[test]
+fn a_buffer_with_data_holds_numbers_in_the_layout_of_its_shaders() {
+    let files = Files::graph(
+        r#"
+        materials: [
+            Buffer(name: "kernel", data: [0.25, 0.5, -1]),
+            Buffer(name: "items", data: [((1, 2, 3), 4), ((5, 6, 7), 8)]),
+            Buffer(name: "table", data: [(7, 9)]),
+            Buffer(name: "found", count: 12),
+        ],
+        passes: [Compute(name: "gather", dispatch: Groups(1, 1, 1), overwrites: ["found"])],
+        outputs: ["found"],
+        "#,
+    );
+    let gather = "struct Item { at: vec3<f32>, number: u32 }
+        var<storage, read> kernel: array<f32>;
+        var<storage, read> items: array<Item>;
+        var<uniform> table: vec2<i32>;
+        var<storage, read_write> found: array<f32>;
+        @compute @workgroup_size(1) fn main() {
+            for (var at = 0u; at < arrayLength(&kernel); at++) { found[at] = kernel[at]; }
+            for (var at = 0u; at < arrayLength(&items); at++) {
+                found[3u + 4u * at] = items[at].at.x;
+                found[4u + 4u * at] = items[at].at.y;
+                found[5u + 4u * at] = items[at].at.z;
+                found[6u + 4u * at] = f32(items[at].number);
+            }
+            found[11] = f32(table.x * table.y);
+        }";
+    let found = buffer_floats(&files.with("gather.wgsl", gather), "found");
+    let items = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
+    assert_eq!(found, [&[0.25, 0.5, -1.0][..], &items, &[63.0]].concat());
+}
+
+#[test]
+fn one_shader_blurs_in_two_directions() {
+    let files = Files::graph(
+        r#"
+        materials: [
+            Texture(name: "image", format: R32Float),
+            Texture(name: "across", format: "image.format", size: "image.size"),
+        ],
+        passes: [
+            Fullscreen(name: "dot", color: ["image"]),
+            Fullscreen(name: "x", shader: "blur", color: ["across"],
+                bind: {"source": "image"}, set: {"direction": (1, 0)}),
+            Fullscreen(name: "y", shader: "blur", color: ["image"],
+                bind: {"source": "across"}, set: {"direction": (0, 1), "WEIGHT": 2}),
+        ],
+        outputs: ["image", "across"],
+        "#,
+    );
+    let dot = "@fragment fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) f32 {
+            return select(0.0, 8.0, all(centre.xy == vec2(1.5, 2.5)));
+        }";
+    let blur = "struct Params { direction: vec2<i32> }
+        var<uniform> params: Params;
+        override WEIGHT: i32 = 1;
+        var source: texture_2d<f32>;
+        @fragment fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) f32 {
+            let at = vec2<i32>(centre.xy);
+            return f32(WEIGHT) * (textureLoad(source, at - params.direction, 0).x
+                + 2.0 * textureLoad(source, at, 0).x
+                + textureLoad(source, at + params.direction, 0).x) / 4.0;
+        }";
+    let files = files.with("dot.wgsl", dot).with("blur.wgsl", blur);
+    let mut running = Running::new(&files);
+    #[rustfmt::skip]
+    assert_eq!(running.floats("across"), [
+        0.0, 0.0, 0.0, 0.0,
+        0.0, 0.0, 0.0, 0.0,
+        2.0, 4.0, 2.0, 0.0,
+        0.0, 0.0, 0.0, 0.0,
+    ]);
+    #[rustfmt::skip]
+    assert_eq!(running.floats("image"), [
+        0.0, 0.0, 0.0, 0.0,
+        1.0, 2.0, 1.0, 0.0,
+        2.0, 4.0, 2.0, 0.0,
+        1.0, 2.0, 1.0, 0.0,
+    ]);
+}
+
+/// 4 · row + column, and the means of four, of sixteen.
+#[test]
+fn each_mip_of_a_full_chain_is_made_of_the_one_before() {
+    let files = Files::graph(
+        r#"
+        materials: [Texture(name: "chain", format: R32Float, mips: All)],
+        passes: [
+            Fullscreen(name: "count", color: ["chain.mip[0]"]),
+            Fullscreen(name: "halve", repeat: "chain.mips - 1",
+                color: ["chain.mip[index + 1]"], bind: {"source": "chain.mip[index]"}),
+        ],
+        outputs: ["chain"],
+        "#,
+    );
+    let halve = "var source: texture_2d<f32>;
+        @fragment fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) f32 {
+            let at = 2u * vec2<u32>(centre.xy);
+            return (textureLoad(source, at, 0).x + textureLoad(source, at + vec2(1u, 0u), 0).x
+                + textureLoad(source, at + vec2(0u, 1u), 0).x
+                + textureLoad(source, at + vec2(1u, 1u), 0).x) / 4.0;
+        }";
+    let files = files.with("count.wgsl", COUNT).with("halve.wgsl", halve);
+    let first: Vec<f32> = (0..16).map(|at| at as f32).collect();
+    let rest = [2.5, 4.5, 10.5, 12.5, 7.5];
+    assert_eq!(floats(&files, "chain"), [&first[..], &rest].concat());
+}
+
+#[test]
+fn layers_are_written_one_by_one_and_read_as_an_array() {
+    let files = Files::graph(
+        r#"
+        params: [U32(name: "count", default: 3)],
+        materials: [
+            Texture(name: "maps", format: R32Float, layers: "count"),
+            Texture(name: "sum", format: R32Float),
+            Texture(name: "two", format: R32Float),
+        ],
+        passes: [
+            Fullscreen(name: "fill", shader: "value", repeat: "count", color: ["maps[index]"],
+                set: {"value": "index + 1"}),
+            Fullscreen(name: "add", color: ["sum"]),
+            Fullscreen(name: "some", shader: "add", color: ["two"], bind: {"maps": "maps[1..3]"}),
+        ],
+        outputs: ["sum", "two"],
+        "#,
+    );
+    let add = "var maps: texture_2d_array<f32>;
+        @fragment fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) f32 {
+            var sum = 0.0;
+            for (var layer = 0u; layer < textureNumLayers(maps); layer++) {
+                sum = 10.0 * sum + textureLoad(maps, vec2<u32>(centre.xy), layer, 0).x;
+            }
+            return sum;
+        }";
+    // `count` is an attribute's word, but params have a namespace of their own.
+    let mut running = Running::new(&files.with("value.wgsl", VALUE).with("add.wgsl", add));
+    assert_eq!(running.floats("sum"), [123.0; 16]);
+    assert_eq!(running.floats("two"), [23.0; 16]);
+}
+
+#[test]
+fn six_layers_are_a_cube() {
+    let files = Files::graph(
+        r#"
+        materials: [
+            Texture(name: "sky", format: R16Float, size: 4, layers: 6),
+            Sampler(name: "nearest"),
+            Buffer(name: "found", count: 6),
+        ],
+        passes: [
+            Fullscreen(name: "side", repeat: 6, shader: "value", color: ["sky[index]"],
+                set: {"value": "index"}),
+            Compute(name: "look", dispatch: Groups(1, 1, 1), overwrites: ["found"]),
+        ],
+        outputs: ["found"],
+        "#,
+    );
+    let look = "var sky: texture_cube<f32>;
+        var nearest: sampler;
+        var<storage, read_write> found: array<f32>;
+        @compute @workgroup_size(1) fn main() {
+            for (var axis = 0u; axis < 3u; axis++) {
+                let way = vec3<f32>(vec3(axis) == vec3(0u, 1u, 2u));
+                found[2u * axis] = textureSampleLevel(sky, nearest, way, 0.0).x;
+                found[2u * axis + 1u] = textureSampleLevel(sky, nearest, -way, 0.0).x;
+            }
+        }";
+    let files = files.with("value.wgsl", VALUE).with("look.wgsl", look);
+    assert_eq!(
+        buffer_floats(&files, "found"),
+        [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+    );
+}
+
+/// A texture of 0 and 1, and the place between them, outside at the left, and at three quarters.
+#[test]
+fn a_sampler_filters_repeats_and_compares() {
+    for (sampler, expected) in [
+        ("filter: Nearest", [1.0, 0.0, 1.0]),
+        ("filter: Linear", [0.5, 0.0, 1.0]),
+        ("address: Repeat", [1.0, 1.0, 1.0]),
+        ("filter: Linear, address: Repeat", [0.5, 1.0, 1.0]),
+        ("filter: Nearest, address: MirrorRepeat", [1.0, 0.0, 1.0]),
+    ] {
+        let files = Files::graph(&format!(
+            r#"
+            materials: [
+                Texture(name: "pair", format: R8Unorm, file: "pair.png"),
+                Sampler(name: "at", {sampler}),
+                Buffer(name: "found", count: 3),
+            ],
+            passes: [Compute(name: "look", dispatch: Groups(1, 1, 1), overwrites: ["found"])],
+            outputs: ["found"],
+            "#
+        ));
+        let look = "var pair: texture_2d<f32>;
+            var at: sampler;
+            var<storage, read_write> found: array<f32>;
+            @compute @workgroup_size(1) fn main() {
+                found[0] = textureSampleLevel(pair, at, vec2(0.5, 0.5), 0.0).x;
+                found[1] = textureSampleLevel(pair, at, vec2(-0.25, 0.5), 0.0).x;
+                found[2] = textureSampleLevel(pair, at, vec2(0.75, 0.5), 0.0).x;
+            }";
+        let files = files
+            .picture("pair.png", 2, &[0, 255])
+            .with("look.wgsl", look);
+        assert_eq!(buffer_floats(&files, "found"), expected, "{sampler}");
+    }
+}
+
+#[test]
+fn a_comparison_sampler_says_how_a_depth_compares() {
+    for (compare, expected) in [("LessEqual", [1.0, 0.0]), ("Greater", [0.0, 1.0])] {
+        let files = Files::graph(&format!(
+            r#"
+            materials: [
+                Texture(name: "depth", format: Depth32Float),
+                Sampler(name: "closer", filter: Linear, compare: {compare}),
+                Buffer(name: "found", count: 2),
+            ],
+            passes: [
+                Clear(name: "reset", target: "depth", value: 0.5),
+                Compute(name: "look", dispatch: Groups(1, 1, 1), overwrites: ["found"]),
+            ],
+            outputs: ["found"],
+            "#
+        ));
+        let look = "var depth: texture_depth_2d;
+            var closer: sampler_comparison;
+            var<storage, read_write> found: array<f32>;
+            @compute @workgroup_size(1) fn main() {
+                found[0] = textureSampleCompareLevel(depth, closer, vec2(0.5), 0.25);
+                found[1] = textureSampleCompareLevel(depth, closer, vec2(0.5), 0.75);
+            }";
+        let found = buffer_floats(&files.with("look.wgsl", look), "found");
+        assert_eq!(found, expected, "{compare}");
+    }
+}
+
+#[test]
+fn params_of_every_type_arrive_in_the_shader() {
+    let files = Files::graph(
+        r#"
+        params: [
+            F32(name: "f", default: -0.5), I32(name: "i", default: -7), U32(name: "u", default: 9),
+            Bool(name: "b", default: true), Choice(name: "c", words: [x, y, z], default: z),
+            Vec2(name: "v2", default: (1, 2)), Vec3(name: "v3", default: (3, 4, 5)),
+            Vec4(name: "v4", default: (6, 7, 8, 9)), F32(name: "twice", default: "2 * u + i"),
+        ],
+        materials: [Buffer(name: "found", count: 16)],
+        passes: [Compute(name: "gather", dispatch: Groups(1, 1, 1), overwrites: ["found"])],
+        outputs: ["found"],
+        "#,
+    );
+    let gather = "struct Params {
+            f: f32, v2: vec2<f32>, i: i32, v3: vec3<f32>, u: u32, b: u32, v4: vec4<f32>, c: u32,
+        }
+        var<uniform> params: Params;
+        override twice: f32;
+        var<storage, read_write> found: array<f32>;
+        @compute @workgroup_size(1) fn main() {
+            let p = params;
+            found[0] = p.f; found[1] = f32(p.i); found[2] = f32(p.u); found[3] = f32(p.b);
+            found[4] = f32(p.c); found[5] = p.v2.x; found[6] = p.v2.y; found[7] = p.v3.x;
+            found[8] = p.v3.y; found[9] = p.v3.z; found[10] = p.v4.x; found[11] = p.v4.y;
+            found[12] = p.v4.z; found[13] = p.v4.w; found[14] = twice;
+            found[15] = f32(C_X) + 10.0 * f32(C_Y) + 100.0 * f32(C_Z);
+        }";
+    let found = buffer_floats(&files.with("gather.wgsl", gather), "found");
+    let params = [-0.5, -7.0, 9.0, 1.0, 2.0];
+    let vectors = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
+    assert_eq!(found, [&params[..], &vectors, &[11.0, 210.0]].concat());
+}
+
+#[test]
+fn a_word_of_a_choice_is_a_constant_of_the_shader() {
+    let files = Files::graph(
+        r#"
+        params: [Choice(name: "mode", words: [off, half, full], default: half)],
+        materials: [Texture(name: "image", format: R32Float)],
+        passes: [Fullscreen(name: "choose", color: ["image"])],
+        outputs: ["image"],
+        "#,
+    );
+    let choose = "struct Params { mode: u32 }
+        var<uniform> params: Params;
+        @fragment fn fragment() -> @location(0) f32 {
+            if params.mode == MODE_HALF { return 0.5; }
+            return select(0.0, 1.0, params.mode == MODE_FULL);
+        }";
+    let files = files.with("choose.wgsl", choose);
+    for (word, expected) in [("off", 0.0), ("half", 0.5), ("full", 1.0)] {
+        let params = [("mode", ParamValue::Choice(word.into()))];
+        assert_eq!(
+            Running::with(&files, &params).floats("image"),
+            [expected; 16],
+            "{word}"
+        );
+    }
+    assert_eq!(floats(&files, "image"), [0.5; 16]);
+}
+
+/// Each `if` is decided when the graph is planned: by params, words, sizes, the device.
+#[test]
+fn what_is_there_depends_on_params_sizes_and_the_device() {
+    for (condition, is_there) in [
+        ("n > 2", true),
+        ("n > 3", false),
+        ("mode == slow", true),
+        ("mode != slow", false),
+        ("image.width == viewport.height && n % 2 == 1", true),
+        ("has(FLOAT32_FILTERABLE) || !has(FLOAT32_FILTERABLE)", true),
+        ("false", false),
+    ] {
+        let files = Files::graph(&format!(
+            r#"
+            params: [
+                U32(name: "n", default: 3),
+                Choice(name: "mode", words: [quick, slow], default: slow),
+            ],
+            materials: [Texture(name: "image", format: R32Float)],
+            passes: [
+                Clear(name: "reset", target: "image", value: 1),
+                Fullscreen(name: "value", if: "{condition}", color: ["image"], set: {{"value": 2}}),
+            ],
+            outputs: ["image"],
+            "#
+        ));
+        let found = floats(&files.with("value.wgsl", VALUE), "image");
+        assert_eq!(found, [1.0 + f32::from(is_there); 16], "{condition}");
+    }
+}
+
+#[test]
+fn as_many_items_are_made_as_are_counted_and_dispatched_over() {
+    let files = Files::graph(
+        r#"
+        params: [U32(name: "n", default: 70)],
+        materials: [
+            Buffer(name: "items", count: "n + 1"),
+            Buffer(name: "half", count: "ceil_div(items.count, 2)"),
+            Texture(name: "image", format: R32Float, size: (7, 3)),
+            Buffer(name: "pixels", count: "image.count"),
+        ],
+        passes: [
+            Compute(name: "a", shader: "fill", dispatch: Over("items.count"),
+                bind: {"out": "items"}, overwrites: ["items"]),
+            Compute(name: "b", shader: "fill", dispatch: Groups(1, "min(1, n)", 1),
+                bind: {"out": "half"}, overwrites: ["half"]),
+            Compute(name: "c", dispatch: Over("image.size"), overwrites: ["pixels"]),
+        ],
+        outputs: ["items", "half", "pixels"],
+        "#,
+    );
+    let fill = "var<storage, read_write> out: array<u32>;
+        @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) at: vec3<u32>) {
+            if at.x < arrayLength(&out) { out[at.x] = at.x + 1u; }
+        }";
+    let c = "var<storage, read_write> pixels: array<u32>;
+        @compute @workgroup_size(4, 4) fn main(@builtin(global_invocation_id) at: vec3<u32>) {
+            if all(at.xy < vec2(7u, 3u)) { pixels[7u * at.y + at.x] = at.x + 10u * at.y; }
+        }";
+    let mut running = Running::new(&files.with("fill.wgsl", fill).with("c.wgsl", c));
+    assert_eq!(running.words("items"), (1..=71).collect::<Vec<u32>>());
+    assert_eq!(running.words("half"), (1..=36).collect::<Vec<u32>>());
+    let pixels = (0..21)
+        .map(|at| at % 7 + 10 * (at / 7))
+        .collect::<Vec<u32>>();
+    assert_eq!(running.words("pixels"), pixels);
+}
+
+#[test]
+fn a_dispatch_may_come_from_a_buffer() {
+    let files = Files::graph(
+        r#"
+        materials: [Buffer(name: "groups"), Buffer(name: "visited")],
+        passes: [
+            Clear(name: "reset", target: "visited"),
+            Compute(name: "ask", dispatch: Groups(1, 1, 1)),
+            Compute(name: "visit", dispatch: Indirect("groups")),
+        ],
+        outputs: ["visited"],
+        "#,
+    );
+    let ask = "var<storage, read_write> groups: array<u32, 3>;
+        @compute @workgroup_size(1) fn main() { groups = array(3u, 2u, 1u); }";
+    let visit = "var<storage, read_write> visited: atomic<u32>;
+        @compute @workgroup_size(8) fn main() { atomicAdd(&visited, 1u); }";
+    let files = files.with("ask.wgsl", ask).with("visit.wgsl", visit);
+    assert_eq!(words(&files, "visited"), [48]);
+}
+
+#[test]
+fn a_graph_knows_its_frame_and_what_was_before() {
+    let files = Files::graph(
+        r#"
+        materials: [
+            Texture(name: "history", format: Rg32Float),
+            Buffer(name: "total"),
+        ],
+        passes: [
+            Fullscreen(name: "add", color: ["history"]),
+            Compute(name: "tick", dispatch: Groups(1, 1, 1), overwrites: ["total"]),
+        ],
+        outputs: ["history", "total"],
+        "#,
+    );
+    let frame = "struct Frame { index: u32, seconds: f32 }
+        var<uniform> frame: Frame;\n";
+    let add = "var history_previous: texture_2d<f32>;
+        @fragment fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) vec2<f32> {
+            let before = textureLoad(history_previous, vec2<u32>(centre.xy), 0).y;
+            return vec2(f32(frame.index), before + frame.seconds);
+        }";
+    let tick = "var<storage, read> total_previous: u32;
+        var<storage, read_write> total: u32;
+        @compute @workgroup_size(1) fn main() { total = total_previous + 10u + frame.index; }";
+    let files = files.with("add.wgsl", format!("{frame}{add}"));
+    let mut running = Running::new(&files.with("tick.wgsl", format!("{frame}{tick}")));
+    // Of the first frames nobody reads anything back.
+    for (seconds, read, history, total) in [
+        (0.5, true, [0.0, 0.5], 10),
+        (0.25, false, [1.0, 0.75], 21),
+        (2.0, true, [2.0, 2.75], 33),
+        (0.0, true, [3.0, 2.75], 46),
+    ] {
+        let names = if read { &["history", "total"][..] } else { &[] };
+        let report = running.frame_at(seconds, names);
+        if let [found, counted] = &report.readbacks[..] {
+            assert_eq!(found.content.as_f32(), Some(history.repeat(16)));
+            assert_eq!(counted.content.as_u32(), Some(vec![total]));
+        }
+    }
+}
+
+#[test]
+fn copies_move_parts_of_textures_and_buffers() {
+    let files = Files::graph(
+        r#"
+        materials: [
+            Texture(name: "maps", format: R32Float, layers: 2, mips: 2),
+            Texture(name: "small", format: R32Float, size: 2),
+            Buffer(name: "kernel", data: [1, 2, 3]),
+            Buffer(name: "copied", count: 3),
+        ],
+        passes: [
+            Clear(name: "reset", target: "maps", value: 5),
+            Fullscreen(name: "count", color: ["maps[0].mip[0]"]),
+            Copy(name: "layer", from: "maps[0].mip[0]", to: "maps[1].mip[0]"),
+            Fullscreen(name: "value", color: ["maps[1].mip[1]"], set: {"value": 7}),
+            Copy(name: "mip", from: "maps[1].mip[1]", to: "small"),
+            Copy(name: "numbers", from: "kernel", to: "copied"),
+            Compute(name: "double", dispatch: Groups(1, 1, 1)),
+        ],
+        outputs: ["maps", "small", "copied"],
+        "#,
+    );
+    let double = "var<storage, read> kernel: array<u32>;
+        var<storage, read_write> copied: array<u32>;
+        @compute @workgroup_size(1) fn main() { copied[1] = 2u * copied[1] + kernel[2]; }";
+    let files = files.with("count.wgsl", COUNT).with("value.wgsl", VALUE);
+    let mut running = Running::new(&files.with("double.wgsl", double));
+    let counted: Vec<f32> = (0..16).map(|at| at as f32).collect();
+    let (kept, written) = ([5.0; 4], [7.0; 4]);
+    assert_eq!(
+        running.floats("maps"),
+        [&counted[..], &counted, &kept, &written].concat()
+    );
+    assert_eq!(running.floats("small"), written);
+    assert_eq!(running.words("copied"), [1, 7, 3]);
+}
+
+#[test]
+fn an_item_of_a_buffer_is_bound_where_it_lies() {
+    let files = Files::graph(
+        r#"
+        materials: [
+            Buffer(name: "slots", count: 3),
+            Texture(name: "image", format: R32Float, layers: 3),
+        ],
+        passes: [
+            Compute(name: "fill", dispatch: Groups(1, 1, 1), overwrites: ["slots"]),
+            Fullscreen(name: "show", repeat: 3, color: ["image[index]"],
+                bind: {"slot": "slots[2 - index]"}),
+        ],
+        outputs: ["image"],
+        "#,
+    );
+    let slot = "struct Slot { @size(256) value: f32 }\n";
+    let fill = "var<storage, read_write> slots: array<Slot>;
+        @compute @workgroup_size(1) fn main() {
+            for (var at = 0u; at < 3u; at++) { slots[at].value = f32(at) + 0.5; }
+        }";
+    let show = "var<uniform> slot: Slot;
+        @fragment fn fragment() -> @location(0) f32 { return slot.value; }";
+    let files = files
+        .with("fill.wgsl", format!("{slot}{fill}"))
+        .with("show.wgsl", format!("{slot}{show}"));
+    let expected = [[2.5; 16], [1.5; 16], [0.5; 16]].concat();
+    assert_eq!(floats(&files, "image"), expected);
+}
+
+#[test]
+fn a_document_is_called_with_other_materials_and_values() {
+    let files = Files::graph(
+        r#"
+        params: [U32(name: "factor", default: 3)],
+        materials: [
+            Texture(name: "left", format: R32Float),
+            Texture(name: "maps", format: R32Float, layers: 2),
+        ],
+        passes: [
+            Fullscreen(name: "count", color: ["left"]),
+            Group(name: "each", repeat: 2, passes: [
+                Include(graph: "scale.ron", bind: {"image": "left", "scaled": "maps[index]"},
+                    set: {"bias": "100 * each.index"}),
+            ]),
+            Include(graph: "scale.ron", name: "other", bind: {"image": "left"},
+                set: {"factor": 10}),
+        ],
+        outputs: ["maps", (name: "other", material: "other.scaled")],
+        "#,
+    );
+    let scale = r#"
+        params: [U32(name: "factor"), F32(name: "bias", default: 0.5)],
+        inputs: [Texture(name: "image")],
+        materials: [Texture(name: "scaled", format: "image.format", size: "image.size")],
+        passes: [Fullscreen(name: "scale", color: ["scaled"])],
+        outputs: ["scaled"],
+    "#;
+    let shader = "struct Params { factor: u32, bias: f32 }
+        var<uniform> params: Params;
+        var image: texture_2d<f32>;
+        @fragment fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) f32 {
+            let value = textureLoad(image, vec2<u32>(centre.xy), 0).x;
+            return params.bias + f32(params.factor) * value;
+        }";
+    let files = files
+        .document("scale.ron", scale)
+        .with("scale.wgsl", shader);
+    let mut running = Running::new(&files.with("count.wgsl", COUNT));
+    let line = |bias: f32, factor: f32| (0..16).map(move |at| bias + factor * at as f32);
+    let maps: Vec<f32> = line(0.0, 3.0).chain(line(100.0, 3.0)).collect();
+    assert_eq!(running.floats("maps"), maps);
+    assert_eq!(
+        running.floats("other"),
+        line(0.5, 10.0).collect::<Vec<f32>>()
+    );
+}

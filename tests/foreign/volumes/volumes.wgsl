@@ -18,8 +18,7 @@ fn vertex(@builtin(vertex_index) v: u32, @builtin(instance_index) primitive: u32
     return camera_clip(relative_to_eye(p));
 }
 
-// For volumes without a stencil: additive.ron.
 @fragment
-fn additive(@builtin(front_facing) front: bool) -> @location(0) f32 {
+fn fragment(@builtin(front_facing) front: bool) -> @location(0) f32 {
     return select(1.0, -1.0, front);
 }

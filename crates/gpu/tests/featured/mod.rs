@@ -21,6 +21,12 @@ pub const VALUE: &str = "struct Params { value: f32 }
     var<uniform> params: Params;
     @fragment fn fragment() -> @location(0) f32 { return params.value; }";
 
+/// Writes 4 · row + column.
+pub const COUNT: &str = "@fragment fn fragment(@builtin(position) centre: vec4<f32>)
+    -> @location(0) f32 {
+        return 4.0 * floor(centre.y) + floor(centre.x);
+    }";
+
 /// `graph.ron` of the files on the device, at 4×4.
 pub struct Running(Executor);
 

@@ -5,7 +5,7 @@ mod featured;
 #[path = "../../graph/tests/support/mod.rs"]
 mod support;
 
-use featured::{COUNT, Running, VALUE, buffer_floats, floats, words};
+use featured::{COUNT, GPU, Running, VALUE, buffer_floats, floats, words};
 use skiagraph_graph::ParamValue;
 use support::Files;
 
@@ -124,13 +124,18 @@ fn a_word_of_a_choice_is_a_constant_of_the_shader() {
 /// Each `if` is decided when the graph is planned: by params, words, sizes, the device.
 #[test]
 fn what_is_there_depends_on_params_sizes_and_the_device() {
+    let has = |feature| GPU.device.features().contains(feature);
     for (condition, is_there) in [
         ("n > 2", true),
         ("n > 3", false),
         ("mode == slow", true),
         ("mode != slow", false),
         ("image.width == viewport.height && n % 2 == 1", true),
-        ("has(FLOAT32_FILTERABLE) || !has(FLOAT32_FILTERABLE)", true),
+        (
+            "has(FLOAT32_FILTERABLE)",
+            has(wgpu::Features::FLOAT32_FILTERABLE),
+        ),
+        ("has(SUBGROUP)", has(wgpu::Features::SUBGROUP)),
         ("false", false),
     ] {
         let files = Files::graph(&format!(
@@ -300,4 +305,137 @@ fn a_document_is_called_with_other_materials_and_values() {
         running.floats("other"),
         line(0.5, 10.0).collect::<Vec<f32>>()
     );
+}
+
+#[test]
+fn a_repeated_pass_knows_its_index_and_those_around_it() {
+    let files = Files::graph(
+        r#"
+        params: [U32(name: "rows", default: 3), U32(name: "none", default: 0)],
+        materials: [Buffer(name: "found", count: "2 * rows")],
+        passes: [
+            Clear(name: "reset", target: "found"),
+            Group(name: "row", repeat: "rows", set: {"scale": 100}, passes: [
+                Compute(name: "column", repeat: 2, dispatch: Groups(1, 1, 1),
+                    set: {"row": "row.index", "at": "2 * row.index + index"}),
+            ]),
+            Compute(name: "never", shader: "column", repeat: "none", dispatch: Groups(1, 1, 1),
+                set: {"row": 0, "at": 0, "scale": 0}),
+        ],
+        outputs: ["found"],
+        "#,
+    );
+    let column = "struct Params { at: u32, row: u32, scale: u32, index: u32 }
+        var<uniform> params: Params;
+        var<storage, read_write> found: array<u32>;
+        @compute @workgroup_size(1) fn main() {
+            found[params.at] = params.scale + 10u * params.row + params.index;
+        }";
+    let found = words(&files.with("column.wgsl", column), "found");
+    assert_eq!(found, [100, 101, 110, 111, 120, 121]);
+}
+
+#[test]
+fn what_is_made_in_a_repeated_entry_is_called_from_outside() {
+    let files = Files::graph(
+        r#"
+        materials: [Texture(name: "sum", format: R32Float)],
+        passes: [
+            Include(graph: "make.ron", name: "made", repeat: 2, set: {"value": "index + 1"}),
+            Fullscreen(name: "add", color: ["sum"],
+                bind: {"a": "made[0].image", "b": "made[1].image"}),
+        ],
+        outputs: ["sum"],
+        "#,
+    );
+    let make = r#"
+        params: [F32(name: "value")],
+        materials: [Texture(name: "image", format: R32Float)],
+        passes: [Fullscreen(name: "value", color: ["image"])],
+        outputs: ["image"],
+    "#;
+    let add = "var a: texture_2d<f32>;
+        var b: texture_2d<f32>;
+        @fragment fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) f32 {
+            let at = vec2<u32>(centre.xy);
+            return textureLoad(a, at, 0).x + 10.0 * textureLoad(b, at, 0).x;
+        }";
+    let files = files.document("make.ron", make).with("add.wgsl", add);
+    assert_eq!(floats(&files.with("value.wgsl", VALUE), "sum"), [21.0; 16]);
+}
+
+/// `base.ron` gives 1, then adds 10 and 100.
+#[test]
+fn an_extended_document_runs_as_if_it_had_been_written_out() {
+    let base = r#"
+        params: [F32(name: "start", default: 1)],
+        materials: [Texture(name: "image", format: R16Float)],
+        passes: [
+            Fullscreen(name: "value", color: ["image"], set: {"value": "start"}),
+            Group(name: "more", passes: [
+                Fullscreen(name: "ten", shader: "value", set: {"value": 10},
+                    color: [(target: "image", load: Load, blend: Additive)]),
+                Fullscreen(name: "hundred", shader: "value", set: {"value": 100},
+                    color: [(target: "image", load: Load, blend: Additive)]),
+            ]),
+        ],
+        outputs: ["image"],
+    "#;
+    for (edits, expected) in [
+        ("", 111.0),
+        (r#"set: {"start": 2},"#, 112.0),
+        (r#"passes: [Remove(pass: "more.ten")],"#, 101.0),
+        (
+            r#"passes: [Change(pass: "more.ten", set: {"value": 20})],"#,
+            121.0,
+        ),
+        (r#"passes: [Change(pass: "more", if: "start > 1")],"#, 1.0),
+        (r#"passes: [Change(pass: "more", repeat: 2)],"#, 221.0),
+        (
+            r#"passes: [Clear(name: "nine", instead: "value", target: "image", value: 9)],"#,
+            119.0,
+        ),
+        (
+            r#"passes: [Clear(name: "nine", after: "more.ten", target: "image", value: 9)],"#,
+            109.0,
+        ),
+    ] {
+        let files = Files::graph(&format!(r#"extends: "base.ron", {edits}"#));
+        let files = files.document("base.ron", base).with("value.wgsl", VALUE);
+        assert_eq!(floats(&files, "image"), [expected; 16], "{edits}");
+    }
+}
+
+#[test]
+fn a_pass_sets_constants_words_and_vectors() {
+    let files = Files::graph(
+        r#"
+        params: [
+            U32(name: "n", default: 3),
+            Choice(name: "mode", words: [off, on], default: off),
+        ],
+        materials: [Buffer(name: "found", count: 8)],
+        passes: [Compute(name: "gather", entry: "second", dispatch: Groups(1, 1, 1),
+            overwrites: ["found"], set: {
+                "mode": on, "at": ("n - 1", "n / 2.0", 0.5), "flag": true, "shift": -2,
+                "half": "n / 2.0",
+            })],
+        outputs: ["found"],
+        "#,
+    );
+    let gather = "struct Params { mode: u32, at: vec3<f32>, n: u32 }
+        var<uniform> params: Params;
+        override flag: bool = false;
+        override shift: i32 = 0;
+        override half: f32;
+        var<storage, read_write> found: array<f32>;
+        @compute @workgroup_size(1) fn first() { found[0] = -1.0; }
+        @compute @workgroup_size(1) fn second() {
+            found[0] = f32(params.mode == MODE_ON);
+            found[1] = params.at.x; found[2] = params.at.y; found[3] = params.at.z;
+            found[4] = f32(params.n); found[5] = f32(flag); found[6] = f32(shift);
+            found[7] = half;
+        }";
+    let found = buffer_floats(&files.with("gather.wgsl", gather), "found");
+    assert_eq!(found, [1.0, 2.0, 1.5, 0.5, 3.0, 1.0, -2.0, 1.5]);
 }

@@ -248,3 +248,57 @@ fn both_aspects_of_one_texture_are_bound() {
         [1.0, 200.0].repeat(16)
     );
 }
+
+/// A plane that rises by an eighth per texel.
+#[test]
+fn a_depth_bias_grows_with_the_slope_up_to_its_clamp() {
+    for (bias, expected) in [
+        ("", 0.0),
+        ("bias: (slope_scale: 1)", 0.125),
+        ("bias: (slope_scale: \"steps / 4\")", 0.0625),
+        ("bias: (slope_scale: -2)", -0.25),
+        ("bias: (slope_scale: 1, clamp: 0.03125)", 0.03125),
+    ] {
+        let files = Files::graph(&format!(
+            r#"
+            params: [F32(name: "steps", default: 2)],
+            materials: [Texture(name: "depth", format: Depth32Float)],
+            passes: [Raster(name: "plane", draw: 3, depth: (target: "depth", {bias}))],
+            outputs: ["depth"],
+            "#
+        ));
+        let plane = "@vertex fn vertex(@builtin(vertex_index) corner: u32)
+                -> @builtin(position) vec4<f32> {
+                let at = vec2(f32(corner & 1u), f32(corner >> 1u)) * 4.0 - 1.0;
+                return vec4(at, 0.5 + 0.25 * at.x, 1.0);
+            }";
+        let found = floats(&files.with("plane.wgsl", plane), "depth");
+        let row = [0.3125, 0.4375, 0.5625, 0.6875].map(|depth| depth + expected);
+        assert_eq!(found, row.repeat(4), "{bias}");
+    }
+}
+
+#[test]
+fn a_fragment_shader_says_its_own_depth() {
+    let files = Files::graph(
+        r#"
+        materials: [Texture(name: "depths", format: Depth32Float, size: 4, layers: 2)],
+        passes: [
+            Clear(name: "reset", target: "depths", value: 0.5),
+            Raster(name: "near", draw: 3, depth: (target: "depths[1]", load: Load)),
+        ],
+        outputs: ["depths"],
+        "#,
+    );
+    let near = "@vertex fn vertex(@builtin(vertex_index) corner: u32)
+            -> @builtin(position) vec4<f32> {
+            return vec4(vec2(f32(corner & 1u), f32(corner >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
+        }
+        @fragment fn fragment(@builtin(position) centre: vec4<f32>)
+            -> @builtin(frag_depth) f32 {
+            return floor(centre.x) / 4.0;
+        }";
+    let found = floats(&files.with("near.wgsl", near), "depths");
+    let drawn = [0.0, 0.25, 0.5, 0.5].repeat(4);
+    assert_eq!(found, [&[0.5; 16][..], &drawn].concat());
+}

@@ -4,7 +4,7 @@ mod featured;
 #[path = "../../graph/tests/support/mod.rs"]
 mod support;
 
-use featured::{COUNT, Running, VALUE, buffer_floats, floats};
+use featured::{COUNT, Running, VALUE, buffer_floats, floats, words};
 use support::Files;
 
 /// Writes what `source` holds in the same place, in mip 0 of what is bound.
@@ -334,4 +334,108 @@ fn an_item_of_a_buffer_is_bound_where_it_lies() {
         .with("show.wgsl", format!("{slot}{show}"));
     let expected = [[2.5; 16], [1.5; 16], [0.5; 16]].concat();
     assert_eq!(floats(&files, "image"), expected);
+}
+
+#[test]
+fn a_linear_sampler_mixes_two_mips() {
+    let files = Files::graph(
+        r#"
+        materials: [
+            Texture(name: "chain", format: R16Float, mips: All),
+            Sampler(name: "mixed", filter: Linear),
+            Buffer(name: "found", count: "2 * chain.mips - 1"),
+        ],
+        passes: [
+            Fullscreen(name: "value", repeat: "chain.mips", color: ["chain.mip[index]"],
+                set: {"value": "8 * index"}),
+            Compute(name: "look", dispatch: Groups(1, 1, 1), overwrites: ["found"]),
+        ],
+        outputs: ["found"],
+        "#,
+    );
+    let look = "var chain: texture_2d<f32>;
+        var mixed: sampler;
+        var<storage, read_write> found: array<f32>;
+        @compute @workgroup_size(1) fn main() {
+            for (var at = 0u; at < arrayLength(&found); at++) {
+                found[at] = textureSampleLevel(chain, mixed, vec2(0.5), f32(at) / 2.0).x;
+            }
+        }";
+    let files = files.with("value.wgsl", VALUE).with("look.wgsl", look);
+    assert_eq!(buffer_floats(&files, "found"), [0.0, 4.0, 8.0, 12.0, 16.0]);
+}
+
+#[test]
+fn a_part_of_a_texture_is_stored_into_and_changed_in_place() {
+    let files = Files::graph(
+        r#"
+        materials: [Texture(name: "maps", format: R32Uint, size: 2, layers: 3, mips: 2)],
+        passes: [
+            Clear(name: "reset", target: "maps", value: 5),
+            Compute(name: "fill", dispatch: Groups(1, 1, 1),
+                bind: {"layers": "maps[1..3].mip[1]", "image": "maps[0].mip[0]"}),
+        ],
+        outputs: ["maps"],
+        "#,
+    );
+    let fill = "var layers: texture_storage_2d_array<r32uint, write>;
+        var image: texture_storage_2d<r32uint, read_write>;
+        @compute @workgroup_size(1) fn main() {
+            textureStore(layers, vec2(0u), 0u, vec4(10u));
+            textureStore(layers, vec2(0u), 1u, vec4(20u));
+            let before = textureLoad(image, vec2(1u)).x;
+            textureStore(image, vec2(1u), vec4(2u * before));
+        }";
+    let found = words(&files.with("fill.wgsl", fill), "maps");
+    assert_eq!(found, [&[5, 5, 5, 10][..], &[5; 8], &[5, 10, 20]].concat());
+}
+
+#[test]
+fn every_shape_of_texture_can_be_cleared() {
+    for (texture, value, expected) in [
+        ("format: R32Float", "-1.5", -1.5),
+        ("format: R16Float, mips: All, layers: 3", "-1", -1.0),
+        ("format: R16Float, size: (4, 4, 3)", "0.25", 0.25),
+        ("format: Depth32Float, layers: 2", "0.75", 0.75),
+        ("format: Rgba8Unorm", "(1, 1, 1, 1)", 1.0),
+    ] {
+        let files = Files::graph(&format!(
+            r#"
+            materials: [Texture(name: "image", {texture})],
+            passes: [Clear(name: "fill", target: "image", value: {value})],
+            outputs: ["image"],
+            "#
+        ));
+        let found = floats(&files, "image");
+        assert!(
+            found.iter().all(|&found| found == expected),
+            "{texture}: {found:?}"
+        );
+        assert!(found.len() >= 16, "{texture}");
+    }
+}
+
+#[test]
+fn an_output_may_be_a_part() {
+    let files = Files::graph(
+        r#"
+        materials: [Texture(name: "maps", format: R32Float, layers: 3, mips: 2)],
+        passes: [
+            Clear(name: "reset", target: "maps", value: 1),
+            Fullscreen(name: "value", color: ["maps[1].mip[1]"], set: {"value": 2}),
+        ],
+        outputs: [
+            (name: "layer", material: "maps[1]"),
+            (name: "some", material: "maps[1..3].mip[1]"),
+            (name: "mip", material: "maps.mip[0]"),
+        ],
+        "#,
+    );
+    let mut running = Running::new(&files.with("value.wgsl", VALUE));
+    assert_eq!(
+        running.floats("layer"),
+        [&[1.0; 16][..], &[2.0; 4]].concat()
+    );
+    assert_eq!(running.floats("some"), [[2.0; 4], [1.0; 4]].concat());
+    assert_eq!(running.floats("mip"), [1.0; 48]);
 }

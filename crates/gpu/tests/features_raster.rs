@@ -369,3 +369,33 @@ fn a_pass_names_its_entry_points() {
         );
     }
 }
+
+/// A mip is as large as it is, and what it is resolved into may be a part, too. (A layer is left out
+/// here: lavapipe of Mesa 22.3 resolves into the first whatever the view says.)
+#[test]
+fn an_area_and_a_resolve_may_be_of_a_mip() {
+    let files = Files::graph(
+        r#"
+        materials: [
+            Texture(name: "fine", format: R16Float, size: 2, samples: 4),
+            Texture(name: "chain", format: R16Float, mips: 2),
+            Texture(name: "maps", format: R16Float, layers: 2, mips: 2),
+        ],
+        passes: [
+            Clear(name: "reset_fine", target: "fine", value: 2),
+            Clear(name: "reset_chain", target: "chain", value: 3),
+            Clear(name: "reset_maps", target: "maps", value: 4),
+            Fullscreen(name: "part", shader: "value", set: {"value": 0.5}, area: (1, 0, 1, 2),
+                color: [(target: "fine", resolve: "chain.mip[1]")]),
+            Fullscreen(name: "corner", shader: "value", set: {"value": 7},
+                area: ("maps.width / 4", 1, 1, 1), color: ["maps[1].mip[1]"]),
+        ],
+        outputs: ["chain", "maps"],
+        "#,
+    );
+    let mut running = Running::new(&files.with("value.wgsl", VALUE));
+    let chain = [&[3.0; 16][..], &[2.0, 0.5, 2.0, 0.5]].concat();
+    assert_eq!(running.floats("chain"), chain);
+    let maps = [&[4.0; 36][..], &[4.0, 4.0, 4.0, 7.0]].concat();
+    assert_eq!(running.floats("maps"), maps);
+}

@@ -439,3 +439,92 @@ fn a_pass_sets_constants_words_and_vectors() {
     let found = buffer_floats(&files.with("gather.wgsl", gather), "found");
     assert_eq!(found, [1.0, 2.0, 1.5, 0.5, 3.0, 1.0, -2.0, 1.5]);
 }
+
+#[test]
+fn a_constant_of_the_shader_says_how_much_is_done() {
+    let files = Files::graph(
+        r#"
+        materials: [
+            Buffer(name: "visited"),
+            Texture(name: "image", format: R32Float),
+        ],
+        passes: [
+            Clear(name: "reset", target: "visited"),
+            Compute(name: "visit", dispatch: Groups("ROWS", "ROWS + 1", 1)),
+            Raster(name: "points", topology: PointList, draw: "POINTS", color: ["image"]),
+        ],
+        outputs: ["visited", "image"],
+        "#,
+    );
+    let visit = "#import \"rows.wgsl\"
+        var<storage, read_write> visited: atomic<u32>;
+        @compute @workgroup_size(1) fn main() { atomicAdd(&visited, 1u); }";
+    let points = "const POINTS: u32 = 3u;
+        @vertex fn vertex(@builtin(vertex_index) point: u32) -> @builtin(position) vec4<f32> {
+            return vec4(f32(point) / 2.0 - 0.75, 0.75, 0.0, 1.0);
+        }
+        @fragment fn fragment() -> @location(0) f32 { return 1.0; }";
+    let files = files
+        .with("rows.wgsl", "const ROWS: u32 = 3;")
+        .with("visit.wgsl", visit)
+        .with("points.wgsl", points);
+    let mut running = Running::new(&files);
+    assert_eq!(running.words("visited"), [12]);
+    assert_eq!(running.floats("image").iter().sum::<f32>(), 3.0);
+}
+
+#[test]
+fn nothing_is_done_over_nothing() {
+    let files = Files::graph(
+        r#"
+        params: [U32(name: "n", default: 0)],
+        materials: [Buffer(name: "visited")],
+        passes: [
+            Clear(name: "reset", target: "visited"),
+            Compute(name: "line", shader: "visit", dispatch: Over("n")),
+            Compute(name: "area", shader: "visit", dispatch: Groups(1, "n", 1)),
+        ],
+        outputs: ["visited"],
+        "#,
+    );
+    let visit = "var<storage, read_write> visited: atomic<u32>;
+        @compute @workgroup_size(1) fn main() { atomicAdd(&visited, 1u); }";
+    let files = files.with("visit.wgsl", visit);
+    assert_eq!(words(&files, "visited"), [0]);
+    let two = [("n", ParamValue::U32(2))];
+    assert_eq!(Running::with(&files, &two).words("visited"), [4]);
+}
+
+/// A global's underscores are the dots of what an include gives.
+#[test]
+fn a_shader_finds_what_an_include_gives_by_its_name() {
+    let files = Files::graph(
+        r#"
+        params: [F32(name: "gain", default: 3)],
+        materials: [Texture(name: "sum", format: R32Float)],
+        passes: [
+            Include(graph: "make.ron", name: "left", expose: ["offset"]),
+            Include(graph: "make.ron", name: "right", set: {"gain": "left.offset * 4"}),
+            Fullscreen(name: "add", color: ["sum"]),
+        ],
+        outputs: ["sum"],
+        "#,
+    );
+    let make = r#"
+        params: [F32(name: "gain"), F32(name: "offset", default: 0.5)],
+        materials: [Texture(name: "image", format: R32Float)],
+        passes: [Fullscreen(name: "value", color: ["image"], set: {"value": "gain + offset"})],
+        outputs: ["image"],
+    "#;
+    let add = "var left_image: texture_2d<f32>;
+        var right_image: texture_2d<f32>;
+        @fragment fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) f32 {
+            let at = vec2<u32>(centre.xy);
+            return textureLoad(left_image, at, 0).x + 100.0 * textureLoad(right_image, at, 0).x;
+        }";
+    let files = files.document("make.ron", make).with("add.wgsl", add);
+    let files = files.with("value.wgsl", VALUE);
+    assert_eq!(floats(&files, "sum"), [253.5; 16]);
+    let offset = [("left.offset", ParamValue::F32(1.0))];
+    assert_eq!(Running::with(&files, &offset).floats("sum"), [454.0; 16]);
+}

@@ -439,3 +439,92 @@ fn an_output_may_be_a_part() {
     assert_eq!(running.floats("some"), [[2.0; 4], [1.0; 4]].concat());
     assert_eq!(running.floats("mip"), [1.0; 48]);
 }
+
+#[test]
+fn items_of_a_buffer_are_cleared_and_copied_one_by_one() {
+    let files = Files::graph(
+        r#"
+        materials: [Buffer(name: "items", count: 5), Buffer(name: "two", count: 2)],
+        passes: [
+            Compute(name: "count", dispatch: Groups(1, 1, 1), overwrites: ["items"]),
+            Clear(name: "zero", target: "items[1]"),
+            Copy(name: "last", from: "items[4]", to: "two[0]"),
+            Copy(name: "first", from: "items[0]", to: "two[1]"),
+            Compute(name: "see", dispatch: Groups(1, 1, 1)),
+        ],
+        outputs: ["items", "two"],
+        "#,
+    );
+    let count = "var<storage, read_write> items: array<vec2<u32>>;
+        @compute @workgroup_size(1) fn main() {
+            for (var at = 0u; at < 5u; at++) { items[at] = vec2(at + 1u, 10u * at + 10u); }
+        }";
+    let see = "var<storage, read_write> two: array<vec2<u32>>;
+        @compute @workgroup_size(1) fn main() { two[0].x += 100u; }";
+    let files = files.with("count.wgsl", count).with("see.wgsl", see);
+    let mut running = Running::new(&files);
+    assert_eq!(running.words("items"), [1, 10, 0, 0, 3, 30, 4, 40, 5, 50]);
+    assert_eq!(running.words("two"), [105, 50, 1, 10]);
+}
+
+/// Of the frame before.
+#[test]
+fn parts_of_what_was_before_are_bound() {
+    let files = Files::graph(
+        r#"
+        materials: [Texture(name: "maps", format: R32Float, layers: 2, mips: 2)],
+        passes: [
+            Fullscreen(name: "add", repeat: 2, color: ["maps[index].mip[0]"],
+                bind: {"source": "maps[1 - index].previous.mip[1]"}),
+            Fullscreen(name: "half", repeat: 2, color: ["maps[index].mip[1]"],
+                bind: {"source": "maps[index].mip[0]"}),
+        ],
+        outputs: ["maps"],
+        "#,
+    );
+    let add = "struct Params { index: u32 }
+        var<uniform> params: Params;
+        var source: texture_2d<f32>;
+        @fragment fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) f32 {
+            let at = vec2<u32>(centre.xy) / 2u;
+            return 1.0 + 9.0 * f32(params.index) + textureLoad(source, at, 0).x;
+        }";
+    let half = READ.replace("vec2<u32>(centre.xy)", "2u * vec2<u32>(centre.xy)");
+    let mut running = Running::new(&files.with("add.wgsl", add).with("half.wgsl", half));
+    for [first, second] in [[1.0, 10.0], [11.0, 11.0], [12.0, 21.0]] {
+        let expected = [&[first; 16][..], &[second; 16], &[first; 4], &[second; 4]].concat();
+        assert_eq!(running.floats("maps"), expected);
+    }
+}
+
+#[test]
+fn a_depth_of_several_samples_is_drawn_and_read() {
+    let files = Files::graph(
+        r#"
+        params: [U32(name: "samples", default: 4)],
+        materials: [
+            Texture(name: "depth", format: Depth32Float, samples: "samples"),
+            Texture(name: "seen", format: Rg32Float),
+        ],
+        passes: [
+            Raster(name: "half", draw: 3, depth: "depth"),
+            Fullscreen(name: "look", color: ["seen"], set: {"last": "depth.samples - 1"}),
+        ],
+        outputs: ["seen"],
+        "#,
+    );
+    let half = "@vertex fn vertex(@builtin(vertex_index) corner: u32)
+            -> @builtin(position) vec4<f32> {
+            return vec4(vec2(f32(corner & 1u), f32(corner >> 1u)) * 4.0 - 1.0, 0.25, 1.0);
+        }
+        @fragment fn fragment() -> @builtin(sample_mask) u32 { return 7u; }";
+    let look = "struct Params { last: u32 }
+        var<uniform> params: Params;
+        var depth: texture_depth_multisampled_2d;
+        @fragment fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) vec2<f32> {
+            let at = vec2<u32>(centre.xy);
+            return vec2(textureLoad(depth, at, 0), textureLoad(depth, at, params.last));
+        }";
+    let files = files.with("half.wgsl", half).with("look.wgsl", look);
+    assert_eq!(floats(&files, "seen"), [0.25, 1.0].repeat(16));
+}

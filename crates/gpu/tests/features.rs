@@ -199,21 +199,25 @@ fn as_many_items_are_made_as_are_counted_and_dispatched_over() {
 fn a_dispatch_may_come_from_a_buffer() {
     let files = Files::graph(
         r#"
-        materials: [Buffer(name: "groups"), Buffer(name: "visited")],
+        materials: [Buffer(name: "groups", count: 2), Buffer(name: "visited")],
         passes: [
             Clear(name: "reset", target: "visited"),
-            Compute(name: "ask", dispatch: Groups(1, 1, 1)),
+            Compute(name: "ask", dispatch: Groups(1, 1, 1), overwrites: ["groups"]),
             Compute(name: "visit", dispatch: Indirect("groups")),
+            Compute(name: "again", shader: "visit", dispatch: Indirect("groups[1]")),
         ],
         outputs: ["visited"],
         "#,
     );
-    let ask = "var<storage, read_write> groups: array<u32, 3>;
-        @compute @workgroup_size(1) fn main() { groups = array(3u, 2u, 1u); }";
+    let ask = "var<storage, read_write> groups: array<vec3<u32>>;
+        @compute @workgroup_size(1) fn main() {
+            groups[0] = vec3(3u, 2u, 1u);
+            groups[1] = vec3(1u, 1u, 5u);
+        }";
     let visit = "var<storage, read_write> visited: atomic<u32>;
         @compute @workgroup_size(8) fn main() { atomicAdd(&visited, 1u); }";
     let files = files.with("ask.wgsl", ask).with("visit.wgsl", visit);
-    assert_eq!(words(&files, "visited"), [48]);
+    assert_eq!(words(&files, "visited"), [8 * (6 + 5)]);
 }
 
 #[test]
@@ -325,11 +329,12 @@ fn a_repeated_pass_knows_its_index_and_those_around_it() {
         outputs: ["found"],
         "#,
     );
-    let column = "struct Params { at: u32, row: u32, scale: u32, index: u32 }
+    let column = "struct Params { at: u32, row: u32, scale: u32 }
         var<uniform> params: Params;
+        override index: u32 = 9;
         var<storage, read_write> found: array<u32>;
         @compute @workgroup_size(1) fn main() {
-            found[params.at] = params.scale + 10u * params.row + params.index;
+            found[params.at] = params.scale + 10u * params.row + index;
         }";
     let found = words(&files.with("column.wgsl", column), "found");
     assert_eq!(found, [100, 101, 110, 111, 120, 121]);

@@ -302,3 +302,37 @@ fn a_fragment_shader_says_its_own_depth() {
     let drawn = [0.0, 0.25, 0.5, 0.5].repeat(4);
     assert_eq!(found, [&[0.5; 16][..], &drawn].concat());
 }
+
+#[test]
+fn a_depth_that_is_not_written_is_tested_and_sampled_in_one_pass() {
+    let files = Files::graph(
+        r#"
+        materials: [
+            Texture(name: "depth", format: Depth16Unorm),
+            Texture(name: "image", format: R32Float),
+        ],
+        passes: [
+            Clear(name: "reset", target: "depth", value: 1),
+            Raster(name: "corner", draw: 3, set: {"z": 0}, fragment: "nothing",
+                area: (0, 0, 2, 2), depth: "depth"),
+            Raster(name: "look", shader: "corner", draw: 3, set: {"z": 0.5}, fragment: "look",
+                color: ["image"], depth: (target: "depth", load: Load, write: false)),
+        ],
+        outputs: ["image"],
+        "#,
+    );
+    let corner = "struct Params { z: f32 }
+        var<uniform> params: Params;
+        var depth: texture_depth_2d;
+        @vertex fn vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
+            let at = vec2(f32(corner & 1u), f32(corner >> 1u));
+            return vec4(at * 4.0 - 1.0, params.z, 1.0);
+        }
+        @fragment fn nothing() {}
+        @fragment fn look(@builtin(position) centre: vec4<f32>) -> @location(0) f32 {
+            return 7.0 * textureLoad(depth, vec2<u32>(centre.xy), 0);
+        }";
+    let found = floats(&files.with("corner.wgsl", corner), "image");
+    let upper = [0.0, 0.0, 7.0, 7.0].repeat(2);
+    assert_eq!(found, [upper, vec![7.0; 8]].concat());
+}

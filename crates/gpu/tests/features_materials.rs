@@ -528,3 +528,49 @@ fn a_depth_of_several_samples_is_drawn_and_read() {
     let files = files.with("half.wgsl", half).with("look.wgsl", look);
     assert_eq!(floats(&files, "seen"), [0.25, 1.0].repeat(16));
 }
+
+#[test]
+fn a_mip_is_stored_from_the_one_before() {
+    let files = Files::graph(
+        r#"
+        materials: [Texture(name: "chain", format: R32Float, mips: All)],
+        passes: [
+            Fullscreen(name: "value", color: ["chain.mip[0]"], set: {"value": 5}),
+            Compute(name: "twice", repeat: "chain.mips - 1", dispatch: Over("chain.size"),
+                bind: {"source": "chain.mip[index]", "next": "chain.mip[index + 1]"}),
+        ],
+        outputs: ["chain"],
+        "#,
+    );
+    let twice = "var source: texture_2d<f32>;
+        var next: texture_storage_2d<r32float, write>;
+        @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) at: vec3<u32>) {
+            if all(at.xy < textureDimensions(next)) {
+                textureStore(next, at.xy, 2.0 * textureLoad(source, 2u * at.xy, 0));
+            }
+        }";
+    let files = files.with("value.wgsl", VALUE).with("twice.wgsl", twice);
+    let expected = [&[5.0; 16][..], &[10.0; 4], &[20.0]].concat();
+    assert_eq!(floats(&files, "chain"), expected);
+}
+
+#[test]
+fn a_copy_of_a_whole_texture_has_all_mips_and_layers() {
+    let files = Files::graph(
+        r#"
+        materials: [
+            Texture(name: "solid", format: R32Float, size: (4, 4, 4), mips: All),
+            Texture(name: "same", format: R32Float, size: (4, 4, 4), mips: All),
+        ],
+        passes: [
+            Clear(name: "reset", target: "solid", value: 1),
+            Fullscreen(name: "value", color: ["solid[1].mip[1]"], set: {"value": 5}),
+            Copy(name: "all", from: "solid", to: "same"),
+        ],
+        outputs: ["same"],
+        "#,
+    );
+    // Four slices of 16 texels, two of 4, one.
+    let expected = [&[1.0; 68][..], &[5.0; 4], &[1.0]].concat();
+    assert_eq!(floats(&files.with("value.wgsl", VALUE), "same"), expected);
+}

@@ -370,8 +370,8 @@ fn a_pass_names_its_entry_points() {
     }
 }
 
-/// A mip is as large as it is, and what it is resolved into may be a part, too. (A layer is left out
-/// here: lavapipe of Mesa 22.3 resolves into the first whatever the view says.)
+/// A mip is as large as it is, and what something is resolved into may be a part. (A layer is left
+/// out here: lavapipe of Mesa 22.3 resolves into the first, whatever the view says.)
 #[test]
 fn an_area_and_a_resolve_may_be_of_a_mip() {
     let files = Files::graph(

@@ -259,6 +259,29 @@ fn the_two_lights_are_each_asked_by_itself() {
     assert!(counts.wrong_share() < 0.05, "{counts:?}");
 }
 
+/// And says no where half of it is missing, as `vsm` does.
+#[test]
+fn softvis_hands_out_the_share_that_arrives() {
+    let scene = park();
+    let mut provider = provider(&scene, &scene.views[0], PARK);
+    let plan = plan("vsm/softvis.ron", &provider, PARK, |_| {});
+    let names = ["visibility", "soft", "status"];
+    let report = support::graphs::run(plan, &mut provider, &names);
+    let share = |at: usize| report.readbacks[at].content.as_f32().expect("floats");
+    let (visibility, soft, status) = (share(0), share(1), values(&report, "status"));
+    assert_eq!(visibility, soft);
+    let between = soft.iter().filter(|&&share| share > 0.0 && share < 1.0);
+    assert!(between.count() > 1000);
+    for (share, status) in soft.iter().zip(status) {
+        assert!(
+            (2..4).contains(&status) || *share == 1.0,
+            "{share}, {status}"
+        );
+        assert!(status != 2 || *share >= 0.5, "{share} is light");
+        assert!(status != 3 || *share < 0.5, "{share} is shadow");
+    }
+}
+
 /// One triangle, and a view of it.
 fn one() -> Arc<Scene> {
     let view = View {

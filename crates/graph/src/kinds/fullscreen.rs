@@ -12,6 +12,7 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Fullscreen {
+    #[serde(default)]
     color: Vec<ColorEntry>,
     #[serde(default)]
     stencil: Option<StencilEntry>,

@@ -15,8 +15,8 @@ use crate::{
 /// Spreads a number of workgroups over two dimensions when one does not hold it:
 /// `[min(n, most), ceil(n / most), 1]`.
 fn fold(groups: u64, most: u32) -> [u64; 3] {
-    let x = groups.min(u64::from(most)).max(1);
-    [x, groups.div_ceil(x).max(1), 1]
+    let x = groups.min(u64::from(most));
+    [x, groups.div_ceil(x.max(1)), 1]
 }
 
 impl Linker<'_, '_> {

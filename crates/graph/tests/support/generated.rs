@@ -6,7 +6,8 @@
 ///
 /// ```text
 /// position ──────────────────────────────────────────┬───────────────────────────────────┐
-/// lightK.draw ─ map ─▶ lightK.blur_x ─ half ─▶ lightK.blur_y ─ soft ─▶ lightK.shade ─ lit ─▶ lightK.add ─▶ sum_0 ⇄ sum_1
+/// lightK.draw ─ map ─▶ lightK.blur_x ─ half ─▶ lightK.blur_y ─ soft ─▶ lightK.shade ─ lit ─▶
+/// lightK.add ─▶ sum_0 ⇄ sum_1
 ///                └────────────────────────▶ debug (every third light; culled)
 /// ```
 /// A light is a group. The sums take turns, so that all three hazards occur. What is left over is

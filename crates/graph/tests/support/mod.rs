@@ -1,5 +1,5 @@
-//! What the test files of this crate and of `skiagraph-gpu` share: files in memory, and what a small
-//! scene gives.
+//! What the test files of this crate and of `skiagraph-gpu` share: files in memory, and what a
+//! small scene gives.
 
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
@@ -78,8 +78,8 @@ impl Sources for Files {
     }
 }
 
-/// What a scene of one triangle gives: its buffers, a camera of 64 bytes, three lights of 256, and a
-/// stream of items that nobody has counted.
+/// What a scene of one triangle gives: its buffers, a camera of 64 bytes, three lights of 256, and
+/// a stream of items that nobody has counted.
 pub struct Triangle;
 
 impl Describe for Triangle {

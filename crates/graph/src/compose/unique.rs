@@ -47,7 +47,7 @@ fn check_entries(
     for entry in entries.iter().flatten() {
         let (name, span) = (&entry.name.value, &entry.name.span);
         match &entry.what {
-            What::Pass(_) => passes.add(&format!("{prefix}{name}"), span, reports),
+            What::Pass(_) => drop(passes.add(&format!("{prefix}{name}"), span, reports)),
             What::Group(inner) => {
                 let prefix = format!("{prefix}{name}.");
                 materials.add(name, span, reports);
@@ -61,8 +61,8 @@ fn check_entries(
                 }
             }
             What::Include(include) => {
-                materials.add(name, span, reports);
-                if include.is_named || entry.repeat.is_some() {
+                let is_first = materials.add(name, span, reports);
+                if include.is_named || entry.repeat.is_some() || !is_first {
                     continue;
                 }
                 let Some(document) = include.document() else {
@@ -76,7 +76,9 @@ fn check_entries(
                         .bind
                         .iter()
                         .any(|(name, _)| name.value == output.name.as_str());
-                    if !bound && !document.inputs.iter().any(is_own) {
+                    // Without a name of its own the include is known by what it gives.
+                    let is_own_name = output.name.value == *name;
+                    if !bound && !is_own_name && !document.inputs.iter().any(is_own) {
                         materials.add(&output.name.value, &include.graph.span, reports);
                     }
                 }
@@ -99,7 +101,8 @@ impl Names {
         }
     }
 
-    fn add(&mut self, name: &str, span: &Span, reports: &mut Reports) {
+    /// Whether the name was free.
+    fn add(&mut self, name: &str, span: &Span, reports: &mut Reports) -> bool {
         let spelling = match self.what {
             "material" => wgsl_identifier(name),
             _ => name.to_owned(),
@@ -112,8 +115,9 @@ impl Names {
                 span: span.clone(),
                 first: first.clone(),
             });
-            return;
+            return false;
         }
         self.seen.insert(spelling, (name.to_owned(), span.clone()));
+        true
     }
 }

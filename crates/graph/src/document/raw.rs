@@ -99,7 +99,7 @@ impl RawEntry {
 
 /// The name of a file without folder and ending.
 pub(crate) fn stem(path: &str) -> &str {
-    let file = path.rsplit('/').next().unwrap_or(path);
+    let file = path.rsplit(['/', '\\']).next().unwrap_or(path);
     file.strip_suffix(".ron").unwrap_or(file)
 }
 

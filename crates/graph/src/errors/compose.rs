@@ -96,12 +96,12 @@ impl Mistake for ComposeError {
             }
             Self::TooDeep(graph, _) => told.at(graph.span, "").help("use fewer levels"),
             Self::Clash {
+                what,
                 name,
                 known,
                 span,
                 first,
-                ..
-            } => clash(told, [name, known], [span, first]),
+            } => clash(told, what, [name, known], [span, first]),
             Self::NoParam { name, known, .. } => {
                 told.at(name.span.clone(), "").suggest(&name, known)
             }
@@ -127,7 +127,12 @@ impl Mistake for ComposeError {
     }
 }
 
-fn clash(told: Diagnostic, [name, known]: [String; 2], [span, first]: [Span; 2]) -> Diagnostic {
+fn clash(
+    told: Diagnostic,
+    what: &str,
+    [name, known]: [String; 2],
+    [span, first]: [Span; 2],
+) -> Diagnostic {
     if name != known {
         return told
             .at(span, format!("a shader spells it like `{known}`"))
@@ -135,5 +140,8 @@ fn clash(told: Diagnostic, [name, known]: [String; 2], [span, first]: [Span; 2])
             .help("rename one of them");
     }
     let told = told.at(span, "the second one").at(first, "the first one");
+    if what != "material" {
+        return told;
+    }
     told.help("an include can be given a name: `name: \"left\"` makes `left.x` of its output `x`")
 }

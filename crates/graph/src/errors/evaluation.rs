@@ -3,7 +3,10 @@
 use super::language::attributes;
 use crate::{
     diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
-    language::{name::Name, value::Value},
+    language::{
+        name::Name,
+        value::{Scalar, Value},
+    },
     source::span::{Located, Span},
 };
 
@@ -30,7 +33,10 @@ pub(crate) enum EvaluationError {
         word: String,
         words: Vec<Name>,
     },
-    #[error("a word is needed here, not {}", found.describe())]
+    #[error("{}", match found {
+        Value::Word(_) => "not every word of this Choice may stand here".to_owned(),
+        found => format!("a word is needed here, not {}", found.describe()),
+    })]
     Words {
         span: Span,
         expected: Vec<String>,
@@ -91,7 +97,19 @@ impl Mistake for EvaluationError {
 
     fn explain(self, told: Diagnostic) -> Diagnostic {
         match self {
-            Self::Type { span, found, .. } => told.at(span, format!("this is {found}")),
+            Self::Type {
+                span,
+                expected,
+                found,
+            } => {
+                let told = told.at(span, format!("this is {found}"));
+                match (expected.contains("whole"), found) {
+                    (true, Value::Scalar(Scalar::Number(_))) => {
+                        told.help("`floor(…)` and `ceil(…)` make a whole number of it")
+                    }
+                    _ => told,
+                }
+            }
             Self::Negative(span, _)
             | Self::Large(span, _)
             | Self::DivisionByZero(span)
@@ -110,8 +128,8 @@ impl Mistake for EvaluationError {
                 .at(span, "")
                 .help(format!("attributes are {}", attributes())),
             Self::NoCount(name) => told
-                .at(name.span, "its shaders see a fixed size")
-                .help("give the buffer a `count`, and its shaders an array of any length"),
+                .at(name.span, "it says no `count`")
+                .help("give the buffer one, and its shaders an array of any length"),
             Self::Circular(name) => told
                 .at(name.span, "")
                 .help("give one of these materials a size of its own"),

@@ -166,6 +166,8 @@ pub(crate) enum BorderError {
         span: Span,
         what: &'static str,
     },
+    #[error("`{of}` is a material, and gives no `{}`", **name)]
+    NotOfMaterial { of: String, name: Located<String> },
     #[error("`{name}` has no version of the frame before")]
     NoPrevious {
         name: String,
@@ -195,9 +197,10 @@ impl Mistake for BorderError {
             Self::Unasked { .. } | Self::UnaskedInGroup { .. } => Code::Unasked,
             Self::UnwrittenOutput(_) | Self::BoundOutput { .. } => Code::Output,
             Self::Unknown { .. } | Self::Private { .. } => Code::UnknownResource,
-            Self::Namespace(_) | Self::NoPart { .. } | Self::NoPrevious { .. } => {
-                Code::ResourceKind
-            }
+            Self::Namespace(_)
+            | Self::NoPart { .. }
+            | Self::NotOfMaterial { .. }
+            | Self::NoPrevious { .. } => Code::ResourceKind,
             Self::Range { .. } => Code::Range,
             Self::TooMany { .. } => Code::Size,
             Self::Feature { .. } => Code::Feature,
@@ -216,7 +219,7 @@ impl Mistake for BorderError {
                 .at(span, "nothing here is called so")
                 .at(declared, "asked for here")
                 .suggest(&name, known)
-                .help(format!("or bind it: `bind: {{\"{name}\": \"…\"}}`")),
+                .help(format!("bind what is meant: `bind: {{\"{name}\": \"…\"}}`")),
             Self::NoImport(name) => told
                 .at(
                     name.span,
@@ -269,6 +272,9 @@ impl Mistake for BorderError {
                 }
             }
             Self::NoPart { span, what, .. } => told.at(span, what),
+            Self::NotOfMaterial { of, name } => told
+                .at(name.span, "not a part of it")
+                .help(format!("its parts are `{of}[0]`, `{of}.mip[0]`, `{of}.previous`")),
             Self::NoPrevious { span, what, .. } => told
                 .at(span, format!("it is {what}"))
                 .help("textures and buffers that the graph writes have one; copy it into one"),

@@ -107,9 +107,7 @@ pub(crate) enum LinkError {
         alignment: u64,
         span: Span,
     },
-    #[error(
-        "the texture `{name}` has the format {format:?}, which the shader's `{global}` cannot use"
-    )]
+    #[error("the texture `{name}` cannot be the shader's `{global}`")]
     Texture {
         name: String,
         format: TextureFormat,
@@ -514,7 +512,7 @@ impl LinkError {
                 )
                 .at(pass.span, "bound by this pass")
                 .suggest(&global, known)
-                .help(format!("or bind it: `bind: {{\"{global}\": \"…\"}}`")),
+                .help(format!("bind what is meant: `bind: {{\"{global}\": \"…\"}}`")),
             Self::WrongKind {
                 span,
                 needed,
@@ -560,7 +558,7 @@ impl LinkError {
                 span,
                 known,
             } => told.at(span, "").suggest(&member, known).help(format!(
-                "or declare it, `params: [U32(name: \"{member}\", default: …)]`, or `set` it"
+                "declare it, `params: [U32(name: \"{member}\", default: …)]`, or `set` it"
             )),
             Self::IndexMember(span) | Self::MemberIsNoVector { span, .. } => {
                 told.at(span, "in this uniform")

@@ -240,14 +240,22 @@ impl Environment for At<'_, '_, '_> {
             return Ok(value);
         }
         let resource = self.world.get(target.id);
-        let error = match attribute {
-            Attribute::Count => EvaluationError::NoCount(Located::new(of.path(), of.span.clone())),
+        let error = match (attribute, &resource.kind) {
+            (Attribute::Count, ResourceKind::Buffer(_) | ResourceKind::Provided(_)) => {
+                EvaluationError::NoCount(Located::new(of.path(), of.span.clone()))
+            }
             _ => EvaluationError::NoAttribute {
                 span: span.clone(),
                 of: format!("`{}`, {},", resource.name, resource.kind.describe()),
             },
         };
-        Err(self.report(error))
+        let counts = matches!(error, EvaluationError::NoCount(_));
+        let reported = self.report(error);
+        if counts {
+            // Its shaders would miss the same number.
+            self.world.spoil(target.id, reported);
+        }
+        Err(reported)
     }
 
     fn constant(&mut self, name: &str, span: &Span) -> Result<Value, Reported> {

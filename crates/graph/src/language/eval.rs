@@ -154,7 +154,7 @@ impl Expr {
                 Scalar::Whole(whole) => {
                     return Err(env.report(EvaluationError::Negative(self.span.clone(), whole)));
                 }
-                other => return Err(self.wrong("whole numbers", &Value::Scalar(other), env)),
+                other => return Err(self.wrong("a whole number", &Value::Scalar(other), env)),
             });
         }
         Ok(edges)
@@ -258,7 +258,7 @@ impl Expr {
             };
             for (value, argument) in [&first, &second].into_iter().zip(arguments) {
                 if !is_whole(value) {
-                    return Err(argument.wrong("whole numbers", value, env));
+                    return Err(argument.wrong("a whole number", value, env));
                 }
             }
         }

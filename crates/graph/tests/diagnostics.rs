@@ -9,7 +9,7 @@
 mod broken;
 mod support;
 
-use broken::{all, documents, folder};
+use broken::{all, documents, folder, root};
 use skiagraph_graph::{Code, Diagnostic, Sources, diagnostics};
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -138,7 +138,7 @@ fn the_catalogue_is_current() {
 #[test]
 fn every_text_has_its_document() {
     let documents = documents();
-    let snapshots = std::fs::read_dir(folder().root.join("snapshots"));
+    let snapshots = std::fs::read_dir(root().join("snapshots"));
     for entry in snapshots.expect("the folder is part of the repository") {
         let name = entry.expect("it is readable").file_name();
         let name = name.to_string_lossy();

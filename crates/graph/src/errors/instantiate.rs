@@ -151,7 +151,7 @@ pub(crate) enum BorderError {
         name: Located<String>,
         known: Vec<String>,
     },
-    #[error("`{}` is repeated, and has no content of its own", **.0)]
+    #[error("`{}` has no content of its own", **.0)]
     Namespace(Located<String>),
     #[error("there is no `{text}`")]
     Range {
@@ -258,7 +258,7 @@ impl Mistake for BorderError {
             Self::Private { name, known, .. } => told
                 .at(name.span.clone(), "only its outputs are seen from here")
                 .suggest(&name, known),
-            Self::Namespace(name) => told.at(name.span, "name one of what it gives, `x[0].y`"),
+            Self::Namespace(name) => told.at(name.span, "name what it gives: `x.y`, or `x[0].y` where it is repeated"),
             Self::Range {
                 span,
                 what,

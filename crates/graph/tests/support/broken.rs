@@ -2,14 +2,45 @@
 
 use crate::support::Triangle;
 use skiagraph_graph::{
-    Diagnostic, FolderSources, Graph, Import, PlanRequest, Registry,
+    Diagnostic, FolderSources, Graph, Import, Picture, PlanRequest, Registry, Sources,
 };
-use std::{collections::BTreeMap, path::Path};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
-pub fn folder() -> FolderSources {
-    FolderSources {
-        root: Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/broken"),
+/// The folder of the documents, and two pictures: `tile.png`, and one that cannot be decoded.
+pub struct Broken(FolderSources);
+
+impl Sources for Broken {
+    fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
+        self.0.read(path)
     }
+
+    fn list(&self, folder: &str) -> Vec<String> {
+        self.0.list(folder)
+    }
+
+    fn picture(&self, path: &str) -> Result<Option<Picture>, String> {
+        let texel = [u16::MAX, 0, 0, u16::MAX];
+        match path {
+            "tile.png" => Ok(Some(Picture {
+                size: [2, 2],
+                texels: [texel; 4].into(),
+            })),
+            "torn.png" => Err("the file ends too early".to_owned()),
+            _ => Ok(None),
+        }
+    }
+}
+
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/broken")
+}
+
+pub fn folder() -> Broken {
+    Broken(FolderSources { root: root() })
 }
 
 /// What a host hands over, made for too little, and a viewport and memory to plan for.
@@ -51,7 +82,7 @@ pub fn diagnose(name: &str) -> Vec<Diagnostic> {
 
 /// The names of all documents, in order.
 pub fn documents() -> Vec<String> {
-    let folder = std::fs::read_dir(folder().root).expect("it is part of the repository");
+    let folder = std::fs::read_dir(root()).expect("it is part of the repository");
     let file = |entry: std::io::Result<std::fs::DirEntry>| {
         entry.expect("it is readable").file_name().to_string_lossy().into_owned()
     };

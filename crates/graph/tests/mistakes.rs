@@ -7,7 +7,7 @@ mod support;
 
 use broken::{folder, request};
 use skiagraph_graph::{
-    Capture, Diagnostics, FolderSources, Graph, ParamValue, PlanRequest, Registry,
+    Capture, Diagnostics, FolderSources, Graph, Import, ParamValue, PlanRequest, Registry,
 };
 use support::{Files, Triangle, load, plan, right, wrong};
 
@@ -34,10 +34,13 @@ fn a_file_that_is_no_text() {
     write("shader.ron", shader.as_bytes());
     let include = r#"(format: 2, passes: [Include(graph: "binary.ron")], outputs: ["image"])"#;
     write("include.ron", include.as_bytes());
+    let import = shader.replace("\"binary\"", "\"import\"");
+    write("import.ron", import.as_bytes());
+    write("import.wgsl", b"#import \"binary.wgsl\"\n");
     let sources = FolderSources {
         root: folder.path().to_owned(),
     };
-    let found = ["binary.ron", "shader.ron", "include.ron"]
+    let found = ["binary.ron", "shader.ron", "include.ron", "import.ron"]
         .map(|path| text(Graph::load(path, &Registry::standard(), &sources)));
     insta::assert_snapshot!("no_text", found.join("\n"));
 }
@@ -82,6 +85,15 @@ fn values_nested_40_levels_deep() {
     assert_eq!(right(plan(&files)).outputs()[0].size, [4, 1]);
 }
 
+/// Each entry may name all others, so that time grows with the square.
+#[test]
+fn lists_too_long() {
+    let entries = r#"Buffer(name: "items"), "#.repeat(4097);
+    let found = text(load(&Files::graph(&format!("materials: [{entries}]"))));
+    assert!(found.contains("the list has 4097 entries, 4096 is the most"), "{found}");
+    assert_eq!(found.matches("error[").count(), 1, "{found}");
+}
+
 /// WGSL nested deeper than a stack; more of it stands in `hostile.rs`.
 #[test]
 fn shaders_nested_deep() {
@@ -114,10 +126,44 @@ fn shaders_nested_deep() {
 /// A graph with a param for its size, and materials that can and cannot be read back.
 const ASKED: &str = r#"
     params: [U32(name: "edge", default: 4, max: 8), Choice(name: "cull", words: [none, front])],
-    materials: [Texture(name: "image", format: R32Float, size: "edge"), Sampler(name: "nearest")],
-    passes: [Clear(name: "reset", target: "image")],
-    outputs: ["image"],
+    inputs: [Texture(name: "given", format: R32Float)],
+    materials: [
+        Texture(name: "image", format: R32Float, size: "edge"),
+        Texture(name: "depth", format: Depth24Plus, size: "edge"),
+        Texture(name: "late", format: R32Float, size: "edge"),
+        Texture(name: "never", format: R32Float, size: "edge"),
+        Sampler(name: "nearest"),
+    ],
+    passes: [
+        Clear(name: "reset", target: "image"),
+        Clear(name: "far", target: "depth"),
+        Fullscreen(name: "read", color: ["late"]),
+    ],
+    outputs: ["image", "late"],
 "#;
+
+const READ: &str = "var<storage, read> scene_stream: array<u32>;
+    var given: texture_2d<f32>;
+    @fragment fn fragment() -> @location(0) f32 {
+        return f32(scene_stream[1]) + textureLoad(given, vec2(0u), 0).x;
+    }";
+
+fn asked() -> Files {
+    Files::graph(ASKED).with("read.wgsl", READ)
+}
+
+/// What the host gives.
+fn given() -> Import {
+    Import::Texture {
+        format: wgt::TextureFormat::R32Float,
+        size: [1, 1],
+        mips: 1,
+        layers: 1,
+        is_3d: false,
+        samples: 1,
+        usage: wgt::TextureUsages::TEXTURE_BINDING,
+    }
+}
 
 fn capture(material: &str, after: Option<&str>) -> Capture {
     Capture {
@@ -129,12 +175,13 @@ fn capture(material: &str, after: Option<&str>) -> Capture {
 /// Mistakes of a request rather than of the document.
 #[test]
 fn requests_that_cannot_be_met() {
-    let graph = right(load(&Files::graph(ASKED)));
+    let graph = right(load(&asked()));
     let mut texts = Vec::new();
     let mut add = |what: &str, change: &dyn Fn(&mut PlanRequest<'_>)| {
         let mut request = PlanRequest::new([8, 8], &Triangle);
         let cull = ParamValue::Choice("none".to_owned());
         request.params.insert("cull".to_owned(), cull);
+        request.imports.insert("given".to_owned(), given());
         change(&mut request);
         texts.push(format!("--- {what}\n{}", text(graph.plan(&request))));
     };
@@ -149,9 +196,7 @@ fn requests_that_cannot_be_met() {
             request.params.insert(name.to_owned(), value.clone());
         });
     }
-    add("no value where the document has none", &|request| {
-        request.params.clear();
-    });
+    add("no import", &|request| request.imports.clear());
     add("an unknown output", &|request| {
         request.outputs = Some(vec!["imgae".to_owned()]);
     });
@@ -161,8 +206,11 @@ fn requests_that_cannot_be_met() {
         ("an unknown capture after a pass", "imgae", Some("reset")),
         ("a capture of a sampler", "nearest", None),
         ("a capture of a sampler after a pass", "nearest", Some("reset")),
-        ("a capture of what is not written", "scene.indices", None),
-        ("a capture of what nobody binds", "scene.indices", Some("reset")),
+        ("a capture of what is never written", "never", None),
+        ("a capture before it is written", "late", Some("reset")),
+        ("a capture of a format of the driver's own", "depth", None),
+        ("a capture of what the scene gives", "scene.stream", None),
+        ("a capture of what nobody has counted", "scene.stream", Some("read")),
     ] {
         add(what, &|request| request.captures = vec![capture(material, after)]);
     }
@@ -171,7 +219,7 @@ fn requests_that_cannot_be_met() {
 
 #[test]
 fn values_of_params_from_text() {
-    let graph = right(load(&Files::graph(ASKED)));
+    let graph = right(load(&asked()));
     let read = |(name, value): (&str, &str)| {
         let parsed = graph.parse_param(name, value);
         let told = parsed.map_or_else(|error| error.to_string(), |value| value.to_string());

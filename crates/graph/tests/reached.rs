@@ -10,10 +10,54 @@ use std::{collections::BTreeSet, path::Path};
 
 /// Mistakes whose message is that of another one, too, or has no words of its own, with a document
 /// that makes them.
-const BY_HAND: &[(&str, &str)] = &[];
+const BY_HAND: &[(&str, &str)] = &[
+    ("DocumentError::Syntax", "missing_comma"),
+    ("DocumentError::Twice", "duplicate_material"),
+    ("ComposeError::NoInclude", "include_missing"),
+    ("ComposeError::Clash", "duplicate_pass"),
+    ("EvaluationError::Words", "param_cull"),
+    ("EvaluationError::Unknown", "unknown_param"),
+    ("BorderError::UnwrittenOutput", "include_unwritten"),
+    ("OutputError::UnwrittenOutput", "output_unwritten"),
+    ("ShaderError::Naga", "unparsable"),
+    ("LayoutError::Alignment", "item_alignment"),
+    ("LinkError::Alignment", "item_alignment_provided"),
+    ("LinkError::SetValue", "set_vector"),
+    ("LinkError::CopyFormat", "copy_format"),
+    ("LinkError::CopySize", "copy_size"),
+    ("LinkError::CopyKinds", "copy_kind"),
+    ("TextureMisfit::Scalar", "sampled_type"),
+];
 
 /// Mistakes that no document makes, and why.
-const ELSEWHERE: &[(&str, &str)] = &[];
+const ELSEWHERE: &[(&str, &str)] = &[
+    ("DocumentError::TooMany", "`mistakes.rs`: lists of 4097 entries"),
+    ("ComposeError::NoDocument", "`mistakes.rs`: the root document"),
+    ("ComposeError::Unreadable", "`mistakes.rs`: files that are no text"),
+    ("ComposeError::UnreadableInclude", "`mistakes.rs`: files that are no text"),
+    ("ImportError::Unreadable", "`mistakes.rs`: files that are no text"),
+    ("ImportError::UnreadableFile", "`mistakes.rs`: files that are no text"),
+    ("ComposeError::TooDeep", "`compose.rs`: 80 documents"),
+    ("ImportError::TooDeep", "`mistakes.rs`: 100 modules"),
+    ("ShaderError::TooLong", "`hostile.rs`: a shader of a MiB"),
+    ("ShaderError::TooManyDeclarations", "`hostile.rs`: thousands of declarations"),
+    ("ShaderError::NoLayout", "naga refuses such types before"),
+    ("ParamError::Unknown", "`mistakes.rs`: a request"),
+    ("ParamError::Asked", "`mistakes.rs`: a request"),
+    ("BorderError::NoImport", "`mistakes.rs`: a request; `check` takes what is asked for as given"),
+    ("OutputError::NoOutput", "`mistakes.rs`: a request"),
+    ("OutputError::NoMaterial", "`mistakes.rs`: a request"),
+    ("OutputError::NoPass", "`mistakes.rs`: a request"),
+    ("OutputError::Unsized", "`mistakes.rs`: a request"),
+    ("OutputError::Sampler", "`mistakes.rs`: a request"),
+    ("OutputError::Provided", "`mistakes.rs`: a request"),
+    ("OutputError::Unwritten", "`mistakes.rs`: a request"),
+    ("OutputError::Unreadable", "`mistakes.rs`: a request"),
+    ("OutputError::NoViewport", "`mistakes.rs`: a request"),
+    ("OrderError::Capture", "`mistakes.rs`: a request"),
+    ("LinkError::NoShader", "a mistake of a pass kind, in Rust"),
+    ("LinkError::ShaderNotLoaded", "a mistake of a pass kind, in Rust"),
+];
 
 /// A variant, `Enum::Variant`, and what its message is made of between what is filled in.
 struct Variant {

@@ -45,6 +45,8 @@ pub(crate) struct Document {
     pub broken_materials: Vec<(String, Reported)>,
     /// A param could not be read: nothing of the document has a size then.
     pub broken_params: Option<Reported>,
+    /// An output could not be read: nobody knows what it would have been called.
+    pub broken_outputs: Option<Reported>,
     /// How many includes there are one within the other below this document.
     pub include_depth: usize,
 }
@@ -134,6 +136,7 @@ pub(crate) fn read(raw: RawDocument, registry: &Registry, reports: &mut Reports)
         claims: Vec::new(),
         broken_materials: Vec::new(),
         broken_params: raw.broken_params,
+        broken_outputs: None,
         include_depth: 0,
         file: raw.file,
     };
@@ -178,9 +181,10 @@ pub(crate) fn read(raw: RawDocument, registry: &Registry, reports: &mut Reports)
     no_edits(&mut passes, reports);
     document.entries = entries::read(passes, registry, reports);
     for node in &raw.outputs {
-        keep(node.parse(), reports, |output| {
-            document.outputs.push(output)
-        });
+        match node.parse() {
+            Ok(output) => document.outputs.push(output),
+            Err(error) => document.broken_outputs = Some(reports.tell(error)),
+        }
     }
     for (name, node) in raw.set {
         keep(node.parse(), reports, |value| {

@@ -99,6 +99,15 @@ impl<'a> Builder<'a, '_> {
             outputs,
             read_only,
         });
+        if let Some(reported) = document.broken_outputs {
+            let around = self.world.frames.instance_of(place.frame);
+            self.world.frames.instance_mut(around).incomplete = Some(reported);
+            if has_namespace {
+                let meaning = Meaning::Broken(reported);
+                self.world.frames.declare(place.frame, &entry.name.value, meaning);
+            }
+            return Err(reported);
+        }
         if has_namespace && place.index.is_none() {
             let meaning = Meaning::Namespace(names.clone());
             self.world

@@ -1,5 +1,7 @@
 //! The documents of `tests/broken`, each with a mistake, and what is said about it.
 
+#![allow(dead_code, reason = "each test file uses a part of it")]
+
 use crate::support::Triangle;
 use skiagraph_graph::{
     Diagnostic, FolderSources, Graph, Import, Picture, PlanRequest, Registry, Sources,

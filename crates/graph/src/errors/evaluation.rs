@@ -46,6 +46,8 @@ pub(crate) enum EvaluationError {
     NoAttribute { span: Span, of: String },
     #[error("`{}` has no number of items", **.0)]
     NoCount(Located<String>),
+    #[error("it is not known how many items `{}` has", **.0)]
+    Uncounted(Located<String>),
     #[error("`{}`: its size is that of itself", **.0)]
     Circular(Located<String>),
     /// An index where nothing is repeated; of a group or include, if one is named.
@@ -90,7 +92,7 @@ impl Mistake for EvaluationError {
     fn code(&self) -> Code {
         match self {
             Self::Unknown { .. } => Code::UnknownParam,
-            Self::Circular(_) | Self::NoCount(_) => Code::Size,
+            Self::Circular(_) | Self::NoCount(_) | Self::Uncounted(_) => Code::Size,
             _ => Code::Expression,
         }
     }
@@ -130,6 +132,9 @@ impl Mistake for EvaluationError {
             Self::NoCount(name) => told
                 .at(name.span, "it says no `count`")
                 .help("give the buffer one, and its shaders an array of any length"),
+            Self::Uncounted(name) => told
+                .at(name.span, "its items are counted when it is built")
+                .help("bind all of it, and let the shader ask for `arrayLength`"),
             Self::Circular(name) => told
                 .at(name.span, "")
                 .help("give one of these materials a size of its own"),
@@ -145,7 +150,9 @@ impl Mistake for EvaluationError {
                 .help("use a param, which is written in small letters"),
             Self::NoConstant {
                 span, name, known, ..
-            } => told.at(span, "").suggest(&name, known),
+            } => told.at(span, "").suggest(&name, known).help(
+                "a constant that a document asks for has a type: `const NAME: u32 = …;`",
+            ),
             Self::Unknown {
                 span, word, known, ..
             } => told.at(span, "").suggest(&word, known),

@@ -117,6 +117,12 @@ pub(crate) enum BorderError {
         span: Span,
         declared: Span,
     },
+    #[error("the host imports {found} for `{}`, {expected} is asked for", **name)]
+    WrongImport {
+        name: Located<String>,
+        expected: String,
+        found: String,
+    },
     #[error("the input `{}` is written, and is no output", **.0)]
     WrittenInput(Located<String>, Span),
     #[error("`{document}` has no input, output or param `{}`", **name)]
@@ -193,6 +199,7 @@ impl Mistake for BorderError {
             Self::NoInput { .. }
             | Self::NoImport(_)
             | Self::WrongInput { .. }
+            | Self::WrongImport { .. }
             | Self::WrittenInput(..) => Code::Input,
             Self::Unasked { .. } | Self::UnaskedInGroup { .. } => Code::Unasked,
             Self::UnwrittenOutput(_) | Self::BoundOutput { .. } => Code::Output,
@@ -229,6 +236,7 @@ impl Mistake for BorderError {
             Self::WrongInput { span, declared, .. } => {
                 told.at(span, "given here").at(declared, "asked for here")
             }
+            Self::WrongImport { name, .. } => told.at(name.span, "asked for here"),
             Self::WrittenInput(name, by) => told
                 .at(name.span, "an input")
                 .at(by, "written here")

@@ -96,6 +96,7 @@ impl Mistake for SyntaxFault {
 pub(crate) fn attributes() -> String {
     let names: Vec<String> = Attribute::ALL
         .iter()
+        .filter(|(_, attribute)| *attribute != Attribute::Index)
         .map(|(name, _)| format!("`.{name}`"))
         .collect();
     names.join(", ")

@@ -427,7 +427,9 @@ impl Mistake for LinkError {
             Self::WritesPrevious { of, span } => told.at(span, "written here").help(format!(
                 "write `{of}`: the next frame finds it as `{of}.previous`"
             )),
-            Self::WritesConstant { span, .. } => told.at(span, "written here"),
+            Self::WritesConstant { span, .. } => told
+                .at(span, "written here")
+                .help("write another material; a `Copy` above brings the content there"),
             Self::WritesProvided { span, .. } => told.at(span, "declare it `var<storage, read>`"),
             Self::VertexWrites { span, .. } => told
                 .at(span, "")

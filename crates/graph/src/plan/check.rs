@@ -143,7 +143,7 @@ impl Graph {
             for value in ends(param) {
                 let mut changed = request.again();
                 changed.params.insert(name.clone(), value.clone());
-                found.extend(self.wrong_with(&changed, &format!("`{name}` = {value}")));
+                found.extend(self.wrong_with(&changed, &format!("with `{name}` = {value}")));
             }
         }
         for feature in deciding.features.iter() {
@@ -178,7 +178,7 @@ impl Graph {
         errors
             .map(|found| Diagnostic {
                 code: Code::Condition,
-                message: format!("with {condition}: {}", found.message),
+                message: format!("{condition}: {}", found.message),
                 ..found
             })
             .collect()

@@ -11,7 +11,7 @@ use crate::{
     document::{
         entries::{Entry, Include},
         materials::{Input, InputKind, Material},
-        typed::Document,
+        typed::{Document, Output},
     },
     errors::instantiate::BorderError,
     language::{
@@ -23,6 +23,9 @@ use crate::{
     source::span::Located,
 };
 use std::{collections::BTreeMap, sync::Arc};
+
+/// A material here that an output is written into, with the place that says so.
+type Bound = (Located<String>, Result<Target, Reported>);
 
 /// What an include says of names of its document, its own words first.
 struct Said<'e> {
@@ -93,7 +96,11 @@ impl<'a> Builder<'a, '_> {
         }
         let inner = around.inside(frame);
         self.document(document, &inner);
-        let (names, outputs) = self.outputs(document, instance, Place { frame, index: None });
+        let (mut names, outputs) = self.outputs(document, instance, Place { frame, index: None });
+        for (output, (_, target)) in self.passed_on(entry, document, place, has_namespace) {
+            let meaning = target.map_or_else(Meaning::Broken, Meaning::Target);
+            names.insert(output.name.value.clone(), meaning);
+        }
         self.borders.push(Border {
             instance,
             outputs,
@@ -223,7 +230,6 @@ impl<'a> Builder<'a, '_> {
 
     /// What an include binds besides inputs: outputs, which are written into a material here, and
     /// names of the scene.
-    #[expect(clippy::type_complexity, reason = "two maps of the same kind")]
     fn outside(
         &mut self,
         entry: &Entry,
@@ -233,7 +239,7 @@ impl<'a> Builder<'a, '_> {
         has_namespace: bool,
     ) -> (
         BTreeMap<String, Result<Target, Reported>>,
-        BTreeMap<String, (Located<String>, Result<Target, Reported>)>,
+        BTreeMap<String, Bound>,
     ) {
         let (mut scene, mut overrides) = (BTreeMap::new(), BTreeMap::new());
         for (name, reference, at) in &said.bind {
@@ -274,19 +280,34 @@ impl<'a> Builder<'a, '_> {
                 }
             }
         }
-        // What is bound around it is bound in it, if it is what it gives.
-        let around = self.world.frames.document(place.frame);
-        if !has_namespace {
-            for output in &document.outputs {
-                let name = output.name.value.as_str();
-                let bound = around.overrides.get(name);
-                let own = entry.bind.iter().any(|(bound, _)| **bound == *name);
-                if let Some(bound) = bound.filter(|_| !own) {
-                    overrides.insert(output.material.path(), bound.clone());
-                }
-            }
+        for (output, bound) in self.passed_on(entry, document, place, has_namespace) {
+            overrides.insert(output.material.path(), bound);
         }
         (scene, overrides)
+    }
+
+    /// What the includer of the document around says of what an include gives: where that passes on
+    /// an output, it is written into the material that its own was bound to.
+    fn passed_on<'d>(
+        &self,
+        entry: &Entry,
+        document: &'d Document,
+        place: Place,
+        has_namespace: bool,
+    ) -> Vec<(&'d Output, Bound)> {
+        let around = self.world.frames.document(place.frame);
+        let known = |name: &Name| match (has_namespace, place.index) {
+            (false, _) => Some(name.to_string()),
+            (true, None) => Some(format!("{}.{name}", entry.name.value)),
+            (true, Some(_)) => None,
+        };
+        let passed_on = document.outputs.iter().filter_map(|output| {
+            let name = &output.name.value;
+            let own = entry.bind.iter().any(|(bound, _)| **bound == **name);
+            let bound = around.overrides.get(&known(name)?).filter(|_| !own)?;
+            Some((output, bound.clone()))
+        });
+        passed_on.collect()
     }
 
     /// The material here that is written instead of one that the document declares.

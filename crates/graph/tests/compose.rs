@@ -87,7 +87,9 @@ fn plan(files: &Files) -> Plan {
 /// Name and width of each output.
 fn widths(plan: &Plan) -> Vec<(String, u32)> {
     let outputs = plan.outputs().into_iter();
-    outputs.map(|output| (output.name, output.size[0])).collect()
+    outputs
+        .map(|output| (output.name, output.size[0]))
+        .collect()
 }
 
 /// A document of the viewport's size.
@@ -212,12 +214,15 @@ fn names_and_sizes_of_includes() {
         assert_eq!(plan.outputs()[0].size, [*width, *width], "{what}");
         let warnings = right(graph(&files)).warnings().len();
         let unused = usize::from(!passes.contains("\"n\"")) + 1;
-        assert_eq!(warnings, unused, "{what}: params of this document that nothing uses");
+        assert_eq!(
+            warnings, unused,
+            "{what}: params of this document that nothing uses"
+        );
     }
 }
 
 /// ```text
-/// graph.ron ─ a ▶ middle.ron ─▶ inner.ron: `image` is `picture` in the middle, and `mine` outside
+/// graph.ron ─ a ▶ middle.ron ─▶ inner.ron: what is `image` in both is `mine` outside
 /// ```
 #[test]
 fn what_is_bound_goes_through_every_level() {
@@ -233,13 +238,21 @@ fn what_is_bound_goes_through_every_level() {
         Texture(name: "other", format: R32Float)"#;
     let files = files(materials, outer, outputs).document("pipelines/shared/middle.ron", middle);
     let plan = plan(&files);
-    let expected = [("mine", 16), ("other", 8), ("light", 16), ("b", 4), ("c", 4)];
+    let expected = [
+        ("mine", 16),
+        ("other", 8),
+        ("light", 16),
+        ("b", 4),
+        ("c", 4),
+    ];
     assert_eq!(
         widths(&plan),
         expected.map(|(name, width)| (name.to_owned(), width)),
         "a.result is as large as the image that it is like"
     );
-    let of_a = names(&plan).into_iter().filter(|name| name.starts_with("a."));
+    let of_a = names(&plan)
+        .into_iter()
+        .filter(|name| name.starts_with("a."));
     let expected = ["a.inner.fill", "a.inner.smooth", "a.b.fill", "a.b.smooth"];
     assert_eq!(of_a.collect::<Vec<_>>(), expected);
 }
@@ -307,10 +320,16 @@ fn history_and_conditions_in_an_include() {
             .document("pipelines/shared/inner.ron", inner);
         plan_with(&files, None)
     };
-    assert_eq!(names(&right(plan("outer"))), ["it.smooth", "it.keep", "one"]);
+    assert_eq!(
+        names(&right(plan("outer"))),
+        ["it.smooth", "it.keep", "one"]
+    );
     // The inner `on` is not the outer one: two writers of one material would run apart.
     let errors = wrong(plan("on"));
-    assert!(codes(errors.iter()).contains(&Code::RunCondition), "{errors}");
+    assert!(
+        codes(errors.iter()).contains(&Code::RunCondition),
+        "{errors}"
+    );
 }
 
 /// What the scene gives can stand for an input of an included document.
@@ -340,15 +359,21 @@ fn an_input_is_bound_to_what_the_scene_gives() {
     };
     assert_eq!(right(provided(&own)), "");
     let bound = own
-        .edited("graph.ron", r#""indices": "own""#, r#""indices": "scene.indices""#)
+        .edited(
+            "graph.ron",
+            r#""indices": "own""#,
+            r#""indices": "scene.indices""#,
+        )
         .edited("graph.ron", r#"Buffer(name: "own", count: 3)"#, "");
     // The host's buffer is only there to be read, so the included document must not clear it.
     let errors = wrong(provided(&bound)).to_string();
     assert!(errors.contains("`indices` cannot be cleared"), "{errors}");
     let clear = r#"Clear(name: "reset", target: "indices"),"#;
-    let reading = bound
-        .edited("inner.ron", clear, "")
-        .edited("inner.ron", r#"["indices", "sum"]"#, r#"["sum"]"#);
+    let reading = bound.edited("inner.ron", clear, "").edited(
+        "inner.ron",
+        r#"["indices", "sum"]"#,
+        r#"["sum"]"#,
+    );
     assert_eq!(right(provided(&reading)), "scene.indices");
 }
 
@@ -413,7 +438,10 @@ fn repeats_follow_their_param() {
         ]
     );
     let errors = wrong(plan_with(&files, Some(5))).to_string();
-    assert!(errors.contains("its layers are [0] to [3], this is [4]"), "{errors}");
+    assert!(
+        errors.contains("its layers are [0] to [3], this is [4]"),
+        "{errors}"
+    );
     assert_eq!(plan.outputs()[2].size, [4, 4]);
 }
 
@@ -445,7 +473,10 @@ fn a_missing_feature_changes_defaults() {
         let edge = edge.map(|edge| ("edge".to_owned(), ParamValue::U32(edge)));
         request.params.extend(edge);
         let plan = right(graph.plan(&request));
-        plan.outputs().iter().map(|output| output.size[0]).collect::<Vec<_>>()
+        plan.outputs()
+            .iter()
+            .map(|output| output.size[0])
+            .collect::<Vec<_>>()
     };
     let none = wgt::Features::empty();
     assert_eq!(edges(SUBGROUP, None), [8, 16]);

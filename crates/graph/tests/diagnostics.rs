@@ -39,7 +39,10 @@ fn every_mistake_has_its_text() {
             }),
         }
     }
-    assert!(right.is_empty(), "these broken documents are thought to be right: {right:?}");
+    assert!(
+        right.is_empty(),
+        "these broken documents are thought to be right: {right:?}"
+    );
 }
 
 /// What follows from a mistake is not told beside it.
@@ -52,7 +55,11 @@ fn one_mistake_is_one_message() {
             wrong.push(format!("{name}: {messages:#?}"));
         }
     }
-    assert!(wrong.is_empty(), "not as many as the name says:\n{}", wrong.join("\n"));
+    assert!(
+        wrong.is_empty(),
+        "not as many as the name says:\n{}",
+        wrong.join("\n")
+    );
 }
 
 /// Each kind of mistake is shown by one snapshot at least.
@@ -62,7 +69,10 @@ fn every_code_has_a_text() {
     let shown: BTreeSet<Code> = found.map(|found| found.code).collect();
     let missing = Code::ALL.iter().filter(|code| !shown.contains(code));
     let missing: Vec<&Code> = missing.collect();
-    assert!(missing.is_empty(), "no document in tests/broken shows {missing:?}");
+    assert!(
+        missing.is_empty(),
+        "no document in tests/broken shows {missing:?}"
+    );
 }
 
 /// The documents that show a kind of mistake, with all that is wrong with each.
@@ -88,11 +98,15 @@ const TITLE: &str = "# Diagnostics\n\nEvery kind of mistake that `skiagraph chec
 /// The chapter of one kind of mistake: its plainest document, then all of them in a table.
 fn chapter(code: Code, of_code: &[(String, Vec<Diagnostic>)]) -> String {
     let text = |name: &str| {
-        let text = folder().read(&format!("{name}.ron")).expect("it is readable");
+        let text = folder()
+            .read(&format!("{name}.ron"))
+            .expect("it is readable");
         text.expect("it is there").trim_end().to_owned()
     };
     // The plainest: one mistake, and little around it.
-    let plainest = of_code.iter().min_by_key(|(name, all)| (all.len(), text(name).len()));
+    let plainest = of_code
+        .iter()
+        .min_by_key(|(name, all)| (all.len(), text(name).len()));
     let (example, all) = plainest.expect("another test says that there is one");
     let mut chapter = format!(
         "\n## {}\n\n{} **Way out:** {}\n\n```ron\n{}\n```\n\n```text\n{}\n```\n\n| document | says \
@@ -143,7 +157,10 @@ fn every_text_has_its_document() {
         let name = entry.expect("it is readable").file_name();
         let name = name.to_string_lossy();
         let document = name.strip_suffix(".snap").unwrap_or(&name).to_owned();
-        assert!(documents.contains(&document), "{name} belongs to no document");
+        assert!(
+            documents.contains(&document),
+            "{name} belongs to no document"
+        );
     }
 }
 

@@ -90,7 +90,10 @@ fn values_nested_40_levels_deep() {
 fn lists_too_long() {
     let entries = r#"Buffer(name: "items"), "#.repeat(4097);
     let found = text(load(&Files::graph(&format!("materials: [{entries}]"))));
-    assert!(found.contains("the list has 4097 entries, 4096 is the most"), "{found}");
+    assert!(
+        found.contains("the list has 4097 entries, 4096 is the most"),
+        "{found}"
+    );
     assert_eq!(found.matches("error[").count(), 1, "{found}");
 }
 
@@ -205,14 +208,24 @@ fn requests_that_cannot_be_met() {
         ("a capture after an unknown pass", "image", Some("rest")),
         ("an unknown capture after a pass", "imgae", Some("reset")),
         ("a capture of a sampler", "nearest", None),
-        ("a capture of a sampler after a pass", "nearest", Some("reset")),
+        (
+            "a capture of a sampler after a pass",
+            "nearest",
+            Some("reset"),
+        ),
         ("a capture of what is never written", "never", None),
         ("a capture before it is written", "late", Some("reset")),
         ("a capture of a format of the driver's own", "depth", None),
         ("a capture of what the scene gives", "scene.stream", None),
-        ("a capture of what nobody has counted", "scene.stream", Some("read")),
+        (
+            "a capture of what nobody has counted",
+            "scene.stream",
+            Some("read"),
+        ),
     ] {
-        add(what, &|request| request.captures = vec![capture(material, after)]);
+        add(what, &|request| {
+            request.captures = vec![capture(material, after)]
+        });
     }
     insta::assert_snapshot!("requests", texts.join(""));
 }
@@ -261,5 +274,10 @@ fn comments_and_a_byte_order_mark_are_no_mistakes() {
         ("graph.ron", document),
         ("fill.wgsl", include_str!("broken/fill.wgsl")),
     ]);
-    right(Graph::check("graph.ron", &Registry::standard(), &files, &request()));
+    right(Graph::check(
+        "graph.ron",
+        &Registry::standard(),
+        &files,
+        &request(),
+    ));
 }

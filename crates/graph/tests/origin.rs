@@ -17,7 +17,12 @@ const DOCUMENT: &str = r#"
         Buffer(name: "total"),
     ],
     passes: [
-        Raster(name: "draw", draw: "scene.positions.count", color: ["image.mip[0]"], depth: "depth"),
+        Raster(
+            name: "draw",
+            draw: "scene.positions.count",
+            color: ["image.mip[0]"],
+            depth: "depth",
+        ),
         Compute(name: "gather", dispatch: Groups(1, 1, 1)),
         Copy(name: "keep", from: "items", to: "kept"),
         Copy(name: "keep_depth", from: "depth", to: "kept_depth"),

@@ -31,20 +31,44 @@ const BY_HAND: &[(&str, &str)] = &[
 
 /// Mistakes that no document makes, and why.
 const ELSEWHERE: &[(&str, &str)] = &[
-    ("DocumentError::TooMany", "`mistakes.rs`: lists of 4097 entries"),
-    ("ComposeError::NoDocument", "`mistakes.rs`: the root document"),
-    ("ComposeError::Unreadable", "`mistakes.rs`: files that are no text"),
-    ("ComposeError::UnreadableInclude", "`mistakes.rs`: files that are no text"),
-    ("ImportError::Unreadable", "`mistakes.rs`: files that are no text"),
-    ("ImportError::UnreadableFile", "`mistakes.rs`: files that are no text"),
+    (
+        "DocumentError::TooMany",
+        "`mistakes.rs`: lists of 4097 entries",
+    ),
+    (
+        "ComposeError::NoDocument",
+        "`mistakes.rs`: the root document",
+    ),
+    (
+        "ComposeError::Unreadable",
+        "`mistakes.rs`: files that are no text",
+    ),
+    (
+        "ComposeError::UnreadableInclude",
+        "`mistakes.rs`: files that are no text",
+    ),
+    (
+        "ImportError::Unreadable",
+        "`mistakes.rs`: files that are no text",
+    ),
+    (
+        "ImportError::UnreadableFile",
+        "`mistakes.rs`: files that are no text",
+    ),
     ("ComposeError::TooDeep", "`compose.rs`: 80 documents"),
     ("ImportError::TooDeep", "`mistakes.rs`: 100 modules"),
     ("ShaderError::TooLong", "`hostile.rs`: a shader of a MiB"),
-    ("ShaderError::TooManyDeclarations", "`hostile.rs`: thousands of declarations"),
+    (
+        "ShaderError::TooManyDeclarations",
+        "`hostile.rs`: thousands of declarations",
+    ),
     ("ShaderError::NoLayout", "naga refuses such types before"),
     ("ParamError::Unknown", "`mistakes.rs`: a request"),
     ("ParamError::Asked", "`mistakes.rs`: a request"),
-    ("BorderError::NoImport", "`mistakes.rs`: a request; `check` takes what is asked for as given"),
+    (
+        "BorderError::NoImport",
+        "`mistakes.rs`: a request; `check` takes what is asked for as given",
+    ),
     ("OutputError::NoOutput", "`mistakes.rs`: a request"),
     ("OutputError::NoMaterial", "`mistakes.rs`: a request"),
     ("OutputError::NoPass", "`mistakes.rs`: a request"),
@@ -56,7 +80,10 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("OutputError::NoViewport", "`mistakes.rs`: a request"),
     ("OrderError::Capture", "`mistakes.rs`: a request"),
     ("LinkError::NoShader", "a mistake of a pass kind, in Rust"),
-    ("LinkError::ShaderNotLoaded", "a mistake of a pass kind, in Rust"),
+    (
+        "LinkError::ShaderNotLoaded",
+        "a mistake of a pass kind, in Rust",
+    ),
 ];
 
 /// A variant, `Enum::Variant`, and what its message is made of between what is filled in.
@@ -75,13 +102,15 @@ impl Variant {
             return false;
         }
         let mut rest = message;
-        self.literals.iter().all(|literal| match rest.find(literal.as_str()) {
-            Some(at) => {
-                rest = &rest[at + literal.len()..];
-                true
-            }
-            None => false,
-        })
+        self.literals
+            .iter()
+            .all(|literal| match rest.find(literal.as_str()) {
+                Some(at) => {
+                    rest = &rest[at + literal.len()..];
+                    true
+                }
+                None => false,
+            })
     }
 
     /// Whether it has enough words to be told from others.
@@ -143,7 +172,9 @@ fn variants(text: &str) -> Vec<Variant> {
         let (template, rest) = literal(&text[start..]);
         let end = rest.find(")]\n").expect("the attribute ends") + 3;
         let own = rest[end..].lines().map(str::trim_start);
-        let own = own.clone().find(|line| line.starts_with(char::is_uppercase));
+        let own = own
+            .clone()
+            .find(|line| line.starts_with(char::is_uppercase));
         variants.push(Variant {
             name: format!("{of}::{}", word(own.expect("a variant follows"))),
             literals: pieces(&template),
@@ -175,7 +206,9 @@ fn every_mistake_is_made_by_a_document() {
         let labels = found.labels.iter().map(|label| label.text.clone());
         labels.chain([found.message.clone()]).collect::<Vec<_>>()
     };
-    let messages = found.iter().flat_map(|(_, found)| found.iter().flat_map(texts));
+    let messages = found
+        .iter()
+        .flat_map(|(_, found)| found.iter().flat_map(texts));
     let messages: Vec<String> = messages.collect();
     let all = all_variants();
     assert!(all.len() > 200, "only {} variants are read", all.len());
@@ -184,7 +217,9 @@ fn every_mistake_is_made_by_a_document() {
         let name = variant.name.as_str();
         let by_hand = BY_HAND.iter().find(|(known, _)| *known == name);
         let elsewhere = ELSEWHERE.iter().any(|(known, _)| *known == name);
-        let twins = all.iter().filter(|other| other.literals == variant.literals);
+        let twins = all
+            .iter()
+            .filter(|other| other.literals == variant.literals);
         let is_told_apart = variant.is_plain() && twins.count() == 1;
         let is_said = messages.iter().any(|message| variant.says(message));
         match (by_hand, elsewhere, is_told_apart) {

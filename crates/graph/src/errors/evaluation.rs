@@ -150,9 +150,10 @@ impl Mistake for EvaluationError {
                 .help("use a param, which is written in small letters"),
             Self::NoConstant {
                 span, name, known, ..
-            } => told.at(span, "").suggest(&name, known).help(
-                "a constant that a document asks for has a type: `const NAME: u32 = …;`",
-            ),
+            } => told
+                .at(span, "")
+                .suggest(&name, known)
+                .help("a constant that a document asks for has a type: `const NAME: u32 = …;`"),
             Self::Unknown {
                 span, word, known, ..
             } => told.at(span, "").suggest(&word, known),

@@ -266,7 +266,10 @@ impl Mistake for BorderError {
             Self::Private { name, known, .. } => told
                 .at(name.span.clone(), "only its outputs are seen from here")
                 .suggest(&name, known),
-            Self::Namespace(name) => told.at(name.span, "name what it gives: `x.y`, or `x[0].y` where it is repeated"),
+            Self::Namespace(name) => told.at(
+                name.span,
+                "name what it gives: `x.y`, or `x[0].y` where it is repeated",
+            ),
             Self::Range {
                 span,
                 what,
@@ -280,9 +283,9 @@ impl Mistake for BorderError {
                 }
             }
             Self::NoPart { span, what, .. } => told.at(span, what),
-            Self::NotOfMaterial { of, name } => told
-                .at(name.span, "not a part of it")
-                .help(format!("its parts are `{of}[0]`, `{of}.mip[0]`, `{of}.previous`")),
+            Self::NotOfMaterial { of, name } => told.at(name.span, "not a part of it").help(
+                format!("its parts are `{of}[0]`, `{of}.mip[0]`, `{of}.previous`"),
+            ),
             Self::NoPrevious { span, what, .. } => told
                 .at(span, format!("it is {what}"))
                 .help("textures and buffers that the graph writes have one; copy it into one"),

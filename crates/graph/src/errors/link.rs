@@ -514,7 +514,9 @@ impl LinkError {
                 )
                 .at(pass.span, "bound by this pass")
                 .suggest(&global, known)
-                .help(format!("bind what is meant: `bind: {{\"{global}\": \"…\"}}`")),
+                .help(format!(
+                    "bind what is meant: `bind: {{\"{global}\": \"…\"}}`"
+                )),
             Self::WrongKind {
                 span,
                 needed,

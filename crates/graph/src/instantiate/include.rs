@@ -106,28 +106,36 @@ impl<'a> Builder<'a, '_> {
             outputs,
             read_only,
         });
+        self.give(entry, document, &names, (place, has_namespace))?;
+        Ok(names)
+    }
+
+    /// Makes what an include gives known where it stands.
+    fn give(
+        &mut self,
+        entry: &Entry,
+        document: &Document,
+        names: &Names,
+        (place, has_namespace): (Place, bool),
+    ) -> Result<(), Reported> {
+        let frames = &mut self.world.frames;
+        let name = &entry.name.value;
         if let Some(reported) = document.broken_outputs {
-            let around = self.world.frames.instance_of(place.frame);
-            self.world.frames.instance_mut(around).incomplete = Some(reported);
+            let around = frames.instance_of(place.frame);
+            frames.instance_mut(around).incomplete = Some(reported);
             if has_namespace {
-                let meaning = Meaning::Broken(reported);
-                self.world.frames.declare(place.frame, &entry.name.value, meaning);
+                frames.declare(place.frame, name, Meaning::Broken(reported));
             }
             return Err(reported);
         }
         if has_namespace && place.index.is_none() {
-            let meaning = Meaning::Namespace(names.clone());
-            self.world
-                .frames
-                .declare(place.frame, &entry.name.value, meaning);
+            frames.declare(place.frame, name, Meaning::Namespace(names.clone()));
         } else if !has_namespace {
-            for (name, meaning) in &names {
-                self.world
-                    .frames
-                    .declare(place.frame, name, meaning.clone());
+            for (name, meaning) in names {
+                frames.declare(place.frame, name, meaning.clone());
             }
         }
-        Ok(names)
+        Ok(())
     }
 
     /// What an include says, and groups around it of names that its document asks for.

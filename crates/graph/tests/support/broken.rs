@@ -86,7 +86,11 @@ pub fn diagnose(name: &str) -> Vec<Diagnostic> {
 pub fn documents() -> Vec<String> {
     let folder = std::fs::read_dir(root()).expect("it is part of the repository");
     let file = |entry: std::io::Result<std::fs::DirEntry>| {
-        entry.expect("it is readable").file_name().to_string_lossy().into_owned()
+        entry
+            .expect("it is readable")
+            .file_name()
+            .to_string_lossy()
+            .into_owned()
     };
     let ron = |name: String| name.strip_suffix(".ron").map(str::to_owned);
     let mut names: Vec<String> = folder.map(file).filter_map(ron).collect();
@@ -97,5 +101,7 @@ pub fn documents() -> Vec<String> {
 /// All documents with what is said about each.
 pub fn all() -> Vec<(String, Vec<Diagnostic>)> {
     let documents = documents().into_iter();
-    documents.map(|name| (name.clone(), diagnose(&name))).collect()
+    documents
+        .map(|name| (name.clone(), diagnose(&name)))
+        .collect()
 }

@@ -476,6 +476,7 @@ fn explain(error: &ron::Error, span: Span) -> Diagnostic {
         R::MissingStructField { field, .. } => DocumentError::MissingField(span, field.to_string()),
         R::DuplicateStructField { field, .. } => DocumentError::FieldTwice(span, field.to_string()),
         R::Eof => DocumentError::Ends(span),
+        R::ExpectedString => DocumentError::Syntax(span, "a text in quotes is needed".to_owned()),
         R::ExceededRecursionLimit => DocumentError::Nested(span),
         other => DocumentError::Syntax(span, lower_first(&other.to_string())),
     }

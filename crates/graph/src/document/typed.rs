@@ -45,6 +45,8 @@ pub(crate) struct Document {
     pub broken_materials: Vec<(String, Reported)>,
     /// A param could not be read: nothing of the document has a size then.
     pub broken_params: Option<Reported>,
+    /// Something could not be read, and nobody knows which names it would have given.
+    pub incomplete: Option<Reported>,
     /// An output could not be read: nobody knows what it would have been called.
     pub broken_outputs: Option<Reported>,
     /// How many includes there are one within the other below this document.
@@ -137,6 +139,7 @@ pub(crate) fn read(raw: RawDocument, registry: &Registry, reports: &mut Reports)
         broken_materials: Vec::new(),
         broken_params: raw.broken_params,
         broken_outputs: None,
+        incomplete: raw.incomplete,
         include_depth: 0,
         file: raw.file,
     };
@@ -161,8 +164,10 @@ pub(crate) fn read(raw: RawDocument, registry: &Registry, reports: &mut Reports)
             Ok(input) => document.inputs.push(input),
             Err(error) => {
                 let reported = reports.tell(error);
-                let name = item.name().map(|name| (name.value, reported));
-                document.broken_materials.extend(name);
+                match item.name() {
+                    Some(name) => document.broken_materials.push((name.value, reported)),
+                    None => document.incomplete = Some(reported),
+                }
             }
         }
     }
@@ -172,8 +177,10 @@ pub(crate) fn read(raw: RawDocument, registry: &Registry, reports: &mut Reports)
             Ok(material) => document.materials.push(material),
             Err(error) => {
                 let reported = reports.tell(error);
-                let name = item.name().map(|name| (name.value, reported));
-                document.broken_materials.extend(name);
+                match item.name() {
+                    Some(name) => document.broken_materials.push((name.value, reported)),
+                    None => document.incomplete = Some(reported),
+                }
             }
         }
     }

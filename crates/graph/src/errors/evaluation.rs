@@ -79,11 +79,11 @@ impl EvaluationError {
         Self::Unknown {
             span: span.clone(),
             what: match is_material {
-                true => format!("`{name}` is a material, whose attributes have values"),
+                true => format!("`{name}` is a material: name an attribute of it, `{name}.size`"),
                 false => format!("no param is called `{name}`"),
             },
             word: name.to_owned(),
-            known,
+            known: if is_material { Vec::new() } else { known },
         }
     }
 }

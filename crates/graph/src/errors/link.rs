@@ -32,7 +32,7 @@ pub(crate) enum LinkError {
     },
     #[error("pass `{pass}` does not write `{}`", **name)]
     Overwrites { pass: String, name: Located<String> },
-    #[error("`{shader}` asks for no `{}`", **name)]
+    #[error("`{shader}` has no param or constant `{}` to set", **name)]
     UnaskedSet {
         shader: String,
         name: Located<String>,
@@ -448,7 +448,7 @@ impl Mistake for LinkError {
                 told.at(name.span.clone(), "").suggest(&name, known)
             }
             Self::OverrideWithout(name) => told
-                .at(name.span.clone(), "no param of the document is called so")
+                .at(name.span.clone(), "no param that is a single number is called so")
                 .help(format!(
                     "declare a param `{0}` with a single number, `set` it, or write \
                      `override {0}: … = …;`",
@@ -498,10 +498,13 @@ impl LinkError {
                  binds"
             )),
             Self::Unsupported { span, .. } => told.at(span, ""),
-            Self::ParamsUniform { size, span, .. } => told.at(span, format!("{size} bytes")).help(
-                "write `struct Params { … }` with the params that the shader reads, and \
-                     `var<uniform> params: Params;`",
-            ),
+            Self::ParamsUniform { what, size, span } => told
+                .at(span, format!("{size} bytes"))
+                .help(match what.contains("large") {
+                    true => "put what is large into a buffer",
+                    false => "write `struct Params { … }` with the params that the shader reads, \
+                              and `var<uniform> params: Params;`",
+                }),
             Self::UnknownGlobal {
                 global,
                 span,

@@ -302,6 +302,10 @@ impl<'a> Builder<'a, '_> {
                 Err(_) => self.incomplete(frame, *reported),
             }
         }
+        if let Some(reported) = document.incomplete {
+            self.incomplete(frame, reported);
+            self.broken();
+        }
         for (number, material) in document.materials.iter().enumerate() {
             if self.world.resources.len() >= MOST {
                 let name = material.name();

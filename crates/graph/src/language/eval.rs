@@ -287,8 +287,11 @@ impl Expr {
                 let list = b.iter().map(|b| apply(*a, *b));
                 list.collect::<Option<_>>().map(Value::List)
             }
+            [Value::List(_), other @ Value::List(_)] => {
+                return Err(self.wrong("a number, or as many of them,", other, env));
+            }
             [Value::Scalar(_) | Value::List(_), other] | [other, _] => {
-                return Err(self.wrong("numbers", other, env));
+                return Err(self.wrong("a number", other, env));
             }
         };
         result.ok_or_else(|| env.report(EvaluationError::Overflow(self.span.clone())))

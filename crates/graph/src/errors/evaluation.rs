@@ -19,6 +19,8 @@ pub(crate) enum EvaluationError {
         expected: &'static str,
         found: Value,
     },
+    #[error("{} numbers do not go with {}", lengths[0], lengths[1])]
+    Lengths { span: Span, lengths: [usize; 2] },
     #[error("{1} is less than nothing")]
     Negative(Span, i64),
     #[error("{1} is more than 32 bits hold")]
@@ -112,6 +114,9 @@ impl Mistake for EvaluationError {
                     _ => told,
                 }
             }
+            Self::Lengths { span, .. } => told
+                .at(span, "here")
+                .help("name parts of the longer one, as `x.width` and `x.height`"),
             Self::Negative(span, _)
             | Self::Large(span, _)
             | Self::DivisionByZero(span)

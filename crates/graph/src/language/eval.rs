@@ -287,8 +287,11 @@ impl Expr {
                 let list = b.iter().map(|b| apply(*a, *b));
                 list.collect::<Option<_>>().map(Value::List)
             }
-            [Value::List(_), other @ Value::List(_)] => {
-                return Err(self.wrong("a number, or as many of them,", other, env));
+            [Value::List(a), Value::List(b)] => {
+                return Err(env.report(EvaluationError::Lengths {
+                    span: self.span.clone(),
+                    lengths: [a.len(), b.len()],
+                }));
             }
             [Value::Scalar(_) | Value::List(_), other] | [other, _] => {
                 return Err(self.wrong("a number", other, env));

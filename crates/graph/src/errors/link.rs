@@ -448,7 +448,10 @@ impl Mistake for LinkError {
                 told.at(name.span.clone(), "").suggest(&name, known)
             }
             Self::OverrideWithout(name) => told
-                .at(name.span.clone(), "no param that is a single number is called so")
+                .at(
+                    name.span.clone(),
+                    "no param that is a single number is called so",
+                )
                 .help(format!(
                     "declare a param `{0}` with a single number, `set` it, or write \
                      `override {0}: … = …;`",
@@ -502,8 +505,10 @@ impl LinkError {
                 .at(span, format!("{size} bytes"))
                 .help(match what.contains("large") {
                     true => "put what is large into a buffer",
-                    false => "write `struct Params { … }` with the params that the shader reads, \
-                              and `var<uniform> params: Params;`",
+                    false => {
+                        "write `struct Params { … }` with the params that the shader reads, \
+                              and `var<uniform> params: Params;`"
+                    }
                 }),
             Self::UnknownGlobal {
                 global,

@@ -206,7 +206,8 @@ const SHELF: &[(&str, &str)] = &[
     (
         "shaders/draw.wgsl",
         "#import \"shared/scene.wgsl\"\n\
-         @vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {\n    \
+         @vertex fn vertex(@builtin(vertex_index) index: u32) \
+         -> @builtin(position) vec4<f32> {\n    \
          return camera * corner(index);\n}\n",
     ),
     (

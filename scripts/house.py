@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Checks what clippy does not: no import circle between the files of a crate, no Rust line over 100 columns.
+"""Checks what clippy does not: no import circle between the files of a crate, no line of Rust or of
+a preset's WGSL over 100 columns.
 
-An import is a path in a `use` or in code that begins with `crate`, `super`, `self` or a child module. It
-counts as one of the file of the deepest module that it names; tests are left out. `mod x;` alone is none.
+An import is a path in a `use` or in code that begins with `crate`, `super`, `self` or a child
+module. It counts as one of the file of the deepest module that it names; tests are left out.
+`mod x;` alone is none.
 
     scripts/house.py            exit 0 fine, 1 not
     scripts/house.py --edges    also prints every import
@@ -142,14 +144,16 @@ def main():
             for file in circle:
                 inside = sorted(str(t.relative_to(folder)) for t in edges[file] if t in circle)
                 print(f"    {file.relative_to(folder)} imports {', '.join(inside)}")
+    files = list((ROOT / "shaders").rglob("*.wgsl"))
     for folder in ("crates", "tests", "benches", "fuzz"):
-        for file in sorted((ROOT / folder).rglob("*.rs")):
-            if "target" in file.relative_to(ROOT).parts:
-                continue
-            for number, line in enumerate(file.read_text().splitlines(), 1):
-                if len(line) > WIDTH:
-                    failed += 1
-                    print(f"{file.relative_to(ROOT)}:{number}: {len(line)} columns")
+        files += (ROOT / folder).rglob("*.rs")
+    for file in sorted(files):
+        if "target" in file.relative_to(ROOT).parts:
+            continue
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            if len(line) > WIDTH:
+                failed += 1
+                print(f"{file.relative_to(ROOT)}:{number}: {len(line)} columns")
     print(f"house: {failed} faults" if failed else "house: no import circle, no long line")
     return 1 if failed else 0
 

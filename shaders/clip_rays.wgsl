@@ -1,5 +1,6 @@
-// Stage to clip each ray at the nearest depth of anything in its texel of the map: nothing is left to hit between there and the light.
-// One thread per ray. Hertel, Hormann, Westermann 2009 start their traversal at that depth.
+// Stage to clip each ray at the nearest depth of anything in its texel of the map: nothing is left
+// to hit between there and the light. One thread per ray. Hertel, Hormann, Westermann 2009 start
+// their traversal at that depth.
 
 #import "shared/light_triangle.wgsl"
 #import "shared/ray_slots.wgsl"
@@ -18,7 +19,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     let place = light_texel(rays[slot].origin, f32(size.x));
     let error = light_space_error_bound(rays[slot].origin);
     // A ray whose origin may lie in another texel than it seems is not clipped.
-    if any(place.xy < vec2(0.0)) || any(place.xy >= vec2<f32>(size)) || error.x * f32(size.x) > SLACK {
+    let outside = any(place.xy < vec2(0.0)) || any(place.xy >= vec2<f32>(size));
+    if outside || error.x * f32(size.x) > SLACK {
         return;
     }
     let stored = textureLoad(nearest, vec2<u32>(place.xy), 0);
@@ -26,8 +28,9 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     if stored <= 0.0 {
         return;
     }
-    // Units of the scene, with room for the rounding of depths and for that of the distance at which the tracer meets a triangle: 8 half
-    // ulps of the longest way there is. An empty texel holds 1, behind the receiver.
+    // Units of the scene, with room for the rounding of depths and for that of the distance at
+    // which the tracer meets a triangle: 8 half ulps of the longest way there is. An empty texel
+    // holds 1, behind the receiver.
     let way = (place.z - stored + error.y) * light.extent.z + 8.0 * HALF_ULP * light.max_distance;
     rays[slot].t_max = min(rays[slot].t_max, way);
 }

@@ -1,5 +1,5 @@
-// Stage to draw the scene's depth as the light sees it, by vertex pulling (three vertices per primitive).
-// Williams, "Casting Curved Shadows on Curved Surfaces", SIGGRAPH 1978.
+// Stage to draw the scene's depth as the light sees it, by vertex pulling (three vertices per
+// primitive). Williams, "Casting Curved Shadows on Curved Surfaces", SIGGRAPH 1978.
 
 #import "shared/light.wgsl"
 #import "shared/geometry.wgsl"

@@ -1,5 +1,6 @@
-// Stage to compare each pixel's depth in light space with the four texels of the shadow map around it; one thread per pixel. All agree:
-// certain. Otherwise, and outside the map: uncertain. Beister, Ernst, Stamminger, "A Hybrid GPU-CPU Renderer", 2005.
+// Stage to compare each pixel's depth in light space with the four texels of the shadow map around
+// it; one thread per pixel. All agree: certain. Otherwise, and outside the map: uncertain. Beister,
+// Ernst, Stamminger, "A Hybrid GPU-CPU Renderer", 2005.
 
 #import "shared/light_triangle.wgsl"
 #import "shared/receiver.wgsl"

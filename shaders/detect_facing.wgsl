@@ -1,4 +1,5 @@
-// Stage to leave every pixel that faces the light to the tracer, and to decide all others; one thread per pixel.
+// Stage to leave every pixel that faces the light to the tracer, and to decide all others; one
+// thread per pixel.
 
 #import "shared/receiver.wgsl"
 

@@ -1,5 +1,6 @@
-// Stage to turn the number of rays on the GPU into the arguments of an indirect dispatch of `trace_rays`; a single thread.
-// A dimension of a dispatch ends at 65,535 groups and a larger indirect one silently runs nothing: the rest goes into y.
+// Stage to turn the number of rays on the GPU into the arguments of an indirect dispatch of
+// `trace_rays`; a single thread. A dimension of a dispatch ends at 65,535 groups and a larger
+// indirect one silently runs nothing: the rest goes into y.
 
 var<storage, read> count: u32;
 var<storage, read_write> groups: array<u32, 3>;

@@ -1,5 +1,6 @@
-// Stage to append one shadow ray per uncertain pixel; one thread per pixel. Each workgroup numbers its rays by a prefix sum over one bit
-// per thread and claims their places by one atomic, so that the count never leaves the GPU and neighbours stay together.
+// Stage to append one shadow ray per uncertain pixel; one thread per pixel. Each workgroup numbers
+// its rays by a prefix sum over one bit per thread and claims their places by one atomic, so that
+// the count never leaves the GPU and neighbours stay together.
 
 #import "shared/camera.wgsl"
 #import "shared/light.wgsl"
@@ -25,7 +26,10 @@ var<workgroup> with_ray: array<atomic<u32>, 2>;
 var<workgroup> group_first: u32;
 
 @compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) thread: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+fn main(
+    @builtin(global_invocation_id) thread: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
     let pixel = thread.xy;
     let viewport = textureDimensions(status);
     let inside = all(pixel < viewport);
@@ -47,13 +51,16 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>, @builtin(local_invocat
         return;
     }
 
-    let before = select(countOneBits(low & (bit - 1u)), countOneBits(low) + countOneBits(high & (bit - 1u)), word == 1u);
+    let in_low = countOneBits(low & (bit - 1u));
+    let in_high = countOneBits(low) + countOneBits(high & (bit - 1u));
+    let before = select(in_low, in_high, word == 1u);
     let slot = group_first + before;
     let id = textureLoad(primitive, pixel, 0).x;
     let receiver = textureLoad(position, pixel, 0).xyz;
     // The background has no receiver: its ray is empty.
     let max_distance = select(light.max_distance, -1.0, id == NO_PRIMITIVE);
-    rays[slot] = Ray(receiver, receiver_error_bound(receiver, camera.eye), light.to_light, max_distance);
+    let t_min = receiver_error_bound(receiver, camera.eye);
+    rays[slot] = Ray(receiver, t_min, light.to_light, max_distance);
     ray_primitives[slot] = id;
     // Rays of certain pixels cost their time and change no pixel.
     ray_pixels[slot] = select(NO_PIXEL, pixel.y * viewport.x + pixel.x, uncertain);

@@ -1,9 +1,10 @@
-// Stage to draw the inner conservative depth with adjacency: every caster shrunk by `n` texel diagonals at the edges beyond which its surface
-// ends for the light, and whole at the others. Their common corners are cut, because a triangle that meets the corner alone is unknown
-// (SGSM with adjacency: the dissertation's chapter 4).
-// Its four cases, 0 to 3 kept edges, are half planes: d >= s at an edge that shrinks, d + d' >= c at a corner between two that do not. A corner
-// in a texel may be half a diagonal from its centre, and each of the two edges as far, so c is a diagonal at least.
-// What is kept lies in the triangle, whose fragments cut it to size.
+// Stage to draw the inner conservative depth with adjacency: every caster shrunk by `n` texel
+// diagonals at the edges beyond which its surface ends for the light, and whole at the others.
+// Their common corners are cut, because a triangle that meets the corner alone is unknown (SGSM
+// with adjacency: the dissertation's chapter 4). Its four cases, 0 to 3 kept edges, are half
+// planes: d >= s at an edge that shrinks, d + d' >= c at a corner between two that do not. A corner
+// in a texel may be half a diagonal from its centre, and each of the two edges as far, so c is a
+// diagonal at least. What is kept lies in the triangle, whose fragments cut it to size.
 
 #import "shared/casters.wgsl"
 

@@ -1,7 +1,8 @@
-// Stage to draw the inner conservative depth with the one-ring: every caster on the texels that it covers together with the triangles around
-// it (the dissertation's section 4.5 asks for it). From the triangle at the texel's centre it walks over every edge that overlaps the texel;
-// no boundary, fold or triangle outside the one-ring may turn up, and exactly one triangle of the patch may contain the centre. Then the patch covers the texel,
-// and its farthest point there is the depth.
+// Stage to draw the inner conservative depth with the one-ring: every caster on the texels that it
+// covers together with the triangles around it (the dissertation's section 4.5 asks for it). From
+// the triangle at the texel's centre it walks over every edge that overlaps the texel; no boundary,
+// fold or triangle outside the one-ring may turn up, and exactly one triangle of the patch may
+// contain the centre. Then the patch covers the texel, and its farthest point there is the depth.
 
 #import "shared/light_edges.wgsl"
 #import "shared/casters.wgsl"
@@ -42,7 +43,8 @@ fn patch_depth(vertex: Vertex) -> f32 {
         edge_overlaps_texel(vertex.b.xy, vertex.c.xy, centre),
         edge_overlaps_texel(vertex.c.xy, vertex.a.xy, centre),
     );
-    // The commonest answers first, for which nothing need be read: the texel overlaps no edge, or one beyond which nothing goes on.
+    // The commonest answers first, for which nothing need be read: the texel overlaps no edge, or
+    // one beyond which nothing goes on.
     if !any(overlaps) {
         return depth;
     }
@@ -75,7 +77,9 @@ fn patch_depth(vertex: Vertex) -> f32 {
             if !edge_overlaps_texel(p, q, centre) {
                 continue;
             }
-            let beyond = adjacent_triangle(3u * primitive + side, p, q, corners[(side + 2u) % 3u], params.cull, map_size);
+            let own = corners[(side + 2u) % 3u];
+            let edge = 3u * primitive + side;
+            let beyond = adjacent_triangle(edge, p, q, own, params.cull, map_size);
             if beyond == NO_NEIGHBOUR {
                 return NOT_COVERED;
             }
@@ -109,11 +113,13 @@ fn share_corner(first: u32, second: u32) -> bool {
     return false;
 }
 
-// Whether the triangle contains the point; of two triangles on opposite sides of an edge that the point lies on, one does.
+// Whether the triangle contains the point; of two triangles on opposite sides of an edge that the
+// point lies on, one does.
 fn contains(primitive: u32, triangle: LightTriangle, point: vec2<f32>) -> bool {
     let a = scene_indices[3u * primitive];
     let b = scene_indices[3u * primitive + 1u];
     let c = scene_indices[3u * primitive + 2u];
     let left = left_of(a, b, triangle.a.xy, triangle.b.xy, point);
-    return left == left_of(b, c, triangle.b.xy, triangle.c.xy, point) && left == left_of(c, a, triangle.c.xy, triangle.a.xy, point);
+    return left == left_of(b, c, triangle.b.xy, triangle.c.xy, point)
+        && left == left_of(c, a, triangle.c.xy, triangle.a.xy, point);
 }

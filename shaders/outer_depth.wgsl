@@ -1,6 +1,8 @@
-// Stage to draw the outer conservative depth: every caster grown by `n` texel diagonals, so that it covers each texel that it overlaps. What
-// lies in front of it is lit (BGSM). Vertex pulling, three vertices per primitive: a triangle around the grown one, which the fragments cut
-// to size. Hasselgren, Akenine-Moller, Ohlsson, "Conservative Rasterization", GPU Gems 2, 2005, second algorithm.
+// Stage to draw the outer conservative depth: every caster grown by `n` texel diagonals, so that it
+// covers each texel that it overlaps. What lies in front of it is lit (BGSM). Vertex pulling, three
+// vertices per primitive: a triangle around the grown one, which the fragments cut to size.
+// Hasselgren, Akenine-Moller, Ohlsson, "Conservative Rasterization", GPU Gems 2, 2005, second
+// algorithm.
 
 #import "shared/light_triangle.wgsl"
 #import "shared/ids.wgsl"
@@ -34,14 +36,16 @@ fn vertex(@builtin(vertex_index) index: u32) -> Vertex {
     return vertex;
 }
 
-// A corner of a triangle around the grown one: a hair more than fits, for what the rasteriser may snap.
+// A corner of a triangle around the grown one: a hair more than fits, for what the rasteriser may
+// snap.
 fn cover(triangle: LightTriangle, corner: u32) -> vec2<f32> {
     let margin = max(params.n * 1.4142136, 0.70710678) + 0.0625;
     let ab = triangle.b.xy - triangle.a.xy;
     let bc = triangle.c.xy - triangle.b.xy;
     let ca = triangle.a.xy - triangle.c.xy;
     let outside = select(-1.0, 1.0, triangle.area < 0.0);
-    // Outward unit normals of the edges; normalising an edge without length gives NaN, which fails the comparison below.
+    // Outward unit normals of the edges; normalising an edge without length gives NaN, which fails
+    // the comparison below.
     let n_ab = outside * vec2(-ab.y, ab.x) * inverseSqrt(dot(ab, ab));
     let n_bc = outside * vec2(-bc.y, bc.x) * inverseSqrt(dot(bc, bc));
     let n_ca = outside * vec2(-ca.y, ca.x) * inverseSqrt(dot(ca, ca));
@@ -54,7 +58,8 @@ fn cover(triangle: LightTriangle, corner: u32) -> vec2<f32> {
             default: { return triangle.c.xy + margin * (n_bc + n_ca) / bluntness.z; }
         }
     }
-    // A needle's moved edges meet far away: half of a rectangle twice as large as the one along its longest edge.
+    // A needle's moved edges meet far away: half of a rectangle twice as large as the one along its
+    // longest edge.
     var along = ab;
     if dot(bc, bc) > dot(along, along) { along = bc; }
     if dot(ca, ca) > dot(along, along) { along = ca; }
@@ -93,7 +98,8 @@ fn fragment_with_primitive(vertex: Vertex) -> TexelOfPrimitive {
 fn nearest(vertex: Vertex) -> f32 {
     let centre = vertex.clip.xy;
     let ab = vertex.b.xy - vertex.a.xy;
-    let triangle = LightTriangle(vertex.a, vertex.b, vertex.c, cross_2d(ab, vertex.c.xy - vertex.a.xy));
+    let area = cross_2d(ab, vertex.c.xy - vertex.a.xy);
+    let triangle = LightTriangle(vertex.a, vertex.b, vertex.c, area);
     let low = min(triangle.a.xy, min(triangle.b.xy, triangle.c.xy)) - (0.5 + SLACK);
     let high = max(triangle.a.xy, max(triangle.b.xy, triangle.c.xy)) + (0.5 + SLACK);
     let outward = -min_of(inward_distances(triangle, centre));

@@ -1,5 +1,6 @@
-// Stage to draw the outer conservative depth by the rasteriser, where it counts each texel that a caster overlaps (`conservative: true`): no
-// shader grows the caster. Hasselgren, Akenine-Moller, Ohlsson, "Conservative Rasterization", GPU Gems 2, 2005.
+// Stage to draw the outer conservative depth by the rasteriser, where it counts each texel that a
+// caster overlaps (`conservative: true`): no shader grows the caster. Hasselgren, Akenine-Moller,
+// Ohlsson, "Conservative Rasterization", GPU Gems 2, 2005.
 
 #import "shared/casters.wgsl"
 

@@ -1,5 +1,6 @@
-// Stage to draw the primitive id of the nearest front face in each pixel, by vertex pulling (three vertices per primitive).
-// A visibility buffer: Burns and Hunt, "The Visibility Buffer", JCGT 2(2), 2013.
+// Stage to draw the primitive id of the nearest front face in each pixel, by vertex pulling (three
+// vertices per primitive). A visibility buffer: Burns and Hunt, "The Visibility Buffer", JCGT 2(2),
+// 2013.
 
 #import "shared/camera.wgsl"
 #import "shared/geometry.wgsl"

@@ -1,5 +1,6 @@
-// Stage to bring the triangles that are in the map to light space, once for all three corners, and to compact them for an indirect draw;
-// one thread per corner, which answers for the edge that begins there, 64 triangles per workgroup.
+// Stage to bring the triangles that are in the map to light space, once for all three corners, and
+// to compact them for an indirect draw; one thread per corner, which answers for the edge that
+// begins there, 64 triangles per workgroup.
 
 #import "shared/light_triangle.wgsl"
 #import "shared/light_edges.wgsl"
@@ -45,7 +46,9 @@ fn with_neighbours(thread: Thread) {
         let first = thread.lane - thread.lane % 3u;
         let next = texels[first + (thread.lane + 1u) % 3u].xy;
         let own = texels[first + (thread.lane + 2u) % 3u].xy;
-        kept = adjacent_triangle(corner, texels[thread.lane].xy, next, own, params.cull, f32(params.map_size)) != NO_NEIGHBOUR;
+        let here = texels[thread.lane].xy;
+        let map_size = f32(params.map_size);
+        kept = adjacent_triangle(corner, here, next, own, params.cull, map_size) != NO_NEIGHBOUR;
     }
     place(corner, thread.lane, triangle, kept);
 }
@@ -82,7 +85,9 @@ fn place(corner: u32, lane: u32, triangle: LightTriangle, kept: bool) {
     }
     workgroupBarrier();
     if in_map {
-        let before = select(countOneBits(low & (bit - 1u)), countOneBits(low) + countOneBits(high & (bit - 1u)), word == 1u);
+        let in_low = countOneBits(low & (bit - 1u));
+        let in_high = countOneBits(low) + countOneBits(high & (bit - 1u));
+        let before = select(in_low, in_high, word == 1u);
         let tag = corner / 3u | select(0u, KEPT, kept);
         selected[group_first + 3u * before + lane % 3u] = CasterCorner(texels[lane], tag);
     }

@@ -1,5 +1,5 @@
-// Stage to compare each pixel's depth in light space with the nearest texel of the shadow map; a full-screen triangle.
-// Williams, "Casting Curved Shadows on Curved Surfaces", SIGGRAPH 1978.
+// Stage to compare each pixel's depth in light space with the nearest texel of the shadow map; a
+// full-screen triangle. Williams, "Casting Curved Shadows on Curved Surfaces", SIGGRAPH 1978.
 
 #import "shared/light.wgsl"
 #import "shared/receiver.wgsl"
@@ -45,7 +45,8 @@ fn is_lit(receiver: vec3<f32>, n_dot_l: f32) -> bool {
     return stored >= 1.0 || clip.z <= stored + depth_bias(vec2<f32>(size), n_dot_l);
 }
 
-// The plane of the receiver rises by tan(angle to the light) per unit across; slope_bias counts in texels of that rise.
+// The plane of the receiver rises by tan(angle to the light) per unit across; slope_bias counts in
+// texels of that rise.
 fn depth_bias(size: vec2<f32>, n_dot_l: f32) -> f32 {
     let texel = 2.0 * light.extent.xy / size;
     let slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0)) / n_dot_l;

@@ -1,13 +1,15 @@
-// Stage to trace rays through the scene's binary hierarchy; one thread per ray, workgroups spread over two dimensions.
-// Boxes are padded, which keeps traversal as watertight as the triangles' test: Woop, Benthin, Wald, "Watertight Ray/Triangle
-// Intersection", JCGT 2(1), 2013. Slabs after Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013.
+// Stage to trace rays through the scene's binary hierarchy; one thread per ray, workgroups spread
+// over two dimensions. Boxes are padded, which keeps traversal as watertight as the triangles'
+// test: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013. Slabs after
+// Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013.
 
 #import "shared/ray_triangle.wgsl"
 #import "shared/ids.wgsl"
 
 struct Node {
     low: vec3<f32>,
-    // Inner node: its first child, the second follows. Leaf: its first slot in scene_bvh_primitives.
+    // Inner node: its first child, the second follows. Leaf: its first slot in
+    // scene_bvh_primitives.
     first: u32,
     high: vec3<f32>,
     // Primitives of a leaf, 0 for an inner node.
@@ -24,14 +26,17 @@ var<storage, read_write> hits: array<Hit>;
 // Both as in dispatch_arguments.wgsl.
 const GROUP_SIZE: u32 = 64u;
 const GROUPS_PER_ROW: u32 = 65535u;
-// As `MAX_DEPTH` in crates/scene/src/bvh/tree.rs, which builds no deeper hierarchy: a level adds one entry at most.
+// As `MAX_DEPTH` in crates/scene/src/bvh/tree.rs, which builds no deeper hierarchy: a level adds
+// one entry at most.
 const STACK_SIZE: u32 = 64u;
 
-// Boxes are padded by this share of the distance to the scene's farthest side: 16 ulp, where Woop et al. prove 5 enough for
-// correctly rounded arithmetic; WGSL's division may err by 2.5 ulp, and the slab distances' own rounding (4 ulp, Ize) is in it.
+// Boxes are padded by this share of the distance to the scene's farthest side: 16 ulp, where Woop
+// et al. prove 5 enough for correctly rounded arithmetic; WGSL's division may err by 2.5 ulp, and
+// the slab distances' own rounding (4 ulp, Ize) is in it.
 const PAD: f32 = 1.9073486e-6;
-// Longest to shortest component of a direction, as far as box tests are concerned: finite, so that no test makes inf or NaN
-// of a ray along an axis, and so large that a ray leaves a padded slab far beyond the scene.
+// Longest to shortest component of a direction, as far as box tests are concerned: finite, so that
+// no test makes inf or NaN of a ray along an axis, and so large that a ray leaves a padded slab far
+// beyond the scene.
 const STEEPEST: f32 = 1e18;
 
 @compute @workgroup_size(GROUP_SIZE)
@@ -43,7 +48,10 @@ fn any_hit(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_in
 }
 
 @compute @workgroup_size(GROUP_SIZE)
-fn any_hit_skip(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+fn any_hit_skip(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
     let ray = ray_index(group, lane);
     if ray < ray_total() {
         hits[ray] = trace(rays[ray], skip[ray], true);
@@ -51,7 +59,10 @@ fn any_hit_skip(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocati
 }
 
 @compute @workgroup_size(GROUP_SIZE)
-fn closest_hit(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+fn closest_hit(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
     let ray = ray_index(group, lane);
     if ray < ray_total() {
         hits[ray] = trace(rays[ray], NO_PRIMITIVE, false);
@@ -59,7 +70,10 @@ fn closest_hit(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocatio
 }
 
 @compute @workgroup_size(GROUP_SIZE)
-fn closest_hit_skip(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+fn closest_hit_skip(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
     let ray = ray_index(group, lane);
     if ray < ray_total() {
         hits[ray] = trace(rays[ray], skip[ray], false);
@@ -99,7 +113,8 @@ fn prepare(ray: Ray) -> Prepared {
 const MISSED: f32 = 3.0e38;
 
 fn slab_test(ray: Prepared, box: Node, t_min: f32, t_max: f32) -> f32 {
-    // Padding the difference, not the box: a pad below one ulp of a far-off box's coordinates would be lost.
+    // Padding the difference, not the box: a pad below one ulp of a far-off box's coordinates would
+    // be lost.
     let to_low = ((box.low - ray.sheared.origin) - ray.pad) * ray.inverse;
     let to_high = ((box.high - ray.sheared.origin) + ray.pad) * ray.inverse;
     let near = min(to_low, to_high);
@@ -123,7 +138,8 @@ fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
         return hit;
     }
     loop {
-        // Down to the next leaf, all threads of a group together: a thread that tests triangles here would hold up the others.
+        // Down to the next leaf, all threads of a group together: a thread that tests triangles
+        // here would hold up the others.
         while node.primitives == 0u {
             let first = node.first;
             let left = scene_bvh_nodes[first];
@@ -150,7 +166,9 @@ fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
         }
         for (var slot = node.first; slot < node.first + node.primitives; slot++) {
             let primitive = scene_bvh_primitives[slot];
-            if primitive != skipped && intersect(prepared.sheared, primitive, ray.t_min, &hit) && first_found {
+            if primitive != skipped
+                && intersect(prepared.sheared, primitive, ray.t_min, &hit)
+                && first_found {
                 return hit;
             }
         }

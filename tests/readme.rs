@@ -119,13 +119,14 @@ fn the_rust_of_the_documents_is_code_that_runs() {
 }
 
 /// The documents of the authoring guide in their order, as it calls them, with their passes.
-const DOCUMENTS: [(&str, usize); 7] = [
+const DOCUMENTS: [(&str, usize); 8] = [
     ("depth.ron", 2),
     ("blur.ron", 2),
     ("cascades.ron", 5),
     ("softer.ron", 21),
     ("extended.ron", 4),
     ("history.ron", 1),
+    ("filtered.ron", 4),
     ("claims.ron", 4),
 ];
 

@@ -3,7 +3,8 @@
 struct Camera {
     eye: vec3<f32>,
     near: f32,
-    // What rounding the eye to f32 left over: corners far from the origin keep their distance to the eye.
+    // What rounding the eye to f32 left over: corners far from the origin keep their distance to
+    // the eye.
     eye_low: vec3<f32>,
     far: f32,
     // Unit vectors; half_width and half_height are the image's half extents at distance 1.
@@ -33,7 +34,8 @@ fn camera_clip(relative: vec3<f32>) -> vec4<f32> {
     );
 }
 
-// Direction from the eye through the centre of `pixel` (y down); its component along `forward` is 1.
+// Direction from the eye through the centre of `pixel` (y down); its component along `forward` is
+// 1.
 fn pixel_direction(pixel: vec2<u32>, viewport: vec2<u32>) -> vec3<f32> {
     let across = (vec2<f32>(pixel) + 0.5) / vec2<f32>(viewport) * 2.0 - 1.0;
     return camera.forward

@@ -1,10 +1,12 @@
-// What select_casters.wgsl leaves of the scene: three corners per triangle that is in the map, in texels, to be pulled by vertex index.
+// What select_casters.wgsl leaves of the scene: three corners per triangle that is in the map, in
+// texels, to be pulled by vertex index.
 
 #import "shared/light_triangle.wgsl"
 
 struct CasterCorner {
     texel: vec3<f32>,
-    // The triangle's primitive, and KEPT if the edge from this corner to the next is no edge of the surface.
+    // The triangle's primitive, and KEPT if the edge from this corner to the next is no edge of the
+    // surface.
     tag: u32,
 }
 
@@ -26,7 +28,8 @@ fn caster_vertex(index: u32, map_size: f32) -> Vertex {
     let a = casters[first];
     let b = casters[first + 1u];
     let c = casters[first + 2u];
-    return Vertex(texel_clip(casters[index].texel.xy, map_size), a.texel, b.texel, c.texel, vec3(a.tag, b.tag, c.tag));
+    let clip = texel_clip(casters[index].texel.xy, map_size);
+    return Vertex(clip, a.texel, b.texel, c.texel, vec3(a.tag, b.tag, c.tag));
 }
 
 fn caster_triangle(vertex: Vertex) -> LightTriangle {

@@ -1,4 +1,5 @@
-// The primitive id of background pixels and missed rays, the pixel of rays whose answer is not used, and the values of `status`.
+// The primitive id of background pixels and missed rays, the pixel of rays whose answer is not
+// used, and the values of `status`.
 
 const NO_PRIMITIVE: u32 = 0xffffffffu;
 const NO_PIXEL: u32 = 0xffffffffu;
@@ -9,8 +10,8 @@ const STATUS_LIGHT: u32 = 2u;
 const STATUS_SHADOW: u32 = 3u;
 const STATUS_UNCERTAIN: u32 = 4u;
 
-// The visibility of a pixel before any ray: nothing shades the background, a surface that faces away shades itself, and an uncertain pixel
-// counts as in shadow until its ray is traced.
+// The visibility of a pixel before any ray: nothing shades the background, a surface that faces
+// away shades itself, and an uncertain pixel counts as in shadow until its ray is traced.
 fn initial_visibility(status: u32) -> u32 {
     return select(0u, 1u, status == STATUS_BACKGROUND || status == STATUS_LIGHT);
 }

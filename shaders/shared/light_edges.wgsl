@@ -1,4 +1,5 @@
-// Which edges of a triangle, as the light sees it, are no edges of the surface: another triangle goes on where it ends.
+// Which edges of a triangle, as the light sees it, are no edges of the surface: another triangle
+// goes on where it ends.
 
 #import "shared/light_triangle.wgsl"
 
@@ -6,9 +7,18 @@ var<storage, read> scene_adjacency: array<u32>;
 
 const NO_NEIGHBOUR: u32 = 0xffffffffu;
 
-// The primitive beyond the edge from `p` to `q`, which is number `entry` in the corner table, of a triangle whose third corner is `own`: the edge's only
-// other triangle, in the map, and on its other side as the light sees it. The sides decide, not the windings; NO_NEIGHBOUR if there is none such.
-fn adjacent_triangle(entry: u32, p: vec2<f32>, q: vec2<f32>, own: vec2<f32>, cull: u32, map_size: f32) -> u32 {
+// The primitive beyond the edge from `p` to `q`, which is number `entry` in the corner table, of a
+// triangle whose third corner is `own`: the edge's only other triangle, in the map, and on its
+// other side as the light sees it. The sides decide, not the windings; NO_NEIGHBOUR if there is
+// none such.
+fn adjacent_triangle(
+    entry: u32,
+    p: vec2<f32>,
+    q: vec2<f32>,
+    own: vec2<f32>,
+    cull: u32,
+    map_size: f32,
+) -> u32 {
     let corner = scene_adjacency[entry];
     if corner == NO_NEIGHBOUR {
         return NO_NEIGHBOUR;
@@ -20,5 +30,6 @@ fn adjacent_triangle(entry: u32, p: vec2<f32>, q: vec2<f32>, own: vec2<f32>, cul
     // On opposite sides, and wound alike: it faces as this one does, which is in the map.
     let neighbour = corner / 3u;
     let wound_alike = scene_indices[3u * neighbour + (corner + 1u) % 3u] != scene_indices[entry];
-    return select(NO_NEIGHBOUR, neighbour, wound_alike || (cull != CULL_FRONT && cull != CULL_BACK));
+    let both_cast = cull != CULL_FRONT && cull != CULL_BACK;
+    return select(NO_NEIGHBOUR, neighbour, wound_alike || both_cast);
 }

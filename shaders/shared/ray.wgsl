@@ -2,7 +2,8 @@
 
 struct Ray {
     origin: vec3<f32>,
-    // A hit counts if t_min < t <= t_max; t is in units of `direction`. A ray with t_max < t_min hits nothing.
+    // A hit counts if t_min < t <= t_max; t is in units of `direction`. A ray with t_max < t_min
+    // hits nothing.
     t_min: f32,
     direction: vec3<f32>,
     t_max: f32,

@@ -1,4 +1,5 @@
-// The ray of a thread in a dispatch over `ray_groups`, whose workgroups are spread over two dimensions. Group sizes as in dispatch_arguments.wgsl.
+// The ray of a thread in a dispatch over `ray_groups`, whose workgroups are spread over two
+// dimensions. Group sizes as in dispatch_arguments.wgsl.
 
 const RAYS_PER_GROUP: u32 = 64u;
 const GROUPS_PER_ROW: u32 = 65535u;

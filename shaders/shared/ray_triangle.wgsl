@@ -1,4 +1,5 @@
-// A ray against a triangle, watertight: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
+// A ray against a triangle, watertight: Woop, Benthin, Wald, "Watertight Ray/Triangle
+// Intersection", JCGT 2(1), 2013.
 
 #import "shared/geometry.wgsl"
 #import "shared/ray.wgsl"
@@ -29,11 +30,13 @@ fn intersect(ray: Sheared, primitive: u32, t_min: f32, hit: ptr<function, Hit>) 
     if any(weights < vec3(0.0)) && any(weights > vec3(0.0)) {
         return false;
     }
-    // On the line of an edge, but beyond its end: all corners on one line with the ray, whose rounding would pass for an area.
+    // On the line of an edge, but beyond its end: all corners on one line with the ray, whose
+    // rounding would pass for an area.
     if any(weights == vec3(0.0)) && !bbox_contains(a.xy, b.xy, c.xy) {
         return false;
     }
-    // Zero for triangles without area and for those that the ray meets edge-on: a neighbour is hit instead.
+    // Zero for triangles without area and for those that the ray meets edge-on: a neighbour is hit
+    // instead.
     let sum = weights.x + weights.y + weights.z;
     if sum == 0.0 {
         return false;
@@ -54,7 +57,8 @@ fn shear(ray: Sheared, corner: vec3<f32>) -> vec3<f32> {
     return vec3(p.xy - ray.shear.xy * p.z, ray.shear.z * p.z);
 }
 
-// The axes in cyclic order, `last` last. Selects, because a vector that is indexed at run time lives in memory.
+// The axes in cyclic order, `last` last. Selects, because a vector that is indexed at run time
+// lives in memory.
 fn permute(v: vec3<f32>, last: u32) -> vec3<f32> {
     return select(select(v, v.zxy, last == 1u), v.yzx, last == 0u);
 }

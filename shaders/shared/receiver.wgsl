@@ -1,4 +1,5 @@
-// What each pixel shows of the scene, as shared/gbuffer.ron makes it, and its status before any map lookup or ray.
+// What each pixel shows of the scene, as shared/gbuffer.ron makes it, and its status before any map
+// lookup or ray.
 
 #import "shared/ids.wgsl"
 
@@ -6,7 +7,8 @@ var primitive: texture_2d<u32>;
 // The receiver of the pixel, where `scene_positions` are; w: dot(n, l).
 var position: texture_2d<f32>;
 
-// The status before any map lookup or ray: STATUS_UNCERTAIN where the `receiver` (of `position`) faces the light.
+// The status before any map lookup or ray: STATUS_UNCERTAIN where the `receiver` (of `position`)
+// faces the light.
 fn initial_status(pixel: vec2<u32>, receiver: vec4<f32>) -> u32 {
     if textureLoad(primitive, pixel, 0).x == NO_PRIMITIVE {
         return STATUS_BACKGROUND;

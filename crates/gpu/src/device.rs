@@ -30,8 +30,10 @@ pub enum GpuError {
     /// There is no adapter at all.
     #[error(
         "no usable GPU adapter was found (Vulkan, Metal and Direct3D 12 were tried).\n\
-         Install a driver; without a GPU, a software one: `apt-get install mesa-vulkan-drivers libvulkan1` on Debian and Ubuntu,\n\
-         `dnf install mesa-vulkan-drivers vulkan-loader` on Fedora, `pacman -S vulkan-swrast vulkan-icd-loader` on Arch"
+         Install a driver; without a GPU, a software one: \
+         `apt-get install mesa-vulkan-drivers libvulkan1` on Debian and Ubuntu,\n\
+         `dnf install mesa-vulkan-drivers vulkan-loader` on Fedora, \
+         `pacman -S vulkan-swrast vulkan-icd-loader` on Arch"
     )]
     NoAdapter,
     /// There are adapters, but none of that name.

@@ -9,12 +9,11 @@ use crate::{
         suggest::suggestion,
     },
     document::{
-        entries::{Entry, What},
         flat::flat,
         materials::{Material, TextureEntry},
         params::{Param, ParamFault, ParamValue},
         raw::Broken,
-        typed::Document,
+        typed::{Document, Entry, What},
     },
     errors::{compose::ComposeError, resource::SizeError},
     kinds::registry::Registry,
@@ -243,8 +242,8 @@ impl Graph {
     }
 
     /// The features that the document and those that it includes require or ask for by `has`. A
-    /// device that has those of them that its adapter offers runs the graph as well as it can be run
-    /// there.
+    /// device that has those of them that its adapter offers runs the graph as well as it can be
+    /// run there.
     pub fn features(&self) -> wgt::Features {
         self.required | self.asked_for
     }

@@ -1,10 +1,10 @@
 //! A render graph for wgpu, written in RON and WGSL: from documents to a plan, without a GPU.
 //!
-//! A document names *materials* (textures, buffers, samplers) and *passes*; bindings and access come
-//! from the shaders by reflection, order from what passes read and write. The phases are a folder
-//! each, in this order: `document` (with `compose`, which reads what it extends and includes),
-//! `shader`, `instantiate`, `link`, `flow`, `plan`. `language` has the two small grammars inside of
-//! strings, `errors` what can be wrong in each phase and how it is told.
+//! A document names *materials* (textures, buffers, samplers) and *passes*; bindings and access
+//! come from the shaders by reflection, order from what passes read and write. The phases are a
+//! folder each, in this order: `document` (with `compose`, which reads what it extends and
+//! includes), `shader`, `instantiate`, `link`, `flow`, `plan`. `language` has the two small
+//! grammars inside of strings, `errors` what can be wrong in each phase and how it is told.
 //!
 //! The crate knows no scenes and no shadows: what a graph does not make itself is described by
 //! somebody who does ([`Describe`]), and made on a device by the crate `skiagraph-gpu`.

@@ -101,6 +101,12 @@ impl Import {
     }
 }
 
+impl std::fmt::Debug for dyn Describe + '_ {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("Describe").field(&self.names()).finish()
+    }
+}
+
 /// Describes what another provider described, for plans that are made again.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Described(pub BTreeMap<String, Provided>);

@@ -2,11 +2,12 @@
 
 use crate::{
     document::params::ParamValue,
-    provider::{Describe, Described, Import},
+    provider::{Describe, Described, Import, NoProvider},
 };
 use std::collections::BTreeMap;
 
 /// What a plan is made for.
+#[derive(Clone, Debug)]
 pub struct PlanRequest<'a> {
     /// Width and height in pixels.
     pub viewport: [u32; 2],
@@ -29,8 +30,8 @@ pub struct PlanRequest<'a> {
     /// Fills memory between uses with a pattern made of this byte: a graph whose outputs change
     /// with it reads what it has not written. Costs time; for finding mistakes.
     pub poison: Option<u8>,
-    /// It is not known on which device the graph will run: what is beyond `limits` and `features` is
-    /// told as a warning.
+    /// It is not known on which device the graph will run: what is beyond `limits` and `features`
+    /// is told as a warning.
     pub any_adapter: bool,
     /// Describes the provided resources.
     pub provider: &'a dyn Describe,
@@ -55,9 +56,9 @@ impl<'a> PlanRequest<'a> {
     }
 }
 
-impl<'a> PlanRequest<'a> {
-    /// The same request once more, to be changed.
-    pub(crate) fn again(&self) -> PlanRequest<'a> {
+impl PlanRequest<'_> {
+    /// The same request with another provider.
+    fn with_provider<'b>(&self, provider: &'b dyn Describe) -> PlanRequest<'b> {
         PlanRequest {
             viewport: self.viewport,
             params: self.params.clone(),
@@ -69,7 +70,7 @@ impl<'a> PlanRequest<'a> {
             imports: self.imports.clone(),
             poison: self.poison,
             any_adapter: self.any_adapter,
-            provider: self.provider,
+            provider,
         }
     }
 }
@@ -77,56 +78,26 @@ impl<'a> PlanRequest<'a> {
 /// A [`PlanRequest`] that a plan keeps, so that it can be made again with something changed.
 #[derive(Clone, Debug)]
 pub(crate) struct Request {
-    pub viewport: [u32; 2],
-    pub params: BTreeMap<String, ParamValue>,
-    pub outputs: Option<Vec<String>>,
-    pub captures: Vec<Capture>,
-    pub limits: wgt::Limits,
-    pub features: wgt::Features,
-    pub memory_limit: Option<u64>,
-    pub imports: BTreeMap<String, Import>,
-    pub poison: Option<u8>,
-    pub any_adapter: bool,
+    pub asked: PlanRequest<'static>,
     provider: Described,
 }
 
 impl Request {
     pub fn of(request: &PlanRequest<'_>) -> Self {
         Self {
-            viewport: request.viewport,
-            params: request.params.clone(),
-            outputs: request.outputs.clone(),
-            captures: request.captures.clone(),
-            limits: request.limits.clone(),
-            features: request.features,
-            memory_limit: request.memory_limit,
-            imports: request.imports.clone(),
-            poison: request.poison,
-            any_adapter: request.any_adapter,
+            asked: request.with_provider(&NoProvider),
             provider: Described::by(request.provider),
         }
     }
 
     /// Whether the host imports or provides something under this name.
     pub fn offers(&self, name: &str) -> bool {
-        self.imports.contains_key(name) || self.provider.0.contains_key(name)
+        self.asked.imports.contains_key(name) || self.provider.0.contains_key(name)
     }
 
     /// The request to plan with; provided resources are as they were described.
     pub fn again(&self) -> PlanRequest<'_> {
-        PlanRequest {
-            viewport: self.viewport,
-            params: self.params.clone(),
-            outputs: self.outputs.clone(),
-            captures: self.captures.clone(),
-            limits: self.limits.clone(),
-            features: self.features,
-            memory_limit: self.memory_limit,
-            imports: self.imports.clone(),
-            poison: self.poison,
-            any_adapter: self.any_adapter,
-            provider: &self.provider,
-        }
+        self.asked.with_provider(&self.provider)
     }
 }
 

@@ -171,7 +171,8 @@ impl SceneProvider {
             ADJACENCY => self.upload_items(name, &Adjacency::new(mesh).opposite, device),
             CAMERA => self.upload_items(name, &[self.camera], device),
             LIGHT => self.upload_items(name, &[LightUniform::new(&scene)], device),
-            _ => self.upload_hierarchy(device),
+            BVH_NODES | BVH_PRIMITIVES => self.upload_hierarchy(device),
+            _ => Ok(()),
         }
     }
 }
@@ -240,19 +241,20 @@ impl Provider for SceneProvider {
         let known = NAMES.into_iter().find(|&known| known == name);
         let unknown = || Error::Unknown {
             name: name.to_owned(),
-            known: self.names(),
+            known: NAMES.map(str::to_owned).to_vec(),
         };
         let name = known.ok_or_else(unknown).map_err(why)?;
         if !self.buffers.contains_key(name) {
             self.upload_named(name, device).map_err(why)?;
         }
+        let buffer = self.buffers.get(name).ok_or_else(unknown).map_err(why)?;
         if name == CAMERA && self.camera_uploaded != self.camera_version {
-            queue.write_buffer(&self.buffers[name], 0, bytemuck::bytes_of(&self.camera));
+            queue.write_buffer(buffer, 0, bytemuck::bytes_of(&self.camera));
             self.camera_uploaded = self.camera_version;
         }
         if !self.built.contains(&name) {
             self.built.push(name);
         }
-        Ok(self.buffers[name].clone())
+        Ok(buffer.clone())
     }
 }

@@ -34,8 +34,13 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let names = preset::named_or_all(&args.presets, &sources);
     let presets = contract::load_all(&names, &sources)?;
     let methods = method::methods(&presets, &args.params, &args.map_size)?;
-    if !args.map_size.is_empty() && methods.iter().all(|method| method.map_size.is_none()) {
-        note("--map-size has no effect: none of these graphs has the param `map_size`");
+    let deaf = methods.iter().filter(|method| method.map_size.is_none());
+    let deaf: Vec<&str> = deaf.map(|method| method.preset.name.as_str()).collect();
+    if !args.map_size.is_empty() && !deaf.is_empty() {
+        note(&format!(
+            "--map-size has no effect on {}: no param `map_size`",
+            deaf.join(", ")
+        ));
     }
     let primary = PrimaryVisibility::load(&sources)?;
     let gpu = device::open(gpu, preset::graphs(&presets))?;

@@ -92,7 +92,8 @@ fn missing_outputs(preset: &Preset) -> Option<String> {
          {VISIBILITY}: per pixel 0 in shadow, 1 in light\n  \
          {STATUS}: per pixel 0 background, 1 facing away from the light, 2 certain light, \
          3 certain shadow, 4 uncertain\n  \
-         both R8Uint where rasterised, R32Uint where written by compute, of the viewport's size",
+         both R8Uint or R32Uint, of the viewport's size; {VISIBILITY} may be R8Unorm, R16Float or \
+         R32Float, of which 0.5 and more is light",
         preset.name,
         missing.join(" and no output ")
     ))
@@ -113,11 +114,15 @@ fn mismatch(preset: &Preset, plan: &Plan, viewport: [u32; 2]) -> Option<String> 
             .map_or("a buffer".into(), |format| format!("{format:?}"));
         (!fits || output.size != viewport).then(|| {
             format!(
-                "`{}`: the output `{}` is {kind} of {}; expected R8Uint or R32Uint of the \
-                 viewport's {}",
+                "`{}`: the output `{}` is {kind} of {}; expected R8Uint or R32Uint{} \
+                 of the viewport's {}",
                 preset.name,
                 output.name,
                 size(output.size),
+                match output.name.as_str() {
+                    VISIBILITY => ", R8Unorm, R16Float or R32Float",
+                    _ => "",
+                },
                 size(viewport)
             )
         })

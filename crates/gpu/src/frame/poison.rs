@@ -75,8 +75,8 @@ impl Fill {
 
 impl Poison {
     /// `None` if the plan asks for none. What outlives the frame is not filled; of a resource with
-    /// two allocations that is last frame's, while the one that is written holds what is left of the
-    /// frame before that.
+    /// two allocations that is last frame's, while the one that is written holds what is left of
+    /// the frame before that.
     pub fn new(
         plan: &Plan,
         memory: &Memory,

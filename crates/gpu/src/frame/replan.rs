@@ -1,12 +1,12 @@
 //! Another plan on the same device: a new size, another value of a param, another graph. What can
 //! be kept is kept.
 //!
-//! Why it is kept matters: a program that changes a param in every frame must not make a pipeline in
-//! every frame, a shadow map that a later pass does not touch must not be drawn again, and a plan
-//! that the device refuses must leave the program with the one that ran. So another plan is made
-//! beside the one that is there, out of its parts, and takes its place when nothing can fail any
-//! more. Resources and passes are known by their names, for numbers mean something else in another
-//! plan.
+//! Why it is kept matters: a program that changes a param in every frame must not make a pipeline
+//! in every frame, a shadow map that a later pass does not touch must not be drawn again, and a
+//! plan that the device refuses must leave the program with the one that ran. So another plan is
+//! made beside the one that is there, out of its parts, and takes its place when nothing can fail
+//! any more. Resources and passes are known by their names, for numbers mean something else in
+//! another plan.
 
 use super::{
     contents::Contents,

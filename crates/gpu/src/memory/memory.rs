@@ -39,8 +39,8 @@ pub(crate) struct Maker<'a> {
 }
 
 impl Memory {
-    /// Makes every resource with a lifetime; provided ones are asked of the provider, and only here.
-    /// What `old` has of the same name and make is taken over with its content.
+    /// Makes every resource with a lifetime; provided ones are asked of the provider, and only
+    /// here. What `old` has of the same name and make is taken over with its content.
     pub fn new(
         plan: &Plan,
         old: Option<(&Plan, &Memory)>,
@@ -249,14 +249,13 @@ impl Memory {
     ) -> Result<(), ExecuteError> {
         let (provider, device) = (&mut *maker.provider, maker.device);
         let version = provider.version(&resource.name);
-        if let Some((plan, memory)) = old {
-            if let Some((known, physical)) = memory.host_by_name(plan, &resource.name)
-                && memory.provided.get(&known) == Some(&version)
-            {
-                self.host.insert(id, physical.clone());
-                self.provided.insert(id, version);
-                return Ok(());
-            }
+        if let Some((plan, memory)) = old
+            && let Some((known, physical)) = memory.host_by_name(plan, &resource.name)
+            && memory.provided.get(&known) == Some(&version)
+        {
+            self.host.insert(id, physical.clone());
+            self.provided.insert(id, version);
+            return Ok(());
         }
         // The plan has counted items and sized buffers by what was described to it.
         if let (ResourceKind::Provided(planned), Some(now)) =

@@ -1,5 +1,6 @@
-// Stage to keep the device busy, one invocation per item: `rounds` steps of a linear congruential generator. It reads nothing that
-// the raster pass made: a barrier between them would hide the fault that it is to show.
+// Stage to keep the device busy, one invocation per item: `rounds` steps of a linear congruential
+// generator. It reads nothing that the raster pass made: a barrier between them would hide the
+// fault that it is to show.
 struct Params { rounds: u32 }
 var<uniform> params: Params;
 var<storage, read_write> sums: array<u32>;

@@ -8,11 +8,11 @@ use crate::{
         suggest::likeness,
     },
     document::{
-        entries::{Entry, Include, What},
         extend::extend,
         params::Param,
         raw::{self, Broken, RawDocument},
-        typed::{self, Document},
+        read,
+        typed::{Document, Entry, Include, What},
     },
     errors::compose::ComposeError,
     kinds::registry::Registry,
@@ -107,7 +107,7 @@ impl<'a> Reader<'a> {
         self.open.push((file.name.to_string(), by));
         let raw = self.raw(file, &mut Vec::new());
         let document = raw.map(|raw| {
-            let mut document = typed::read(raw, self.registry, self.reports);
+            let mut document = read::document(raw, self.registry, self.reports);
             document.include_depth = self.attach(&mut document.entries);
             self.expose(&mut document);
             unique::check(&document, self.reports);
@@ -283,7 +283,7 @@ impl<'a> Reader<'a> {
                     name: Located::new(param.name.value, span),
                     first: known.name.span.clone(),
                 };
-                self.reports.report(error);
+                document.broken_params = Some(self.reports.report(error));
                 continue;
             }
             document.params.push(param);

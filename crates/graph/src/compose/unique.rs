@@ -4,9 +4,8 @@
 use crate::{
     diagnostics::reports::Reports,
     document::{
-        entries::{Entry, What},
         raw::Broken,
-        typed::Document,
+        typed::{Document, Entry, What},
     },
     errors::compose::ComposeError,
     language::name::wgsl_identifier,

@@ -1,118 +1,25 @@
-//! The entries of `passes`: passes, included documents, and groups of entries.
+//! Reads the entries of `passes`: passes, included documents, and groups of entries.
 
 use super::{
     fields::Mentions,
     raw::{Broken, RawEntry, RawMap, stem},
     ron::{Field, Node, from_fields},
-    typed::Document,
+    typed::{Entry, Include, Pass, Run, What},
 };
 use crate::{
     diagnostics::{
         diagnostic::Diagnostic,
-        reports::{Mistake, Reported, Reports},
+        reports::{Mistake, Reports},
     },
     errors::document::DocumentError,
-    kinds::{
-        kind::{Lowering, PassKind},
-        registry::Registry,
-        step::Step,
-    },
+    kinds::{kind::Lowering, registry::Registry, step::Step},
     language::{
         name::{Name, RESERVED},
         syntax::{Expr, Reference},
     },
     source::span::Located,
 };
-use serde::{Deserialize, Deserializer};
-use std::sync::Arc;
-
-/// One entry, at its place in the sequential program.
-#[derive(Debug)]
-pub(crate) struct Entry {
-    pub name: Located<Name>,
-    /// Whether it is there.
-    pub condition: Option<Expr>,
-    /// How often it is instantiated; `None` = once, without an index.
-    pub repeat: Option<Expr>,
-    /// In which frames it runs; `None` = as what is around it.
-    pub run: Option<Run>,
-    pub bind: Vec<(Located<String>, Reference)>,
-    pub set: Vec<(Located<String>, Expr)>,
-    pub what: What,
-}
-
-#[derive(Debug)]
-pub(crate) enum What {
-    Pass(Pass),
-    Include(Include),
-    Group(Vec<Result<Entry, Broken>>),
-}
-
-/// A pass: what every kind has, and the kind's own body.
-#[derive(Debug)]
-pub(crate) struct Pass {
-    pub shader: Option<Located<String>>,
-    /// What the author promises that the pass writes in every texel or item.
-    pub overwrites: Vec<Reference>,
-    pub kind: &'static str,
-    pub body: Arc<dyn PassKind>,
-    /// Names of the shaders that it runs.
-    pub shaders: Vec<Located<String>>,
-    /// What its fields name.
-    pub mentions: Mentions,
-}
-
-/// Another document whose passes stand here.
-#[derive(Debug)]
-pub(crate) struct Include {
-    pub graph: Located<String>,
-    /// Whether it has a name of its own, which stands before what it gives.
-    pub is_named: bool,
-    /// Params of the included document that are params here, too.
-    pub expose: Vec<Located<String>>,
-    /// Put here once it is read.
-    pub document: Option<Result<Arc<Document>, Reported>>,
-}
-
-impl Include {
-    /// The included document, if it could be read.
-    pub fn document(&self) -> Option<&Arc<Document>> {
-        self.document.as_ref()?.as_ref().ok()
-    }
-}
-
-/// In which frames a pass runs.
-#[derive(Clone, Debug, Default)]
-pub(crate) enum Run {
-    /// In every frame.
-    #[default]
-    Always,
-    /// In the first frame after planning.
-    Once,
-    /// In frames where something that it reads has changed.
-    OnChange,
-    /// In frames where an expression over params is true.
-    When(Expr),
-}
-
-impl<'de> Deserialize<'de> for Run {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(rename = "run")]
-        enum Words {
-            Always,
-            Once,
-            OnChange,
-            When(Expr),
-        }
-        Ok(match Words::deserialize(deserializer)? {
-            Words::Always => Self::Always,
-            Words::Once => Self::Once,
-            Words::OnChange => Self::OnChange,
-            Words::When(expr) => Self::When(expr),
-        })
-    }
-}
+use serde::Deserialize;
 
 /// The tags that are no pass kinds.
 const COMPOSITION: [&str; 2] = ["Include", "Group"];

@@ -7,6 +7,7 @@ pub(crate) mod flat;
 pub(crate) mod materials;
 pub(crate) mod params;
 pub(crate) mod raw;
+pub(crate) mod read;
 pub(crate) mod ron;
 pub(crate) mod typed;
 

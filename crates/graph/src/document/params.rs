@@ -206,7 +206,8 @@ impl Param {
 
     /// A value of this param in an expression.
     pub(crate) fn value(&self, value: &ParamValue) -> Value {
-        // The decimal number that it was written as: 0.51 is no f32, and yet `n >= 0.51` holds of it.
+        // The decimal number that it was written as: 0.51 is no f32, and yet `n >= 0.51` holds of
+        // it.
         let number = |number: &f32| {
             let written = number.to_string().parse();
             Scalar::Number(written.unwrap_or(f64::from(*number)))

@@ -1,28 +1,23 @@
 //! A document with everything in it read, and nothing looked up.
 
 use super::{
-    entries::{self, Entry, Run, What},
-    extend::no_edits,
-    fields::short_or_long,
-    materials::{BufferInput, Input, Material, SamplerInput, TextureInput},
+    fields::{Mentions, short_or_long},
+    materials::{Input, Material},
     params::Param,
-    raw::{Broken, RawDocument, RawItem},
-    ron::{Node, from_fields, raw, read as read_part},
+    raw::Broken,
+    ron::{raw, read},
 };
 use crate::{
-    diagnostics::{
-        diagnostic::Diagnostic,
-        reports::{Mistake, Reported, Reports},
-    },
-    errors::document::DocumentError,
-    kinds::registry::Registry,
+    diagnostics::reports::Reported,
+    kinds::kind::PassKind,
     language::{
-        name::{Name, RESERVED},
+        name::Name,
         syntax::{Expr, Leaf, Reference},
     },
     source::span::{Located, SourceFile},
 };
 use serde::{Deserialize, Deserializer};
+use std::sync::Arc;
 
 /// A document as its author wrote it.
 #[derive(Debug)]
@@ -74,11 +69,11 @@ impl<'de> Deserialize<'de> for ClaimEntry {
         let (text, _) = raw(deserializer)?;
         if !text.starts_with('(') {
             return Ok(Self {
-                condition: Some(read_part(text)?),
+                condition: Some(read(text)?),
                 because: String::new(),
             });
         }
-        let long: Long = read_part(text)?;
+        let long: Long = read(text)?;
         Ok(Self {
             condition: long.condition,
             because: long.because,
@@ -122,133 +117,91 @@ impl<'de> Deserialize<'de> for Output {
     }
 }
 
-/// Reads what a document holds. What is wrong is reported; what could be read is returned all the
-/// same, so that later phases find more mistakes in one go.
-pub(crate) fn read(raw: RawDocument, registry: &Registry, reports: &mut Reports) -> Document {
-    let mut document = Document {
-        description: String::new(),
-        requires: Vec::new(),
-        params: Vec::new(),
-        declared: 0,
-        defaults: Vec::new(),
-        inputs: Vec::new(),
-        materials: Vec::new(),
-        entries: Vec::new(),
-        outputs: Vec::new(),
-        claims: Vec::new(),
-        broken_materials: Vec::new(),
-        broken_params: raw.broken_params,
-        broken_outputs: None,
-        incomplete: raw.incomplete,
-        include_depth: 0,
-        file: raw.file,
-    };
-    if let Some(node) = &raw.description {
-        keep(node.parse(), reports, |text| document.description = text);
-    }
-    for node in &raw.requires {
-        keep(feature(node), reports, |feature| {
-            document.requires.push(feature)
-        });
-    }
-    for item in &raw.params {
-        match Param::read(&item.tag, &item.fields) {
-            Ok(param) => document.params.push(param),
-            Err(error) => document.broken_params = Some(reports.tell(error)),
-        }
-    }
-    document.declared = document.params.len();
-    for item in &raw.inputs {
-        let input = input(item).and_then(|input| free(input.name.clone(), input));
-        match input {
-            Ok(input) => document.inputs.push(input),
-            Err(error) => {
-                let reported = reports.tell(error);
-                match item.name() {
-                    Some(name) => document.broken_materials.push((name.value, reported)),
-                    None => document.incomplete = Some(reported),
-                }
-            }
-        }
-    }
-    for item in &raw.materials {
-        let material = material(item).and_then(|read| free(read.name().clone(), read));
-        match material {
-            Ok(material) => document.materials.push(material),
-            Err(error) => {
-                let reported = reports.tell(error);
-                match item.name() {
-                    Some(name) => document.broken_materials.push((name.value, reported)),
-                    None => document.incomplete = Some(reported),
-                }
-            }
-        }
-    }
-    let mut passes = raw.passes;
-    no_edits(&mut passes, reports);
-    document.entries = entries::read(passes, registry, reports);
-    for node in &raw.outputs {
-        match node.parse() {
-            Ok(output) => document.outputs.push(output),
-            Err(error) => document.broken_outputs = Some(reports.tell(error)),
-        }
-    }
-    for (name, node) in raw.set {
-        keep(node.parse(), reports, |value| {
-            document.defaults.push((name, value))
-        });
-    }
-    for (name, node) in raw.claims {
-        keep(node.parse(), reports, |value| {
-            document.claims.push((name, value))
-        });
-    }
-    document
+/// One entry, at its place in the sequential program.
+#[derive(Debug)]
+pub(crate) struct Entry {
+    pub name: Located<Name>,
+    /// Whether it is there.
+    pub condition: Option<Expr>,
+    /// How often it is instantiated; `None` = once, without an index.
+    pub repeat: Option<Expr>,
+    /// In which frames it runs; `None` = as what is around it.
+    pub run: Option<Run>,
+    pub bind: Vec<(Located<String>, Reference)>,
+    pub set: Vec<(Located<String>, Expr)>,
+    pub what: What,
 }
 
-fn keep<T>(result: Result<T, Diagnostic>, reports: &mut Reports, keep: impl FnOnce(T)) {
-    match result {
-        Ok(value) => keep(value),
-        Err(error) => drop(reports.tell(error)),
+#[derive(Debug)]
+pub(crate) enum What {
+    Pass(Pass),
+    Include(Include),
+    Group(Vec<Result<Entry, Broken>>),
+}
+
+/// A pass: what every kind has, and the kind's own body.
+#[derive(Debug)]
+pub(crate) struct Pass {
+    pub shader: Option<Located<String>>,
+    /// What the author promises that the pass writes in every texel or item.
+    pub overwrites: Vec<Reference>,
+    pub kind: &'static str,
+    pub body: Arc<dyn PassKind>,
+    /// Names of the shaders that it runs.
+    pub shaders: Vec<Located<String>>,
+    /// What its fields name.
+    pub mentions: Mentions,
+}
+
+/// Another document whose passes stand here.
+#[derive(Debug)]
+pub(crate) struct Include {
+    pub graph: Located<String>,
+    /// Whether it has a name of its own, which stands before what it gives.
+    pub is_named: bool,
+    /// Params of the included document that are params here, too.
+    pub expose: Vec<Located<String>>,
+    /// Put here once it is read.
+    pub document: Option<Result<Arc<Document>, Reported>>,
+}
+
+impl Include {
+    /// The included document, if it could be read.
+    pub fn document(&self) -> Option<&Arc<Document>> {
+        self.document.as_ref()?.as_ref().ok()
     }
 }
 
-/// A material whose name is free to be one.
-fn free<T>(name: Located<Name>, of: T) -> Result<T, Diagnostic> {
-    match RESERVED.contains(&name.as_str()) {
-        true => Err(DocumentError::Reserved(name).diagnostic()),
-        false => Ok(of),
-    }
+/// In which frames a pass runs.
+#[derive(Clone, Debug, Default)]
+pub(crate) enum Run {
+    /// In every frame.
+    #[default]
+    Always,
+    /// In the first frame after planning.
+    Once,
+    /// In frames where something that it reads has changed.
+    OnChange,
+    /// In frames where an expression over params is true.
+    When(Expr),
 }
 
-fn feature(node: &Node) -> Result<(Located<String>, wgt::Features), Diagnostic> {
-    let name = Located::new(node.parse::<String>()?, node.span.clone());
-    match wgt::Features::from_name(&name) {
-        Some(flag) => Ok((name, flag)),
-        None => Err(crate::errors::language::SyntaxFault::Feature(name).diagnostic()),
-    }
-}
-
-fn material(item: &RawItem) -> Result<Material, Diagnostic> {
-    let (fields, tag) = (&item.fields, &item.tag);
-    match tag.as_str() {
-        "Texture" => from_fields(fields, &tag.span).map(Material::Texture),
-        "Buffer" => from_fields(fields, &tag.span).map(Material::Buffer),
-        "Sampler" => from_fields(fields, &tag.span).map(Material::Sampler),
-        _ => Err(DocumentError::UnknownMaterial(tag.clone()).diagnostic()),
-    }
-}
-
-fn input(item: &RawItem) -> Result<Input, Diagnostic> {
-    let (fields, tag) = (&item.fields, &item.tag);
-    match tag.as_str() {
-        "Texture" => {
-            let texture: TextureInput = from_fields(fields, &tag.span)?;
-            Input::try_from(texture).map_err(Mistake::diagnostic)
+impl<'de> Deserialize<'de> for Run {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(rename = "run")]
+        enum Words {
+            Always,
+            Once,
+            OnChange,
+            When(Expr),
         }
-        "Buffer" => from_fields::<BufferInput>(fields, &tag.span).map(Input::from),
-        "Sampler" => from_fields::<SamplerInput>(fields, &tag.span).map(Input::from),
-        _ => Err(DocumentError::UnknownMaterial(tag.clone()).diagnostic()),
+        Ok(match Words::deserialize(deserializer)? {
+            Words::Always => Self::Always,
+            Words::Once => Self::Once,
+            Words::OnChange => Self::OnChange,
+            Words::When(expr) => Self::When(expr),
+        })
     }
 }
 

@@ -28,7 +28,9 @@ pub(crate) enum ParamError {
         declared: Span,
         why: ParamFault,
     },
-    #[error("`{}` here may be what `{}` there may not", *outer.name, **name)]
+    #[error(
+        "`{}` ({}) is handed to `{}` ({})", *outer.name, range(outer), **name, range(param)
+    )]
     Misfit {
         name: Located<String>,
         outer: Box<Param>,
@@ -78,7 +80,10 @@ impl Mistake for ParamError {
                 .at(name.span, "given here")
                 .at(outer.name.span.clone(), range(&outer))
                 .at(param.name.span.clone(), range(&param))
-                .help("narrow the first one, or `set` the other to an expression that fits"),
+                .help(
+                    "give the first one the type and the `min` and `max` of the other, or `set` \
+                     that to an expression that fits",
+                ),
             Self::Required {
                 name,
                 span,

@@ -137,6 +137,8 @@ pub(crate) enum LinkError {
         member: String,
         span: Span,
         known: Vec<String>,
+        /// The type of a param that is such a member, if there is one.
+        ty: Option<String>,
     },
     #[error("`params.index` is the number of the repetition, a u32")]
     IndexMember(Span),
@@ -169,7 +171,9 @@ pub(crate) enum LinkError {
         at: Span,
         pass: Located<String>,
     },
-    #[error("{}×{}×{} workgroups are more than the adapter can run", groups[0], groups[1], groups[2])]
+    #[error(
+        "{}×{}×{} workgroups are more than the adapter can run", groups[0], groups[1], groups[2]
+    )]
     Workgroups {
         groups: [u64; 3],
         most: u32,
@@ -313,8 +317,8 @@ pub(crate) enum TextureMisfit {
         holds: Option<ScalarClass>,
         depth: bool,
     },
-    #[error("sampled through `{0}`, but the format cannot be filtered")]
-    Filtered(String),
+    #[error("sampled through `{sampler}`, but the format cannot be filtered")]
+    Filtered { sampler: String, by_feature: bool },
     #[error("it has {0} samples: declare a multisampled texture where these are more than one")]
     Samples(u32),
     #[error("the shader declares {0}")]
@@ -356,7 +360,13 @@ impl TextureMisfit {
 
     fn help(&self) -> Option<&'static str> {
         match self {
-            Self::Filtered(_) => {
+            Self::Filtered {
+                by_feature: true, ..
+            } => Some(
+                "list `requires: [\"FLOAT32_FILTERABLE\"]`, or use a sampler with `filter: Nearest`, \
+                 textureLoad, or a format of 16 bits",
+            ),
+            Self::Filtered { .. } => {
                 Some("use a sampler with `filter: Nearest`, textureLoad, or a filterable format")
             }
             Self::NoStorage => Some(
@@ -565,13 +575,23 @@ impl LinkError {
                     None => told,
                 }
             }
+            other => other.explain_member(told),
+        }
+    }
+
+    fn explain_member(self, told: Diagnostic) -> Diagnostic {
+        match self {
             Self::UnknownMember {
                 member,
                 span,
                 known,
-            } => told.at(span, "").suggest(&member, known).help(format!(
-                "declare it, `params: [U32(name: \"{member}\", default: …)]`, or `set` it"
-            )),
+                ty,
+            } => told.at(span, "").suggest(&member, known).help(match ty {
+                Some(ty) => format!(
+                    "declare it, `params: [{ty}(name: \"{member}\", default: …)]`, or `set` it"
+                ),
+                None => format!("`set` it: `set: {{\"{member}\": …}}`"),
+            }),
             Self::IndexMember(span) | Self::MemberIsNoVector { span, .. } => {
                 told.at(span, "in this uniform")
             }
@@ -670,7 +690,10 @@ impl LinkError {
             }
             Self::SeveralLayers(name) => told
                 .at(name.span, "a pass draws to one mip of one layer")
-                .help("name one: `x[0]`, `x.mip[0]`, `x[0].mip[0]`"),
+                .help(format!(
+                    "name one: `{0}[0]`, `{0}.mip[0]`, `{0}[0].mip[0]`",
+                    name.value
+                )),
             Self::NoTargets(pass) => told.at(
                 pass.span,
                 "give it `color: […]`, `depth: …` or `stencil: (…)`",

@@ -20,7 +20,7 @@ pub(crate) enum ImportError {
     #[error("the import `{}` leaves the shader folder", **.0)]
     Leaves(Located<String>),
     #[error("there is no file `{}` to import", **.0)]
-    NoFile(Located<String>, Vec<String>),
+    NoFile(Located<String>, Vec<String>, Option<String>),
     #[error("`{}` cannot be read", **.0)]
     UnreadableFile(Located<String>, String),
     #[error("imports are nested too deep")]
@@ -41,11 +41,9 @@ impl Mistake for ImportError {
                 "shaders stand beside the document or in shaders/, and are named without folder \
                  signs like `..`",
             ),
-            Self::NoShader(name, candidates, likeness) => {
-                let likeness = likeness.map_or(String::new(), |likeness| format!("; {likeness}"));
-                let looked = format!("looked for {}{likeness}", candidates.join(", "));
-                told.at(name.span, "asked for here").help(looked)
-            }
+            Self::NoShader(name, candidates, likeness) => told
+                .at(name.span, "asked for here")
+                .help(looked_for(&candidates, likeness)),
             Self::Unreadable(name, why) => told.at(name.span, "asked for here").help(why),
             Self::Unquoted(span) => told
                 .at(span, "")
@@ -53,13 +51,18 @@ impl Mistake for ImportError {
             Self::Leaves(path) => told
                 .at(path.span, "")
                 .help("imports name files in the importing file's folder or in shaders/"),
-            Self::NoFile(path, candidates) => told
+            Self::NoFile(path, candidates, likeness) => told
                 .at(path.span, "")
-                .help(format!("looked for {}", candidates.join(", "))),
+                .help(looked_for(&candidates, likeness)),
             Self::UnreadableFile(path, why) => told.at(path.span, "").help(why),
             Self::TooDeep(span) => told.at(span, ""),
         }
     }
+}
+
+fn looked_for(candidates: &[String], likeness: Option<String>) -> String {
+    let likeness = likeness.map_or(String::new(), |likeness| format!("; {likeness}"));
+    format!("looked for {}{likeness}", candidates.join(", "))
 }
 
 /// A shader that is not valid, or not what a pass needs.

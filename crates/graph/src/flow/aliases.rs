@@ -1,5 +1,5 @@
-//! Which resources share memory. Two that have equal descriptors, and of which one is not needed any
-//! more when the other is first written, take turns in one allocation.
+//! Which resources share memory. Two that have equal descriptors, and of which one is not needed
+//! any more when the other is first written, take turns in one allocation.
 
 use super::{
     lifetimes::{Lifetime, Lifetimes},

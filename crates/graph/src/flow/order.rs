@@ -57,9 +57,9 @@ struct State {
     readers: BTreeSet<PassId>,
 }
 
-/// The order of all passes, from which follows which of them are live. Reads of what nobody wrote are
-/// reported for the passes of the valid prefix: below it a pass is missing that might have written
-/// it.
+/// The order of all passes, from which follows which of them are live. Reads of what nobody wrote
+/// are reported for the passes of the valid prefix: below it a pass is missing that might have
+/// written it.
 pub(crate) fn order(work: Work<'_>, valid_prefix: usize, reports: &mut Reports) -> Order {
     let (order, uninitialized) = walk(work, |_| true);
     for (pass, access) in uninitialized

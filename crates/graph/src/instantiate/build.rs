@@ -9,10 +9,9 @@ use super::{
 use crate::{
     diagnostics::reports::{Reported, Reports},
     document::{
-        entries::{Entry, Pass, Run as RunEntry, What},
         materials::{Input, InputKind},
         raw::Broken,
-        typed::Document,
+        typed::{Document, Entry, Pass, Run as RunEntry, What},
     },
     errors::instantiate::BorderError,
     graph::Graph,

@@ -9,9 +9,8 @@ use super::{
 use crate::{
     diagnostics::reports::Reported,
     document::{
-        entries::{Entry, Include},
         materials::{Input, InputKind, Material},
-        typed::{Document, Output},
+        typed::{Document, Entry, Include, Output},
     },
     errors::instantiate::BorderError,
     language::{
@@ -96,11 +95,7 @@ impl<'a> Builder<'a, '_> {
         }
         let inner = around.inside(frame);
         self.document(document, &inner);
-        let (mut names, outputs) = self.outputs(document, instance, Place { frame, index: None });
-        for (output, (_, target)) in self.passed_on(entry, document, place, has_namespace) {
-            let meaning = target.map_or_else(Meaning::Broken, Meaning::Target);
-            names.insert(output.name.value.clone(), meaning);
-        }
+        let (names, outputs) = self.outputs(document, &said, Place { frame, index: None });
         self.borders.push(Border {
             instance,
             outputs,
@@ -428,7 +423,7 @@ impl<'a> Builder<'a, '_> {
     fn outputs(
         &mut self,
         document: &Document,
-        instance: InstanceId,
+        said: &Said<'_>,
         place: Place,
     ) -> (Names, Vec<(Located<Name>, Target)>) {
         let (mut names, mut outputs) = (Names::new(), Vec::new());
@@ -446,13 +441,17 @@ impl<'a> Builder<'a, '_> {
             if let Ok(target) = &target {
                 outputs.push((name.clone(), target.clone()));
             }
+            // What is bound has its name here already.
             let path = output.material.path();
-            let overrides = &self.world.frames.instance(instance).overrides;
             let is_input = document
                 .inputs
                 .iter()
                 .any(|input| input.name.as_str() == path);
-            if !is_input && !overrides.contains_key(&path) {
+            let is_bound = said
+                .bind
+                .iter()
+                .any(|(bound, ..)| bound.as_str() == name.as_str());
+            if !is_input && !is_bound {
                 let meaning = target.map_or_else(Meaning::Broken, Meaning::Target);
                 names.insert(name.value.clone(), meaning);
             }

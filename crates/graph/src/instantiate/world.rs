@@ -382,8 +382,8 @@ impl<'a> World<'a> {
         Ok(id)
     }
 
-    /// The resource whose layout and size a resource has: itself, or what it is last frame's version
-    /// of.
+    /// The resource whose layout and size a resource has: itself, or what it is last frame's
+    /// version of.
     pub fn base(&self, id: ResourceId) -> ResourceId {
         match self.get(id).origin {
             Origin::Previous(base) => base,

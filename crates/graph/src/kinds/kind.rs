@@ -15,12 +15,12 @@ use crate::{
 };
 use std::fmt;
 
-/// The body of a pass of some kind. Its fields are what the RON entry holds beside `name`, `shader`,
-/// `bind`, `set`, `if`, `repeat`, `run` and `overwrites`.
+/// The body of a pass of some kind. Its fields are what the RON entry holds beside `name`,
+/// `shader`, `bind`, `set`, `if`, `repeat`, `run` and `overwrites`.
 pub trait PassKind: fmt::Debug + Send + Sync {
     /// Says which GPU work the pass is, in order. Called without a GPU, more than once; it must
-    /// depend on nothing but the body and values that it asks for, and the shaders it names must not
-    /// depend on these.
+    /// depend on nothing but the body and values that it asks for, and the shaders it names must
+    /// not depend on these.
     fn lower(&self, pass: &mut Lowering<'_>);
 }
 

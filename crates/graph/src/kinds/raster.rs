@@ -36,7 +36,8 @@ pub(super) struct Raster {
     front_face: Winding,
     #[serde(default)]
     topology: Topology,
-    /// Whether a pixel that a triangle touches anywhere counts, not only one whose centre it covers.
+    /// Whether a pixel that a triangle touches anywhere counts, not only one whose centre it
+    /// covers.
     #[serde(default)]
     conservative: bool,
     /// Whether what lies before the near or behind the far plane is drawn, its depth clamped.

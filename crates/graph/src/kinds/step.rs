@@ -70,10 +70,6 @@ pub enum Threads {
 
 /// One piece of GPU work of a pass. The steps of a pass run in order and are timed together.
 #[derive(Clone, Debug, PartialEq)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "a graph has a handful, each made once"
-)]
 pub enum Step<S: Stage> {
     /// A render pass with one draw call.
     Draw(Draw<S>),

@@ -289,8 +289,8 @@ impl Expr {
         }
     }
 
-    /// A text that is equal for equal expressions; `param` says which param of the whole graph a name
-    /// stands for.
+    /// A text that is equal for equal expressions; `param` says which param of the whole graph a
+    /// name stands for.
     pub(crate) fn canonical(&self, param: &dyn Fn(&str) -> String) -> String {
         let list = |list: &[Expr]| -> String {
             let list: Vec<String> = list.iter().map(|expr| expr.canonical(param)).collect();

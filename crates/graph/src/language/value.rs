@@ -26,7 +26,8 @@ impl fmt::Display for Scalar {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Whole(whole) => write!(f, "{whole}"),
-            Self::Number(number) => write!(f, "{number}"),
+            // A whole one keeps its point: it is no integer.
+            Self::Number(number) => write!(f, "{number:?}"),
         }
     }
 }

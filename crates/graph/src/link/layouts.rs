@@ -260,7 +260,7 @@ impl Layouts {
                 true => limits.min_uniform_buffer_offset_alignment,
                 false => limits.min_storage_buffer_offset_alignment,
             });
-            if sized.stride % alignment != 0 {
+            if !sized.stride.is_multiple_of(alignment) {
                 return Err(LayoutError::Alignment {
                     name: name.to_owned(),
                     stride: sized.stride,
@@ -272,7 +272,8 @@ impl Layouts {
         Ok(())
     }
 
-    /// A buffer that no shader sees has the size of what it is copied from or to; others must agree.
+    /// A buffer that no shader sees has the size of what it is copied from or to; others must
+    /// agree.
     fn equal_sizes(&self, world: &mut World<'_>) -> Vec<LayoutError> {
         fn bytes(world: &World<'_>, copied: &Copied) -> u64 {
             let (bytes, stride) = match &world.get(copied.id).kind {

@@ -27,6 +27,17 @@ enum Asked<'e> {
     Index(u32),
 }
 
+/// The type of params whose values a member of this type holds.
+fn param_of((class, width): (ScalarClass, u32)) -> Option<String> {
+    Some(match (class, width) {
+        (ScalarClass::Float, 1) => "F32".to_owned(),
+        (ScalarClass::Float, _) => format!("Vec{width}"),
+        (ScalarClass::Uint, 1) => "U32".to_owned(),
+        (ScalarClass::Sint, 1) => "I32".to_owned(),
+        _ => return None,
+    })
+}
+
 impl<'a> Linker<'a, '_> {
     /// The value of what a shader asks for: what the entry sets, else the index of a repetition,
     /// else the param of that name.
@@ -193,6 +204,7 @@ impl<'a> Linker<'a, '_> {
                 member: member.name.clone(),
                 span: global.span.clone(),
                 known,
+                ty: member.vector.and_then(param_of),
             }));
         };
         let (param, value) = match asked {

@@ -60,8 +60,8 @@ impl Linker<'_, '_> {
         wrong.map_or(Ok(linked), Err)
     }
 
-    /// What the entry binds must be globals of its own shader. (A kind with several shaders hands its
-    /// bindings to all of them.)
+    /// What the entry binds must be globals of its own shader. (A kind with several shaders hands
+    /// its bindings to all of them.)
     fn bound_globals(
         &mut self,
         program: &Program,
@@ -103,7 +103,8 @@ impl Linker<'_, '_> {
     /// The numbers of bindings that wgpu limits per stage.
     fn counts(&mut self, bindings: &[LinkedBinding], pass: &LinkedPass) -> Result<(), Reported> {
         let limits = &self.world.request.limits;
-        let kinds: [(&str, fn(&wgt::BindingType) -> bool, u32); 5] = [
+        type IsOf = fn(&wgt::BindingType) -> bool;
+        let kinds: [(&str, IsOf, u32); 5] = [
             (
                 "storage buffers",
                 |ty| {

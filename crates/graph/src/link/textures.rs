@@ -53,7 +53,7 @@ impl Linker<'_, '_> {
                 },
             ) => self.storage((format, *access, *dimension), texture, target),
         };
-        bound.or_else(|misfit| {
+        bound.map_err(|misfit| {
             let resource = self.world.get(target.id);
             let error = LinkError::Texture {
                 name: resource.name.clone(),
@@ -63,7 +63,7 @@ impl Linker<'_, '_> {
                 declared: resource.declared.clone(),
                 misfit: Box::new(misfit),
             };
-            Err(self.report(error))
+            self.report(error)
         })
     }
 
@@ -107,8 +107,17 @@ impl Linker<'_, '_> {
             .flags
             .contains(TextureFormatFeatureFlags::FILTERABLE)
             && !is_depth;
-        if !filterable && let Some(sampler) = self.linear_sampler(global, linked, program) {
-            return Err(TextureMisfit::Filtered(sampler));
+        let able = wgt::Features::FLOAT32_FILTERABLE;
+        let with_feature = format.guaranteed_format_features(able).flags;
+        let by_feature = with_feature.contains(TextureFormatFeatureFlags::FILTERABLE);
+        let asks = by_feature && self.world.graph.features().contains(able);
+        if !(filterable || asks && self.reports.any_adapter)
+            && let Some(sampler) = self.linear_sampler(global, linked, program)
+        {
+            return Err(TextureMisfit::Filtered {
+                sampler,
+                by_feature,
+            });
         }
         let sample_type = match (scalar, depth) {
             (_, true) => wgt::TextureSampleType::Depth,
@@ -205,7 +214,7 @@ fn wrong_shape(
         _ if texture.is_3d => Some(TextureMisfit::Solid),
         D::D2 if layers > 1 => Some(TextureMisfit::Layers(layers)),
         D::Cube if layers != 6 => Some(TextureMisfit::Cube(layers)),
-        D::CubeArray if layers % 6 != 0 => Some(TextureMisfit::Cube(layers)),
+        D::CubeArray if !layers.is_multiple_of(6) => Some(TextureMisfit::Cube(layers)),
         _ => None,
     }
 }

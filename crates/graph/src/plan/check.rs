@@ -32,9 +32,9 @@ const TRIED: [wgt::TextureFormat; 5] = [
 
 impl Graph {
     /// [`Graph::load`] and [`Graph::plan`] in one, for everything that is wrong at once: what could
-    /// be read of a document is planned even where something else in it is wrong, and for each param
-    /// and feature in an `if` changed alone. Inputs that the request does not import are taken for
-    /// what the document asks for.
+    /// be read of a document is planned even where something else in it is wrong, and for each
+    /// param and feature in an `if` changed alone. Inputs that the request does not import are
+    /// taken for what the document asks for.
     ///
     /// # Errors
     /// Everything that is wrong. Reads before writes and cycles are looked for above the first pass
@@ -46,7 +46,7 @@ impl Graph {
         request: &PlanRequest<'_>,
     ) -> Result<(Self, Plan), Diagnostics> {
         let (graph, mut errors) = Self::read(path, registry, sources)?;
-        let mut request = request.again();
+        let mut request = request.clone();
         if request.any_adapter {
             // It says itself that not every adapter will do.
             request.features |= graph.required;
@@ -87,7 +87,7 @@ impl Graph {
         for format in tried {
             let request = PlanRequest {
                 imports: self.stand_ins(request, *format),
-                ..request.again()
+                ..request.clone()
             };
             let outcome = self.plan_all(&request);
             if outcome.plan.is_some() {
@@ -141,13 +141,13 @@ impl Graph {
                 continue;
             };
             for value in ends(param) {
-                let mut changed = request.again();
+                let mut changed = request.clone();
                 changed.params.insert(name.clone(), value.clone());
                 found.extend(self.wrong_with(&changed, &format!("with `{name}` = {value}")));
             }
         }
         for feature in deciding.features.iter() {
-            let mut changed = request.again();
+            let mut changed = request.clone();
             changed.features.toggle(feature);
             let has = if changed.features.contains(feature) {
                 "with"

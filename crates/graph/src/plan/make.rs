@@ -1,9 +1,8 @@
 //! From a graph to a plan: one phase after the other, each with what the one before has made.
 
 use super::{
-    plan::Plan,
+    plan::{CulledPass, Plan},
     readable::{check_captures, readable},
-    summary::CulledPass,
     usages,
 };
 use crate::{
@@ -42,8 +41,8 @@ pub(super) struct Outcome {
 }
 
 impl Graph {
-    /// Plans the graph: resolves names and sizes, links shaders, orders and culls passes. Touches no
-    /// GPU.
+    /// Plans the graph: resolves names and sizes, links shaders, orders and culls passes. Touches
+    /// no GPU.
     ///
     /// # Errors
     /// Everything that is wrong, with its place.
@@ -307,7 +306,8 @@ fn further_uses(
     }
 }
 
-/// Adds the usages by which memory is filled: depths and samples are cleared, all else is copied to.
+/// Adds the usages by which memory is filled: depths and samples are cleared, all else is copied
+/// to.
 fn fillable(kind: &ResourceKind, lifetime: &mut Lifetime) {
     match kind {
         ResourceKind::Texture(texture)

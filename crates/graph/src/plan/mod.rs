@@ -15,5 +15,5 @@ pub mod text;
 mod usages;
 
 pub use memory::MemoryEntry;
-pub use plan::Plan;
-pub use summary::{CulledPass, OutputSummary, PassSummary};
+pub use plan::{CulledPass, Plan};
+pub use summary::{OutputSummary, PassSummary};

@@ -1,7 +1,6 @@
 //! [`Plan`]: a graph on a viewport with values for its params, checked against an adapter's limits.
 //! Pure data.
 
-use super::summary::CulledPass;
 use crate::{
     diagnostics::diagnostic::Diagnostic,
     document::params::ParamValue,
@@ -31,6 +30,15 @@ pub struct Plan {
     pub(super) readable: Vec<(String, Target)>,
     pub(super) culled: Vec<CulledPass>,
     pub(super) warnings: Vec<Diagnostic>,
+}
+
+/// A pass that does not run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CulledPass {
+    /// Name.
+    pub name: String,
+    /// Why.
+    pub reason: String,
 }
 
 impl Plan {
@@ -81,12 +89,12 @@ impl Plan {
 
     /// What the host said that it would import, by name.
     pub fn imports(&self) -> &BTreeMap<String, Import> {
-        &self.request.imports
+        &self.request.asked.imports
     }
 
     /// The byte that memory is filled with between uses, if it is.
     pub fn poison(&self) -> Option<u8> {
-        self.request.poison
+        self.request.asked.poison
     }
 
     /// Whether the host imports or provides something under this name.

@@ -1,6 +1,6 @@
 //! What a plan tells of itself, and plans made from it.
 
-use super::plan::Plan;
+use super::plan::{CulledPass, Plan};
 use crate::{
     diagnostics::{diagnostic::Diagnostic, list::Diagnostics},
     document::params::ParamValue,
@@ -17,15 +17,6 @@ pub struct PassSummary {
     pub name: String,
     /// Kind, as the document writes it.
     pub kind: String,
-}
-
-/// A pass that does not run.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct CulledPass {
-    /// Name.
-    pub name: String,
-    /// Why.
-    pub reason: String,
 }
 
 /// Something that can be read back.
@@ -94,7 +85,7 @@ impl Plan {
 
     /// Width and height of the viewport in pixels.
     pub fn viewport(&self) -> [u32; 2] {
-        self.request.viewport
+        self.request.asked.viewport
     }
 
     /// The value of a param in this plan.

@@ -1,4 +1,5 @@
-//! `#import "path"`: a textual, once-only line, with a map from the expanded text back to the files.
+//! `#import "path"`: a textual, once-only line, with a map from the expanded text back to the
+//! files.
 //!
 //! Names stay as written, so that errors, captures and bindings speak the author's language.
 
@@ -85,8 +86,8 @@ impl<'a> ShaderFiles<'a> {
         Ok(None)
     }
 
-    /// The shader that a document names, with its imports in place. It is looked for beside the file
-    /// in which the name is written.
+    /// The shader that a document names, with its imports in place. It is looked for beside the
+    /// file in which the name is written.
     pub fn expand(&mut self, name: &Located<String>) -> Result<Expanded, Diagnostic> {
         let candidates = shader_candidates(folder_of(&name.span.file.name), name);
         if escapes(name) {
@@ -114,8 +115,16 @@ impl<'a> ShaderFiles<'a> {
         let files = candidates
             .iter()
             .flat_map(|path| self.sources.list(folder_of(path)));
-        let known = files.filter_map(|file| file.strip_suffix(".wgsl").map(str::to_owned));
-        likeness(name, known)
+        // A document names shaders without the ending, an import names a file with its folder.
+        let named = |file: String| {
+            let stem = file.strip_suffix(".wgsl")?;
+            Some(match name.rsplit_once('/') {
+                Some((folder, _)) => format!("{folder}/{file}"),
+                None if name.ends_with(".wgsl") => file,
+                None => stem.to_owned(),
+            })
+        };
+        likeness(name, files.filter_map(named))
     }
 
     fn append(
@@ -173,7 +182,10 @@ impl<'a> ShaderFiles<'a> {
         let candidates = import_candidates(&file.name, &path);
         match self.find(&candidates) {
             Ok(Some(imported)) => Ok(imported),
-            Ok(None) => Err(ImportError::NoFile(path, candidates)),
+            Ok(None) => {
+                let likeness = self.likeness(&candidates, &path);
+                Err(ImportError::NoFile(path, candidates, likeness))
+            }
             Err(why) => Err(ImportError::UnreadableFile(path, why)),
         }
     }

@@ -4,6 +4,7 @@ use super::{expand::Expanded, text::words};
 use crate::{errors::shader::ShaderError, source::span::Span};
 use naga::{
     Handle,
+    common::wgsl::TypeContext,
     valid::{EntryPointError, ValidationError},
 };
 
@@ -58,6 +59,35 @@ pub(super) fn parse_error(error: &naga::front::wgsl::ParseError, source: &Expand
     }
 }
 
+/// naga's words without its numbers of types and expressions: `type [2]` becomes the type's name,
+/// and of an expression the place tells which one it is.
+fn without_handles(what: &str, module: &naga::Module) -> String {
+    let mut said = String::new();
+    let mut rest = what;
+    while let Some(at) = rest.find(" [") {
+        let (before, after) = (&rest[..at], &rest[at + 2..]);
+        let number = after.split_once(']').and_then(|(number, after)| {
+            let number: usize = number.parse().ok()?;
+            Some((number, after))
+        });
+        said.push_str(before);
+        rest = match number {
+            Some((number, after)) => {
+                let ty = module.types.iter().nth(number);
+                if let Some((ty, _)) = ty.filter(|_| before.ends_with("type")) {
+                    said.push_str(&format!(" `{}`", module.to_ctx().type_to_string(ty)));
+                }
+                after
+            }
+            None => {
+                said.push_str(" [");
+                after
+            }
+        };
+    }
+    said + rest
+}
+
 pub(super) fn validation_error(
     error: &naga::WithSpan<ValidationError>,
     module: &naga::Module,
@@ -77,6 +107,7 @@ pub(super) fn validation_error(
         what.push_str(&format!(": {inner}"));
         cause = inner.source();
     }
+    let what = without_handles(&what, module);
     let place = |(span, text): &(naga::Span, String)| {
         // Some spans are labelled with a handle of naga's, which tells an author nothing.
         let text = if text.starts_with("naga::") { "" } else { text };

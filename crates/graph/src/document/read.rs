@@ -1,0 +1,151 @@
+//! Reads a document, whatever is wrong with some of it.
+
+use super::{
+    entries,
+    extend::no_edits,
+    materials::{BufferInput, Input, Material, SamplerInput, TextureInput},
+    params::Param,
+    raw::{RawDocument, RawItem},
+    ron::{Node, from_fields},
+    typed::Document,
+};
+use crate::{
+    diagnostics::{
+        diagnostic::Diagnostic,
+        reports::{Mistake, Reports},
+    },
+    errors::{document::DocumentError, language::SyntaxFault},
+    kinds::registry::Registry,
+    language::name::{Name, RESERVED},
+    source::span::Located,
+};
+
+/// Reads what a document holds. What is wrong is reported; what could be read is returned all the
+/// same, so that later phases find more mistakes in one go.
+pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Reports) -> Document {
+    let mut document = Document {
+        description: String::new(),
+        requires: Vec::new(),
+        params: Vec::new(),
+        declared: 0,
+        defaults: Vec::new(),
+        inputs: Vec::new(),
+        materials: Vec::new(),
+        entries: Vec::new(),
+        outputs: Vec::new(),
+        claims: Vec::new(),
+        broken_materials: Vec::new(),
+        broken_params: raw.broken_params,
+        broken_outputs: None,
+        incomplete: raw.incomplete,
+        include_depth: 0,
+        file: raw.file,
+    };
+    if let Some(node) = &raw.description {
+        keep(node.parse(), reports, |text| document.description = text);
+    }
+    for node in &raw.requires {
+        keep(feature(node), reports, |feature| {
+            document.requires.push(feature)
+        });
+    }
+    for item in &raw.params {
+        match Param::read(&item.tag, &item.fields) {
+            Ok(param) => document.params.push(param),
+            Err(error) => document.broken_params = Some(reports.tell(error)),
+        }
+    }
+    document.declared = document.params.len();
+    for item in &raw.inputs {
+        let input = input(item).and_then(|input| free(input.name.clone(), input));
+        match input {
+            Ok(input) => document.inputs.push(input),
+            Err(error) => {
+                let reported = reports.tell(error);
+                match item.name() {
+                    Some(name) => document.broken_materials.push((name.value, reported)),
+                    None => document.incomplete = Some(reported),
+                }
+            }
+        }
+    }
+    for item in &raw.materials {
+        let material = material(item).and_then(|read| free(read.name().clone(), read));
+        match material {
+            Ok(material) => document.materials.push(material),
+            Err(error) => {
+                let reported = reports.tell(error);
+                match item.name() {
+                    Some(name) => document.broken_materials.push((name.value, reported)),
+                    None => document.incomplete = Some(reported),
+                }
+            }
+        }
+    }
+    let mut passes = raw.passes;
+    no_edits(&mut passes, reports);
+    document.entries = entries::read(passes, registry, reports);
+    for node in &raw.outputs {
+        match node.parse() {
+            Ok(output) => document.outputs.push(output),
+            Err(error) => document.broken_outputs = Some(reports.tell(error)),
+        }
+    }
+    for (name, node) in raw.set {
+        keep(node.parse(), reports, |value| {
+            document.defaults.push((name, value))
+        });
+    }
+    for (name, node) in raw.claims {
+        keep(node.parse(), reports, |value| {
+            document.claims.push((name, value))
+        });
+    }
+    document
+}
+
+fn keep<T>(result: Result<T, Diagnostic>, reports: &mut Reports, keep: impl FnOnce(T)) {
+    match result {
+        Ok(value) => keep(value),
+        Err(error) => drop(reports.tell(error)),
+    }
+}
+
+/// A material whose name is free to be one.
+fn free<T>(name: Located<Name>, of: T) -> Result<T, Diagnostic> {
+    match RESERVED.contains(&name.as_str()) {
+        true => Err(DocumentError::Reserved(name).diagnostic()),
+        false => Ok(of),
+    }
+}
+
+fn feature(node: &Node) -> Result<(Located<String>, wgt::Features), Diagnostic> {
+    let name = Located::new(node.parse::<String>()?, node.span.clone());
+    match wgt::Features::from_name(&name) {
+        Some(flag) => Ok((name, flag)),
+        None => Err(SyntaxFault::Feature(name).diagnostic()),
+    }
+}
+
+fn material(item: &RawItem) -> Result<Material, Diagnostic> {
+    let (fields, tag) = (&item.fields, &item.tag);
+    match tag.as_str() {
+        "Texture" => from_fields(fields, &tag.span).map(Material::Texture),
+        "Buffer" => from_fields(fields, &tag.span).map(Material::Buffer),
+        "Sampler" => from_fields(fields, &tag.span).map(Material::Sampler),
+        _ => Err(DocumentError::UnknownMaterial(tag.clone()).diagnostic()),
+    }
+}
+
+fn input(item: &RawItem) -> Result<Input, Diagnostic> {
+    let (fields, tag) = (&item.fields, &item.tag);
+    match tag.as_str() {
+        "Texture" => {
+            let texture: TextureInput = from_fields(fields, &tag.span)?;
+            Input::try_from(texture).map_err(Mistake::diagnostic)
+        }
+        "Buffer" => from_fields::<BufferInput>(fields, &tag.span).map(Input::from),
+        "Sampler" => from_fields::<SamplerInput>(fields, &tag.span).map(Input::from),
+        _ => Err(DocumentError::UnknownMaterial(tag.clone()).diagnostic()),
+    }
+}

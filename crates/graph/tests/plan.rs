@@ -4,10 +4,13 @@
 mod support;
 
 use skiagraph_graph::{Capture, Plan, PlanRequest};
-use support::{Files, Triangle, load};
+use support::{Files, Triangle, load, names, right};
 
 const SHADERS: [(&str, &str); 4] = [
-    ("fill.wgsl", "@fragment fn fragment() -> @location(0) f32 { return 1.0; }"),
+    (
+        "fill.wgsl",
+        "@fragment fn fragment() -> @location(0) f32 { return 1.0; }",
+    ),
     (
         "blur.wgsl",
         "var image: texture_2d<f32>;
@@ -18,7 +21,9 @@ const SHADERS: [(&str, &str); 4] = [
     (
         "draw.wgsl",
         "var<storage, read> scene_positions: array<vec4<f32>>;
-         @vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> { return scene_positions[index]; }
+         @vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+             return scene_positions[index];
+         }
          @fragment fn fragment() -> @location(0) f32 { return 1.0; }",
     ),
     (
@@ -30,7 +35,7 @@ const SHADERS: [(&str, &str); 4] = [
 ];
 
 fn texture(name: &str) -> String {
-    format!("Texture(name: \"{name}\", format: R32Float, size: Viewport)")
+    format!("Texture(name: \"{name}\", format: R32Float)")
 }
 
 fn plan(
@@ -39,36 +44,29 @@ fn plan(
     outputs: &str,
     captures: &[(&str, Option<&str>)],
 ) -> Plan {
-    let document = format!(
-        "(format: 1, materials: [{}], passes: [{}], outputs: [{outputs}])",
+    let sections = format!(
+        "materials: [{}], passes: [{}], outputs: [{outputs}]",
         materials.join(", "),
         passes.join(", ")
     );
-    let files = Files::new(SHADERS).with("graph.ron", document);
-    let graph = load(&files).unwrap_or_else(|errors| panic!("{errors}"));
+    let graph = right(load(&Files::new(SHADERS).document("graph.ron", &sections)));
     let mut request = PlanRequest::new([8, 4], &Triangle);
     let capture = |(material, after): &(&str, Option<&str>)| Capture {
         material: (*material).to_owned(),
         after: after.map(str::to_owned),
     };
     request.captures = captures.iter().map(capture).collect();
-    graph
-        .plan(&request)
-        .unwrap_or_else(|errors| panic!("{errors}"))
-}
-
-fn names(plan: &Plan) -> Vec<String> {
-    plan.passes().into_iter().map(|pass| pass.name).collect()
+    right(graph.plan(&request))
 }
 
 fn fill(name: &str, target: &str) -> String {
-    format!("Fullscreen(name: \"{name}\", shader: \"fill\", color: [(target: \"{target}\")])")
+    format!("Fullscreen(name: \"{name}\", shader: \"fill\", color: [\"{target}\"])")
 }
 
 fn blur(name: &str, from: &str, to: &str) -> String {
     format!(
         "Fullscreen(name: \"{name}\", shader: \"blur\", bind: {{\"image\": \"{from}\"}}, color: \
-         [(target: \"{to}\")])"
+         [\"{to}\"])"
     )
 }
 
@@ -80,12 +78,12 @@ fn blur(name: &str, from: &str, to: &str) -> String {
 fn what_nobody_needs_neither_runs_nor_is_provided() {
     let materials = ["image", "result", "other", "rest"].map(texture);
     let passes = [
-        "Fullscreen(name: \"look\", color: [(target: \"other\")])",
-        "Raster(name: \"draw\", draw: CountOf(\"scene.indices\"), color: [(target: \"image\")])",
+        "Fullscreen(name: \"look\", color: [\"other\"])",
+        "Raster(name: \"draw\", draw: \"scene.indices.count\", color: [\"image\"])",
         &blur("smooth", "image", "result"),
         &blur("late", "other", "rest"),
     ];
-    let culled_plan = plan(&materials, &passes, "(name: \"result\")", &[]);
+    let culled_plan = plan(&materials, &passes, r#""result""#, &[]);
     assert_eq!(names(&culled_plan), ["draw", "smooth"]);
     let kinds: Vec<String> = culled_plan
         .passes()
@@ -115,7 +113,7 @@ fn what_nobody_needs_neither_runs_nor_is_provided() {
     assert_eq!(culled_plan.provided(), ["scene.positions"]);
     assert_eq!(culled_plan.memory_bytes(), 2 * 8 * 4 * 4);
 
-    let captured = plan(&materials, &passes, "(name: \"result\")", &[("rest", None)]);
+    let captured = plan(&materials, &passes, r#""result""#, &[("rest", None)]);
     assert_eq!(names(&captured), ["look", "draw", "smooth", "late"]);
     let mut provided = captured.provided();
     provided.sort_unstable();
@@ -126,18 +124,15 @@ fn what_nobody_needs_neither_runs_nor_is_provided() {
 /// Only the outputs that are asked for keep their passes.
 #[test]
 fn outputs_by_choice() {
-    let files = Files::new(SHADERS).with(
-        "graph.ron",
-        format!(
-            "(format: 1, materials: [{}, {}], passes: [{}, {}], outputs: [(name: \"a\"), (name: \
-             \"second\", material: \"b\")])",
-            texture("a"),
-            texture("b"),
-            fill("fill_a", "a"),
-            fill("fill_b", "b")
-        ),
+    let sections = format!(
+        "materials: [{}, {}], passes: [{}, {}], outputs: [\"a\", (name: \"second\", material: \
+         \"b\")]",
+        texture("a"),
+        texture("b"),
+        fill("fill_a", "a"),
+        fill("fill_b", "b")
     );
-    let graph = load(&files).unwrap_or_else(|errors| panic!("{errors}"));
+    let graph = right(load(&Files::new(SHADERS).document("graph.ron", &sections)));
     assert_eq!(graph.outputs(), ["a", "second"]);
     let mut request = PlanRequest::new([8, 4], &Triangle);
     for (wanted, expected) in [
@@ -146,9 +141,7 @@ fn outputs_by_choice() {
         (Some(Vec::new()), vec![]),
     ] {
         request.outputs = wanted.clone();
-        let plan = graph
-            .plan(&request)
-            .unwrap_or_else(|errors| panic!("{errors}"));
+        let plan = right(graph.plan(&request));
         assert_eq!(names(&plan), expected, "{wanted:?}");
         assert_eq!(plan.outputs().len(), expected.len());
     }
@@ -168,13 +161,13 @@ fn a_capture_keeps_its_version_alive() {
         &*fill("second", "image"),
     ];
     assert_eq!(
-        names(&plan(&materials, &passes, "(name: \"image\")", &[])),
+        names(&plan(&materials, &passes, r#""image""#, &[])),
         ["second"]
     );
     let captured = plan(
         &materials,
         &passes,
-        "(name: \"image\")",
+        r#""image""#,
         &[("image", Some("first"))],
     );
     assert_eq!(names(&captured), ["first", "image@first", "second"]);
@@ -195,11 +188,11 @@ fn depth_that_is_loaded_orders_its_passes() {
         texture("a"),
         texture("b"),
         texture("c"),
-        "Texture(name: \"depth\", format: Depth32Float, size: Viewport)".to_owned(),
+        "Texture(name: \"depth\", format: Depth32Float)".to_owned(),
     ];
     let draw = |name: &str, target: &str, rest: &str| {
         format!(
-            "Raster(name: \"{name}\", shader: \"draw\", draw: Vertices(3), color: [(target: \
+            "Raster(name: \"{name}\", shader: \"draw\", draw: 3, color: [(target: \
              \"{target}\")], depth: (target: \"depth\"{rest}))"
         )
     };
@@ -210,17 +203,14 @@ fn depth_that_is_loaded_orders_its_passes() {
     ];
     let passes: Vec<&str> = passes.iter().map(String::as_str).collect();
     assert_eq!(
-        names(&plan(&materials, &passes, "(name: \"c\")", &[])),
+        names(&plan(&materials, &passes, r#""c""#, &[])),
         ["draw1", "draw2", "draw3"]
     );
     assert_eq!(
-        names(&plan(&materials, &passes, "(name: \"b\")", &[])),
+        names(&plan(&materials, &passes, r#""b""#, &[])),
         ["draw1", "draw2"]
     );
-    assert_eq!(
-        names(&plan(&materials, &passes, "(name: \"a\")", &[])),
-        ["draw1"]
-    );
+    assert_eq!(names(&plan(&materials, &passes, r#""a""#, &[])), ["draw1"]);
 }
 
 /// A target that is cleared needs nothing of what it held; one that is loaded does.
@@ -233,7 +223,7 @@ fn load_and_clear_of_a_target() {
         names(&plan(
             &materials,
             &[&fill("first", "image"), second],
-            "(name: \"image\")",
+            r#""image""#,
             &[]
         )),
         ["first", "second"]
@@ -244,7 +234,7 @@ fn load_and_clear_of_a_target() {
         names(&plan(
             &materials,
             &[&fill("first", "image"), second],
-            "(name: \"image\")",
+            r#""image""#,
             &[]
         )),
         ["second"]
@@ -254,72 +244,64 @@ fn load_and_clear_of_a_target() {
 /// ```text
 /// first ─▶ image ◀─overwrites all─ copy ◀─ other
 /// ```
-/// A copy and a clear overwrite everything, so what was there is nobody's; a clear of one view
+/// A copy and a clear overwrite everything, so what was there is nobody's; a clear of one part
 /// leaves the rest.
 #[test]
 fn copies_and_clears_cover() {
     let materials = ["image", "other"].map(texture);
     let (first, other) = (fill("first", "image"), fill("fill_other", "other"));
     let copy = "Copy(name: \"copy\", from: \"other\", to: \"image\")";
-    let found = plan(
-        &materials,
-        &[&first, &other, copy],
-        "(name: \"image\")",
-        &[],
-    );
+    let found = plan(&materials, &[&first, &other, copy], r#""image""#, &[]);
     assert_eq!(names(&found), ["fill_other", "copy"]);
     let clear = "Clear(name: \"clear\", target: \"image\")";
     let found = plan(
         &materials,
         &[&first, &other, copy, clear],
-        "(name: \"image\")",
+        r#""image""#,
         &[],
     );
     assert_eq!(names(&found), ["clear"]);
-    let materials = [
-        "Texture(name: \"image\", format: R32Float, size: Square(4), layers: 2, \
-        views: [(name: \"front\", layer: 0, layers: 1)])"
-            .to_owned(),
-    ];
+    let materials = ["Texture(name: \"image\", format: R32Float, size: 4, layers: 2)".to_owned()];
     let all = "Clear(name: \"all\", target: \"image\")";
-    let clear = "Clear(name: \"clear\", target: \"front\")";
-    let found = plan(&materials, &[all, clear], "(name: \"image\")", &[]);
+    let clear = "Clear(name: \"clear\", target: \"image[0]\")";
+    let found = plan(&materials, &[all, clear], r#""image""#, &[]);
     assert_eq!(names(&found), ["all", "clear"]);
-    let found = plan(&materials, &[all, clear], "(name: \"front\")", &[]);
+    let found = plan(
+        &materials,
+        &[all, clear],
+        r#"(name: "front", material: "image[0]")"#,
+        &[],
+    );
     assert_eq!(names(&found), ["clear"]);
 }
 
-/// Layers and mips by views: only the writers of the part that is read are needed.
+/// Layers and mips: only the writers of the part that is read are needed.
 #[test]
 fn parts_are_independent() {
     let materials = [
-        "Texture(name: \"stack\", format: R32Float, size: Square(4), mips: 2, layers: 2, views: [
-            (name: \"top0\", mip: 0, mips: 1, layer: 0, layers: 1), (name: \"low0\", mip: 1, \
-                mips: 1, layer: 0, layers: 1),
-            (name: \"top1\", mip: 0, mips: 1, layer: 1, layers: 1)])"
-            .to_owned(),
+        "Texture(name: \"stack\", format: R32Float, size: 4, mips: 2, layers: 2)".to_owned(),
         texture("image"),
     ];
     let passes = [
-        fill("t0", "top0"),
-        fill("l0", "low0"),
-        fill("t1", "top1"),
-        blur("read", "low0", "image"),
-        blur("again", "top0", "image"),
+        fill("t0", "stack[0].mip[0]"),
+        fill("l0", "stack[0].mip[1]"),
+        fill("t1", "stack[1].mip[0]"),
+        blur("read", "stack[0].mip[1]", "image"),
+        blur("again", "stack[0].mip[0]", "image"),
     ];
     let passes: Vec<&str> = passes.iter().map(String::as_str).collect();
     assert_eq!(
-        names(&plan(&materials, &passes[..4], "(name: \"image\")", &[])),
+        names(&plan(&materials, &passes[..4], r#""image""#, &[])),
         ["l0", "read"]
     );
     assert_eq!(
-        names(&plan(&materials, &passes, "(name: \"image\")", &[])),
+        names(&plan(&materials, &passes, r#""image""#, &[])),
         ["t0", "again"]
     );
     let plan = plan(
         &materials,
         &passes,
-        "(name: \"low\", material: \"low0\")",
+        r#"(name: "low", material: "stack[0].mip[1]")"#,
         &[],
     );
     assert_eq!(names(&plan), ["l0"]);
@@ -329,32 +311,28 @@ fn parts_are_independent() {
 /// Counts and sizes may be taken from materials further down.
 #[test]
 fn sizes_in_any_order() {
-    let materials: Vec<String> = [
-        "Buffer(name: \"c\", count: Times(2, CountOf(\"b\")))",
-        "Buffer(name: \"b\", count: CountOf(\"a\"))",
-        "Buffer(name: \"a\", count: PixelsOf(\"half\"))",
-        "Texture(name: \"half\", format: R32Float, size: Like(\"middle\"))",
-        "Texture(name: \"middle\", format: R32Float, size: ViewportTimes(0.3))",
-    ]
-    .map(str::to_owned)
-    .to_vec();
-    let document = format!(
-        "(format: 1, materials: [{}], passes: [Compute(name: \"number\", dispatch: Over(\"c\"))], \
-         outputs: [(name: \"c\")])",
+    let materials = [
+        r#"Buffer(name: "c", count: "2 * b.count")"#,
+        r#"Buffer(name: "b", count: "a.count")"#,
+        r#"Buffer(name: "a", count: "half.count")"#,
+        r#"Texture(name: "half", format: R32Float, size: "middle.size")"#,
+        r#"Texture(name: "middle", format: R32Float, size: "ceil(viewport.size * 0.3)")"#,
+    ];
+    let sections = format!(
+        "materials: [{}], passes: [Compute(name: \"number\", dispatch: Over(\"c.count\"))], \
+         outputs: [\"c\"]",
         materials.join(", ")
     );
     let shader = "var<storage, read_write> c: array<vec2<u32>>; @compute @workgroup_size(1) fn \
         main() { c[0] = vec2<u32>(1u); }";
-    let files = Files::new([("number.wgsl", shader)]).with("graph.ron", document);
-    let graph = load(&files).unwrap_or_else(|errors| panic!("{errors}"));
+    let files = Files::new([("number.wgsl", shader)]).document("graph.ron", &sections);
+    let graph = right(load(&files));
     assert!(
         graph.warnings().is_empty(),
         "what sizes others is used: {:?}",
         graph.warnings()
     );
-    let plan = graph
-        .plan(&PlanRequest::new([8, 4], &Triangle))
-        .unwrap_or_else(|errors| panic!("{errors}"));
+    let plan = right(graph.plan(&PlanRequest::new([8, 4], &Triangle)));
     // 8 × 0.3 and 4 × 0.3 are rounded up to 3 and 2.
     assert_eq!(plan.outputs()[0].size, [3 * 2 * 2 * 8, 1]);
 }

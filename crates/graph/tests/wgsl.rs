@@ -1,36 +1,23 @@
 //! Shaders: imports and their line map, binding numbers, derived access, the params block. All
-//! without a GPU, but the last.
+//! without a GPU.
 
 mod support;
 
-use skiagraph_graph::{
-    Code, Diagnostics, Executor, Frame, Graph, NoProvider, PlanRequest, Registry, gpu,
-};
-use support::{Files, load, plan};
-
-fn document(materials: &str, passes: &str, outputs: &str) -> String {
-    format!("(format: 1, materials: [{materials}], passes: [{passes}], outputs: [{outputs}])")
-}
-
-fn errors<T>(result: Result<T, Diagnostics>) -> Diagnostics {
-    result
-        .err()
-        .unwrap_or_else(|| panic!("a mistake was not found"))
-}
+use skiagraph_graph::{Code, Graph, NoProvider, PlanRequest, Registry};
+use support::{Files, codes, load, plan, right, wrong};
 
 /// One pass that writes `image` with `main.wgsl`.
 fn one_pass(shader: &str) -> Files {
-    let document = document(
-        "Texture(name: \"image\", format: R32Float, size: Viewport)",
-        "Fullscreen(name: \"main\", color: [(target: \"image\")])",
-        "(name: \"image\")",
-    );
-    Files::new([("main.wgsl", shader)]).with("graph.ron", document)
+    let sections = r#"
+        materials: [Texture(name: "image", format: R32Float)],
+        passes: [Fullscreen(name: "main", color: ["image"])],
+        outputs: ["image"]"#;
+    Files::graph(sections).with("main.wgsl", shader)
 }
 
 #[track_caller]
 fn first_place(files: &Files) -> String {
-    let found = errors(load(files));
+    let found = wrong(load(files));
     let label = found
         .iter()
         .next()
@@ -120,7 +107,7 @@ fn an_import_is_there_once() {
         "#import \"a.wgsl\"\n#import \"main.wgsl\"\nfn two() -> f32 { return 2.0 \
             * one(); }",
     );
-    load(&files).unwrap_or_else(|errors| panic!("{errors}"));
+    right(load(&files));
     // A comment ends at any of WGSL's line breaks, and code behind it would be lost.
     for after in [
         " one",
@@ -134,12 +121,34 @@ fn an_import_is_there_once() {
     }
 }
 
+/// What stands in a comment is no import, and a comment that was closed hides none.
+#[test]
+fn an_import_in_a_comment_is_none() {
+    let main = "@fragment fn f() -> @location(0) f32 { return one(); }";
+    let one = "fn one() -> f32 { return 1.0; }";
+    for (comment, is_imported) in [
+        ("/*\n#import \"a.wgsl\"\n*/", false),
+        ("/* /* */\n#import \"a.wgsl\"\n*/", false),
+        ("/* // */ /*\n  #import \"a.wgsl\"\n*/", false),
+        ("// #import \"a.wgsl\"", false),
+        ("// /*\n#import \"a.wgsl\"", true),
+        ("/* /* */ */\n#import \"a.wgsl\" // /*", true),
+    ] {
+        let shader = format!("{comment}\n{main}");
+        let here = one_pass(&shader).with("a.wgsl", one);
+        assert_eq!(load(&here).is_ok(), is_imported, "{comment}");
+        // Nobody looks for the file, either.
+        let beside = one_pass(&format!("{shader}\n{one}"));
+        assert_eq!(load(&beside).is_ok(), !is_imported, "{comment}");
+    }
+}
+
 /// Shaders stand beside the document, beside its folder in `shaders/`, or in the store's
 /// `shaders/`; imports likewise.
 #[test]
 fn where_shaders_are_looked_for() {
     let files = one_pass("");
-    let document = files.0["graph.ron"].clone();
+    let document = files.texts["graph.ron"].clone();
     let shader =
         "#import \"shared/one.wgsl\"\n@fragment fn f() -> @location(0) f32 { return one(); }";
     let module = "fn one() -> f32 { return 1.0; }";
@@ -192,243 +201,204 @@ fn binding_numbers() {
         let clears: Vec<String> = names
             .map(|name| format!("Clear(name: \"clear_{name}\", target: \"{name}\")"))
             .to_vec();
-        let passes = format!(
-            "{}, Compute(name: \"main\", dispatch: Groups(1, 1, 1))",
+        let sections = format!(
+            "materials: [{}], passes: [{}, Compute(name: \"main\", dispatch: Groups(1, 1, 1))], \
+             outputs: [\"a\"]",
+            materials.join(", "),
             clears.join(", ")
         );
         let files = Files::new([("m.wgsl", module)]).with("main.wgsl", shader);
-        plan(&files.with(
-            "graph.ron",
-            document(&materials.join(", "), &passes, "(name: \"a\")"),
-        ))
+        plan(&files.document("graph.ron", &sections))
     };
     let all = "a[0] = b[0] + c[0] + d[0];";
     let module = "var<storage, read> b: array<u32>;\nvar<storage, read> c: array<u32>;";
     let own = "var<storage, read_write> a: array<u32>;\nvar<storage, read> d: array<u32>;";
-    with(module, own, all).unwrap_or_else(|errors| panic!("{errors}"));
+    right(with(module, own, all));
     let numbered = "@group(1) @binding(0) var<storage, read> d: array<u32>;\n@group(0) \
         @binding(1) var<storage, read_write> a: array<u32>;";
-    with(module, numbered, all).unwrap_or_else(|errors| panic!("{errors}"));
+    right(with(module, numbered, all));
     let clash = "@group(1) @binding(3) var<storage, read> d: array<u32>;\n@group(1) @binding(3) \
         var<storage, read_write> a: array<u32>;";
-    let found = errors(with(module, clash, all));
-    assert_eq!(
-        found.iter().map(|error| error.code).collect::<Vec<_>>(),
-        [Code::Binding]
-    );
+    let found = wrong(with(module, clash, all));
+    assert_eq!(codes(found.iter()), [Code::Binding]);
     // Two that no entry point uses together are fine.
-    with(module, clash, "a[0] = b[0] + c[0];").unwrap_or_else(|errors| panic!("{errors}"));
+    right(with(module, clash, "a[0] = b[0] + c[0];"));
 }
+
+const STORAGE: &str = "var<storage, read_write> items: array<u32>;";
+const ATOMIC: &str = "var<storage, read_write> items: array<atomic<u32>>;";
+const WRITE_ONLY: &str = "var items: texture_storage_2d<r32uint, write>;";
+const READ_WRITE: &str = "var items: texture_storage_2d<r32uint, read_write>;";
+const SAMPLED: &str = "var items: texture_2d<u32>;";
+
+/// What a shader does to `items`, its declaration and body, and whether that needs a write before.
+const ACCESSES: &[(&str, &str, &str, bool)] = &[
+    ("a read", STORAGE, "total = items[0];", true),
+    (
+        "a read of a read-only buffer",
+        "var<storage, read> items: array<u32>;",
+        "total = items[0];",
+        true,
+    ),
+    ("a write", STORAGE, "items[0] = 1u;", false),
+    ("a read and a write", STORAGE, "items[0] += 1u;", true),
+    (
+        "a write through a pointer",
+        STORAGE,
+        "let p = &items[1]; *p = 2u;",
+        false,
+    ),
+    (
+        "an atomic addition",
+        ATOMIC,
+        "atomicAdd(&items[0], 1u);",
+        true,
+    ),
+    (
+        "an atomic load",
+        ATOMIC,
+        "total = atomicLoad(&items[0]);",
+        true,
+    ),
+    (
+        "an atomic store",
+        ATOMIC,
+        "atomicStore(&items[0], 1u);",
+        false,
+    ),
+    ("its length", STORAGE, "total = arrayLength(&items);", false),
+    (
+        "a texture store",
+        WRITE_ONLY,
+        "textureStore(items, vec2<u32>(0u), vec4<u32>(1u));",
+        false,
+    ),
+    (
+        "a texture load and store",
+        READ_WRITE,
+        "textureStore(items, vec2<u32>(0u), textureLoad(items, vec2<u32>(0u)));",
+        true,
+    ),
+    (
+        "a texture load",
+        SAMPLED,
+        "total = textureLoad(items, vec2<u32>(0u), 0).x;",
+        true,
+    ),
+    (
+        "a texture's size",
+        SAMPLED,
+        "total = textureDimensions(items).x;",
+        false,
+    ),
+    ("a global that nobody uses", SAMPLED, "", false),
+];
 
 /// What a pass does to `items`, told by what the graph demands: a read or a change needs a write
 /// before.
 #[test]
 fn access_is_derived_from_the_shader() {
     let needs_clear = |declaration: &str, body: &str, clear: bool| {
-        let clear = if clear {
-            "Clear(name: \"reset\", target: \"items\"),"
-        } else {
-            ""
+        let clear = match clear {
+            true => "Clear(name: \"reset\", target: \"items\"),",
+            false => "",
         };
-        let document = document(
-            "Texture(name: \"items\", format: R32Uint, size: Viewport), Buffer(name: \"total\")",
-            &format!("{clear} Compute(name: \"main\", dispatch: Groups(1, 1, 1))"),
-            "(name: \"total\")",
+        let items = match declaration.contains("storage,") {
+            true => "Buffer(name: \"items\", count: 4)",
+            false => "Texture(name: \"items\", format: R32Uint)",
+        };
+        let sections = format!(
+            "materials: [{items}, Buffer(name: \"total\")],
+            passes: [{clear} Compute(name: \"main\", dispatch: Groups(1, 1, 1))],
+            outputs: [\"total\"]"
         );
-        let document = match declaration.contains("storage,") || declaration.contains("storage>") {
-            true => document.replace(
-                "Texture(name: \"items\", format: R32Uint, size: Viewport)",
-                "Buffer(name: \"items\", count: 4)",
-            ),
-            false => document,
-        };
         let shader = format!(
             "{declaration}\nvar<storage, read_write> total: u32;\nfn touch(x: u32) {{ \
              }}\n@compute @workgroup_size(1) fn main() {{ total = 1u; {body} }}"
         );
-        plan(&Files::new([("main.wgsl", shader.as_str())]).with("graph.ron", document))
+        plan(&Files::graph(&sections).with("main.wgsl", shader))
     };
-    let storage = "var<storage, read_write> items: array<u32>;";
-    let atomic = "var<storage, read_write> items: array<atomic<u32>>;";
-    let write_only = "var items: texture_storage_2d<r32uint, write>;";
-    let read_write = "var items: texture_storage_2d<r32uint, read_write>;";
-    let sampled = "var items: texture_2d<u32>;";
-    let table = [
-        ("a read", storage, "total = items[0];", true),
-        (
-            "a read of a read-only buffer",
-            "var<storage, read> items: array<u32>;",
-            "total = items[0];",
-            true,
-        ),
-        ("a write", storage, "items[0] = 1u;", false),
-        ("a read and a write", storage, "items[0] += 1u;", true),
-        (
-            "a write through a pointer",
-            storage,
-            "let p = &items[1]; *p = 2u;",
-            false,
-        ),
-        (
-            "an atomic addition",
-            atomic,
-            "atomicAdd(&items[0], 1u);",
-            true,
-        ),
-        (
-            "an atomic load",
-            atomic,
-            "total = atomicLoad(&items[0]);",
-            true,
-        ),
-        (
-            "an atomic store",
-            atomic,
-            "atomicStore(&items[0], 1u);",
-            false,
-        ),
-        ("its length", storage, "total = arrayLength(&items);", false),
-        (
-            "a texture store",
-            write_only,
-            "textureStore(items, vec2<u32>(0u), vec4<u32>(1u));",
-            false,
-        ),
-        (
-            "a texture load and store",
-            read_write,
-            "textureStore(items, vec2<u32>(0u), textureLoad(items, vec2<u32>(0u)));",
-            true,
-        ),
-        (
-            "a texture load",
-            sampled,
-            "total = textureLoad(items, vec2<u32>(0u), 0).x;",
-            true,
-        ),
-        (
-            "a texture's size",
-            sampled,
-            "total = textureDimensions(items).x;",
-            false,
-        ),
-        ("a global that nobody uses", sampled, "", false),
-    ];
-    for (what, declaration, body, reads) in table {
+    for &(what, declaration, body, reads) in ACCESSES {
         let without = needs_clear(declaration, body, false);
         match (without, reads) {
             (Ok(_), false) => {}
             (Err(found), true) => {
-                assert_eq!(
-                    found.iter().map(|error| error.code).collect::<Vec<_>>(),
-                    [Code::ReadBeforeWrite],
-                    "{what}: {found}"
-                );
+                let said = codes(found.iter());
+                assert_eq!(said, [Code::ReadBeforeWrite], "{what}: {found}");
             }
             (Ok(_), true) => panic!("{what} is taken for no read"),
             (Err(found), false) => panic!("{what} is taken for a read: {found}"),
         }
-        needs_clear(declaration, body, true).unwrap_or_else(|errors| panic!("{what}: {errors}"));
+        needs_clear(declaration, body, true).expect(what);
     }
 }
 
 /// Params reach the shader bit for bit, whatever the layout rules put between them, and overrides
 /// are filled.
 #[test]
-fn params_and_overrides_arrive() {
-    let gpu = gpu::open(None).unwrap_or_else(|error| panic!("{error}"));
-    let document = "(format: 1,
+fn params_and_overrides_are_laid_out() {
+    let sections = r#"
         params: [
-            (name: \"scale\", type: F32, default: 0.5), (name: \"offset\", type: I32, default: -7),
-            (name: \"edge\", type: U32, default: 4294967295), (name: \"soft\", type: Bool, \
-                default: true),
-            (name: \"cull\", type: Choice([\"none\", \"front\", \"back\"]), default: \"back\"),
-            (name: \"pair\", type: Vec2, default: (1, 2)), (name: \"sun\", type: Vec3, default: \
-                (3, 4, 5)),
-            (name: \"tint\", type: Vec4, default: (6, 7, 8, 9)), (name: \"steps\", type: U32, \
-                default: 12),
-            (name: \"bend\", type: F32, default: 0.25), (name: \"hard\", type: Bool, default: \
-                false),
-            (name: \"shift\", type: I32, default: -3),
+            F32(name: "scale", default: 0.5), I32(name: "offset", default: -7),
+            U32(name: "edge", default: 4294967295), Bool(name: "soft", default: true),
+            Choice(name: "cull", words: [none, front, back], default: back),
+            Vec2(name: "pair", default: (1, 2)), Vec3(name: "sun", default: (3, 4, 5)),
+            Vec4(name: "tint", default: (6, 7, 8, 9)), U32(name: "steps", default: 12),
+            F32(name: "bend", default: 0.25), Bool(name: "hard", default: false),
+            I32(name: "shift", default: -3),
         ],
-        materials: [Buffer(name: \"words\")],
-        passes: [Compute(name: \"main\", dispatch: Groups(1, 1, 1))],
-        outputs: [(name: \"words\")])";
-    let shader = "struct Params { scale: f32, sun: vec3<f32>, soft: u32, pair: vec2<f32>, offset: \
-        i32, tint: vec4<f32>, cull: u32, edge: u32 }
+        materials: [Buffer(name: "words")],
+        passes: [Compute(name: "main", dispatch: Groups(1, 1, 1))],
+        outputs: ["words"]"#;
+    let shader = "struct Params { scale: f32, sun: vec3<f32>, soft: u32, pair: vec2<f32>, \
+            offset: i32, tint: vec4<f32>, cull: u32, edge: u32 }
         var<uniform> params: Params;
-        var<storage, read_write> words: array<u32, 18>;
+        var<storage, read_write> words: array<f32, 8>;
         override steps: u32 = 1;
         @id(7) override bend: f32;
         override hard: bool = true;
         override shift: i32;
         override own: u32 = 77;
         @compute @workgroup_size(1) fn main() {
-            words[0] = bitcast<u32>(params.scale);
-            words[1] = bitcast<u32>(params.sun.x); words[2] = bitcast<u32>(params.sun.y); words[3] = bitcast<u32>(params.sun.z);
-            words[4] = params.soft;
-            words[5] = bitcast<u32>(params.pair.x); words[6] = bitcast<u32>(params.pair.y);
-            words[7] = bitcast<u32>(params.offset);
-            words[8] = bitcast<u32>(params.tint.x); words[9] = bitcast<u32>(params.tint.w);
-            words[10] = params.cull;
-            words[11] = params.edge;
-            words[12] = steps; words[13] = bitcast<u32>(bend); words[14] = select(0u, 1u, hard);
-            words[15] = bitcast<u32>(shift); words[16] = own;
+            words[0] = params.scale + params.sun.x + params.tint.y + bend;
+            words[1] = f32(steps + own + params.cull + u32(shift));
+            words[2] = select(0.0, 1.0, hard);
         }";
-    let files = Files::new([("graph.ron", document), ("main.wgsl", shader)]);
-    let graph = load(&files).unwrap_or_else(|errors| panic!("{errors}"));
-    let words = |request: &PlanRequest<'_>| {
-        let plan = graph
-            .plan(request)
-            .unwrap_or_else(|errors| panic!("{errors}"));
-        let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut NoProvider)
-            .unwrap_or_else(|error| panic!("{error}"));
-        let mut encoder = gpu
-            .device
-            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        executor
-            .encode(
-                &mut encoder,
-                &Frame {
-                    timing: false,
-                    read: &["words"],
-                    ..Frame::default()
-                },
-            )
-            .unwrap_or_else(|error| panic!("{error}"));
-        gpu.queue.submit([encoder.finish()]);
-        executor
-            .submitted(&gpu.queue)
-            .unwrap_or_else(|error| panic!("{error}"));
-        let report = executor.finish().unwrap_or_else(|error| panic!("{error}"));
-        report.readbacks[0]
-            .content
-            .as_u32()
-            .expect("it holds words")
+    let graph = right(load(&Files::graph(sections).with("main.wgsl", shader)));
+    // The words of the uniform, and the overrides that have a value of the document.
+    let filled = |request: &PlanRequest<'_>| {
+        let plan = right(graph.plan(request));
+        let step = &plan.all_passes()[0].steps[0];
+        let bytes = step.params().expect("the shader has params");
+        let words = bytes.chunks(4);
+        let words = words.map(|word| u32::from_le_bytes(word.try_into().expect("it has four")));
+        let mut constants = step.program().expect("it has one").constants.clone();
+        constants.sort_by(|a, b| a.0.cmp(&b.0));
+        (words.collect::<Vec<u32>>(), constants)
     };
     let mut request = PlanRequest::new([8, 8], &NoProvider);
     let f = f32::to_bits;
+    let negative = |number: i32| number.cast_unsigned();
+    let overrides = |bend, hard| {
+        let all = [
+            ("7", bend),
+            ("hard", hard),
+            ("shift", -3.0),
+            ("steps", 12.0),
+        ];
+        all.map(|(name, value)| (name.to_owned(), value)).to_vec()
+    };
+    let (words, constants) = filled(&request);
+    // A vector of three begins at a multiple of 16 bytes, and leaves its fourth word to the next.
     let expected = [
-        f(0.5),
-        f(3.0),
-        f(4.0),
-        f(5.0),
-        1,
-        f(1.0),
-        f(2.0),
-        (-7i32).cast_unsigned(),
-        f(6.0),
-        f(9.0),
-        2,
-        u32::MAX,
-        12,
-        f(0.25),
-        0,
-        (-3i32).cast_unsigned(),
-        77,
-        0,
+        [f(0.5), 0, 0, 0],
+        [f(3.0), f(4.0), f(5.0), 1],
+        [f(1.0), f(2.0), negative(-7), 0],
+        [f(6.0), f(7.0), f(8.0), f(9.0)],
+        [2, u32::MAX, 0, 0],
     ];
-    assert_eq!(words(&request), expected);
+    assert_eq!(words, expected.concat());
+    assert_eq!(constants, overrides(0.25, 0.0));
     for (name, value) in [
         ("scale", "-1.5"),
         ("cull", "front"),
@@ -437,21 +407,13 @@ fn params_and_overrides_arrive() {
         ("sun", "1,2,-3"),
         ("bend", "8"),
     ] {
-        let value = graph
-            .parse_param(name, value)
-            .unwrap_or_else(|error| panic!("{error}"));
+        let value = graph.parse_param(name, value).expect(name);
         request.params.insert(name.to_owned(), value);
     }
-    let changed = words(&request);
+    let (words, constants) = filled(&request);
     assert_eq!(
-        [
-            changed[0],
-            changed[3],
-            changed[4],
-            changed[10],
-            changed[13],
-            changed[14]
-        ],
-        [f(-1.5), f(-3.0), 0, 1, f(8.0), 1]
+        [words[0], words[6], words[7], words[16]],
+        [f(-1.5), f(-3.0), 0, 1]
     );
+    assert_eq!(constants, overrides(8.0, 1.0));
 }

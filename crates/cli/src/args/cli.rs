@@ -140,6 +140,28 @@ mod tests {
         }
     }
 
+    /// What is flattened into a command brings its flags, and not its own description.
+    #[test]
+    fn each_command_is_described_by_itself() {
+        let program = Cli::command();
+        let about = |command: &clap::Command| {
+            let about = command.get_about().map(ToString::to_string);
+            about.unwrap_or_else(|| panic!("{} says nothing", command.get_name()))
+        };
+        let mut abouts: Vec<String> = program.get_subcommands().map(about).collect();
+        abouts.push(about(&program));
+        for shared in ["The GPU,", "What is drawn,"] {
+            assert!(
+                !abouts.iter().any(|about| about.starts_with(shared)),
+                "{abouts:?}"
+            );
+        }
+        let count = abouts.len();
+        abouts.sort();
+        abouts.dedup();
+        assert_eq!(abouts.len(), count, "two commands say the same: {abouts:?}");
+    }
+
     #[test]
     fn lists_and_negative_vectors_are_read() {
         let cli = parse(

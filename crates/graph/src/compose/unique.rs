@@ -61,13 +61,26 @@ fn check_entries(
             }
             What::Include(include) => {
                 let is_first = materials.add(name, span, reports);
-                if include.is_named || entry.repeat.is_some() || !is_first {
+                // Which repetitions there are, and so their names, is not known yet.
+                if entry.repeat.is_some() || !is_first {
                     continue;
                 }
+                let namespace = match include.is_named {
+                    true => format!("{name}."),
+                    false => String::new(),
+                };
                 let Some(document) = include.document() else {
                     continue;
                 };
-                for output in &document.outputs {
+                for (number, output) in document.outputs.iter().enumerate() {
+                    // Two of a name are told in that document.
+                    let others = &document.outputs[..number];
+                    if others
+                        .iter()
+                        .any(|other| other.name.value == output.name.value)
+                    {
+                        continue;
+                    }
                     let is_own = |input: &crate::document::materials::Input| {
                         input.name.value == output.name.value
                     };
@@ -75,10 +88,11 @@ fn check_entries(
                         .bind
                         .iter()
                         .any(|(name, _)| name.value == output.name.as_str());
+                    let full = format!("{namespace}{}", output.name.value);
                     // Without a name of its own the include is known by what it gives.
-                    let is_own_name = output.name.value == *name;
+                    let is_own_name = full == **name;
                     if !bound && !is_own_name && !document.inputs.iter().any(is_own) {
-                        materials.add(&output.name.value, &include.graph.span, reports);
+                        materials.add(&full, &include.graph.span, reports);
                     }
                 }
             }

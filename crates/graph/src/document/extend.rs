@@ -154,7 +154,12 @@ impl Edits<'_> {
             let end = self.ends.insert(path.value.clone(), name.clone());
             if let Some(end) = end {
                 let group = path.rsplit_once('.').map(|(group, _)| group.to_owned());
-                path.value = group.map_or(end.clone(), |group| format!("{group}.{end}"));
+                let last = group.map_or(end.clone(), |group| format!("{group}.{end}"));
+                let last = Located::new(last, path.span.clone());
+                // It may have been taken out again, or have another name now.
+                if find(entries, &last).is_ok() {
+                    path = last;
+                }
             }
         }
         let (list, at) = find(entries, &path)?;

@@ -25,7 +25,10 @@ pub(crate) enum ComposeError {
     },
     #[error("documents include or extend each other more than {1} deep")]
     TooDeep(Located<String>, usize),
-    #[error("two of the name `{name}`: every {what} needs its own")]
+    #[error("{}", match name == known {
+        true => format!("two of the name `{name}`: every {what} needs its own"),
+        false => format!("`{name}` and `{known}` are one name in a shader"),
+    })]
     Clash {
         what: &'static str,
         name: String,
@@ -135,8 +138,8 @@ fn clash(
 ) -> Diagnostic {
     if name != known {
         return told
-            .at(span, format!("a shader spells it like `{known}`"))
-            .at(first, "which is declared here")
+            .at(span, format!("gives `{name}`"))
+            .at(first, "declared here")
             .help("rename one of them");
     }
     let told = told.at(span, "the second one").at(first, "the first one");

@@ -1,16 +1,17 @@
 //! Order, culling and schedule on bare lists of accesses: each graph is drawn above its case.
 
-use crate::{
+use super::{
     cull,
-    diagnostics::{Code, Diagnostic},
-    document::{Run, located::Located},
-    link::{Access, LinkedPass, Usage},
     order::{Hazard, Order, order, order_of_live},
-    provider::NoProvider,
-    registry::Params,
-    resolve::{Buffer, Environment, Part, ResourceId, ResourceKind, Resources, Target, resolve},
-    schedule::schedule,
-    source::SourceFile,
+    schedule::sequence,
+    work::Work,
+};
+use crate::{
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Reports},
+    instantiate::build::Run,
+    link::pass::{Access, LinkedPass, PassId, Usage},
+    resource::{Buffer, Origin, Resource, ResourceId, ResourceKind, SubresourceRange, Target},
+    source::span::{Located, SourceFile},
 };
 use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -39,6 +40,7 @@ const RESOURCES: usize = 4;
 
 struct Case {
     passes: Vec<LinkedPass>,
+    resources: Vec<Resource>,
     order: Order,
     diagnostics: Vec<Diagnostic>,
 }
@@ -50,24 +52,23 @@ fn edges(order: &Order) -> BTreeSet<(usize, usize, Hazard)> {
         .collect()
 }
 
-/// Calls `use_them` with some buffers.
-fn with_resources<T>(use_them: impl FnOnce(&Resources<'_>) -> T) -> T {
-    let params = Params::default();
-    let environment = Environment {
-        viewport: [8, 8],
-        limits: &wgpu::Limits::default(),
-        provider: &NoProvider,
-        imports: &BTreeMap::new(),
+/// Some buffers.
+fn resources() -> Vec<Resource> {
+    let buffer = |index| Resource {
+        name: format!("r{index}"),
+        declared: None,
+        kind: ResourceKind::Buffer(Buffer::default()),
+        origin: Origin::Own,
     };
-    let mut resources: Resources<'_> = resolve(&[], &[], &params, &environment, &mut Vec::new());
-    for index in 0..RESOURCES {
-        resources.add(
-            format!("r{index}"),
-            None,
-            ResourceKind::Buffer(Buffer::default()),
-        );
+    (0..RESOURCES).map(buffer).collect()
+}
+
+fn part(mips: &std::ops::Range<u32>, layers: &std::ops::Range<u32>) -> SubresourceRange {
+    SubresourceRange {
+        mips: mips.clone(),
+        layers: layers.clone(),
+        aspect: wgt::TextureAspect::All,
     }
-    use_them(&resources)
 }
 
 fn case(uses: &[Vec<Use>]) -> Case {
@@ -81,10 +82,7 @@ fn case(uses: &[Vec<Use>]) -> Case {
         let span = file.span(at..at + names[index].len());
         let access = |(resource, how, mips, layers): &Use| Access {
             resource: ResourceId(*resource),
-            part: Part {
-                mips: mips.clone(),
-                layers: layers.clone(),
-            },
+            part: part(mips, layers),
             reads: matches!(how, Read | Change),
             writes: *how != Read,
             covers: *how == Write,
@@ -103,13 +101,18 @@ fn case(uses: &[Vec<Use>]) -> Case {
         }
     };
     let passes: Vec<LinkedPass> = uses.iter().enumerate().map(pass).collect();
-    let mut diagnostics = Vec::new();
-    let order =
-        with_resources(|resources| order(&passes, passes.len(), resources, &mut diagnostics));
+    let mut reports = Reports::default();
+    let resources = resources();
+    let work = Work {
+        passes: &passes,
+        resources: &resources,
+    };
+    let order = order(work, passes.len(), &mut reports);
     Case {
         passes,
+        resources,
         order,
-        diagnostics,
+        diagnostics: reports.into_list(),
     }
 }
 
@@ -121,23 +124,24 @@ impl Case {
     /// Live passes for the final versions of the resources, and the order among them.
     fn live(&self, wanted: &[Use]) -> (Vec<bool>, Order) {
         let roots = wanted.iter().flat_map(|(resource, _, mips, layers)| {
-            let part = Part {
-                mips: mips.clone(),
-                layers: layers.clone(),
-            };
             self.order.final_writers(&Target {
                 id: ResourceId(*resource),
-                part,
+                part: part(mips, layers),
             })
         });
         let live = cull::live(&self.order, roots, |_| None);
-        let order = with_resources(|resources| order_of_live(&self.passes, resources, &live));
+        let work = Work {
+            passes: &self.passes,
+            resources: &self.resources,
+        };
+        let order = order_of_live(work, &live);
         (live, order)
     }
 
     fn schedule(&self, wanted: &[Use]) -> Vec<usize> {
         let (live, order) = self.live(wanted);
-        schedule(&order, &live)
+        let sequence = sequence(&order, &live);
+        sequence.into_iter().map(PassId::index).collect()
     }
 
     fn codes(&self) -> Vec<Code> {
@@ -523,18 +527,21 @@ proptest! {
         let uses: Vec<Vec<Use>> = std::iter::once(clears).chain(uses).collect();
         let case = case(&uses);
         prop_assert!(case.diagnostics.is_empty());
-        let outputs: Vec<Use> = wanted.iter().map(|&resource| (resource, Read, 0..2, 0..2)).collect();
+        let output = |&resource: &usize| (resource, Read, 0..2, 0..2);
+        let outputs: Vec<Use> = wanted.iter().map(output).collect();
         let schedule = case.schedule(&outputs);
 
         let live: BTreeSet<usize> = schedule.iter().copied().collect();
         prop_assert_eq!(live.len(), schedule.len(), "each pass runs once");
-        let place: BTreeMap<usize, usize> = schedule.iter().enumerate().map(|(at, &pass)| (pass, at)).collect();
+        let places = schedule.iter().enumerate().map(|(at, &pass)| (pass, at));
+        let place: BTreeMap<usize, usize> = places.collect();
         for (from, to, hazard) in case.edges() {
             prop_assert!(from < to, "edges follow the file");
             if let (Some(from), Some(to)) = (place.get(&from), place.get(&to)) {
                 prop_assert!(from < to);
             } else {
-                prop_assert!(hazard != RAW || !live.contains(&to), "a live pass needs a culled one");
+                let is_needed = hazard == RAW && live.contains(&to);
+                prop_assert!(!is_needed, "a live pass needs a culled one");
             }
         }
         let file: Vec<usize> = (0..uses.len()).collect();
@@ -545,12 +552,13 @@ proptest! {
             let (seen, end) = interpret(&case.passes, &sequence);
             prop_assert_eq!(sequence.len(), live.len(), "each live pass runs");
             for (read, version) in &seen {
-                prop_assert_eq!(version, &in_file[read], "{:?} sees another version in {:?}", read, &sequence);
+                let expected = &in_file[read];
+                prop_assert_eq!(version, expected, "{:?} differs in {:?}", read, &sequence);
             }
             for &resource in &wanted {
                 for (cell, writer) in end_of_file.iter().filter(|(cell, _)| cell.0 == resource) {
-                    prop_assert_eq!(end.get(cell), Some(writer), "an output ends with another \
-                        version");
+                    let end = end.get(cell);
+                    prop_assert_eq!(end, Some(writer), "an output ends with another version");
                 }
             }
         }

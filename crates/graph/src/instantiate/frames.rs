@@ -77,6 +77,17 @@ pub(crate) enum Meaning {
     Repeated(Vec<Names>),
 }
 
+impl Meaning {
+    /// What a name behind a dot may mean; of repetitions, in each of them.
+    pub fn named<'m>(&'m self, name: &Name) -> Vec<&'m Self> {
+        match self {
+            Self::Target(_) | Self::Broken(_) => Vec::new(),
+            Self::Namespace(names) => names.get(name).into_iter().collect(),
+            Self::Repeated(list) => list.iter().filter_map(|names| names.get(name)).collect(),
+        }
+    }
+}
+
 /// Where an expression stands: the frame, and the index of its own entry if that is repeated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {

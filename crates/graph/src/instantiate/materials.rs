@@ -1,7 +1,7 @@
 //! Sizes of materials: found when somebody first asks for one, each once.
 
 use super::{
-    frames::Place,
+    frames::{Meaning, Place},
     state::{Declared, State},
     world::World,
 };
@@ -9,33 +9,105 @@ use crate::{
     diagnostics::reports::{Reported, Reports},
     document::materials::{BufferEntry, FormatEntry, Material, Mips, SamplerEntry, TextureEntry},
     errors::{evaluation::EvaluationError, resource::SizeError},
-    language::{syntax::Expr, value::Value},
+    language::{
+        syntax::{Expr, Leaf},
+        value::Value,
+    },
     resource::{Buffer, Origin, ResourceId, ResourceKind, Sampler, Texture},
     source::{
         sources::Picture,
         span::{Located, Span},
     },
 };
-use std::sync::Arc;
+use std::{collections::BTreeSet, sync::Arc};
+
+/// Most sizes of which each is asked for while another is found.
+const NESTED: usize = 8;
 
 impl World<'_> {
-    /// Sees to it that the size of a resource is known.
+    /// Sees to it that the size of a resource is known. What it is made of comes first, so that no
+    /// chain of sizes is as deep as the stack; only a material that stands in an expression, and is
+    /// made of what the expression is of in turn, is found on the way.
     pub fn settle(&mut self, id: ResourceId, reports: &mut Reports) -> Result<(), Reported> {
-        let declared = match &self.states[id.index()] {
-            State::Known => return Ok(()),
-            State::Broken(reported) => return Err(*reported),
-            State::Declared(declared) => declared.clone(),
-            State::Resolving => {
-                let name = &self.get(id).name;
-                let span = self.get(id).declared.clone();
-                let span = span.unwrap_or_else(|| self.graph.place());
-                let name = Located::new(name.clone(), span);
-                return Err(reports.report(EvaluationError::Circular(name)));
+        if matches!(self.states[id.index()], State::Declared(_)) {
+            match self.evaluating.len() {
+                0 => self.settle_with_parts(id, reports),
+                1..NESTED => self.evaluate(id, reports),
+                _ => return Err(self.circular(id, reports)),
             }
+        }
+        match &self.states[id.index()] {
+            State::Known => Ok(()),
+            State::Broken(reported) => Err(*reported),
+            State::Declared(_) | State::Resolving => Err(self.circular(id, reports)),
+        }
+    }
+
+    fn circular(&self, id: ResourceId, reports: &mut Reports) -> Reported {
+        // The walk began with the one that is evaluated last: what the first asks for.
+        let mut found = self.evaluating.iter().skip_while(|found| **found != id);
+        let resource = self.get(found.nth(1).copied().unwrap_or(id));
+        let span = resource.declared.clone();
+        let span = span.unwrap_or_else(|| self.graph.place());
+        reports.report(EvaluationError::Circular(Located::new(
+            resource.name.clone(),
+            span,
+        )))
+    }
+
+    fn settle_with_parts(&mut self, id: ResourceId, reports: &mut Reports) {
+        let mut seen = BTreeSet::from([id]);
+        let mut open = vec![(id, self.parts(id))];
+        while let Some((last, parts)) = open.last_mut() {
+            match parts.pop() {
+                Some(part) if seen.insert(part) => open.push((part, self.parts(part))),
+                Some(_) => {}
+                None => {
+                    let last = *last;
+                    open.pop();
+                    self.evaluate(last, reports);
+                }
+            }
+        }
+    }
+
+    /// The materials that the size of one is made of, those whose size nobody has asked for yet.
+    fn parts(&self, id: ResourceId) -> Vec<ResourceId> {
+        let State::Declared(declared) = &self.states[id.index()] else {
+            return Vec::new();
         };
-        self.states[id.index()] = State::Resolving;
+        let mut parts = Vec::new();
+        declared.material().visit(&mut |leaf| {
+            let Leaf::Material(of) = leaf else {
+                return;
+            };
+            let mut names = of.segments.iter().map(|segment| &segment.name.value);
+            let first = names.next();
+            let Some(first) = first.and_then(|name| self.frames.find(declared.frame, name)) else {
+                return;
+            };
+            let mut meanings = vec![first];
+            for name in names {
+                meanings = meanings.iter().flat_map(|of| of.named(name)).collect();
+            }
+            parts.extend(meanings.iter().filter_map(|meaning| match meaning {
+                Meaning::Target(target) => Some(target.id),
+                _ => None,
+            }));
+        });
+        parts.retain(|part| matches!(self.states[part.index()], State::Declared(_)));
+        parts
+    }
+
+    fn evaluate(&mut self, id: ResourceId, reports: &mut Reports) {
+        let state = &mut self.states[id.index()];
+        let State::Declared(declared) = std::mem::replace(state, State::Resolving) else {
+            return;
+        };
+        self.evaluating.push(id);
         let kind = self.kind(&declared, reports);
-        let (state, result) = match kind {
+        self.evaluating.pop();
+        self.states[id.index()] = match kind {
             Ok(kind) => {
                 let is_constant = match &kind {
                     ResourceKind::Texture(texture) => texture.picture.is_some(),
@@ -46,12 +118,10 @@ impl World<'_> {
                     self.resources[id.index()].origin = Origin::Constant;
                 }
                 self.resources[id.index()].kind = kind;
-                (State::Known, Ok(()))
+                State::Known
             }
-            Err(reported) => (State::Broken(reported), Err(reported)),
+            Err(reported) => State::Broken(reported),
         };
-        self.states[id.index()] = state;
-        result
     }
 
     fn kind(

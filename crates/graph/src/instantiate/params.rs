@@ -264,7 +264,11 @@ impl Given<'_> {
     ) -> BoundParam {
         let name = param.name.as_str();
         let outer = match self.exposed.get(name) {
-            Some(exposed) => self.outer.bound(exposed),
+            // Another param of that name was told where it is exposed.
+            Some(exposed) => {
+                let outer = self.outer.bound(exposed);
+                outer.filter(|outer| outer.param.name.span == param.name.span)
+            }
             None if param.default.is_none() => self.outer.bound(name),
             None => None,
         };

@@ -114,6 +114,13 @@ impl<'a> World<'a> {
             && texture.is_3d
         {
             let layers = texture.mip_layers(target.part.mips.start);
+            if target.part.layers.start >= layers {
+                return Err(reports.report(BorderError::NoPart {
+                    text: reference.text().to_owned(),
+                    span: reference.span.clone(),
+                    what: "this mip has fewer slices",
+                }));
+            }
             target.part.layers.end = target.part.layers.end.min(layers);
         }
         Ok(())

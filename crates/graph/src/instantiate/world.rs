@@ -27,6 +27,8 @@ pub(crate) struct World<'a> {
     pub resources: Vec<Resource>,
     /// Of each resource: whether its size is known.
     pub(super) states: Vec<State>,
+    /// The materials whose sizes are being found, each for the sake of the one before.
+    pub(super) evaluating: Vec<ResourceId>,
     /// Resources of the scene that were named so far.
     scene: HashMap<String, ResourceId>,
     /// How shaders spell the names of the scene.
@@ -48,6 +50,7 @@ impl<'a> World<'a> {
             frames: Frames::default(),
             resources: Vec::new(),
             states: Vec::new(),
+            evaluating: Vec::new(),
             scene: HashMap::new(),
             spelt: names.map(|name| (wgsl_identifier(&name), name)).collect(),
             previous: BTreeMap::new(),
@@ -111,11 +114,12 @@ impl<'a> World<'a> {
         if target.part == SubresourceRange::WHOLE {
             target = self.whole(target.id);
         }
-        if let Some(selection) = selection {
-            self.select_layers(&mut target, selection, reference, place, reports)?;
-        }
+        // Mips first: of a 3D texture they have fewer slices.
         if let Some(mips) = &reference.mips {
             self.select_mips(&mut target, mips, reference, place, reports)?;
+        }
+        if let Some(selection) = selection {
+            self.select_layers(&mut target, selection, reference, place, reports)?;
         }
         if reference.previous {
             let id = self.previous(target.id);

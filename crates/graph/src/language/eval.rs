@@ -227,6 +227,7 @@ impl Expr {
             _ => right.value(env)?,
         };
         match (&a, &b) {
+            (Value::Scalar(Scalar::Whole(a)), Value::Scalar(Scalar::Whole(b))) => Ok(a == b),
             (Value::Scalar(a), Value::Scalar(b)) => Ok(a.number() == b.number()),
             (Value::List(list), Value::List(other)) => {
                 let numbers = |list: &[Scalar]| -> Vec<f64> {

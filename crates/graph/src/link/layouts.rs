@@ -5,7 +5,7 @@ use crate::{
     errors::layout::LayoutError,
     instantiate::world::World,
     resource::{Buffer, FRAME_BYTES, Origin, ResourceId, ResourceKind, SubresourceRange},
-    shader::{class::Class, reflect::Global},
+    shader::{class::Class, items::Item, reflect::Global},
     source::span::{Located, Span},
 };
 use std::{collections::BTreeMap, sync::Arc};
@@ -23,7 +23,7 @@ struct Seen {
     fixed: u64,
     stride: Option<u64>,
     layout: String,
-    fields: Option<Vec<crate::shader::items::Field>>,
+    item: Option<Item>,
     span: Span,
     part: SubresourceRange,
     uniform: bool,
@@ -53,7 +53,7 @@ impl Layouts {
             fixed,
             stride,
             layout: layout.clone(),
-            fields: global.fields.clone(),
+            item: global.item.clone(),
             span: global.span.clone(),
             part: part.clone(),
             uniform,
@@ -361,14 +361,17 @@ fn content(
         span: view.span.clone(),
         declared: declared.clone(),
     };
-    let Some(fields) = &view.fields else {
+    let Some(Item { stride, fields }) = &view.item else {
         return Err(wrong(
             "the shader's items are no plain 32-bit numbers".to_owned(),
         ));
     };
-    // A fixed type is one item, or an array of as many as there are.
-    let stride = view.stride.unwrap_or(view.fixed / data.len().max(1) as u64);
-    let stride = usize::try_from(stride).unwrap_or(0);
+    // A fixed type is one item, or an array of so many.
+    let fixed = view.fixed / (*stride as u64).max(1);
+    if view.stride.is_none() && fixed != data.len() as u64 {
+        let have = data.len();
+        return Err(wrong(format!("there are {have} items, it holds {fixed}")));
+    }
     let mut bytes = vec![0; stride * data.len()];
     for (index, item) in data.iter().enumerate() {
         if item.len() != fields.len() {

@@ -14,8 +14,23 @@ use crate::{
         class::{Member, ScalarClass},
         reflect::{Global, Shader},
     },
-    source::span::Located,
+    source::span::{Located, Span},
 };
+
+impl ScalarClass {
+    /// A number as the bits of one of this class; `None` where it is none.
+    fn word(self, scalar: Scalar) -> Option<u32> {
+        match (self, scalar) {
+            (Self::Float, scalar) => {
+                let number = scalar.number() as f32;
+                number.is_finite().then(|| number.to_bits())
+            }
+            (Self::Uint, Scalar::Whole(whole)) => u32::try_from(whole).ok(),
+            (Self::Sint, Scalar::Whole(whole)) => i32::try_from(whole).ok().map(i32::cast_unsigned),
+            _ => None,
+        }
+    }
+}
 
 /// A value that a shader asks for by name.
 enum Asked<'e> {
@@ -87,7 +102,7 @@ impl<'a> Linker<'a, '_> {
                 continue;
             }
             let value = match self.asked(name).transpose()? {
-                Some(asked) => self.number(name, &asked, shader)?,
+                Some(asked) => self.number(name, &asked, shader, &span)?,
                 None => None,
             };
             match value {
@@ -102,25 +117,43 @@ impl<'a> Linker<'a, '_> {
         Ok(constants)
     }
 
-    /// A value as one number.
+    /// A value as one number of the override's type; `span` is the override's place.
     fn number(
         &mut self,
         name: &str,
         asked: &Asked<'_>,
         shader: &Shader,
+        span: &Span,
     ) -> Result<Option<f64>, Reported> {
-        Ok(match asked {
-            Asked::Index(index) => Some(f64::from(*index)),
-            Asked::Param(_, ParamValue::F32(value)) => Some(f64::from(*value)),
-            Asked::Param(_, ParamValue::I32(value)) => Some(f64::from(*value)),
-            Asked::Param(param, other) => param.as_u32(other).map(f64::from),
-            Asked::Set(value, expr) => match value {
-                Value::Scalar(scalar) => Some(scalar.number()),
-                Value::Bool(value) => Some(f64::from(u8::from(*value))),
-                Value::Word(_) => Some(f64::from(self.word(name, value, expr, shader)?)),
-                other => return Err(self.wrong_value(name, "one number", other, expr)),
-            },
-        })
+        let (value, found, place) = match asked {
+            Asked::Index(index) => return Ok(Some(f64::from(*index))),
+            Asked::Param(param, value) => (param.value(value), value.to_string(), span),
+            Asked::Set(value, expr) => (value.clone(), value.to_string(), &expr.span),
+        };
+        let class = shader.override_class(name);
+        let number = match (&value, asked, class) {
+            (Value::Bool(value), _, None | Some(ScalarClass::Uint)) => {
+                Some(f64::from(u8::from(*value)))
+            }
+            (Value::Word(_), Asked::Set(_, expr), Some(ScalarClass::Uint)) => {
+                Some(f64::from(self.word(name, &value, expr, shader)?))
+            }
+            (Value::Word(_), Asked::Param(param, value), Some(ScalarClass::Uint)) => {
+                param.as_u32(value).map(f64::from)
+            }
+            (Value::Scalar(scalar), _, Some(class)) => class.word(*scalar).map(|_| scalar.number()),
+            _ => None,
+        };
+        if number.is_some() {
+            return Ok(number);
+        }
+        let expected = class.map_or("true or false".to_owned(), |class| class.to_string());
+        Err(self.report(LinkError::SetValue {
+            name: name.to_owned(),
+            expected,
+            found,
+            span: place.clone(),
+        }))
     }
 
     /// The number of a word: its place among those of the document's param of that name, or the
@@ -274,15 +307,7 @@ impl<'a> Linker<'a, '_> {
             }
             Value::Format(_) => Vec::new(),
         };
-        let word = |scalar: &Scalar| match (class, scalar) {
-            (ScalarClass::Float, scalar) => Some((scalar.number() as f32).to_bits()),
-            (ScalarClass::Uint, Scalar::Whole(whole)) => u32::try_from(*whole).ok(),
-            (ScalarClass::Sint, Scalar::Whole(whole)) => {
-                i32::try_from(*whole).ok().map(i32::cast_unsigned)
-            }
-            _ => None,
-        };
-        let words: Option<Vec<u32>> = list.iter().map(word).collect();
+        let words: Option<Vec<u32>> = list.iter().map(|scalar| class.word(*scalar)).collect();
         match words.filter(|words| words.len() == width as usize) {
             Some(words) => Ok(words),
             None => {

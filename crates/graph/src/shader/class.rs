@@ -61,7 +61,7 @@ impl fmt::Display for ScalarClass {
 }
 
 impl ScalarClass {
-    fn of(kind: naga::ScalarKind) -> Option<Self> {
+    pub fn of(kind: naga::ScalarKind) -> Option<Self> {
         match kind {
             naga::ScalarKind::Float => Some(Self::Float),
             naga::ScalarKind::Uint => Some(Self::Uint),

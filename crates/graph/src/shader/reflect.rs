@@ -5,7 +5,7 @@ use super::{
     class::{Class, ScalarClass, TextureClass, class_of, vector},
     expand::Expanded,
     guard,
-    items::{Field, item},
+    items::{Item, item},
     text::words,
     wgsl_errors::{function_span, parse_error, validation_error},
 };
@@ -50,8 +50,8 @@ pub(crate) struct Global {
     pub class: Class,
     pub reads: bool,
     pub writes: bool,
-    /// The scalars of an item, where they are plain numbers.
-    pub fields: Option<Vec<Field>>,
+    /// An item, where its scalars are plain numbers.
+    pub item: Option<Item>,
     /// The stages of the entry points that use it.
     pub stages: wgt::ShaderStages,
 }
@@ -227,7 +227,7 @@ impl Shader {
                 class,
                 reads,
                 writes: usage.contains(GlobalUse::WRITE) || atomic,
-                fields: item(&self.module, variable.ty).map(|item| item.fields),
+                item: item(&self.module, variable.ty),
                 stages,
             });
         }
@@ -300,6 +300,14 @@ impl Shader {
                     self.source.locate(range),
                 ))
             })
+    }
+
+    /// The numbers that an override holds; `None` of a `bool`.
+    pub(crate) fn override_class(&self, name: &str) -> Option<ScalarClass> {
+        let mut overrides = self.module.overrides.iter();
+        let (_, found) = overrides.find(|(_, found)| found.name.as_deref() == Some(name))?;
+        let scalar = self.module.types[found.ty].inner.scalar()?;
+        ScalarClass::of(scalar.kind)
     }
 
     /// The value of a scalar module-scope constant.

@@ -271,6 +271,21 @@ impl Mistake for BorderError {
             Self::Private { name, known, .. } => told
                 .at(name.span.clone(), "only its outputs are seen from here")
                 .suggest(&name, known),
+            Self::TooMany { at, .. } => told
+                .at(at, "counted up to here")
+                .help("repeat or include less"),
+            Self::Feature { feature, .. } => told
+                .at(feature.span, "the device does not have this feature")
+                .help("run it on an adapter that has the feature, or ask `has(…)` in an `if`"),
+            other => other.explain_part(told),
+        }
+    }
+}
+
+impl BorderError {
+    /// Parts and versions that there are not.
+    fn explain_part(self, told: Diagnostic) -> Diagnostic {
+        match self {
             Self::Namespace(name) => told.at(
                 name.span,
                 "name what it gives: `x.y`, or `x[0].y` where it is repeated",
@@ -294,12 +309,7 @@ impl Mistake for BorderError {
             Self::NoPrevious { span, what, .. } => told
                 .at(span, format!("it is {what}"))
                 .help("textures and buffers that the graph writes have one; copy it into one"),
-            Self::TooMany { at, .. } => told
-                .at(at, "counted up to here")
-                .help("repeat or include less"),
-            Self::Feature { feature, .. } => told
-                .at(feature.span, "the device does not have this feature")
-                .help("run it on an adapter that has the feature, or ask `has(…)` in an `if`"),
+            _ => told,
         }
     }
 }

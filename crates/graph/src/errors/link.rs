@@ -363,8 +363,8 @@ impl TextureMisfit {
             Self::Filtered {
                 by_feature: true, ..
             } => Some(
-                "list `requires: [\"FLOAT32_FILTERABLE\"]`, or use a sampler with `filter: Nearest`, \
-                 textureLoad, or a format of 16 bits",
+                "list `requires: [\"FLOAT32_FILTERABLE\"]`, or use a sampler with \
+                 `filter: Nearest`, textureLoad, or a format of 16 bits",
             ),
             Self::Filtered { .. } => {
                 Some("use a sampler with `filter: Nearest`, textureLoad, or a filterable format")

@@ -277,7 +277,7 @@ fn sizes_without_end() {
         (texture(r#""-viewport.size""#), "-64 is less than nothing"),
         (texture("NaN"), "`NaN` has no value"),
         (texture("inf"), "a size is needed here"),
-        (texture("-inf"), "whole numbers is needed"),
+        (texture("-inf"), "a whole number is needed"),
         (texture("-1"), "-1"),
         (texture("(1, 0)"), "a texture of no texels"),
         (

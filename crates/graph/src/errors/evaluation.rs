@@ -108,7 +108,7 @@ impl Mistake for EvaluationError {
             } => {
                 let told = told.at(span, format!("this is {found}"));
                 match (expected.contains("whole"), found) {
-                    (true, Value::Scalar(Scalar::Number(_))) => {
+                    (true, Value::Scalar(Scalar::Number(number))) if number.abs() < 1e9 => {
                         told.help("`floor(…)` and `ceil(…)` make a whole number of it")
                     }
                     _ => told,

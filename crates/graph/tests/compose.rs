@@ -1,17 +1,14 @@
-//! Documents made of documents: names, params, repeats and features, without a GPU; then on the
-//! device.
+//! Documents made of documents: names, params, repeats and features, without a GPU. (What comes out
+//! on a device: `crates/gpu/tests/compose.rs`.)
 
 mod support;
 
 use skiagraph_graph::{
-    Capture, Code, Content, Diagnostics, Executor, Frame, Graph, NoProvider, ParamValue, Plan,
-    PlanRequest, Registry, gpu,
+    Code, Diagnostics, Graph, NoProvider, ParamValue, Plan, PlanRequest, Registry,
 };
-use std::{collections::BTreeMap, sync::LazyLock};
-use support::{Files, Triangle, load};
+use support::{Files, Triangle, codes, load, names, right, wrong};
 
-/// Writes `value`, a param, into a texture of `edge`² texels; `smooth` reads the nearest of its
-/// scope's `image`.
+/// Writes `value`, a param; `smooth` reads the `image` of its document.
 const SHADERS: [(&str, &str); 4] = [
     (
         "shaders/fill.wgsl",
@@ -25,7 +22,9 @@ const SHADERS: [(&str, &str); 4] = [
     (
         "shaders/smooth.wgsl",
         "var image: texture_2d<f32>;
-         @fragment fn fragment(@builtin(position) at: vec4<f32>) -> @location(0) f32 { return textureLoad(image, vec2<u32>(at.xy), 0).x; }",
+         @fragment fn fragment(@builtin(position) at: vec4<f32>) -> @location(0) f32 {
+             return textureLoad(image, vec2<u32>(at.xy), 0).x;
+         }",
     ),
     (
         "shaders/number.wgsl",
@@ -34,34 +33,40 @@ const SHADERS: [(&str, &str); 4] = [
     ),
 ];
 
-/// Two materials, two passes, three params.
-const INNER: &str = r#"(
-    format: 1,
+/// Two materials, two passes, two params.
+const INNER: &str = r#"
     params: [
-        (name: "value", type: F32, default: 1, min: 0, max: 100),
-        (name: "edge", type: U32, default: 4),
-        (name: "kept", type: Bool, default: true),
+        F32(name: "value", default: 1, min: 0, max: 100),
+        U32(name: "edge", default: 4),
     ],
     materials: [
-        Texture(name: "image", format: R32Float, size: Square(Param("edge"))),
-        Texture(name: "result", format: R32Float, size: Like("image")),
+        Texture(name: "image", format: R32Float, size: "edge"),
+        Texture(name: "result", format: R32Float, size: "image.size"),
     ],
     passes: [
-        Fullscreen(name: "fill", color: [(target: "image")]),
-        Fullscreen(name: "smooth", color: [(target: "result")]),
+        Fullscreen(name: "fill", color: ["image"]),
+        Fullscreen(name: "smooth", color: ["result"]),
     ],
-    outputs: [(name: "result")],
-)"#;
+    outputs: ["result", "image"],
+"#;
+
+/// What reads the `image` that it is given.
+const SMOOTHER: &str = r#"
+    inputs: [Texture(name: "image")],
+    materials: [Texture(name: "copy", format: "image.format", size: "image.size")],
+    passes: [Fullscreen(name: "smooth", color: ["copy"])],
+    outputs: ["copy"],
+"#;
 
 fn files(materials: &str, passes: &str, outputs: &str) -> Files {
-    let document = format!(
-        "(format: 1, params: [(name: \"n\", type: U32, default: 2), (name: \"value\", type: F32, \
-         default: 7)], \
-         materials: [{materials}], passes: [{passes}], outputs: [{outputs}])"
+    let sections = format!(
+        "params: [U32(name: \"n\", default: 2), F32(name: \"value\", default: 7)],
+         materials: [{materials}], passes: [{passes}], outputs: [{outputs}]"
     );
     Files::new(SHADERS)
-        .with("pipelines/graph.ron", document)
-        .with("pipelines/shared/inner.ron", INNER)
+        .document("pipelines/graph.ron", &sections)
+        .document("pipelines/shared/inner.ron", INNER)
+        .document("pipelines/shared/smoother.ron", SMOOTHER)
 }
 
 fn graph(files: &Files) -> Result<Graph, Diagnostics> {
@@ -70,272 +75,332 @@ fn graph(files: &Files) -> Result<Graph, Diagnostics> {
 
 fn plan_with(files: &Files, n: Option<u32>) -> Result<Plan, Diagnostics> {
     let mut request = PlanRequest::new([8, 8], &NoProvider);
-    if let Some(n) = n {
-        request.params.insert("n".to_owned(), ParamValue::U32(n));
-    }
+    let n = n.map(|n| ("n".to_owned(), ParamValue::U32(n)));
+    request.params.extend(n);
     graph(files)?.plan(&request)
 }
 
-fn names(plan: &Plan) -> Vec<String> {
-    plan.passes().into_iter().map(|pass| pass.name).collect()
+fn plan(files: &Files) -> Plan {
+    right(plan_with(files, None))
 }
 
-const TEXTURE: &str = "format: R32Float, size: Viewport";
+/// Name and width of each output.
+fn widths(plan: &Plan) -> Vec<(String, u32)> {
+    let outputs = plan.outputs().into_iter();
+    outputs
+        .map(|output| (output.name, output.size[0]))
+        .collect()
+}
 
-/// What an include makes of names: passes in order, and the edge of the output.
+/// A document of the viewport's size.
+const OWN: &str = r#"Texture(name: "own", format: R32Float)"#;
+
+/// What is shown, materials, passes, outputs; then the live passes and the width of the output.
+type Case<'a> = (&'a str, &'a str, &'a str, &'a str, &'a [&'a str], u32);
+
+const CASES: &[Case<'_>] = &[
+    (
+        "what an include without a name gives is known as it is",
+        "",
+        r#"Include(graph: "shared/inner.ron")"#,
+        r#""result""#,
+        &["inner.fill", "inner.smooth"],
+        4,
+    ),
+    (
+        "behind its name",
+        "",
+        r#"Include(graph: "shared/inner.ron", name: "eye", set: {"edge": 16})"#,
+        r#"(name: "out", material: "eye.result")"#,
+        &["eye.fill", "eye.smooth"],
+        16,
+    ),
+    (
+        "found in the store's pipelines, dots in the path",
+        "",
+        r#"Include(graph: "./shared/./inner.ron", name: "eye", set: {"edge": "n"})"#,
+        r#"(name: "out", material: "eye.result")"#,
+        &["eye.fill", "eye.smooth"],
+        2,
+    ),
+    (
+        "an output that is bound: the outer declaration counts",
+        OWN,
+        r#"Include(graph: "shared/inner.ron", name: "eye", bind: {"result": "own"})"#,
+        r#""own""#,
+        &["eye.fill", "eye.smooth"],
+        8,
+    ),
+    (
+        "one feeds the other, with an output that it was not said which to give",
+        "",
+        r#"Include(graph: "shared/inner.ron", name: "a"),
+           Include(graph: "shared/smoother.ron", name: "b", bind: {"image": "a.result"})"#,
+        r#"(name: "b", material: "b.copy")"#,
+        &["a.fill", "a.smooth", "b.smooth"],
+        4,
+    ),
+    (
+        "an input found by its name, and what is not needed of the other",
+        "",
+        r#"Include(graph: "shared/inner.ron"), Include(graph: "shared/smoother.ron")"#,
+        r#""copy""#,
+        &["inner.fill", "smoother.smooth"],
+        4,
+    ),
+    (
+        "a pass of one's own between",
+        OWN,
+        r#"Include(graph: "shared/inner.ron", name: "a"), Fullscreen(name: "read",
+           shader: "smooth", bind: {"image": "a.result"}, color: ["own"])"#,
+        r#""own""#,
+        &["a.fill", "a.smooth", "read"],
+        8,
+    ),
+    (
+        "a global found by its spelling",
+        OWN,
+        r#"Include(graph: "shared/inner.ron", name: "a"),
+           Fullscreen(name: "spelt", color: ["own"])"#,
+        r#""own""#,
+        &["a.fill", "a.smooth", "spelt"],
+        8,
+    ),
+    (
+        "in a group",
+        "",
+        r#"Group(name: "g", passes: [Include(graph: "shared/inner.ron"),
+           Fullscreen(name: "again", shader: "smooth", color: ["result"])])"#,
+        r#""result""#,
+        &["g.inner.fill", "g.again"],
+        4,
+    ),
+    (
+        "repeated",
+        OWN,
+        r#"Include(graph: "shared/inner.ron", name: "a", repeat: "n"), Fullscreen(name: "read",
+           shader: "smooth", bind: {"image": "a[1].result"}, color: ["own"])"#,
+        r#""own""#,
+        &["a[1].fill", "a[1].smooth", "read"],
+        8,
+    ),
+    (
+        "a document whose output is called as its file is",
+        "",
+        r#"Include(graph: "shared/copy.ron")"#,
+        r#""copy""#,
+        &["copy.one"],
+        8,
+    ),
+];
+
+/// What an include makes of names: passes in order, and the width of the output.
 #[test]
 fn names_and_sizes_of_includes() {
-    /// What it shows, materials, passes, outputs; then the live passes and the edge of the first
-    /// output.
-    type Case<'a> = (&'a str, &'a str, &'a str, &'a str, &'a [&'a str], u32);
-    let cases: &[Case<'_>] = &[
-        (
-            "joined",
-            "",
-            r#"Include(graph: "shared/inner.ron")"#,
-            r#"(name: "result")"#,
-            &["fill", "smooth"],
-            4,
-        ),
-        (
-            "below a prefix",
-            "",
-            r#"Include(graph: "shared/inner.ron", prefix: "eye", params: {"edge": 16})"#,
-            r#"(name: "out", material: "eye.result")"#,
-            &["eye.fill", "eye.smooth"],
-            16,
-        ),
-        (
-            "found in the store's pipelines, dots in the path",
-            "",
-            r#"Include(graph: "./shared/./inner.ron", prefix: "eye", params: {"edge": Param("n")})"#,
-            r#"(name: "out", material: "eye.result")"#,
-            &["eye.fill", "eye.smooth"],
-            2,
-        ),
-        (
-            "renamed: the inner declaration under the outer name",
-            "",
-            r#"Include(graph: "shared/inner.ron", prefix: "eye", materials: {"result": "light"})"#,
-            r#"(name: "light")"#,
-            &["eye.fill", "eye.smooth"],
-            4,
-        ),
-        (
-            "connected: the outer declaration counts",
-            "Texture(name: \"light\", format: R32Float, size: Viewport)",
-            r#"Include(graph: "shared/inner.ron", prefix: "eye", materials: {"result": "light"})"#,
-            r#"(name: "light")"#,
-            &["eye.fill", "eye.smooth"],
-            8,
-        ),
-        (
-            "one feeds the other",
-            "",
-            r#"Include(graph: "shared/inner.ron", prefix: "a"),
-               Include(graph: "shared/inner.ron", prefix: "b", materials: {"image": "a.result"})"#,
-            r#"(name: "b", material: "b.result")"#,
-            // b.fill overwrites what a made, so nothing of a is needed.
-            &["b.fill", "b.smooth"],
-            4,
-        ),
-        (
-            "a pass of one's own between",
-            "Texture(name: \"own\", format: R32Float, size: Viewport)",
-            r#"Include(graph: "shared/inner.ron", prefix: "a"),
-               Fullscreen(name: "read", shader: "smooth", bind: {"image": "a.result"}, color: [(target: "own")])"#,
-            r#"(name: "own")"#,
-            &["a.fill", "a.smooth", "read"],
-            8,
-        ),
-        (
-            "a global found by its spelling",
-            "Texture(name: \"own\", format: R32Float, size: Viewport)",
-            r#"Include(graph: "shared/inner.ron", prefix: "a"),
-               Fullscreen(name: "spelt", color: [(target: "own")])"#,
-            r#"(name: "own")"#,
-            &["a.fill", "a.smooth", "spelt"],
-            8,
-        ),
-        (
-            "in a group",
-            "",
-            r#"Group(name: "g", passes: [Include(graph: "shared/inner.ron"),
-               Fullscreen(name: "again", shader: "smooth", color: [(target: "result")])])"#,
-            r#"(name: "out", material: "g.result")"#,
-            &["g.fill", "g.again"],
-            4,
-        ),
-        (
-            "repeated",
-            "Texture(name: \"own\", format: R32Float, size: Viewport)",
-            r#"Include(graph: "shared/inner.ron", prefix: "a", repeat: Param("n")),
-               Fullscreen(name: "read", shader: "smooth", bind: {"image": "a[1].result"}, color: [(target: "own")])"#,
-            r#"(name: "own")"#,
-            &["a[1].fill", "a[1].smooth", "read"],
-            8,
-        ),
-    ];
-    for (what, materials, passes, outputs, expected, edge) in cases {
-        let files = files(materials, passes, outputs).with(
-            "shaders/spelt.wgsl",
-            "var a_result: texture_2d<f32>;
-             @fragment fn fragment() -> @location(0) f32 { return textureLoad(a_result, vec2(0u), 0).x; }",
-        );
+    let copy = r#"materials: [Texture(name: "copy", format: R32Float)],
+        passes: [Fullscreen(name: "one", color: ["copy"])], outputs: ["copy"]"#;
+    for (what, materials, passes, outputs, expected, width) in CASES {
+        let files = files(materials, passes, outputs)
+            .document("pipelines/shared/copy.ron", copy)
+            .with(
+                "shaders/spelt.wgsl",
+                "var a_result: texture_2d<f32>;
+                 @fragment fn fragment() -> @location(0) f32 {
+                     return textureLoad(a_result, vec2(0u), 0).x;
+                 }",
+            );
         let plan = plan_with(&files, None).unwrap_or_else(|errors| panic!("{what}:\n{errors}"));
         assert_eq!(names(&plan), *expected, "{what}");
-        assert_eq!(plan.outputs()[0].size, [*edge; 2], "{what}");
-        let graph = graph(&files).unwrap_or_else(|errors| panic!("{what}:\n{errors}"));
-        assert!(
-            graph.warnings().is_empty(),
-            "{what}: {:?}",
-            graph.warnings()
+        assert_eq!(plan.outputs()[0].size, [*width, *width], "{what}");
+        let warnings = right(graph(&files)).warnings().len();
+        let unused = usize::from(!passes.contains("\"n\"")) + 1;
+        assert_eq!(
+            warnings, unused,
+            "{what}: params of this document that nothing uses"
         );
     }
 }
 
 /// ```text
-/// outer.ron ─ a ▶ middle.ron ─ joined ▶ deep.ron: `image` is renamed by the middle, taken from the outermost
+/// graph.ron ─ a ▶ middle.ron ─▶ inner.ron: what is `image` in both is `mine` outside
 /// ```
 #[test]
-fn renames_go_through_every_level() {
-    let middle = r#"(format: 1,
-        passes: [Include(graph: "inner.ron", materials: {"image": "picture", "result": "light"}), Include(graph: "inner.ron", prefix: "b")])"#;
-    let outer = r#"Include(graph: "shared/middle.ron", prefix: "a", materials: {"picture": "mine", "b.image": "mine"}),
-        Include(graph: "shared/middle.ron", prefix: "c")"#;
-    let files = files(
-        &format!("Texture(name: \"mine\", {TEXTURE})"),
-        outer,
-        r#"(name: "mine"), (name: "light", material: "a.light"), (name: "b", material: "a.b.result"), (name: "c", material: "c.picture")"#,
-    )
-    .with("pipelines/shared/middle.ron", middle);
-    // Names of nested includes are not those of the middle's own materials.
-    let errors = plan_with(&files, None)
-        .err()
-        .map(|errors| errors.to_string());
-    assert_eq!(errors, None);
-    let plan = plan_with(&files, None).unwrap_or_else(|errors| panic!("{errors}"));
-    let sizes: Vec<(String, u32)> = plan
-        .outputs()
+fn what_is_bound_goes_through_every_level() {
+    let middle = r#"
+        passes: [Include(graph: "inner.ron"), Include(graph: "inner.ron", name: "b")],
+        outputs: ["result", "image", (name: "b", material: "b.result")]"#;
+    let outer = r#"
+        Include(graph: "shared/middle.ron", name: "a", bind: {"image": "mine", "b": "other"}),
+        Include(graph: "shared/middle.ron", name: "c")"#;
+    let outputs = r#""mine", "other", (name: "light", material: "a.result"),
+        (name: "b", material: "c.b"), (name: "c", material: "c.image")"#;
+    let materials = r#"Texture(name: "mine", format: R32Float, size: 16),
+        Texture(name: "other", format: R32Float)"#;
+    let files = files(materials, outer, outputs).document("pipelines/shared/middle.ron", middle);
+    let plan = plan(&files);
+    let expected = [
+        ("mine", 16),
+        ("other", 8),
+        ("light", 16),
+        ("b", 4),
+        ("c", 4),
+    ];
+    assert_eq!(
+        widths(&plan),
+        expected.map(|(name, width)| (name.to_owned(), width)),
+        "a.result is as large as the image that it is like"
+    );
+    let of_a = names(&plan)
         .into_iter()
-        .map(|output| (output.name, output.size[0]))
-        .collect();
-    let expected = [("mine", 8), ("light", 8), ("b", 8), ("c", 4)];
-    assert_eq!(
-        sizes,
-        expected.map(|(name, edge)| (name.to_owned(), edge)),
-        "a.light and a.b.result are as large as the images that they are like"
-    );
+        .filter(|name| name.starts_with("a."));
+    let expected = ["a.inner.fill", "a.inner.smooth", "a.b.fill", "a.b.smooth"];
+    assert_eq!(of_a.collect::<Vec<_>>(), expected);
 }
 
-/// A sub-graph may use what stands around it; what it declares itself comes first.
+/// What an included document does not ask for is not seen in it, and what it declares itself is its
+/// own, whatever is called so outside.
 #[test]
-fn scopes_reach_outwards() {
-    let user = r#"(format: 1, materials: [Texture(name: "copy", format: R32Float, size: Like("image"))],
-        passes: [Fullscreen(name: "smooth", color: [(target: "copy")])])"#;
-    let shadowing = r#"(format: 1, materials: [Texture(name: "image", format: R32Float, size: Square(2))],
-        passes: [Fullscreen(name: "one", color: [(target: "image")]), Include(graph: "user.ron", prefix: "user")])"#;
-    let files = files(
-        &format!("Texture(name: \"image\", {TEXTURE})"),
-        r#"Fullscreen(name: "fill", color: [(target: "image")]),
-           Include(graph: "user.ron", prefix: "near"), Include(graph: "shadowing.ron", prefix: "far")"#,
-        r#"(name: "near", material: "near.copy"), (name: "far", material: "far.user.copy")"#,
-    )
-    .with("pipelines/user.ron", user)
-    .with("pipelines/shadowing.ron", shadowing);
-    let plan = plan_with(&files, None).unwrap_or_else(|errors| panic!("{errors}"));
-    assert_eq!(
-        names(&plan),
-        ["fill", "near.smooth", "far.one", "far.user.smooth"]
-    );
-    let sizes: Vec<u32> = plan.outputs().iter().map(|output| output.size[0]).collect();
-    assert_eq!(sizes, [8, 2]);
+fn nothing_else_crosses_the_border() {
+    let user = r#"materials: [Texture(name: "copy", format: R32Float)],
+        passes: [Fullscreen(name: "smooth", color: ["copy"])], outputs: ["copy"]"#;
+    let image = r#"Texture(name: "image", format: R32Float)"#;
+    let user_in = |user: &str| {
+        let passes = r#"Fullscreen(name: "fill", color: ["image"]),
+            Include(graph: "user.ron", name: "near")"#;
+        let outputs = r#"(name: "near", material: "near.copy")"#;
+        files(image, passes, outputs).document("pipelines/user.ron", user)
+    };
+    let errors = wrong(plan_with(&user_in(user), None));
+    assert_eq!(codes(errors.iter()), [Code::UnknownResource], "{errors}");
+    let asking = format!(r#"inputs: [Texture(name: "image")], {user}"#);
+    let asking = plan(&user_in(&asking));
+    assert_eq!(names(&asking), ["fill", "near.smooth"]);
+    let shadowing = r#"
+        materials: [
+            Texture(name: "image", format: R32Float, size: 2),
+            Texture(name: "copy", format: R32Float, size: "image.size"),
+        ],
+        passes: [
+            Fullscreen(name: "one", color: ["image"]),
+            Fullscreen(name: "smooth", color: ["copy"]),
+        ],
+        outputs: ["copy"]"#;
+    let shadowing = plan(&user_in(shadowing));
+    assert_eq!(names(&shadowing), ["near.one", "near.smooth"]);
+    assert_eq!(shadowing.outputs()[0].size, [2, 2]);
 }
 
-/// `Previous` and run conditions mean what they mean where they are written.
+/// `.previous` and run conditions mean what they mean where they are written.
 #[test]
 fn history_and_conditions_in_an_include() {
-    let inner = r#"(format: 1, params: [(name: "on", type: Bool, default: true)],
-        materials: [Texture(name: "image", format: R32Float, size: Viewport), Texture(name: "result", format: R32Float, size: Viewport)],
+    let inner = r#"
+        params: [Bool(name: "on", default: true)],
+        materials: [
+            Texture(name: "image", format: R32Float),
+            Texture(name: "result", format: R32Float),
+        ],
         passes: [
-            Fullscreen(name: "smooth", bind: {"image": Previous("result")}, color: [(target: "image")], run: When("on")),
+            Fullscreen(name: "smooth", bind: {"image": "result.previous"}, color: ["image"],
+                run: When("on")),
             Copy(name: "keep", from: "image", to: "result", run: When("on")),
-        ])"#;
+        ],
+        outputs: ["image", "result"]"#;
     let plan = |condition: &str| {
         let outer = format!(
-            r#"(format: 1, params: [(name: "outer", type: Bool, default: true), (name: "on", type: Bool, default: true)],
-            passes: [Include(graph: "shared/inner.ron", prefix: "it", params: {{"on": Param("outer")}}),
-                Fullscreen(name: "one", color: [(target: "it.image", load: Load)], run: When("{condition}"))],
-            outputs: [(name: "image", material: "it.image")])"#
+            r#"params: [Bool(name: "outer", default: true), Bool(name: "on", default: true)],
+            passes: [
+                Include(graph: "shared/inner.ron", name: "it", set: {{"on": "outer"}}),
+                Fullscreen(name: "one", color: [(target: "it.image", load: Load)],
+                    run: When("{condition}")),
+            ],
+            outputs: [(name: "image", material: "it.image")]"#
         );
         let files = Files::new(SHADERS)
-            .with("pipelines/graph.ron", outer)
-            .with("pipelines/shared/inner.ron", inner);
+            .document("pipelines/graph.ron", &outer)
+            .document("pipelines/shared/inner.ron", inner);
         plan_with(&files, None)
     };
-    let right = plan("outer").unwrap_or_else(|errors| panic!("{errors}"));
-    assert_eq!(names(&right), ["it.smooth", "it.keep", "one"]);
+    assert_eq!(
+        names(&right(plan("outer"))),
+        ["it.smooth", "it.keep", "one"]
+    );
     // The inner `on` is not the outer one: two writers of one material would run apart.
-    assert!(codes(plan("on")).contains(&Code::RunCondition));
+    let errors = wrong(plan("on"));
+    assert!(
+        codes(errors.iter()).contains(&Code::RunCondition),
+        "{errors}"
+    );
 }
 
-/// What the host provides can stand for a material of an included document.
+/// What the scene gives can stand for an input of an included document.
 #[test]
-fn a_material_is_connected_with_a_provided_resource() {
-    let inner = r#"(format: 1, materials: [Buffer(name: "indices", count: 3), Buffer(name: "sum", count: 1)],
-        passes: [Clear(name: "reset", target: "indices"), Compute(name: "add", dispatch: Groups(1, 1, 1))])"#;
-    let outer = |materials: &str| {
-        format!(
-            "(format: 1, passes: [Include(graph: \"inner.ron\", prefix: \"it\"{materials})], \
-             outputs: [(name: \"sum\", material: \"it.sum\")])"
-        )
-    };
-    let add = "var<storage, read> indices: array<u32>; var<storage, read_write> sum: array<u32>;
+fn an_input_is_bound_to_what_the_scene_gives() {
+    let inner = r#"
+        inputs: [Buffer(name: "indices")],
+        materials: [Buffer(name: "sum", count: 1)],
+        passes: [
+            Clear(name: "reset", target: "indices"),
+            Compute(name: "add", dispatch: Groups(1, 1, 1)),
+        ],
+        outputs: ["indices", "sum"]"#;
+    let outer = r#"
+        materials: [Buffer(name: "own", count: 3)],
+        passes: [Include(graph: "inner.ron", name: "it", bind: {"indices": "own"})],
+        outputs: [(name: "sum", material: "it.sum")]"#;
+    let add = "var<storage, read> indices: array<u32>;
+        var<storage, read_write> sum: array<u32>;
         @compute @workgroup_size(1) fn main() { sum[0] = indices[1]; }";
-    let files = Files::new([("inner.ron", inner), ("add.wgsl", add)]);
-    let provided = |files: Files| {
-        let graph = load(&files)?;
-        let plan = graph.plan(&PlanRequest::new([8, 8], &Triangle))?;
+    let own = Files::graph(outer)
+        .document("inner.ron", inner)
+        .with("add.wgsl", add);
+    let provided = |files: &Files| {
+        let plan = load(files)?.plan(&PlanRequest::new([8, 8], &Triangle))?;
         Ok::<_, Diagnostics>(plan.provided().join(" "))
     };
-    let own = provided(files.clone().with("graph.ron", outer("")));
-    assert_eq!(own.unwrap_or_else(|errors| panic!("{errors}")), "");
-    let connect = outer(", materials: {\"indices\": \"scene.indices\"}");
+    assert_eq!(right(provided(&own)), "");
+    let bound = own
+        .edited(
+            "graph.ron",
+            r#""indices": "own""#,
+            r#""indices": "scene.indices""#,
+        )
+        .edited("graph.ron", r#"Buffer(name: "own", count: 3)"#, "");
     // The host's buffer is only there to be read, so the included document must not clear it.
-    let cleared = provided(files.clone().with("graph.ron", connect.clone()));
-    let text = cleared.err().map(|errors| errors.to_string());
-    assert!(text.is_some_and(|text| text.contains("`scene.indices`")));
-    let reader = inner.replace("Clear(name: \"reset\", target: \"indices\"), ", "");
-    let connected = provided(files.with("inner.ron", reader).with("graph.ron", connect));
-    assert_eq!(
-        connected.unwrap_or_else(|errors| panic!("{errors}")),
-        "scene.indices"
+    let errors = wrong(provided(&bound)).to_string();
+    assert!(errors.contains("`indices` cannot be cleared"), "{errors}");
+    let clear = r#"Clear(name: "reset", target: "indices"),"#;
+    let reading = bound.edited("inner.ron", clear, "").edited(
+        "inner.ron",
+        r#"["indices", "sum"]"#,
+        r#"["sum"]"#,
     );
+    assert_eq!(right(provided(&reading)), "scene.indices");
 }
 
 /// Shaders are looked for beside the document that names them.
 #[test]
 fn two_documents_have_shaders_of_one_name() {
-    let inner = r#"(format: 1, materials: [Buffer(name: "items", count: 2)],
-        passes: [Compute(name: "work", dispatch: Over("items"))])"#;
-    let shader = |items: &str| {
+    let inner = r#"materials: [Buffer(name: "items", count: 2)],
+        passes: [Compute(name: "work", dispatch: Over("items.count"))], outputs: ["items"]"#;
+    let outer = r#"
+        passes: [
+            Include(graph: "a/inner.ron", name: "a"),
+            Include(graph: "b/inner.ron", name: "b"),
+        ],
+        outputs: [(name: "a", material: "a.items"), (name: "b", material: "b.items")]"#;
+    let shader = |item: &str| {
         format!(
-            "var<storage, read_write> items: array<{items}>; @compute @workgroup_size(1) fn \
-             main() {{ items[0] = {items}(1); }}"
+            "var<storage, read_write> items: array<{item}>;
+             @compute @workgroup_size(1) fn main() {{ items[0] = {item}(1); }}"
         )
     };
-    let files = Files::new([])
-        .with(
-            "graph.ron",
-            r#"(format: 1, passes: [Include(graph: "a/inner.ron", prefix: "a"), Include(graph: "b/inner.ron", prefix: "b")],
-                outputs: [(name: "a", material: "a.items"), (name: "b", material: "b.items")])"#,
-        )
-        .with("a/inner.ron", inner)
-        .with("b/inner.ron", inner)
+    let files = Files::graph(outer)
+        .document("a/inner.ron", inner)
+        .document("b/inner.ron", inner)
         .with("a/work.wgsl", shader("u32"))
         .with("b/work.wgsl", shader("vec4<u32>"));
     // Layouts come from the shaders, so the sizes say which one was found.
-    let plan = support::plan(&files).unwrap_or_else(|errors| panic!("{errors}"));
+    let plan = right(support::plan(&files));
     let sizes: Vec<u32> = plan.outputs().iter().map(|output| output.size[0]).collect();
     assert_eq!(sizes, [8, 32]);
 }
@@ -343,29 +408,26 @@ fn two_documents_have_shaders_of_one_name() {
 #[test]
 fn repeats_follow_their_param() {
     let files = files(
-        "Texture(name: \"maps\", format: R32Float, size: Square(4), layers: 4), Texture(name: \
-         \"last\", format: R32Float, size: Square(4))",
+        r#"Texture(name: "maps", format: R32Float, size: 4, layers: 4),
+           Texture(name: "last", format: R32Float, size: 4)"#,
         r#"Clear(name: "reset", target: "maps"),
-           Group(name: "cascade", repeat: Param("n"), passes: [
-               Fullscreen(name: "number", color: [(target: "maps[index]")]),
-               Include(graph: "shared/inner.ron", materials: {"image": "maps[index]"}),
-               Fullscreen(name: "twice", shader: "number", color: [(target: "maps[0]", load: Load)], repeat: 2),
+           Group(name: "cascade", repeat: "n", passes: [
+               Fullscreen(name: "number", color: ["maps[index]"]),
+               Include(graph: "shared/inner.ron", bind: {"image": "maps[index]"}),
+               Fullscreen(name: "twice", shader: "number", repeat: 2,
+                   color: [(target: "maps[0]", load: Load)]),
            ]),
-           Fullscreen(name: "smooth", bind: {"image": "maps[3]"}, color: [(target: "last")])"#,
-        r#"(name: "maps"), (name: "last"), (name: "layer", material: "maps[2]")"#,
+           Fullscreen(name: "smooth", bind: {"image": "maps[3]"}, color: ["last"])"#,
+        r#""maps", "last", (name: "layer", material: "maps[2]")"#,
     );
-    let live = |n| {
-        let plan = plan_with(&files, Some(n)).unwrap_or_else(|errors| panic!("{errors}"));
-        let mut all = names(&plan);
-        all.extend(plan.culled().iter().map(|pass| pass.name.clone()));
-        all.len()
+    let passes = |n| {
+        let plan = right(plan_with(&files, Some(n)));
+        names(&plan).len() + plan.culled().len()
     };
-    assert_eq!([0, 1, 4].map(live), [2, 7, 22]);
-    let plan = plan_with(&files, Some(2)).unwrap_or_else(|errors| panic!("{errors}"));
-    let twice: Vec<String> = names(&plan)
-        .into_iter()
-        .filter(|name| name.contains("twice"))
-        .collect();
+    assert_eq!([0, 1, 4].map(passes), [2, 7, 22]);
+    let plan = right(plan_with(&files, Some(2)));
+    let mut twice = names(&plan);
+    twice.retain(|name| name.contains("twice"));
     assert_eq!(
         twice,
         [
@@ -375,218 +437,123 @@ fn repeats_follow_their_param() {
             "cascade[1].twice[1]"
         ]
     );
-    let errors = plan_with(&files, Some(5))
-        .err()
-        .map(|errors| errors.to_string());
-    assert!(errors.is_some_and(|errors| errors.contains("there is no `maps[4]`")));
-    // A material that is called just so comes before the layer.
+    let errors = wrong(plan_with(&files, Some(5))).to_string();
+    assert!(
+        errors.contains("its layers are [0] to [3], this is [4]"),
+        "{errors}"
+    );
     assert_eq!(plan.outputs()[2].size, [4, 4]);
 }
 
-fn codes(result: Result<Plan, Diagnostics>) -> Vec<Code> {
-    let errors = result.err();
-    errors
-        .iter()
-        .flat_map(Diagnostics::iter)
-        .map(|error| error.code)
-        .collect()
-}
+const SUBGROUP: wgt::Features = wgt::Features::SUBGROUP;
 
-const SUBGROUP: wgpu::Features = wgpu::Features::SUBGROUP;
-
-/// A param with a fallback, here and in an included document.
+/// A param whose default asks for a feature, here and in an included document.
 #[test]
-fn a_missing_feature_changes_params() {
-    let inner = r#"(format: 1, requires: [(feature: "SUBGROUP", fallback: {"edge": 2})],
-        params: [(name: "edge", type: U32, default: 8)],
-        materials: [Texture(name: "image", format: R32Float, size: Square(Param("edge")))],
-        passes: [Fullscreen(name: "one", color: [(target: "image")])],
-        outputs: [(name: "image")])"#;
+fn a_missing_feature_changes_defaults() {
+    let inner = r#"
+        params: [U32(name: "edge", default: "has(SUBGROUP) ? 8 : 2")],
+        materials: [Texture(name: "image", format: R32Float, size: "edge")],
+        passes: [Fullscreen(name: "one", color: ["image"])],
+        outputs: ["image"]"#;
+    let outer = r#"
+        params: [U32(name: "edge", default: "has(SUBGROUP) ? 16 : 4")],
+        passes: [
+            Include(graph: "inner.ron", name: "own"),
+            Include(graph: "inner.ron", name: "given", set: {"edge": "edge"}),
+        ],
+        outputs: [(name: "own", material: "own.image"), (name: "given", material: "given.image")]"#;
     let files = Files::new(SHADERS)
-        .with("inner.ron", inner)
-        .with(
-            "graph.ron",
-            r#"(format: 1, params: [(name: "edge", type: U32, default: 16)],
-                passes: [Include(graph: "inner.ron", prefix: "own"), Include(graph: "inner.ron", prefix: "given", params: {"edge": Param("edge")})],
-                outputs: [(name: "own", material: "own.image"), (name: "given", material: "given.image")])"#,
-        );
-    let graph = load(&files).unwrap_or_else(|errors| panic!("{errors}"));
+        .document("inner.ron", inner)
+        .document("graph.ron", outer);
+    let graph = right(load(&files));
     assert_eq!(graph.features(), SUBGROUP);
-    let plan = |features, edge: Option<u32>| {
+    let edges = |features, edge: Option<u32>| {
         let mut request = PlanRequest::new([8, 8], &NoProvider);
         request.features = features;
         let edge = edge.map(|edge| ("edge".to_owned(), ParamValue::U32(edge)));
         request.params.extend(edge);
-        graph.plan(&request)
+        let plan = right(graph.plan(&request));
+        plan.outputs()
+            .iter()
+            .map(|output| output.size[0])
+            .collect::<Vec<_>>()
     };
-    let edges =
-        |plan: &Plan| -> Vec<u32> { plan.outputs().iter().map(|output| output.size[0]).collect() };
-    let with = plan(SUBGROUP, None).unwrap_or_else(|errors| panic!("{errors}"));
-    assert_eq!((edges(&with), with.fallbacks()), (vec![8, 16], &[][..]));
-    let without = plan(wgpu::Features::empty(), None).unwrap_or_else(|errors| panic!("{errors}"));
-    assert_eq!(edges(&without), [2, 2]);
-    let replaced: Vec<(&str, &str, String, String)> = without
-        .fallbacks()
-        .iter()
-        .map(|fallback| {
-            let (old, new) = (fallback.instead_of.to_string(), fallback.value.to_string());
-            (fallback.feature.as_str(), fallback.param.as_str(), old, new)
-        })
-        .collect();
-    let expected = [("own.edge", "8"), ("given.edge", "16")];
-    assert_eq!(
-        replaced,
-        expected.map(|(param, old)| ("SUBGROUP", param, old.to_owned(), "2".to_owned()))
-    );
-    // What was asked for by name is not replaced in silence.
-    assert_eq!(
-        codes(plan(wgpu::Features::empty(), Some(4))),
-        [Code::Feature]
-    );
-    assert_eq!(codes(plan(wgpu::Features::empty(), Some(2))), []);
-    assert_eq!(codes(plan(SUBGROUP, Some(4))), []);
+    let none = wgt::Features::empty();
+    assert_eq!(edges(SUBGROUP, None), [8, 16]);
+    assert_eq!(edges(none, None), [2, 4]);
+    // What is asked for by name is not replaced in silence.
+    assert_eq!(edges(none, Some(6)), [2, 6]);
+    assert_eq!(edges(SUBGROUP, Some(6)), [8, 6]);
+}
+
+/// What a document cannot do without, its includer cannot either.
+#[test]
+fn a_required_feature_is_required_of_the_whole() {
+    let needs = r#"requires: ["SUBGROUP"], materials: [Texture(name: "image", format: R32Float)],
+        passes: [Fullscreen(name: "one", color: ["image"])], outputs: ["image"]"#;
+    let outer = |condition: &str| {
+        let sections = format!(
+            r#"materials: [Texture(name: "own", format: R32Float)],
+            passes: [
+                Fullscreen(name: "one", color: ["own"]),
+                Include(graph: "needs.ron", if: "{condition}"),
+            ],
+            outputs: ["own"]"#
+        );
+        let files = Files::new(SHADERS).document("needs.ron", needs);
+        right(load(&files.document("graph.ron", &sections)))
+    };
+    let request = PlanRequest::new([8, 8], &NoProvider);
+    let always = outer("true");
+    assert_eq!(always.features(), SUBGROUP);
+    assert_eq!(codes(wrong(always.plan(&request)).iter()), [Code::Feature]);
+    // Where it is not there, it needs nothing.
+    right(outer("has(SUBGROUP)").plan(&request));
+}
+
+/// The root of documents `d1.ron` and on.
+fn root(passes: &str) -> Files {
+    Files::new(SHADERS).document(
+        "graph.ron",
+        &format!(
+            r#"materials: [Texture(name: "image", format: R32Float)],
+            passes: [Fullscreen(name: "one", color: ["image"]), {passes}], outputs: ["image"]"#
+        ),
+    )
 }
 
 #[test]
 fn includes_that_go_wild_are_stopped() {
-    // Each includes the next one twice: 2^64 in all.
-    let mut doubling = Files::new(SHADERS);
-    let mut chain = Files::new(SHADERS);
-    for level in 0..80 {
-        let next = level + 1;
-        let double = format!(
-            r#"(format: 1, passes: [Include(graph: "d{next}.ron", prefix: "a"), Include(graph: "d{next}.ron", prefix: "b")])"#
-        );
-        let path = |name: String| {
-            if level == 0 {
-                "graph.ron".to_owned()
-            } else {
-                name
-            }
-        };
-        if level < 60 {
-            doubling = doubling.with(&path(format!("d{level}.ron")), double);
-        }
-        let one = format!(r#"(format: 1, passes: [Include(graph: "d{next}.ron")])"#);
-        chain = chain.with(&path(format!("d{level}.ron")), one);
-    }
-    doubling = doubling.with("d60.ron", "(format: 1)");
-    let text = |files: &Files| {
-        load(files)
-            .err()
-            .map(|errors| errors.to_string())
-            .unwrap_or_default()
-    };
-    assert!(
-        text(&doubling).contains("more than 16,384 passes"),
-        "{}",
-        text(&doubling)
-    );
-    assert!(
-        text(&chain).contains("more than 64 deep"),
-        "{}",
-        text(&chain)
-    );
-    // Read from the innermost outwards, none of them is deep when it is read.
-    let mut backwards = Files::new(SHADERS);
-    let mut all = String::new();
-    for level in (0..80).rev() {
-        all.push_str(&format!(
-            r#"Include(graph: "d{level}.ron", prefix: "p{level}"), "#
-        ));
-        let one = match level {
-            79 => "(format: 1)".to_owned(),
-            _ => format!(
-                r#"(format: 1, passes: [Include(graph: "d{}.ron")])"#,
-                level + 1
-            ),
-        };
-        backwards = backwards.with(&format!("d{level}.ron"), one);
-    }
-    backwards = backwards.with("graph.ron", format!("(format: 1, passes: [{all}])"));
-    assert!(
-        text(&backwards).contains("more than 64 deep"),
-        "{}",
-        text(&backwards)
-    );
-}
-
-static GPU: LazyLock<gpu::Gpu> =
-    LazyLock::new(|| gpu::open(None).unwrap_or_else(|error| panic!("{error}")));
-
-/// One frame on the device: the first channel of each texture that is read.
-fn run(files: &Files, captures: &[&str]) -> BTreeMap<String, Vec<f32>> {
-    let graph = graph(files).unwrap_or_else(|errors| panic!("{errors}"));
-    let mut request = PlanRequest::new([8, 8], &Triangle);
-    request.limits = GPU.device.limits();
-    request.features = GPU.device.features();
-    request.captures = captures
-        .iter()
-        .map(|material| Capture {
-            material: (*material).to_owned(),
-            after: None,
-        })
-        .collect();
-    let plan = graph
-        .plan(&request)
-        .unwrap_or_else(|errors| panic!("{errors}"));
-    let names: Vec<String> = plan
-        .outputs()
-        .into_iter()
-        .map(|output| output.name)
-        .collect();
-    let read: Vec<&str> = names.iter().map(String::as_str).collect();
-    let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut Triangle)
-        .unwrap_or_else(|error| panic!("{error}"));
-    let mut encoder = GPU
-        .device
-        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    executor
-        .encode(
-            &mut encoder,
-            &Frame {
-                timing: false,
-                read: &read,
-                ..Frame::default()
-            },
+    // Each includes the next one twice: 2^60 in all.
+    let twice = |next: u32| {
+        format!(
+            r#"Include(graph: "d{next}.ron", name: "a"), Include(graph: "d{next}.ron", name: "b")"#
         )
-        .unwrap_or_else(|error| panic!("{error}"));
-    GPU.queue.submit([encoder.finish()]);
-    executor
-        .submitted(&GPU.queue)
-        .unwrap_or_else(|error| panic!("{error}"));
-    let report = executor.finish().unwrap_or_else(|error| panic!("{error}"));
-    let values = |content: &Content| content.as_f32().expect("they hold floats");
-    report
-        .readbacks
-        .iter()
-        .map(|readback| (readback.name.clone(), values(&readback.content)))
-        .collect()
-}
-
-#[test]
-fn one_document_twice_on_the_device() {
-    let files = files(
-        "",
-        r#"Include(graph: "shared/inner.ron", prefix: "left", params: {"value": Param("value")}),
-           Include(graph: "shared/inner.ron", prefix: "right", params: {"value": 3.5, "edge": 2})"#,
-        r#"(name: "left", material: "left.result"), (name: "right", material: "right.result")"#,
-    );
-    let values = run(&files, &["left.image"]);
-    assert_eq!(values["left"], [7.0; 16]);
-    assert_eq!(values["right"], [3.5; 4]);
-    assert_eq!(values["left.image"], [7.0; 16]);
-}
-
-#[test]
-fn layers_of_an_array_on_the_device() {
-    let files = files(
-        "Texture(name: \"maps\", format: R32Float, size: Square(2), layers: 3)",
-        r#"Fullscreen(name: "number", color: [(target: "maps[index]")], repeat: 3)"#,
-        r#"(name: "maps[0]"), (name: "last", material: "maps[2]")"#,
-    );
-    let values = run(&files, &["maps[1]"]);
-    assert_eq!(values["maps[0]"], [10.0; 4]);
-    assert_eq!(values["maps[1]"], [11.0; 4]);
-    assert_eq!(values["last"], [12.0; 4]);
+    };
+    let mut doubling = root(&twice(1)).document("d60.ron", "");
+    for level in 1..60 {
+        let passes = format!("passes: [{}]", twice(level + 1));
+        doubling = doubling.document(&format!("d{level}.ron"), &passes);
+    }
+    let text = wrong(support::plan(&doubling)).to_string();
+    assert!(text.contains("more than 16384 passes"), "{text}");
+    // A chain, read from the outermost inwards, and from the innermost outwards, so that none of
+    // them is deep when it is read.
+    let mut all = String::new();
+    let mut backwards = Files::default();
+    for level in (1..80).rev() {
+        all += &format!(r#"Include(graph: "d{level}.ron", name: "p{level}"), "#);
+        let passes = match level {
+            79 => String::new(),
+            _ => format!(r#"passes: [Include(graph: "d{}.ron")]"#, level + 1),
+        };
+        backwards = backwards.document(&format!("d{level}.ron"), &passes);
+    }
+    for start in [r#"Include(graph: "d1.ron")"#, &all] {
+        let mut chain = root(start);
+        chain.texts.extend(backwards.texts.clone());
+        let text = wrong(load(&chain)).to_string();
+        assert!(text.contains("more than 64 deep"), "{text}");
+        assert_eq!(text.matches("error[").count(), 1, "{text}");
+    }
 }

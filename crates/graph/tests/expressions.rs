@@ -196,7 +196,7 @@ const MISTAKES: &[(&str, Code, &str, &str)] = {
             "a whole number is needed",
             "1 + scale",
         ),
-        ("1 + soft", Expression, "numbers is needed", "1 + soft"),
+        ("1 + soft", Expression, "a number is needed", "1 + soft"),
         (
             "radius ? 1 : 2",
             Expression,

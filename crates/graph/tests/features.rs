@@ -129,10 +129,7 @@ fn a_stencil_that_cannot_be() {
             r#"(target: "both", load: Clear(256))"#,
             Code::FormatMismatch,
         ),
-        (
-            r#"(target: "both", load: Clear(0.5))"#,
-            Code::FormatMismatch,
-        ),
+        (r#"(target: "both", load: Clear(0.5))"#, Code::Expression),
         (
             r#"(target: "both", front: (pass: Increment))"#,
             Code::UnknownVariant,

@@ -275,9 +275,9 @@ fn sizes_without_end() {
         (texture(r#""viewport.size % 0""#), "this divides by zero"),
         (texture(r#""viewport.size * 0""#), "a texture of no texels"),
         (texture(r#""-viewport.size""#), "-64 is less than nothing"),
-        (texture("NaN"), "`NaN` stands in quotes"),
+        (texture("NaN"), "`NaN` has no value"),
         (texture("inf"), "a size is needed here"),
-        (texture("-inf"), "whole numbers is needed"),
+        (texture("-inf"), "a whole number is needed"),
         (texture("-1"), "-1"),
         (texture("(1, 0)"), "a texture of no texels"),
         (
@@ -308,7 +308,7 @@ fn sizes_without_end() {
 fn params_that_are_no_numbers() {
     const NONE: &str = "the default of param `p` does not fit";
     for (ty, value, parts) in [
-        ("F32", "NaN", ["`NaN` stands in quotes", ""]),
+        ("F32", "NaN", ["`NaN` has no value", ""]),
         ("F32", "inf", [NONE, ""]),
         ("F32", "-inf", [NONE, "finite"]),
         ("F32", "1e39", [NONE, "finite"]),
@@ -320,7 +320,7 @@ fn params_that_are_no_numbers() {
         ("U32", "-1", [NONE, ""]),
         ("U32", "4294967296", [NONE, ""]),
         ("U32", "1.5", [NONE, ""]),
-        ("U32", "NaN", ["`NaN` stands in quotes", ""]),
+        ("U32", "NaN", ["`NaN` has no value", ""]),
         ("I32", "2147483648", [NONE, ""]),
         (
             "I32",

@@ -231,7 +231,6 @@ fn an_input_is_of_the_kind_and_format_that_is_asked_for() {
 
 #[test]
 fn a_param_goes_where_all_of_its_values_may() {
-    let misfit = "`value` here may be what `value` there may not";
     assert_wrong(&[
         (
             "",
@@ -247,7 +246,7 @@ fn a_param_goes_where_all_of_its_values_may() {
             "",
             &[["inner.ron", INNER_VALUE, r#"F32(name: "value", max: 2)"#]],
             Code::ParamValue,
-            misfit,
+            "`value` (f32) is handed to `value` (f32, 2 at most)",
         ),
         (
             "",
@@ -260,7 +259,7 @@ fn a_param_goes_where_all_of_its_values_may() {
                 ],
             ],
             Code::ParamValue,
-            misfit,
+            "`value` (u32) is handed to `value` (f32)",
         ),
         (
             r#", set: {"edge": 65}"#,

@@ -2,29 +2,33 @@
 
 mod support;
 
-use skiagraph_graph::{Capture, Field, MemoryEntry, Plan, PlanRequest, Scalar};
-use support::{Files, Triangle, load};
+use skiagraph_graph::{Capture, Field, ItemScalar, MemoryEntry, Plan, PlanRequest};
+use support::{Files, Triangle, load, right};
 
 /// `draw` writes image and depth with the camera bound; `gather` writes the items without it;
 /// `keep` copies both.
-const DOCUMENT: &str = r#"(
-    format: 1,
+const DOCUMENT: &str = r#"
     materials: [
-        Texture(name: "image", format: Rgba16Float, size: Square(8), mips: 2, views: [(name: "top", mip: 0, mips: 1)]),
-        Texture(name: "depth", format: Depth32Float, size: Square(8)),
-        Texture(name: "kept_depth", format: Depth32Float, size: Square(8)),
+        Texture(name: "image", format: Rgba16Float, size: 8, mips: 2),
+        Texture(name: "depth", format: Depth32Float, size: 8),
+        Texture(name: "kept_depth", format: Depth32Float, size: 8),
         Buffer(name: "items", count: 5),
         Buffer(name: "kept", count: 5),
-        Buffer(name: "total", count: 1),
+        Buffer(name: "total"),
     ],
     passes: [
-        Raster(name: "draw", draw: CountOf("scene.positions"), color: [(target: "top")], depth: (target: "depth")),
+        Raster(
+            name: "draw",
+            draw: "scene.positions.count",
+            color: ["image.mip[0]"],
+            depth: "depth",
+        ),
         Compute(name: "gather", dispatch: Groups(1, 1, 1)),
         Copy(name: "keep", from: "items", to: "kept"),
         Copy(name: "keep_depth", from: "depth", to: "kept_depth"),
     ],
-    outputs: [(name: "top"), (name: "kept"), (name: "kept_depth"), (name: "total")],
-)"#;
+    outputs: [(name: "top", material: "image.mip[0]"), "kept", "kept_depth", "total"],
+"#;
 
 const DRAW: &str = "
     var<storage, read> scene_positions: array<vec4<f32>>;
@@ -43,21 +47,16 @@ const GATHER: &str = "
     @compute @workgroup_size(1) fn main() { items[0].hit.id = 1u; total = 2u; }";
 
 fn plan(captures: &[(&str, &str)]) -> Plan {
-    let files = Files::new([
-        ("graph.ron", DOCUMENT),
-        ("draw.wgsl", DRAW),
-        ("gather.wgsl", GATHER),
-    ]);
-    let graph = load(&files).unwrap_or_else(|error| panic!("{error}"));
+    let files = Files::graph(DOCUMENT)
+        .with("draw.wgsl", DRAW)
+        .with("gather.wgsl", GATHER);
     let mut request = PlanRequest::new([8, 8], &Triangle);
     let capture = |(material, after): &(&str, &str)| Capture {
         material: (*material).to_owned(),
         after: Some((*after).to_owned()),
     };
     request.captures = captures.iter().map(capture).collect();
-    graph
-        .plan(&request)
-        .unwrap_or_else(|error| panic!("{error}"))
+    right(right(load(&files)).plan(&request))
 }
 
 #[test]
@@ -77,14 +76,14 @@ fn items_are_those_of_the_shader_that_declares_them() {
     let plan = plan(&[("items", "gather"), ("scene.positions", "draw")]);
     let item = plan.item("kept").unwrap();
     let expected = [
-        ("hit.place.x", 0, Scalar::F32),
-        ("hit.place.y", 4, Scalar::F32),
-        ("hit.id", 8, Scalar::U32),
-        ("hit.parts[0]", 12, Scalar::I32),
-        ("hit.parts[1]", 16, Scalar::I32),
-        ("normal.x", 32, Scalar::F32),
-        ("normal.y", 36, Scalar::F32),
-        ("normal.z", 40, Scalar::F32),
+        ("hit.place.x", 0, ItemScalar::F32),
+        ("hit.place.y", 4, ItemScalar::F32),
+        ("hit.id", 8, ItemScalar::U32),
+        ("hit.parts[0]", 12, ItemScalar::I32),
+        ("hit.parts[1]", 16, ItemScalar::I32),
+        ("normal.x", 32, ItemScalar::F32),
+        ("normal.y", 36, ItemScalar::F32),
+        ("normal.z", 40, ItemScalar::F32),
     ];
     let expected = expected.map(|(name, offset, scalar)| Field {
         name: name.to_owned(),
@@ -111,7 +110,7 @@ fn memory_is_listed_by_material_and_adds_up() {
     };
     let image = entry("image");
     assert_eq!((image.size, image.mips, image.layers), ([8, 8], 2, 1));
-    assert_eq!(image.format, Some(wgpu::TextureFormat::Rgba16Float));
+    assert_eq!(image.format, Some(wgt::TextureFormat::Rgba16Float));
     assert_eq!(image.bytes, (8 * 8 + 4 * 4) * 8);
     let items = entry("items");
     assert_eq!(

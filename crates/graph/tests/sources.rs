@@ -94,3 +94,25 @@ fn the_first_layer_that_has_a_file_wins() {
     assert_eq!(layers.read("locked"), Err("locked".to_owned()));
     assert_eq!(layers.list("f"), ["x", "y"]);
 }
+
+/// A store that decodes no pictures says so of those that it has, and is passed over otherwise.
+#[test]
+fn pictures_come_from_the_first_layer_that_has_one() {
+    let plain = tempfile::tempdir().expect("a temporary folder can be made");
+    std::fs::write(plain.path().join("torn.png"), "no picture").expect("it can be written");
+    let folder = FolderSources {
+        root: plain.path().to_owned(),
+    };
+    let files = Files::default()
+        .picture("tile.png", 2, &[0, 255])
+        .picture("torn.png", 1, &[255]);
+    let layers = LayeredSources(vec![Box::new(folder), Box::new(files)]);
+    let tile = layers.picture("tile.png").expect("it can be decoded");
+    assert_eq!(tile.map(|picture| picture.size), Some([2, 1]));
+    assert_eq!(
+        layers.picture("none.png").map(|found| found.is_some()),
+        Ok(false)
+    );
+    let torn = layers.picture("torn.png").err();
+    assert_eq!(torn.as_deref(), Some("this program decodes no pictures"));
+}

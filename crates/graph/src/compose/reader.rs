@@ -157,7 +157,8 @@ impl<'a> Reader<'a> {
                 What::Include(include) => {
                     include.document = Some(self.include(include));
                     let document = include.document();
-                    document.map_or(1, |document| document.include_depth + 1)
+                    // What could not be read was reported, and is not too deep besides.
+                    document.map_or(0, |document| document.include_depth + 1)
                 }
                 What::Group(entries) => self.attach(entries),
                 What::Pass(_) => 0,

@@ -46,7 +46,7 @@ fn check_entries(
     for entry in entries.iter().flatten() {
         let (name, span) = (&entry.name.value, &entry.name.span);
         match &entry.what {
-            What::Pass(_) => passes.add(&format!("{prefix}{name}"), span, reports),
+            What::Pass(_) => drop(passes.add(&format!("{prefix}{name}"), span, reports)),
             What::Group(inner) => {
                 let prefix = format!("{prefix}{name}.");
                 materials.add(name, span, reports);
@@ -60,9 +60,9 @@ fn check_entries(
                 }
             }
             What::Include(include) => {
-                materials.add(name, span, reports);
+                let is_first = materials.add(name, span, reports);
                 // Which repetitions there are, and so their names, is not known yet.
-                if entry.repeat.is_some() {
+                if entry.repeat.is_some() || !is_first {
                     continue;
                 }
                 let namespace = match include.is_named {
@@ -88,8 +88,10 @@ fn check_entries(
                         .bind
                         .iter()
                         .any(|(name, _)| name.value == output.name.as_str());
-                    if !bound && !document.inputs.iter().any(is_own) {
-                        let full = format!("{namespace}{}", output.name.value);
+                    let full = format!("{namespace}{}", output.name.value);
+                    // Without a name of its own the include is known by what it gives.
+                    let is_own_name = full == **name;
+                    if !bound && !is_own_name && !document.inputs.iter().any(is_own) {
                         materials.add(&full, &include.graph.span, reports);
                     }
                 }
@@ -112,7 +114,8 @@ impl Names {
         }
     }
 
-    fn add(&mut self, name: &str, span: &Span, reports: &mut Reports) {
+    /// Whether the name was free.
+    fn add(&mut self, name: &str, span: &Span, reports: &mut Reports) -> bool {
         let spelling = match self.what {
             "material" => wgsl_identifier(name),
             _ => name.to_owned(),
@@ -125,8 +128,9 @@ impl Names {
                 span: span.clone(),
                 first: first.clone(),
             });
-            return;
+            return false;
         }
         self.seen.insert(spelling, (name.to_owned(), span.clone()));
+        true
     }
 }

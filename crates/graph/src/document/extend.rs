@@ -31,6 +31,7 @@ pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports)
         // What a method promises holds of it as it is written, not of what others make of it.
         claims: own.claims,
         broken_params: base.broken_params.or(own.broken_params),
+        incomplete: base.incomplete.or(own.incomplete),
     };
     for (name, value) in own.set {
         let known = |item: &&mut RawItem| item.name().is_some_and(|own| *own == *name);

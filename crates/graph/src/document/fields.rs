@@ -142,10 +142,11 @@ where
     D: Deserializer<'de>,
     L: DeserializeOwned,
 {
-    let (text, _) = raw(deserializer)?;
-    match text.starts_with('"') {
-        true => read(text).map(short),
-        false => read(text).map(long),
+    let (text, span) = raw(deserializer)?;
+    match text.chars().next() {
+        Some('"') => read(text).map(short),
+        Some(first) if first.is_alphanumeric() => Err(refuse(DocumentError::NoString(span))),
+        _ => read(text).map(long),
     }
 }
 

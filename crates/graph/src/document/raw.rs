@@ -35,6 +35,8 @@ pub(crate) struct RawDocument {
     pub claims: RawMap,
     /// A param could not be read: nothing of the document has a size then.
     pub broken_params: Option<Reported>,
+    /// A list or an item of it could not be read, and nobody knows which names it would have given.
+    pub incomplete: Option<Reported>,
 }
 
 /// `Kind(name: …, …)`, a param, an input or a material.
@@ -99,7 +101,7 @@ impl RawEntry {
 
 /// The name of a file without folder and ending.
 pub(crate) fn stem(path: &str) -> &str {
-    let file = path.rsplit('/').next().unwrap_or(path);
+    let file = path.rsplit(['/', '\\']).next().unwrap_or(path);
     file.strip_suffix(".ron").unwrap_or(file)
 }
 
@@ -126,25 +128,33 @@ pub(crate) fn split(file: SourceFile, reports: &mut Reports) -> Result<RawDocume
     let fields = fields.map_err(|error| reports.tell(error))?;
     let mut sections = Sections {
         nodes: sections(fields, reports),
+        incomplete: None,
         reports,
     };
     sections.format(&file)?;
     let passes = sections.list("passes");
+    let inputs = sections.items("inputs").0;
+    let materials = sections.items("materials").0;
+    // Without its params nothing of a document is looked at.
+    let incomplete = sections.incomplete;
+    let params = sections.items("params");
+    sections.incomplete = incomplete;
     let mut document = RawDocument {
         description: sections.nodes.remove("description"),
         extends: sections.nodes.remove("extends"),
         requires: sections.list("requires"),
         params: Vec::new(),
-        inputs: sections.items("inputs").0,
-        materials: sections.items("materials").0,
+        inputs,
+        materials,
         outputs: sections.list("outputs"),
         set: sections.map("set"),
         claims: sections.map("claims"),
         passes: entries(passes, sections.reports),
         broken_params: None,
+        incomplete: sections.incomplete,
         file,
     };
-    (document.params, document.broken_params) = sections.items("params");
+    (document.params, document.broken_params) = params;
     Ok(document)
 }
 
@@ -166,6 +176,7 @@ fn sections(fields: Vec<Field>, reports: &mut Reports) -> HashMap<String, Node> 
 
 struct Sections<'r> {
     nodes: HashMap<String, Node>,
+    incomplete: Option<Reported>,
     reports: &'r mut Reports,
 }
 
@@ -192,7 +203,11 @@ impl Sections<'_> {
 
     fn list(&mut self, section: &str) -> Vec<Node> {
         let node = self.nodes.remove(section);
-        node.map_or_else(Vec::new, |node| list(&node, self.reports))
+        let read = node.map_or(Ok(Vec::new()), |node| list(&node, self.reports));
+        read.unwrap_or_else(|reported| {
+            self.incomplete = Some(reported);
+            Vec::new()
+        })
     }
 
     fn map(&mut self, section: &str) -> RawMap {
@@ -206,7 +221,10 @@ impl Sections<'_> {
         for node in self.list(section) {
             match item(&node, section) {
                 Ok(item) => items.push(item),
-                Err(error) => broken = Some(self.reports.tell(error)),
+                Err(error) => {
+                    broken = Some(self.reports.tell(error));
+                    self.incomplete = broken;
+                }
             }
         }
         let mut seen: HashMap<String, Span> = HashMap::new();
@@ -243,21 +261,19 @@ fn item(node: &Node, section: &'static str) -> Result<RawItem, crate::diagnostic
     Ok(RawItem { tag, fields })
 }
 
-fn list(node: &Node, reports: &mut Reports) -> Vec<Node> {
-    let nodes = node.list().map_err(|error| reports.tell(error));
-    let nodes = nodes.unwrap_or_default();
+fn list(node: &Node, reports: &mut Reports) -> Result<Vec<Node>, Reported> {
+    let nodes = node.list().map_err(|error| reports.tell(error))?;
     if let Some(first) = nodes.get(MOST_ENTRIES) {
         let span = first.span.clone();
         let count = nodes.len();
-        reports.report(DocumentError::TooMany {
+        return Err(reports.report(DocumentError::TooMany {
             what: "list",
             span,
             count,
             most: MOST_ENTRIES,
-        });
-        return Vec::new();
+        }));
     }
-    nodes
+    Ok(nodes)
 }
 
 fn map(node: &Node, reports: &mut Reports) -> RawMap {
@@ -315,7 +331,14 @@ fn entry(node: &Node, reports: &mut Reports) -> Result<RawEntry, Broken> {
             "set" => entry.set = map(&field.node, reports),
             "passes" => {
                 let nodes = list(&field.node, reports);
-                entry.passes = Some(entries(nodes, reports));
+                let unread = |reported| {
+                    vec![Err(Broken {
+                        is_include: true,
+                        reported,
+                    })]
+                };
+                let read = nodes.map_or_else(unread, |nodes| entries(nodes, reports));
+                entry.passes = Some(read);
             }
             _ => entry.fields.push(field),
         }

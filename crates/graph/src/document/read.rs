@@ -36,6 +36,8 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
         claims: Vec::new(),
         broken_materials: Vec::new(),
         broken_params: raw.broken_params,
+        broken_outputs: None,
+        incomplete: raw.incomplete,
         include_depth: 0,
         file: raw.file,
     };
@@ -60,8 +62,10 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
             Ok(input) => document.inputs.push(input),
             Err(error) => {
                 let reported = reports.tell(error);
-                let name = item.name().map(|name| (name.value, reported));
-                document.broken_materials.extend(name);
+                match item.name() {
+                    Some(name) => document.broken_materials.push((name.value, reported)),
+                    None => document.incomplete = Some(reported),
+                }
             }
         }
     }
@@ -71,8 +75,10 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
             Ok(material) => document.materials.push(material),
             Err(error) => {
                 let reported = reports.tell(error);
-                let name = item.name().map(|name| (name.value, reported));
-                document.broken_materials.extend(name);
+                match item.name() {
+                    Some(name) => document.broken_materials.push((name.value, reported)),
+                    None => document.incomplete = Some(reported),
+                }
             }
         }
     }
@@ -80,9 +86,10 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
     no_edits(&mut passes, reports);
     document.entries = entries::read(passes, registry, reports);
     for node in &raw.outputs {
-        keep(node.parse(), reports, |output| {
-            document.outputs.push(output)
-        });
+        match node.parse() {
+            Ok(output) => document.outputs.push(output),
+            Err(error) => document.broken_outputs = Some(reports.tell(error)),
+        }
     }
     for (name, node) in raw.set {
         keep(node.parse(), reports, |value| {

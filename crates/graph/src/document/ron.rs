@@ -226,7 +226,7 @@ impl Node {
                 impl<'de> Visitor<'de> for Entries {
                     type Value = Raw<'de>;
                     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                        f.write_str("a list, `[a, b]`")
+                        f.write_str("a list `[a, b]`")
                     }
                     fn visit_seq<A: SeqAccess<'de>>(
                         self,
@@ -466,6 +466,8 @@ pub fn from_fields<T: DeserializeOwned>(fields: &[Field], whole: &Span) -> Resul
 fn explain(error: &ron::Error, span: Span) -> Diagnostic {
     use ron::Error as R;
     let names = |list: &[&str]| list.iter().map(|&name| name.to_owned()).collect();
+    let place = span.clone();
+    let needed = |what: &str| DocumentError::Syntax(place, format!("{what} is needed"));
     match error {
         R::NoSuchStructField {
             expected, found, ..
@@ -476,6 +478,15 @@ fn explain(error: &ron::Error, span: Span) -> Diagnostic {
         R::MissingStructField { field, .. } => DocumentError::MissingField(span, field.to_string()),
         R::DuplicateStructField { field, .. } => DocumentError::FieldTwice(span, field.to_string()),
         R::Eof => DocumentError::Ends(span),
+        R::ExpectedString => needed("a text in quotes"),
+        R::ExpectedArray => needed("a list `[…]`"),
+        R::ExpectedMap => needed("a map `{…}`"),
+        R::ExpectedStructLike | R::ExpectedNamedStructLike(_) => {
+            needed("what has fields, `(name: …)`,")
+        }
+        R::ExpectedBoolean => needed("`true` or `false`"),
+        R::ExpectedInteger | R::ExpectedFloat => needed("a number"),
+        R::InvalidValueForType { expected, .. } => needed(expected),
         R::ExceededRecursionLimit => DocumentError::Nested(span),
         other => DocumentError::Syntax(span, lower_first(&other.to_string())),
     }

@@ -40,6 +40,10 @@ pub(crate) struct Document {
     pub broken_materials: Vec<(String, Reported)>,
     /// A param could not be read: nothing of the document has a size then.
     pub broken_params: Option<Reported>,
+    /// Something could not be read, and nobody knows which names it would have given.
+    pub incomplete: Option<Reported>,
+    /// An output could not be read: nobody knows what it would have been called.
+    pub broken_outputs: Option<Reported>,
     /// How many includes there are one within the other below this document.
     pub include_depth: usize,
 }

@@ -25,7 +25,10 @@ pub(crate) enum ComposeError {
     },
     #[error("documents include or extend each other more than {1} deep")]
     TooDeep(Located<String>, usize),
-    #[error("two of the name `{name}`: every {what} needs its own")]
+    #[error("{}", match name == known {
+        true => format!("two of the name `{name}`: every {what} needs its own"),
+        false => format!("`{name}` and `{known}` are one name in a shader"),
+    })]
     Clash {
         what: &'static str,
         name: String,
@@ -96,12 +99,12 @@ impl Mistake for ComposeError {
             }
             Self::TooDeep(graph, _) => told.at(graph.span, "").help("use fewer levels"),
             Self::Clash {
+                what,
                 name,
                 known,
                 span,
                 first,
-                ..
-            } => clash(told, [name, known], [span, first]),
+            } => clash(told, what, [name, known], [span, first]),
             Self::NoParam { name, known, .. } => {
                 told.at(name.span.clone(), "").suggest(&name, known)
             }
@@ -127,13 +130,21 @@ impl Mistake for ComposeError {
     }
 }
 
-fn clash(told: Diagnostic, [name, known]: [String; 2], [span, first]: [Span; 2]) -> Diagnostic {
+fn clash(
+    told: Diagnostic,
+    what: &str,
+    [name, known]: [String; 2],
+    [span, first]: [Span; 2],
+) -> Diagnostic {
     if name != known {
         return told
-            .at(span, format!("a shader spells it like `{known}`"))
-            .at(first, "which is declared here")
+            .at(span, format!("gives `{name}`"))
+            .at(first, "declared here")
             .help("rename one of them");
     }
     let told = told.at(span, "the second one").at(first, "the first one");
+    if what != "material" {
+        return told;
+    }
     told.help("an include can be given a name: `name: \"left\"` makes `left.x` of its output `x`")
 }

@@ -59,7 +59,7 @@ pub(crate) enum DocumentError {
     Reserved(Located<Name>),
     #[error("`{1}` is no name: give the include one, `name: \"…\"`")]
     Unnamed(Span, String),
-    #[error("`{1}` stands in quotes, or is a word of a Choice in small letters")]
+    #[error("`{1}` has no value")]
     BareWord(Span, String),
     #[error("a name in quotes is needed here")]
     NoString(Span),
@@ -187,7 +187,10 @@ impl DocumentError {
                 RESERVED.join(", ")
             )),
             Self::Unnamed(span, _) => told.at(span, "the include would be called so"),
-            Self::BareWord(span, _) => told.at(span, ""),
+            Self::BareWord(span, _) => told.at(span, "").help(
+                "an expression stands in quotes, `\"viewport.size / 2\"`; a word of a Choice has \
+                 small letters",
+            ),
             Self::NoString(span) => told.at(span, "for example `\"maps[2]\"`"),
             Self::NoTuple(span) => told.at(span, "for example `(1, 0)`"),
             Self::Load(span) => told

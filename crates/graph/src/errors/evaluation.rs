@@ -3,7 +3,10 @@
 use super::language::attributes;
 use crate::{
     diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
-    language::{name::Name, value::Value},
+    language::{
+        name::Name,
+        value::{Scalar, Value},
+    },
     source::span::{Located, Span},
 };
 
@@ -16,6 +19,8 @@ pub(crate) enum EvaluationError {
         expected: &'static str,
         found: Value,
     },
+    #[error("{} numbers do not go with {}", lengths[0], lengths[1])]
+    Lengths { span: Span, lengths: [usize; 2] },
     #[error("{1} is less than nothing")]
     Negative(Span, i64),
     #[error("{1} is more than 32 bits hold")]
@@ -30,7 +35,10 @@ pub(crate) enum EvaluationError {
         word: String,
         words: Vec<Name>,
     },
-    #[error("a word is needed here, not {}", found.describe())]
+    #[error("{}", match found {
+        Value::Word(_) => "not every word of this Choice may stand here".to_owned(),
+        found => format!("a word is needed here, not {}", found.describe()),
+    })]
     Words {
         span: Span,
         expected: Vec<String>,
@@ -40,6 +48,8 @@ pub(crate) enum EvaluationError {
     NoAttribute { span: Span, of: String },
     #[error("`{}` has no number of items", **.0)]
     NoCount(Located<String>),
+    #[error("it is not known how many items `{}` has", **.0)]
+    Uncounted(Located<String>),
     #[error("`{}`: its size is that of itself", **.0)]
     Circular(Located<String>),
     /// An index where nothing is repeated; of a group or include, if one is named.
@@ -71,11 +81,11 @@ impl EvaluationError {
         Self::Unknown {
             span: span.clone(),
             what: match is_material {
-                true => format!("`{name}` is a material, whose attributes have values"),
+                true => format!("`{name}` is a material: name an attribute of it, `{name}.size`"),
                 false => format!("no param is called `{name}`"),
             },
             word: name.to_owned(),
-            known,
+            known: if is_material { Vec::new() } else { known },
         }
     }
 }
@@ -84,14 +94,29 @@ impl Mistake for EvaluationError {
     fn code(&self) -> Code {
         match self {
             Self::Unknown { .. } => Code::UnknownParam,
-            Self::Circular(_) | Self::NoCount(_) => Code::Size,
+            Self::Circular(_) | Self::NoCount(_) | Self::Uncounted(_) => Code::Size,
             _ => Code::Expression,
         }
     }
 
     fn explain(self, told: Diagnostic) -> Diagnostic {
         match self {
-            Self::Type { span, found, .. } => told.at(span, format!("this is {found}")),
+            Self::Type {
+                span,
+                expected,
+                found,
+            } => {
+                let told = told.at(span, format!("this is {found}"));
+                match (expected.contains("whole"), found) {
+                    (true, Value::Scalar(Scalar::Number(number))) if number.abs() < 1e9 => {
+                        told.help("`floor(…)` and `ceil(…)` make a whole number of it")
+                    }
+                    _ => told,
+                }
+            }
+            Self::Lengths { span, .. } => told
+                .at(span, "here")
+                .help("name parts of the longer one, as `x.width` and `x.height`"),
             Self::Negative(span, _)
             | Self::Large(span, _)
             | Self::DivisionByZero(span)
@@ -110,8 +135,11 @@ impl Mistake for EvaluationError {
                 .at(span, "")
                 .help(format!("attributes are {}", attributes())),
             Self::NoCount(name) => told
-                .at(name.span, "its shaders see a fixed size")
-                .help("give the buffer a `count`, and its shaders an array of any length"),
+                .at(name.span, "it says no `count`")
+                .help("give the buffer one, and its shaders an array of any length"),
+            Self::Uncounted(name) => told
+                .at(name.span, "its items are counted when it is built")
+                .help("bind all of it, and let the shader ask for `arrayLength`"),
             Self::Circular(name) => told
                 .at(name.span, "")
                 .help("give one of these materials a size of its own"),
@@ -127,7 +155,10 @@ impl Mistake for EvaluationError {
                 .help("use a param, which is written in small letters"),
             Self::NoConstant {
                 span, name, known, ..
-            } => told.at(span, "").suggest(&name, known),
+            } => told
+                .at(span, "")
+                .suggest(&name, known)
+                .help("a constant that a document asks for has a type: `const NAME: u32 = …;`"),
             Self::Unknown {
                 span, word, known, ..
             } => told.at(span, "").suggest(&word, known),

@@ -122,6 +122,12 @@ pub(crate) enum BorderError {
         span: Span,
         declared: Span,
     },
+    #[error("the host imports {found} for `{}`, {expected} is asked for", **name)]
+    WrongImport {
+        name: Located<String>,
+        expected: String,
+        found: String,
+    },
     #[error("the input `{}` is written, and is no output", **.0)]
     WrittenInput(Located<String>, Span),
     #[error("`{document}` has no input, output or param `{}`", **name)]
@@ -156,7 +162,7 @@ pub(crate) enum BorderError {
         name: Located<String>,
         known: Vec<String>,
     },
-    #[error("`{}` is repeated, and has no content of its own", **.0)]
+    #[error("`{}` has no content of its own", **.0)]
     Namespace(Located<String>),
     #[error("there is no `{text}`")]
     Range {
@@ -171,6 +177,8 @@ pub(crate) enum BorderError {
         span: Span,
         what: &'static str,
     },
+    #[error("`{of}` is a material, and gives no `{}`", **name)]
+    NotOfMaterial { of: String, name: Located<String> },
     #[error("`{name}` has no version of the frame before")]
     NoPrevious {
         name: String,
@@ -196,13 +204,15 @@ impl Mistake for BorderError {
             Self::NoInput { .. }
             | Self::NoImport(_)
             | Self::WrongInput { .. }
+            | Self::WrongImport { .. }
             | Self::WrittenInput(..) => Code::Input,
             Self::Unasked { .. } | Self::UnaskedInGroup { .. } => Code::Unasked,
             Self::UnwrittenOutput(_) | Self::BoundOutput { .. } => Code::Output,
             Self::Unknown { .. } | Self::Private { .. } => Code::UnknownResource,
-            Self::Namespace(_) | Self::NoPart { .. } | Self::NoPrevious { .. } => {
-                Code::ResourceKind
-            }
+            Self::Namespace(_)
+            | Self::NoPart { .. }
+            | Self::NotOfMaterial { .. }
+            | Self::NoPrevious { .. } => Code::ResourceKind,
             Self::Range { .. } => Code::Range,
             Self::TooMany { .. } => Code::Size,
             Self::Feature { .. } => Code::Feature,
@@ -221,7 +231,7 @@ impl Mistake for BorderError {
                 .at(span, "nothing here is called so")
                 .at(declared, "asked for here")
                 .suggest(&name, known)
-                .help(format!("or bind it: `bind: {{\"{name}\": \"…\"}}`")),
+                .help(format!("bind what is meant: `bind: {{\"{name}\": \"…\"}}`")),
             Self::NoImport(name) => told
                 .at(
                     name.span,
@@ -231,6 +241,7 @@ impl Mistake for BorderError {
             Self::WrongInput { span, declared, .. } => {
                 told.at(span, "given here").at(declared, "asked for here")
             }
+            Self::WrongImport { name, .. } => told.at(name.span, "asked for here"),
             Self::WrittenInput(name, by) => told
                 .at(name.span, "an input")
                 .at(by, "written here")
@@ -260,7 +271,25 @@ impl Mistake for BorderError {
             Self::Private { name, known, .. } => told
                 .at(name.span.clone(), "only its outputs are seen from here")
                 .suggest(&name, known),
-            Self::Namespace(name) => told.at(name.span, "name one of what it gives, `x[0].y`"),
+            Self::TooMany { at, .. } => told
+                .at(at, "counted up to here")
+                .help("repeat or include less"),
+            Self::Feature { feature, .. } => told
+                .at(feature.span, "the device does not have this feature")
+                .help("run it on an adapter that has the feature, or ask `has(…)` in an `if`"),
+            other => other.explain_part(told),
+        }
+    }
+}
+
+impl BorderError {
+    /// Parts and versions that there are not.
+    fn explain_part(self, told: Diagnostic) -> Diagnostic {
+        match self {
+            Self::Namespace(name) => told.at(
+                name.span,
+                "name what it gives: `x.y`, or `x[0].y` where it is repeated",
+            ),
             Self::Range {
                 span,
                 what,
@@ -274,15 +303,13 @@ impl Mistake for BorderError {
                 }
             }
             Self::NoPart { span, what, .. } => told.at(span, what),
+            Self::NotOfMaterial { of, name } => told.at(name.span, "not a part of it").help(
+                format!("its parts are `{of}[0]`, `{of}.mip[0]`, `{of}.previous`"),
+            ),
             Self::NoPrevious { span, what, .. } => told
                 .at(span, format!("it is {what}"))
                 .help("textures and buffers that the graph writes have one; copy it into one"),
-            Self::TooMany { at, .. } => told
-                .at(at, "counted up to here")
-                .help("repeat or include less"),
-            Self::Feature { feature, .. } => told
-                .at(feature.span, "the device does not have this feature")
-                .help("run it on an adapter that has the feature, or ask `has(…)` in an `if`"),
+            _ => told,
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::{
 /// An expression or reference that cannot be read.
 #[derive(Clone, Debug, thiserror::Error)]
 pub(crate) enum SyntaxFault {
-    #[error("`{1}` has no meaning in an expression")]
+    #[error("`{1}` has no meaning here")]
     Sign(Span, char),
     #[error("this is no number")]
     Number(Span),
@@ -96,6 +96,7 @@ impl Mistake for SyntaxFault {
 pub(crate) fn attributes() -> String {
     let names: Vec<String> = Attribute::ALL
         .iter()
+        .filter(|(_, attribute)| *attribute != Attribute::Index)
         .map(|(name, _)| format!("`.{name}`"))
         .collect();
     names.join(", ")

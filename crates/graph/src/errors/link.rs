@@ -32,7 +32,7 @@ pub(crate) enum LinkError {
     },
     #[error("pass `{pass}` does not write `{}`", **name)]
     Overwrites { pass: String, name: Located<String> },
-    #[error("`{shader}` asks for no `{}`", **name)]
+    #[error("`{shader}` has no param or constant `{}` to set", **name)]
     UnaskedSet {
         shader: String,
         name: Located<String>,
@@ -107,9 +107,7 @@ pub(crate) enum LinkError {
         alignment: u64,
         span: Span,
     },
-    #[error(
-        "the texture `{name}` has the format {format:?}, which the shader's `{global}` cannot use"
-    )]
+    #[error("the texture `{name}` cannot be the shader's `{global}`")]
     Texture {
         name: String,
         format: TextureFormat,
@@ -439,7 +437,9 @@ impl Mistake for LinkError {
             Self::WritesPrevious { of, span } => told.at(span, "written here").help(format!(
                 "write `{of}`: the next frame finds it as `{of}.previous`"
             )),
-            Self::WritesConstant { span, .. } => told.at(span, "written here"),
+            Self::WritesConstant { span, .. } => told
+                .at(span, "written here")
+                .help("write another material; a `Copy` above brings the content there"),
             Self::WritesProvided { span, .. } => told.at(span, "declare it `var<storage, read>`"),
             Self::VertexWrites { span, .. } => told
                 .at(span, "")
@@ -458,7 +458,10 @@ impl Mistake for LinkError {
                 told.at(name.span.clone(), "").suggest(&name, known)
             }
             Self::OverrideWithout(name) => told
-                .at(name.span.clone(), "no param of the document is called so")
+                .at(
+                    name.span.clone(),
+                    "no param that is a single number is called so",
+                )
                 .help(format!(
                     "declare a param `{0}` with a single number, `set` it, or write \
                      `override {0}: … = …;`",
@@ -508,10 +511,15 @@ impl LinkError {
                  binds"
             )),
             Self::Unsupported { span, .. } => told.at(span, ""),
-            Self::ParamsUniform { size, span, .. } => told.at(span, format!("{size} bytes")).help(
-                "write `struct Params { … }` with the params that the shader reads, and \
-                     `var<uniform> params: Params;`",
-            ),
+            Self::ParamsUniform { what, size, span } => told
+                .at(span, format!("{size} bytes"))
+                .help(match what.contains("large") {
+                    true => "put what is large into a buffer",
+                    false => {
+                        "write `struct Params { … }` with the params that the shader reads, \
+                              and `var<uniform> params: Params;`"
+                    }
+                }),
             Self::UnknownGlobal {
                 global,
                 span,
@@ -524,7 +532,9 @@ impl LinkError {
                 )
                 .at(pass.span, "bound by this pass")
                 .suggest(&global, known)
-                .help(format!("or bind it: `bind: {{\"{global}\": \"…\"}}`")),
+                .help(format!(
+                    "bind what is meant: `bind: {{\"{global}\": \"…\"}}`"
+                )),
             Self::WrongKind {
                 span,
                 needed,
@@ -578,9 +588,9 @@ impl LinkError {
                 ty,
             } => told.at(span, "").suggest(&member, known).help(match ty {
                 Some(ty) => format!(
-                    "or declare it, `params: [{ty}(name: \"{member}\", default: …)]`, or `set` it"
+                    "declare it, `params: [{ty}(name: \"{member}\", default: …)]`, or `set` it"
                 ),
-                None => format!("or `set` it: `set: {{\"{member}\": …}}`"),
+                None => format!("`set` it: `set: {{\"{member}\": …}}`"),
             }),
             Self::IndexMember(span) | Self::MemberIsNoVector { span, .. } => {
                 told.at(span, "in this uniform")

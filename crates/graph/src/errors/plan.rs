@@ -93,9 +93,13 @@ impl Mistake for OutputError {
                     format!("`{}` is never written", *material),
                 )
                 .help("let a pass write it, or name another `material`"),
-            Self::UnreadableOutput { material, what, .. } => told
-                .at(material, what)
-                .help("use Depth32Float or Depth16Unorm"),
+            Self::UnreadableOutput { material, what, .. } => {
+                let is_of_samples = what.contains("samples");
+                told.at(material, what).help(match is_of_samples {
+                    true => "name a texture of one sample that a `resolve` is written to",
+                    false => "use Depth32Float or Depth16Unorm",
+                })
+            }
             Self::NoViewport(span) => told.at(span, ""),
             Self::UnsizedBuffer(name) => told
                 .at(name.span, "")

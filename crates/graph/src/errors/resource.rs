@@ -96,7 +96,8 @@ impl Mistake for SizeError {
                 told.at(name.span, "")
                     .help(format!("it can have {}", known.join(", ")))
             }
-            Self::SamplesOfMany(name) | Self::LayersOf3d(name) => told.at(name.span, ""),
+            Self::SamplesOfMany(name) => told.at(name.span, ""),
+            Self::LayersOf3d(name) => told.at(name.span, "").help("leave `layers` out"),
             Self::FileHas(file, field) => {
                 told.at(file.span, "").help(format!("leave `{field}` out"))
             }

@@ -178,7 +178,10 @@ impl Mistake for ShaderError {
                 .at(at, "declared here")
                 .at(declared, "the words in their order")
                 .help("leave the constant out: the words of a Choice bring it"),
-            Self::TwoWords { first, second, .. } => told.at(second, "").at(first, ""),
+            Self::TwoWords { first, second, .. } => told
+                .at(second, "a word of this")
+                .at(first, "and one of this")
+                .help("rename one of the words or params: NAME_WORD is the constant of a word"),
             Self::NoSuchEntry { name, known, .. } => {
                 told.at(name.span.clone(), "").suggest(&name, known)
             }

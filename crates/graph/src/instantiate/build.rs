@@ -237,20 +237,17 @@ impl<'a> Builder<'a, '_> {
         let Some(import) = self.world.request.imports.get(&name.value) else {
             return Err(BorderError::NoImport(name));
         };
-        let wrong = |expected: &str, found: String| BorderError::WrongInput {
-            document: self.world.graph.path().to_owned(),
-            name: name.value.clone(),
+        let wrong = |expected: &str, found: String| BorderError::WrongImport {
+            name: name.clone(),
             expected: expected.to_owned(),
             found,
-            span: name.span.clone(),
-            declared: name.span.clone(),
         };
         match (&input.kind, *import) {
             (InputKind::Texture(asked), Import::Texture { format, .. })
                 if asked.is_some_and(|asked| asked != format) =>
             {
                 let asked = asked.map_or(String::new(), |asked| format!("a texture {asked:?}"));
-                Err(wrong(&asked, format!("{format:?}")))
+                Err(wrong(&asked, format!("a texture {format:?}")))
             }
             (
                 InputKind::Texture(_),
@@ -303,6 +300,10 @@ impl<'a> Builder<'a, '_> {
                 }
                 Err(_) => self.incomplete(frame, *reported),
             }
+        }
+        if let Some(reported) = document.incomplete {
+            self.incomplete(frame, reported);
+            self.broken();
         }
         for (number, material) in document.materials.iter().enumerate() {
             if self.world.resources.len() >= MOST {

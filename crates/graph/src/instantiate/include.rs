@@ -10,7 +10,7 @@ use crate::{
     diagnostics::reports::Reported,
     document::{
         materials::{Input, InputKind, Material},
-        typed::{Document, Entry, Include},
+        typed::{Document, Entry, Include, Output},
     },
     errors::instantiate::BorderError,
     language::{
@@ -22,6 +22,9 @@ use crate::{
     source::span::Located,
 };
 use std::{collections::BTreeMap, sync::Arc};
+
+/// A material here that an output is written into, with the place that says so.
+type Bound = (Located<String>, Result<Target, Reported>);
 
 /// What an include says of names of its document, its own words first.
 struct Said<'e> {
@@ -98,19 +101,36 @@ impl<'a> Builder<'a, '_> {
             outputs,
             read_only,
         });
+        self.give(entry, document, &names, (place, has_namespace))?;
+        Ok(names)
+    }
+
+    /// Makes what an include gives known where it stands.
+    fn give(
+        &mut self,
+        entry: &Entry,
+        document: &Document,
+        names: &Names,
+        (place, has_namespace): (Place, bool),
+    ) -> Result<(), Reported> {
+        let frames = &mut self.world.frames;
+        let name = &entry.name.value;
+        if let Some(reported) = document.broken_outputs {
+            let around = frames.instance_of(place.frame);
+            frames.instance_mut(around).incomplete = Some(reported);
+            if has_namespace {
+                frames.declare(place.frame, name, Meaning::Broken(reported));
+            }
+            return Err(reported);
+        }
         if has_namespace && place.index.is_none() {
-            let meaning = Meaning::Namespace(names.clone());
-            self.world
-                .frames
-                .declare(place.frame, &entry.name.value, meaning);
+            frames.declare(place.frame, name, Meaning::Namespace(names.clone()));
         } else if !has_namespace {
-            for (name, meaning) in &names {
-                self.world
-                    .frames
-                    .declare(place.frame, name, meaning.clone());
+            for (name, meaning) in names {
+                frames.declare(place.frame, name, meaning.clone());
             }
         }
-        Ok(names)
+        Ok(())
     }
 
     /// What an include says, and groups around it of names that its document asks for.
@@ -213,7 +233,6 @@ impl<'a> Builder<'a, '_> {
 
     /// What an include binds besides inputs: outputs, which are written into a material here, and
     /// names of the scene.
-    #[expect(clippy::type_complexity, reason = "two maps of the same kind")]
     fn outside(
         &mut self,
         entry: &Entry,
@@ -223,7 +242,7 @@ impl<'a> Builder<'a, '_> {
         has_namespace: bool,
     ) -> (
         BTreeMap<String, Result<Target, Reported>>,
-        BTreeMap<String, (Located<String>, Result<Target, Reported>)>,
+        BTreeMap<String, Bound>,
     ) {
         let (mut scene, mut overrides) = (BTreeMap::new(), BTreeMap::new());
         for (name, reference, at) in &said.bind {
@@ -264,19 +283,34 @@ impl<'a> Builder<'a, '_> {
                 }
             }
         }
-        // What is bound around it is bound in it, if it is what it gives.
-        let around = self.world.frames.document(place.frame);
-        if !has_namespace {
-            for output in &document.outputs {
-                let name = output.name.value.as_str();
-                let bound = around.overrides.get(name);
-                let own = entry.bind.iter().any(|(bound, _)| **bound == *name);
-                if let Some(bound) = bound.filter(|_| !own) {
-                    overrides.insert(output.material.path(), bound.clone());
-                }
-            }
+        for (output, bound) in self.passed_on(entry, document, place, has_namespace) {
+            overrides.insert(output.material.path(), bound);
         }
         (scene, overrides)
+    }
+
+    /// What the includer of the document around says of what an include gives: where that passes on
+    /// an output, it is written into the material that its own was bound to.
+    fn passed_on<'d>(
+        &self,
+        entry: &Entry,
+        document: &'d Document,
+        place: Place,
+        has_namespace: bool,
+    ) -> Vec<(&'d Output, Bound)> {
+        let around = self.world.frames.document(place.frame);
+        let known = |name: &Name| match (has_namespace, place.index) {
+            (false, _) => Some(name.to_string()),
+            (true, None) => Some(format!("{}.{name}", entry.name.value)),
+            (true, Some(_)) => None,
+        };
+        let passed_on = document.outputs.iter().filter_map(|output| {
+            let name = &output.name.value;
+            let own = entry.bind.iter().any(|(bound, _)| **bound == **name);
+            let bound = around.overrides.get(&known(name)?).filter(|_| !own)?;
+            Some((output, bound.clone()))
+        });
+        passed_on.collect()
     }
 
     /// The material here that is written instead of one that the document declares.

@@ -57,7 +57,13 @@ impl<'a> World<'a> {
             }
             ResourceKind::Buffer(buffer) => ("items", buffer.count),
             ResourceKind::Provided(provided) => ("items", provided.items),
-            ResourceKind::Sampler(_) | ResourceKind::Frame => ("items", None),
+            ResourceKind::Sampler(_) | ResourceKind::Frame => {
+                return Err(reports.report(BorderError::NoPart {
+                    text: reference.text().to_owned(),
+                    span: reference.span.clone(),
+                    what: "only textures and buffers have parts",
+                }));
+            }
         };
         let items = match target.part.items() {
             Some(items) if what == "items" => Some(items.len() as u64),
@@ -65,7 +71,7 @@ impl<'a> World<'a> {
         };
         let Some(count) = items else {
             let name = Located::new(reference.path(), reference.span.clone());
-            return Err(reports.report(EvaluationError::NoCount(name)));
+            return Err(reports.report(self.uncounted(target, name)));
         };
         let range = self.range(selection, (what, count), reference, target, place, reports)?;
         let start = match target.part == SubresourceRange::WHOLE {
@@ -74,6 +80,14 @@ impl<'a> World<'a> {
         };
         target.part.layers = start + range.start..start + range.end;
         Ok(())
+    }
+
+    /// The items of a buffer are asked for, and not known.
+    fn uncounted(&self, target: &Target, name: Located<String>) -> EvaluationError {
+        match &self.get(target.id).kind {
+            ResourceKind::Provided(_) => EvaluationError::Uncounted(name),
+            _ => EvaluationError::NoCount(name),
+        }
     }
 
     /// Narrows a target to some of its mips.
@@ -247,14 +261,23 @@ impl Environment for At<'_, '_, '_> {
             return Ok(value);
         }
         let resource = self.world.get(target.id);
-        let error = match attribute {
-            Attribute::Count => EvaluationError::NoCount(Located::new(of.path(), of.span.clone())),
+        let error = match (attribute, &resource.kind) {
+            (Attribute::Count, ResourceKind::Buffer(_) | ResourceKind::Provided(_)) => {
+                let name = Located::new(of.path(), of.span.clone());
+                self.world.uncounted(&target, name)
+            }
             _ => EvaluationError::NoAttribute {
                 span: span.clone(),
                 of: format!("`{}`, {},", resource.name, resource.kind.describe()),
             },
         };
-        Err(self.report(error))
+        let counts = matches!(error, EvaluationError::NoCount(_));
+        let reported = self.report(error);
+        if counts {
+            // Its shaders would miss the same number.
+            self.world.spoil(target.id, reported);
+        }
+        Err(reported)
     }
 
     fn constant(&mut self, name: &str, span: &Span) -> Result<Value, Reported> {

@@ -85,6 +85,13 @@ impl<'a> World<'a> {
         ResourceId(self.resources.len() - 1)
     }
 
+    /// A buffer whose number of items was asked for and is not known.
+    pub(super) fn spoil(&mut self, id: ResourceId, reported: Reported) {
+        if matches!(self.get(id).kind, ResourceKind::Buffer(_)) {
+            self.states[id.0] = State::Broken(reported);
+        }
+    }
+
     /// All of a resource.
     pub fn whole(&self, id: ResourceId) -> Target {
         let part = match &self.get(id).kind {
@@ -147,7 +154,10 @@ impl<'a> World<'a> {
                 Meaning::Target(target) => {
                     return match segments.peek() {
                         None => Ok((target, segment.selection.as_ref())),
-                        Some(next) => Err(self.private(&walked, &next.name, Vec::new(), reports)),
+                        Some(next) => Err(reports.report(BorderError::NotOfMaterial {
+                            of: walked,
+                            name: Located::new(next.name.value.to_string(), next.name.span.clone()),
+                        })),
                     };
                 }
                 Meaning::Namespace(names) => names,

@@ -346,7 +346,10 @@ pub(super) fn stencil(
     let reference = entry.reference.as_ref();
     StencilTarget {
         target: entry.target.clone(),
-        clear: clear(entry.load.as_ref(), 0.0, area, pass).map(|[value, ..]| value as u32),
+        clear: clear(entry.load.as_ref(), 0.0, area, pass).map(|value| match &entry.load {
+            Some(Load::Clear(values)) => pass.count32(&values[0]),
+            _ => value[0] as u32,
+        }),
         state: wgt::StencilState {
             front: entry.front.into(),
             back: entry.back.into(),

@@ -154,7 +154,7 @@ impl Expr {
                 Scalar::Whole(whole) => {
                     return Err(env.report(EvaluationError::Negative(self.span.clone(), whole)));
                 }
-                other => return Err(self.wrong("whole numbers", &Value::Scalar(other), env)),
+                other => return Err(self.wrong("a whole number", &Value::Scalar(other), env)),
             });
         }
         Ok(edges)
@@ -259,7 +259,7 @@ impl Expr {
             };
             for (value, argument) in [&first, &second].into_iter().zip(arguments) {
                 if !is_whole(value) {
-                    return Err(argument.wrong("whole numbers", value, env));
+                    return Err(argument.wrong("a whole number", value, env));
                 }
             }
         }
@@ -288,8 +288,14 @@ impl Expr {
                 let list = b.iter().map(|b| apply(*a, *b));
                 list.collect::<Option<_>>().map(Value::List)
             }
+            [Value::List(a), Value::List(b)] => {
+                return Err(env.report(EvaluationError::Lengths {
+                    span: self.span.clone(),
+                    lengths: [a.len(), b.len()],
+                }));
+            }
             [Value::Scalar(_) | Value::List(_), other] | [other, _] => {
-                return Err(self.wrong("numbers", other, env));
+                return Err(self.wrong("a number", other, env));
             }
         };
         result.ok_or_else(|| env.report(EvaluationError::Overflow(self.span.clone())))

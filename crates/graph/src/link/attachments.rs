@@ -308,6 +308,14 @@ impl Linker<'_, '_> {
         if !format.has_stencil_aspect() {
             return Err(self.report(LinkError::NoStencil { name, format }));
         }
+        if let Some(wrong) = stencil.clear.filter(|value| *value > u32::from(u8::MAX)) {
+            return Err(self.report(LinkError::ClearValue {
+                name,
+                wrong: wrong.into(),
+                format,
+                expected: "a stencil from 0 to 255",
+            }));
+        }
         let clears = stencil.clear.is_some();
         let writes = !stencil.state.is_read_only(None);
         let used = (!clears, writes || clears, clears);

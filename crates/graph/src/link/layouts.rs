@@ -377,7 +377,7 @@ fn content(
         if item.len() != fields.len() {
             let (have, needed) = (item.len(), fields.len());
             return Err(wrong(format!(
-                "item {index} has {have} numbers, an item {needed}"
+                "item {index} is {have} numbers, the shader's {needed}"
             )));
         }
         for (number, field) in item.iter().zip(fields) {

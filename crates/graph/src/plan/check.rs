@@ -63,6 +63,9 @@ impl Graph {
         };
         if outcome.plan.is_some() && errors.is_empty() {
             errors.extend(graph.sweep(request, &outcome.deciding));
+            if let Err(wrong) = graph.claims(&request.params, request.features) {
+                errors.extend(wrong.iter().cloned());
+            }
         }
         errors.extend(outcome.found);
         match outcome.plan {

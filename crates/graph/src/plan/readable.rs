@@ -122,7 +122,7 @@ pub(super) fn check_captures(
 fn unreadable(world: &World<'_>, target: &Target) -> Option<String> {
     match &world.get(target.id).kind {
         ResourceKind::Texture(texture) if texture.samples > 1 => Some(format!(
-            "a texture of {} samples: resolve it",
+            "a texture of {} samples",
             texture.samples
         )),
         ResourceKind::Texture(texture) if texture.format.block_copy_size(None).is_none() => {

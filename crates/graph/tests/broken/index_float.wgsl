@@ -1,0 +1,6 @@
+struct Params { index: f32 }
+var<uniform> params: Params;
+
+@fragment fn fragment() -> @location(0) f32 {
+    return params.index;
+}

@@ -1,0 +1,3 @@
+@fragment fn fragment() -> @location(0) vec4<f32> {
+    return vec4<f32>(1.0);
+}

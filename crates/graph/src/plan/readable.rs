@@ -121,10 +121,9 @@ pub(super) fn check_captures(
 /// Why the content of a resource cannot come back to the host.
 fn unreadable(world: &World<'_>, target: &Target) -> Option<String> {
     match &world.get(target.id).kind {
-        ResourceKind::Texture(texture) if texture.samples > 1 => Some(format!(
-            "a texture of {} samples",
-            texture.samples
-        )),
+        ResourceKind::Texture(texture) if texture.samples > 1 => {
+            Some(format!("a texture of {} samples", texture.samples))
+        }
         ResourceKind::Texture(texture) if texture.format.block_copy_size(None).is_none() => {
             let format = texture.format;
             Some(format!(

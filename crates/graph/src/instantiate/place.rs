@@ -275,7 +275,7 @@ impl Environment for At<'_, '_, '_> {
         let reported = self.report(error);
         if counts {
             // Its shaders would miss the same number.
-            self.world.spoil(target.id, reported);
+            self.world.mark_broken(target.id, reported);
         }
         Err(reported)
     }

@@ -86,7 +86,7 @@ impl<'a> World<'a> {
     }
 
     /// A buffer whose number of items was asked for and is not known.
-    pub(super) fn spoil(&mut self, id: ResourceId, reported: Reported) {
+    pub(super) fn mark_broken(&mut self, id: ResourceId, reported: Reported) {
         if matches!(self.get(id).kind, ResourceKind::Buffer(_)) {
             self.states[id.0] = State::Broken(reported);
         }

@@ -2,7 +2,8 @@
 
 macro_rules! codes {
     ($($(#[doc = $doc:literal])+ $name:ident = $text:literal, $remedy:literal;)+) => {
-        /// What kind of mistake a [`Diagnostic`](crate::Diagnostic) is about; stable names for scripts.
+        /// What kind of mistake a [`Diagnostic`](crate::Diagnostic) is about; stable names for
+        /// scripts.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[non_exhaustive]
         pub enum Code { $($(#[doc = $doc])+ $name,)+ }

@@ -9,18 +9,7 @@ mod tiny;
 use skiagraph_gpu::{ExecuteError, Executor, Frame, Provider, ProviderError};
 use skiagraph_graph::{Describe, NoProvider, Provided, ProvidedBinding};
 use support::{Files, load, right};
-use tiny::{GPU, NUMBER, encoder, executor, made, request};
-
-fn image() -> Files {
-    Files::graph(
-        r#"
-    materials: [Texture(name: "image", format: R32Float)],
-    passes: [Fullscreen(name: "number", color: ["image"])],
-    outputs: ["image"],
-"#,
-    )
-    .with("number.wgsl", NUMBER)
-}
+use tiny::{GPU, encoder, executor, image, made, request};
 
 #[test]
 fn an_output_that_the_plan_does_not_have() {

@@ -12,7 +12,7 @@ use skiagraph_gpu::{
 };
 use std::time::{Duration, Instant};
 use support::Files;
-use tiny::{GPU, NUMBER, encoder, frame, made, u32s};
+use tiny::{GPU, NUMBER, encoder, frame, image, made, u32s};
 
 #[test]
 fn a_long_dispatch_after_a_raster_pass_is_timed_truly_or_not_at_all() {
@@ -26,17 +26,6 @@ fn a_long_dispatch_after_a_raster_pass_is_timed_truly_or_not_at_all() {
             "{adapter}: {reason}"
         ),
     }
-}
-
-fn image() -> Files {
-    Files::graph(
-        r#"
-    materials: [Texture(name: "image", format: R32Float)],
-    passes: [Fullscreen(name: "number", color: ["image"])],
-    outputs: ["image"],
-"#,
-    )
-    .with("number.wgsl", NUMBER)
 }
 
 #[test]

@@ -21,6 +21,18 @@ pub const NUMBER: &str = "
     return floor(position.x) + 100.0 * floor(position.y);
 }";
 
+/// One pass that draws [`NUMBER`] to `image`.
+pub fn image() -> Files {
+    Files::graph(
+        r#"
+    materials: [Texture(name: "image", format: R32Float)],
+    passes: [Fullscreen(name: "number", color: ["image"])],
+    outputs: ["image"],
+"#,
+    )
+    .with("number.wgsl", NUMBER)
+}
+
 /// A vertex stage whose three vertices cover everything, at that depth.
 pub fn covering(depth: f32) -> String {
     format!(

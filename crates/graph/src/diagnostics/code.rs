@@ -143,8 +143,8 @@ codes! {
          more.";
     /// Materials that take more memory together than the graph may have.
     Memory = "memory",
-        "Use a smaller viewport or shadow map, fewer layers, a format with fewer bytes; or allow \
-         more memory where there is more.";
+        "Use a smaller viewport, smaller textures, fewer layers, a format with fewer bytes; or \
+         allow more memory where there is more.";
     /// A feature that the document requires and the device does not have, or that wgpu does not
     /// know.
     Feature = "feature",

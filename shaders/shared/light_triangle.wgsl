@@ -18,6 +18,7 @@ struct LightTriangle {
 const CULL_FRONT: u32 = 1u;
 const CULL_BACK: u32 = 2u;
 const DEPTH_PLANE: u32 = 0u;
+const DEPTH_CONSERVATIVE: u32 = 1u;
 
 const NEAREST: f32 = -1.0;
 const FARTHEST: f32 = 1.0;

@@ -219,8 +219,13 @@ pub(crate) fn wait(device: &wgpu::Device, timeout: Option<Duration>) -> Result<b
         submission_index: None,
         timeout,
     };
+    poll(device, all)
+}
+
+/// Looks what of the submitted work is done; false if a timeout came first.
+pub(crate) fn poll(device: &wgpu::Device, how: wgpu::PollType) -> Result<bool, ExecuteError> {
     // wgpu panics where a device is lost while it is waited for.
-    let polled = catch_unwind(AssertUnwindSafe(|| device.poll(all)));
+    let polled = catch_unwind(AssertUnwindSafe(|| device.poll(how)));
     match polled {
         Ok(Ok(_)) => Ok(true),
         Ok(Err(wgpu::PollError::Timeout)) => Ok(false),

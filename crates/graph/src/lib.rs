@@ -44,8 +44,8 @@ pub use plan::{CulledPass, MemoryEntry, OutputSummary, PassSummary, Plan, text};
 pub use provider::{Describe, Import, NoProvider, Provided, ProvidedBinding};
 pub use request::{Capture, PlanRequest};
 pub use resource::{
-    Buffer, FRAME_BYTES, Origin, Resource, ResourceId, ResourceKind, Sampler, SubresourceRange,
-    Target, Texture,
+    Buffer, FRAME_BYTES, Growth, Origin, Resource, ResourceId, ResourceKind, Sampler,
+    SubresourceRange, Target, Texture,
 };
 pub use shader::{Field, Item, ItemScalar, Shader};
 pub use source::{

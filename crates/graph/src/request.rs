@@ -2,6 +2,7 @@
 
 use crate::{
     document::params::ParamValue,
+    instantiate::params::Surroundings,
     provider::{Describe, Described, Import},
 };
 use std::collections::BTreeMap;
@@ -27,6 +28,9 @@ pub struct PlanRequest<'a> {
     pub memory_limit: Option<u64>,
     /// What the host will import for the inputs of the root document, by name.
     pub imports: BTreeMap<String, Import>,
+    /// Items that buffers with `grow` are known to need, by full name: they are made as large, up
+    /// to their `max`.
+    pub grown: BTreeMap<String, u64>,
     /// Fills memory between uses with a pattern made of this byte: a graph whose outputs change
     /// with it reads what it has not written. Costs time; for finding mistakes.
     pub poison: Option<u8>,
@@ -49,9 +53,17 @@ impl<'a> PlanRequest<'a> {
             features: wgt::Features::empty(),
             memory_limit: None,
             imports: BTreeMap::new(),
+            grown: BTreeMap::new(),
             poison: None,
             any_adapter: false,
             provider,
+        }
+    }
+
+    pub(crate) fn surroundings(&self) -> Surroundings {
+        Surroundings {
+            viewport: self.viewport,
+            features: self.features,
         }
     }
 }
@@ -62,11 +74,12 @@ impl<'a> PlanRequest<'a> {
 pub(crate) struct Request {
     pub viewport: [u32; 2],
     pub imports: BTreeMap<String, Import>,
+    pub grown: BTreeMap<String, u64>,
+    pub limits: wgt::Limits,
     pub poison: Option<u8>,
     params: BTreeMap<String, ParamValue>,
     outputs: Option<Vec<String>>,
     captures: Vec<Capture>,
-    limits: wgt::Limits,
     features: wgt::Features,
     memory_limit: Option<u64>,
     any_adapter: bool,
@@ -85,6 +98,7 @@ impl Request {
             limits: request.limits.clone(),
             features: request.features,
             memory_limit: request.memory_limit,
+            grown: request.grown.clone(),
             any_adapter: request.any_adapter,
             provider: Described::by(request.provider),
         }
@@ -106,6 +120,7 @@ impl Request {
             features: self.features,
             memory_limit: self.memory_limit,
             imports: self.imports.clone(),
+            grown: self.grown.clone(),
             poison: self.poison,
             any_adapter: self.any_adapter,
             provider: &self.provider,

@@ -162,6 +162,18 @@ pub struct Buffer {
     pub data: Option<Arc<Vec<Vec<f64>>>>,
     /// The bytes of `data`.
     pub content: Option<Arc<[u8]>>,
+    /// How it grows between frames.
+    pub growth: Option<Growth>,
+}
+
+/// How a buffer grows between frames.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Growth {
+    /// The buffer, or the item of one, whose first `u32` says how many items the frame would have
+    /// needed.
+    pub counter: Target,
+    /// Most items that the document lets it have.
+    pub max: u64,
 }
 
 /// A sampler.

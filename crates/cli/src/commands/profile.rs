@@ -36,7 +36,7 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     };
     let (preset, params) = method::load_one(&args.method, &preset::sources())?;
     let gpu = device::open(gpu, [&preset.graph])?;
-    let method = Method::on(&preset, params, gpu.device.features());
+    let method = Method::on(&preset, params, args.method.size.0, gpu.device.features());
     let SceneSelection { scene, views } = SceneSelection::load(&args.scene)?;
     let Some(view) = views.first() else {
         return Err(CliError::Input(format!(

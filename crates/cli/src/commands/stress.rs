@@ -150,7 +150,7 @@ fn method_run<'a>(
     gpu: &Gpu,
     provider: &SceneProvider,
 ) -> Result<MethodRun<'a>, CliError> {
-    let method = method.settled(gpu.device.features());
+    let method = method.at(args.size.0).settled(gpu.device.features());
     let plan = method.plan(args.size.0, Capabilities::of(gpu), provider);
     Ok(MethodRun {
         unavailable: plan.err().map(|faults| reasons(&faults)),

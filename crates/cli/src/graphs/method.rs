@@ -23,24 +23,33 @@ pub struct Method<'a> {
     pub preset: &'a Preset,
     /// Its params that are not at their defaults.
     pub params: ParamValues,
+    /// In how many pixels it runs.
+    pub viewport: [u32; 2],
     /// What the adapter has.
     pub features: wgpu::Features,
-    /// All params; a default may depend on what the adapter can do.
+    /// All params; a default may depend on the viewport, and on what the adapter can do.
     values: ParamValues,
     /// The size of its shadow map, if it has that param.
     pub map_size: Option<u32>,
 }
 
 impl<'a> Method<'a> {
-    /// Of a preset and what was set of its params, on the most able adapter.
+    /// Of a preset and what was set of its params, in 1024×1024 pixels on the most able adapter.
     pub fn new(preset: &'a Preset, params: ParamValues) -> Self {
-        Self::on(preset, params, wgpu::Features::all())
+        Self::on(preset, params, [1024, 1024], wgpu::Features::all())
     }
 
-    /// Of a preset and what was set of its params, on an adapter with these features.
-    pub fn on(preset: &'a Preset, params: ParamValues, features: wgpu::Features) -> Self {
+    /// Of a preset and what was set of its params, in so many pixels on an adapter with these
+    /// features.
+    pub fn on(
+        preset: &'a Preset,
+        params: ParamValues,
+        viewport: [u32; 2],
+        features: wgpu::Features,
+    ) -> Self {
         // What is wrong with a value is told where the method is planned.
-        let values = preset.graph.values(&params, features).unwrap_or_default();
+        let values = preset.graph.values(&params, viewport, features);
+        let values = values.unwrap_or_default();
         let map_size = match values.get(MAP_SIZE) {
             Some(ParamValue::U32(size)) => Some(*size),
             _ => None,
@@ -48,6 +57,7 @@ impl<'a> Method<'a> {
         Self {
             preset,
             params,
+            viewport,
             features,
             values,
             map_size,
@@ -56,7 +66,12 @@ impl<'a> Method<'a> {
 
     /// The same on an adapter with these features.
     pub fn settled(self, features: wgpu::Features) -> Self {
-        Self::on(self.preset, self.params, features)
+        Self::on(self.preset, self.params, self.viewport, features)
+    }
+
+    /// The same in so many pixels.
+    pub fn at(&self, viewport: [u32; 2]) -> Self {
+        Self::on(self.preset, self.params.clone(), viewport, self.features)
     }
 
     /// The plan on a viewport for such an adapter.

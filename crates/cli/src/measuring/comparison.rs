@@ -47,7 +47,8 @@ impl ComparisonSetup<'_> {
         for view in self.views {
             let fingerprint = self.fingerprint.with_view(view);
             for &viewport in self.viewports {
-                planned.extend(self.methods.iter().map(|method| RunKey {
+                let methods = self.methods.iter().map(|method| method.at(viewport));
+                planned.extend(methods.map(|method| RunKey {
                     preset: method.preset.name.clone(),
                     view: view.name.clone(),
                     viewport,
@@ -147,8 +148,9 @@ impl<'a> Comparison<'a> {
         let places = self.places(view, viewport);
         let (view, viewport) = (&self.setup.views[view], self.setup.viewports[viewport]);
         self.provider.set_view(view, viewport);
-        let methods = self.setup.methods;
-        for (place, method) in places.clone().zip(methods) {
+        let methods = self.setup.methods.iter();
+        let methods: Vec<Method> = methods.map(|method| method.at(viewport)).collect();
+        for (place, method) in places.clone().zip(&methods) {
             self.plan_again(place, method, viewport)?;
         }
         let is_done = |state: &RunState| matches!(state, RunState::Done);
@@ -167,7 +169,7 @@ impl<'a> Comparison<'a> {
             cached_frames: self.results.cached_frames,
             pictures: self.pictures(),
         };
-        for (place, method) in places.zip(methods) {
+        for (place, method) in places.zip(&methods) {
             if is_done(&self.states[place]) {
                 continue;
             }

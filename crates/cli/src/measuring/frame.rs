@@ -63,6 +63,30 @@ pub fn run(
     Ok((report, began.elapsed()))
 }
 
+/// Frames after which buffers are as large as they get: each brings the count of the one before.
+const GROWING: usize = 8;
+
+/// Runs frames until the buffers that grow have room for all that a frame needs.
+///
+/// # Errors
+/// Those of the executor.
+pub fn grow(
+    gpu: &Gpu,
+    executor: &mut Executor,
+    provider: &mut dyn Provider,
+) -> Result<(), ExecuteError> {
+    for _ in 0..GROWING {
+        if executor.plan().growing().is_empty() {
+            break;
+        }
+        run(gpu, executor, &Frame::default())?;
+        if executor.grow(provider)?.is_none() {
+            break;
+        }
+    }
+    Ok(())
+}
+
 /// How often Ctrl-C is looked for while a frame is under way.
 const POLL_INTERVAL: Duration = Duration::from_millis(100);
 

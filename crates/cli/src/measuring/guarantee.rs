@@ -20,7 +20,9 @@ pub fn of(method: &Method, exact: &[String]) -> Result<Option<(Guarantee, String
     if exact.contains(&preset.name) {
         return Ok(Some((Guarantee::Exact, "--exact".into())));
     }
-    let claims = preset.graph.claims(&method.params, method.features);
+    let claims = preset
+        .graph
+        .claims(&method.params, method.viewport, method.features);
     let claims = claims.map_err(|faults| CliError::Input(reasons(&faults)))?;
     let words = CLAIMS.map(Guarantee::word);
     if let Some(unknown) = claims

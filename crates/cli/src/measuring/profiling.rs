@@ -52,9 +52,10 @@ pub fn profile(
         frames: args.frames,
         warmup: args.warmup,
     };
-    let (passes, memory) = (plan.passes(), memory(&plan));
     let failed = |error| frame::failed(&preset.name, error);
     let mut executor = frame::executor(gpu, plan, &mut provider).map_err(failed)?;
+    frame::grow(gpu, &mut executor, &mut provider).map_err(failed)?;
+    let (passes, memory) = (executor.plan().passes(), memory(executor.plan()));
     let step = Step::begin(
         format!("{}, {} {}", preset.name, view.name, args.method.size),
         u64::from(args.warmup) + u64::from(args.frames),

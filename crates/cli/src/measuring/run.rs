@@ -95,8 +95,10 @@ impl MeasureContext<'_> {
         provider: &mut dyn Provider,
         step: &Step,
     ) -> Result<Option<Executed>, ExecuteError> {
-        let memory = (plan.memory_bytes(), plan.saved_bytes());
         let mut executor = frame::executor(self.gpu, plan, provider)?;
+        frame::grow(self.gpu, &mut executor, provider)?;
+        let plan = executor.plan();
+        let memory = (plan.memory_bytes(), plan.saved_bytes());
         let count = [self.warmup, self.frames];
         let set_done = |frames| step.set_done(frames);
         let times = timing::times(

@@ -3,6 +3,7 @@
 use super::{
     contents::{Contents, HostCopy},
     encode::encode_all,
+    growth::Watch,
     pass::GpuPass,
     poison::Poison,
 };
@@ -78,6 +79,8 @@ pub(super) struct State {
     pub passes: Vec<GpuPass>,
     pub contents: Contents,
     pub poison: Option<Poison>,
+    /// Buffers that may grow.
+    pub watches: Vec<Watch>,
 }
 
 impl Executor {
@@ -177,6 +180,9 @@ impl Executor {
         }
         pending.iter().for_each(|pending| pending.copy(encoder));
         self.pending = pending;
+        for watch in &mut state.watches {
+            watch.copy(&state.plan, &state.memory, &ping_pong, encoder);
+        }
         state
             .contents
             .ran(&state.plan, &mut state.passes, &runs, &ping_pong);
@@ -234,6 +240,7 @@ impl Executor {
             self.timer.submitted()?;
         }
         self.pending.iter_mut().for_each(Pending::map);
+        self.state.watches.iter_mut().for_each(Watch::map);
         Ok(())
     }
 
@@ -300,6 +307,7 @@ impl State {
             .map_err(refused)?;
         Ok(Self {
             poison: Poison::new(&plan, &memory, maker.device).map_err(refused)?,
+            watches: Watch::all(&plan, maker.device).map_err(refused)?,
             contents: Contents::of(&plan, 0),
             memory,
             passes,

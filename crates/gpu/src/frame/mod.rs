@@ -3,6 +3,7 @@
 mod contents;
 mod encode;
 pub(crate) mod executor;
+mod growth;
 mod host;
 mod pass;
 mod poison;

@@ -11,6 +11,7 @@
 use super::{
     contents::Contents,
     executor::{Executor, State},
+    growth::Watch,
     pass::{GpuPass, Seen},
     poison::Poison,
 };
@@ -109,7 +110,9 @@ impl Executor {
         let bound: Vec<Option<usize>> = (0..passes.len()).map(|at| kept.bound(at)).collect();
         let positions = kept.positions;
         let poison = Poison::new(&plan, &memory, &self.device);
+        let watches = Watch::all(&plan, &self.device);
         let mut state = State {
+            watches: watches.map_err(|error| with_table(error, &plan))?,
             poison: poison.map_err(|error| with_table(error, &plan))?,
             plan,
             memory,

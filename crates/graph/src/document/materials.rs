@@ -9,7 +9,7 @@ use crate::{
     errors::document::DocumentError,
     language::{
         name::Name,
-        syntax::{Expr, Leaf},
+        syntax::{Expr, Leaf, Reference},
     },
     source::span::Located,
 };
@@ -51,7 +51,13 @@ impl Material {
                 let (size, layers) = (texture.size.as_ref(), texture.layers.as_ref());
                 [format, mips, size, layers, texture.samples.as_ref()]
             }
-            Self::Buffer(buffer) => [buffer.count.as_ref(), None, None, None, None],
+            Self::Buffer(buffer) => {
+                if let Some(grow) = &buffer.grow {
+                    each(Leaf::Material(&grow.counter));
+                }
+                let max = buffer.grow.as_ref().map(|grow| &grow.max);
+                [buffer.count.as_ref(), max, None, None, None]
+            }
             Self::Sampler(_) => [None; 5],
         };
         exprs
@@ -135,6 +141,17 @@ pub(crate) struct BufferEntry {
     /// The items that the buffer holds; it is never written then.
     #[serde(default)]
     pub data: Option<Located<Data>>,
+    #[serde(default)]
+    pub grow: Option<GrowEntry>,
+}
+
+/// How a buffer grows between frames: `counter` says how many items the frame would have needed.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct GrowEntry {
+    pub counter: Reference,
+    /// Most items.
+    pub max: Expr,
 }
 
 /// Constant items: numbers, or tuples of numbers, one per scalar of the shader's type.

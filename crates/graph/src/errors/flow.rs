@@ -39,6 +39,11 @@ pub(crate) enum OrderError {
         pass: Located<String>,
         read: Span,
     },
+    #[error("`{}` grows by `{counter}`, which no pass writes", **name)]
+    NeverCounted {
+        name: Located<String>,
+        counter: String,
+    },
     #[error(
         "passes `{}` and `{}` must run or be skipped together, for the sake of `{name}`",
         *passes[0], *passes[1]
@@ -117,6 +122,9 @@ impl Mistake for OrderError {
                 .at(read, "read here")
                 .at(pass.span, "by this pass")
                 .help(format!("let a pass write `{name}`")),
+            Self::NeverCounted { name, counter } => told.at(name.span, "").help(format!(
+                "let a pass count in `{counter}` the items that are needed"
+            )),
             Self::RunConditions {
                 name,
                 passes: [a, b],

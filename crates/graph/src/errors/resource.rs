@@ -65,6 +65,13 @@ pub(crate) enum SizeError {
     DataHas(Located<String>),
     #[error("`{}`: a buffer of no items", **.0)]
     NoItems(Located<String>),
+    #[error("`{}` grows, but from which `count`?", **.0)]
+    GrowWithoutCount(Located<String>),
+    #[error("`{}` is {what}: it cannot count items", **name)]
+    Counter {
+        name: Located<String>,
+        what: &'static str,
+    },
 }
 
 impl Mistake for SizeError {
@@ -109,6 +116,12 @@ impl Mistake for SizeError {
                 "use R8Unorm, Rg8Unorm, Rgba8Unorm, Rgba8UnormSrgb, or a format of 16- or 32-bit \
                  floats",
             ),
+            Self::GrowWithoutCount(name) => told
+                .at(name.span, "")
+                .help("give it a `count` to begin with; `data` does not grow"),
+            Self::Counter { name, .. } => told
+                .at(name.span, "")
+                .help("name a buffer whose first u32 a pass makes the number of items needed"),
             Self::DataHas(name) => told.at(name.span, "").help("leave `count` out"),
         }
     }

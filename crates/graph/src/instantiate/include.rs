@@ -226,7 +226,7 @@ impl<'a> Builder<'a, '_> {
             exposed: exposed.collect(),
             outer: &outer,
             span: &include.graph.span,
-            features: self.world.request.features,
+            around: self.world.request.surroundings(),
         };
         given.bind(document, &set, self.reports)
     }

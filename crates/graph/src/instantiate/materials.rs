@@ -7,13 +7,15 @@ use super::{
 };
 use crate::{
     diagnostics::reports::{Reported, Reports},
-    document::materials::{BufferEntry, FormatEntry, Material, Mips, SamplerEntry, TextureEntry},
+    document::materials::{
+        BufferEntry, FormatEntry, GrowEntry, Material, Mips, SamplerEntry, TextureEntry,
+    },
     errors::{evaluation::EvaluationError, resource::SizeError},
     language::{
         syntax::{Expr, Leaf},
         value::Value,
     },
-    resource::{Buffer, Origin, ResourceId, ResourceKind, Sampler, Texture},
+    resource::{Buffer, Growth, Origin, ResourceId, ResourceKind, Sampler, Texture},
     source::{
         sources::Picture,
         span::{Located, Span},
@@ -105,7 +107,8 @@ impl World<'_> {
             return;
         };
         self.evaluating.push(id);
-        let kind = self.kind(&declared, reports);
+        let full_name = self.resources[id.index()].name.clone();
+        let kind = self.kind(&declared, &full_name, reports);
         self.evaluating.pop();
         self.states[id.index()] = match kind {
             Ok(kind) => {
@@ -127,6 +130,7 @@ impl World<'_> {
     fn kind(
         &mut self,
         declared: &Declared,
+        full_name: &str,
         reports: &mut Reports,
     ) -> Result<ResourceKind, Reported> {
         let place = Place {
@@ -139,7 +143,7 @@ impl World<'_> {
                 self.check_texture(entry, &texture, reports)?;
                 Ok(ResourceKind::Texture(texture))
             }
-            Material::Buffer(entry) => self.buffer(entry, place, reports),
+            Material::Buffer(entry) => self.buffer(entry, full_name, place, reports),
             Material::Sampler(entry) => Ok(ResourceKind::Sampler(sampler(entry))),
         }
     }
@@ -247,6 +251,7 @@ impl World<'_> {
     fn buffer(
         &mut self,
         entry: &BufferEntry,
+        full_name: &str,
         place: Place,
         reports: &mut Reports,
     ) -> Result<ResourceKind, Reported> {
@@ -268,11 +273,47 @@ impl World<'_> {
             },
         };
         let data = entry.data.as_ref().map(|data| Arc::new(data.0.clone()));
-        Ok(ResourceKind::Buffer(Buffer {
+        let mut buffer = Buffer {
             count,
             data,
             ..Buffer::default()
-        }))
+        };
+        if let Some(grow) = &entry.grow {
+            let Some(count) = buffer.count.filter(|_| entry.count.is_some()) else {
+                return Err(reports.report(SizeError::GrowWithoutCount(name(&grow.counter.span))));
+            };
+            let growth = self.growth(grow, place, reports)?;
+            let grown = self.request.grown.get(full_name).copied().unwrap_or(0);
+            buffer.count = Some(count.max(grown).min(growth.max));
+            buffer.growth = Some(growth);
+        }
+        Ok(ResourceKind::Buffer(buffer))
+    }
+
+    fn growth(
+        &mut self,
+        grow: &GrowEntry,
+        place: Place,
+        reports: &mut Reports,
+    ) -> Result<Growth, Reported> {
+        let counter = self.resolve(&grow.counter, place, reports)?;
+        let resource = self.get(counter.id);
+        let is_own = resource.origin == Origin::Own;
+        if !(is_own && matches!(resource.kind, ResourceKind::Buffer(_))) {
+            let what = match is_own {
+                true => resource.kind.describe(),
+                false => "not written by this graph",
+            };
+            let text = grow.counter.text().to_owned();
+            let name = Located::new(text, grow.counter.span.clone());
+            return Err(reports.report(SizeError::Counter { name, what }));
+        }
+        let max = grow.max.count(&mut self.at(place, None, reports))?;
+        if max == 0 {
+            let name = Located::new("max".to_owned(), grow.max.span.clone());
+            return Err(reports.report(SizeError::NoItems(name)));
+        }
+        Ok(Growth { counter, max })
     }
 
     fn check_texture(

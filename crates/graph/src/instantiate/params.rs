@@ -86,20 +86,27 @@ impl Params {
     }
 }
 
-/// Only params and features have values: for defaults, and for claims.
+/// What defaults and claims may ask besides params.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Surroundings {
+    pub viewport: [u32; 2],
+    pub features: wgt::Features,
+}
+
+/// Only params, the viewport and features have values: for defaults, and for claims.
 struct ParamsAlone<'a> {
     params: &'a Params,
-    features: wgt::Features,
+    around: Surroundings,
     reports: &'a mut Reports,
 }
 
 impl Environment for ParamsAlone<'_> {
     fn viewport(&self) -> [u32; 2] {
-        [1, 1]
+        self.around.viewport
     }
 
     fn has(&self, feature: wgt::Features) -> bool {
-        self.features.contains(feature)
+        self.around.features.contains(feature)
     }
 
     fn param(&mut self, name: &str, span: &Span) -> Result<Value, Reported> {
@@ -138,7 +145,7 @@ impl Environment for ParamsAlone<'_> {
 fn default(
     params: &Params,
     param: &Param,
-    features: wgt::Features,
+    around: Surroundings,
     reports: &mut Reports,
 ) -> Result<ParamValue, Reported> {
     let Some(default) = &param.default else {
@@ -146,7 +153,7 @@ fn default(
     };
     let mut environment = ParamsAlone {
         params,
-        features,
+        around,
         reports,
     };
     let value = default.value(&mut environment)?;
@@ -168,7 +175,7 @@ fn in_order(document: &Document) -> impl Iterator<Item = &Param> {
 pub(crate) fn root(
     document: &Document,
     asked: &BTreeMap<String, ParamValue>,
-    features: wgt::Features,
+    around: Surroundings,
     reports: &mut Reports,
 ) -> Params {
     let mut params = Params::default();
@@ -176,7 +183,7 @@ pub(crate) fn root(
         let name = &param.name.value;
         let value = match asked.get(name) {
             Some(value) => Ok(value.clone()),
-            None => default(&params, param, features, reports),
+            None => default(&params, param, around, reports),
         };
         params.list.push(BoundParam {
             param: param.clone(),
@@ -195,7 +202,7 @@ pub(crate) struct Given<'a> {
     pub outer: &'a Params,
     /// The include's own place.
     pub span: &'a Span,
-    pub features: wgt::Features,
+    pub around: Surroundings,
 }
 
 impl Given<'_> {
@@ -300,7 +307,7 @@ impl Given<'_> {
                 }));
             }
             None => {
-                bound.value = default(known, param, self.features, reports);
+                bound.value = default(known, param, self.around, reports);
                 let roots = param.default.as_ref().map(|default| known.roots(default));
                 bound.roots = roots.unwrap_or_default();
             }
@@ -310,18 +317,20 @@ impl Given<'_> {
 }
 
 impl Graph {
-    /// The value of every param: that which is asked for, else the default on a device with these
-    /// features.
+    /// The value of every param: that which is asked for, else the default for this viewport on a
+    /// device with these features.
     ///
     /// # Errors
     /// If there is no such param, or a value does not fit.
     pub fn values(
         &self,
         asked: &BTreeMap<String, ParamValue>,
+        viewport: [u32; 2],
         features: wgt::Features,
     ) -> Result<BTreeMap<String, ParamValue>, Diagnostics> {
         let mut reports = Reports::default();
-        let params = self.checked_params(asked, features, &mut reports);
+        let around = Surroundings { viewport, features };
+        let params = self.checked_params(asked, around, &mut reports);
         match params {
             Ok(params) => Ok(params
                 .list
@@ -336,7 +345,7 @@ impl Graph {
     pub(crate) fn checked_params(
         &self,
         asked: &BTreeMap<String, ParamValue>,
-        features: wgt::Features,
+        around: Surroundings,
         reports: &mut Reports,
     ) -> Result<Params, Reported> {
         let mut wrong = None;
@@ -351,7 +360,7 @@ impl Graph {
             };
             wrong = mistake.map(|mistake| reports.report(mistake)).or(wrong);
         }
-        let params = root(&self.document, asked, features, reports);
+        let params = root(&self.document, asked, around, reports);
         let bad = params
             .list
             .iter()
@@ -359,23 +368,25 @@ impl Graph {
         wrong.or(bad.copied()).map_or(Ok(params), Err)
     }
 
-    /// What the document promises of itself for these values of params, on a device with these
-    /// features.
+    /// What the document promises of itself for these values of params and this viewport, on a
+    /// device with these features.
     ///
     /// # Errors
     /// If a value does not fit, or a condition has no value.
     pub fn claims(
         &self,
         asked: &BTreeMap<String, ParamValue>,
+        viewport: [u32; 2],
         features: wgt::Features,
     ) -> Result<Vec<Claim>, Diagnostics> {
         let mut reports = Reports::default();
         let mut claims = Vec::new();
-        if let Ok(params) = self.checked_params(asked, features, &mut reports) {
+        let around = Surroundings { viewport, features };
+        if let Ok(params) = self.checked_params(asked, around, &mut reports) {
             for (name, claim) in &self.document.claims {
                 let mut environment = ParamsAlone {
                     params: &params,
-                    features,
+                    around,
                     reports: &mut reports,
                 };
                 let condition = claim.condition.as_ref();

@@ -63,7 +63,7 @@ impl Graph {
         };
         if outcome.plan.is_some() && errors.is_empty() {
             errors.extend(graph.sweep(request, &outcome.deciding));
-            if let Err(wrong) = graph.claims(&request.params, request.features) {
+            if let Err(wrong) = graph.claims(&request.params, request.viewport, request.features) {
                 errors.extend(wrong.iter().cloned());
             }
         }

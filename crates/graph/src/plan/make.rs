@@ -27,7 +27,7 @@ use crate::{
         pass::{Access, LinkedPass, PassId},
     },
     request::{PlanRequest, Request},
-    resource::{Buffer, Origin, ResourceId, ResourceKind, Target},
+    resource::{Buffer, Growth, Origin, Resource, ResourceId, ResourceKind, Target},
     source::span::Located,
 };
 use std::collections::{BTreeMap, BTreeSet};
@@ -55,7 +55,7 @@ impl Graph {
     pub(super) fn plan_all(&self, request: &PlanRequest<'_>) -> Outcome {
         let mut reports = Reports::default();
         reports.any_adapter = request.any_adapter;
-        let params = self.checked_params(&request.params, request.features, &mut reports);
+        let params = self.checked_params(&request.params, request.surroundings(), &mut reports);
         if request.viewport.contains(&0) {
             reports.report(OutputError::NoViewport(self.place()));
         }
@@ -96,6 +96,7 @@ impl Graph {
         let order = order(linked.work(), valid_prefix, reports);
         if is_complete {
             never_written(linked.work(), &order, reports);
+            never_counted(linked.work(), &order, reports);
             borders(&linked, reports);
         }
         let written = |target: &Target| !is_complete || !order.final_writers(target).is_empty();
@@ -123,6 +124,14 @@ impl Graph {
             lifetimes.entry(*base).or_insert(lifetime);
         }
         further_uses(&mut lifetimes, &readable, &previous, request, work);
+        let counters: Vec<ResourceId> = growing(lifetimes.keys(), work.resources)
+            .map(|(_, growth)| growth.counter.id)
+            .collect();
+        for counter in &counters {
+            if let Some(lifetime) = lifetimes.get_mut(counter) {
+                lifetime.buffers |= wgt::BufferUsages::COPY_SRC;
+            }
+        }
         usages::check(work, &sequence, request, reports);
         if reports.errors() > 0 {
             return None;
@@ -137,6 +146,7 @@ impl Graph {
             .copied()
             .chain(readable.iter().map(|(_, target)| target.id))
             .chain(previous.values().copied())
+            .chain(counters)
             .collect();
         let aliases = aliases(work, &sequence, &lifetimes, &kept);
         let culled = culled(work, &live);
@@ -193,7 +203,7 @@ impl Graph {
 /// What of a plan comes from its order.
 struct Scheduled {
     passes: Vec<LinkedPass>,
-    resources: Vec<crate::resource::Resource>,
+    resources: Vec<Resource>,
     schedule: Schedule,
     readable: Vec<(String, Target)>,
     culled: Vec<CulledPass>,
@@ -248,18 +258,36 @@ fn live(work: Work<'_>, readable: &[(String, Target)], order: &Order) -> Vec<boo
         .chain(imports.map(|(id, _)| id))
         .collect();
     cull::live(order, roots, |pass| {
-        let of = |access: &Access| match work.resource(access.resource).origin {
-            Origin::Previous(id) => order.final_writers(&Target {
-                id,
-                part: access.part.clone(),
-            }),
-            _ => BTreeSet::new(),
+        let of = |access: &Access| {
+            let resource = work.resource(access.resource);
+            match (&resource.origin, &resource.kind) {
+                (Origin::Previous(id), _) => order.final_writers(&Target {
+                    id: *id,
+                    part: access.part.clone(),
+                }),
+                (_, ResourceKind::Buffer(buffer)) => {
+                    let counter = buffer.growth.as_ref().map(|growth| &growth.counter);
+                    counter.map_or_else(BTreeSet::new, |counter| order.final_writers(counter))
+                }
+                _ => BTreeSet::new(),
+            }
         };
         work.pass(pass)
             .accesses
             .iter()
             .flat_map(of)
             .collect::<Vec<_>>()
+    })
+}
+
+/// Those of some resources that are buffers and grow.
+pub(super) fn growing<'a>(
+    ids: impl Iterator<Item = &'a ResourceId>,
+    resources: &'a [Resource],
+) -> impl Iterator<Item = (ResourceId, &'a Growth)> {
+    ids.filter_map(|id| match &resources[id.index()].kind {
+        ResourceKind::Buffer(buffer) => Some((*id, buffer.growth.as_ref()?)),
+        _ => None,
     })
 }
 
@@ -349,6 +377,21 @@ fn never_written(work: Work<'_>, order: &Order, reports: &mut Reports) {
                 name: work.resource(id).name.clone(),
                 pass: pass.name.clone(),
                 read: access.span.clone(),
+            });
+        }
+    }
+}
+
+/// Buffers that grow by what no pass counts.
+fn never_counted(work: Work<'_>, order: &Order, reports: &mut Reports) {
+    let ids: Vec<ResourceId> = (0..work.resources.len()).map(ResourceId).collect();
+    for (id, growth) in growing(ids.iter(), work.resources) {
+        if order.final_writers(&growth.counter).is_empty()
+            && let Some(declared) = &work.resource(id).declared
+        {
+            reports.report(OrderError::NeverCounted {
+                name: Located::new(work.resource(id).name.clone(), declared.clone()),
+                counter: work.resource(growth.counter.id).name.clone(),
             });
         }
     }

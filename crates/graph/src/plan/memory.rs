@@ -1,11 +1,11 @@
 //! What a plan's own textures and buffers take, and whether that is too much.
 
-use super::{plan::Plan, text};
+use super::{make::growing, plan::Plan, text};
 use crate::{
     diagnostics::reports::Mistake,
     errors::plan::OutputError,
     flow::aliases::Allocation,
-    resource::{ResourceId, ResourceKind},
+    resource::{Growth, ResourceId, ResourceKind},
 };
 
 /// Rows of a memory table: what does not fit is rarely found among the small ones.
@@ -67,6 +67,27 @@ impl Plan {
             })
         };
         self.schedule().lifetimes.keys().filter_map(entry).collect()
+    }
+
+    /// The live buffers that may grow, each with where its frame counts the items that it would
+    /// have needed, and the most that it may have: by the document, and by the device's limits.
+    pub fn growing(&self) -> Vec<(ResourceId, Growth)> {
+        let limits = &self.request.limits;
+        let largest = limits
+            .max_buffer_size
+            .min(limits.max_storage_buffer_binding_size);
+        let live = growing(self.schedule().lifetimes.keys(), &self.resources);
+        let bounded = |(id, growth): (ResourceId, &Growth)| {
+            let ResourceKind::Buffer(buffer) = &self.resource(id).kind else {
+                return None;
+            };
+            let fixed = buffer.bytes.saturating_sub(buffer.stride * buffer.count?);
+            let fits = (largest - fixed).checked_div(buffer.stride)?;
+            let max = growth.max.min(fits);
+            let counter = growth.counter.clone();
+            Some((id, Growth { counter, max }))
+        };
+        live.filter_map(bounded).collect()
     }
 
     /// Bytes of the graph's own textures and buffers. One that is also read as it was in the frame

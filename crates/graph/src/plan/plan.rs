@@ -92,6 +92,11 @@ impl Plan {
         &self.request.imports
     }
 
+    /// Items that growing buffers were known to need when the plan was made, by full name.
+    pub fn grown(&self) -> &BTreeMap<String, u64> {
+        &self.request.grown
+    }
+
     /// The byte that memory is filled with between uses, if it is.
     pub fn poison(&self) -> Option<u8> {
         self.request.poison

@@ -1,0 +1,94 @@
+// A grid over light space, each texel with the list of the casters that could shade a receiver in
+// it. Haines, Greenberg, "The Light Buffer: A Shadow-Testing Accelerator", IEEE CG&A 6(9), 1986.
+// Why it is exact: docs/light_buffer.md.
+
+#import "shared/light_triangle.wgsl"
+
+// One caster in the list of a texel.
+struct Entry {
+    // Number of the next entry; LIST_END after the last one, LIST_FULL where a caster is missing.
+    next: u32,
+    // Whom it cannot shade, see `entry_key`.
+    key: u32,
+    primitive: u32,
+}
+
+// Entries count from 1, so that a cleared buffer holds empty lists.
+const LIST_END: u32 = 0u;
+const LIST_FULL: u32 = 0xffffffffu;
+
+// Edge of a tile, texels. A tile keeps the farthest depth of its texels.
+const TILE: u32 = 8u;
+
+// Where a receiver is in the grid.
+struct Place {
+    // Number of its texel; NO_TEXEL if it is outside, or rounding may move it too far.
+    texel: u32,
+    // Number of its tile, which stands behind the texels.
+    tile: u32,
+    // Bits of its depth, an f32 above 0. What is farther from the light does not shade it.
+    depth: u32,
+    // Relative to the texel's centre.
+    offset: vec2<f32>,
+}
+
+const NO_TEXEL: u32 = 0xffffffffu;
+
+fn tile_number(tile: vec2<u32>, map_size: u32) -> u32 {
+    return map_size * map_size + tile.y * ((map_size + TILE - 1u) / TILE) + tile.x;
+}
+
+fn place_of(receiver: vec3<f32>, map_size: u32) -> Place {
+    let at = light_texel(receiver, f32(map_size));
+    let error = light_space_error_bound(receiver);
+    let inside = all(at.xy >= vec2(0.0)) && all(at.xy < vec2(f32(map_size)));
+    // Half of the slack is for rounding, half for the tracer, to whom a point so near an edge may
+    // be on it. NaN is not inside.
+    if !(inside && error.x * f32(map_size) <= 0.5 * SLACK && abs(at.z) <= 2.0) {
+        return Place(NO_TEXEL, 0u, 0u, vec2(0.0));
+    }
+    let texel = vec2<u32>(at.xy);
+    // 0 says that nobody is there.
+    let depth = max(depth_bits(at.z + error.y), 1u);
+    let number = texel.y * map_size + texel.x;
+    return Place(number, tile_number(texel / TILE, map_size), depth, fract(at.xy) - 0.5);
+}
+
+// In the order of the depths; of -0, too.
+fn depth_bits(depth: f32) -> u32 {
+    return bitcast<u32>(abs(max(depth, 0.0)));
+}
+
+// A depth in 16 bits, rounded towards the light.
+fn coarse_depth(depth: f32) -> u32 {
+    return u32(depth * 65535.0);
+}
+
+// The line `distance + dot(inward, offset) = 0` cuts off the part of a texel in which an entry's
+// caster is not; the larger component of `inward` is 1 or -1. 16 bits for the least depth in the
+// texel, 2 for the larger component, 6 for the smaller one, 8 for the distance.
+fn entry_key(depth: f32, inward: vec2<f32>, distance: f32) -> u32 {
+    let steep = abs(inward.y) > abs(inward.x);
+    let larger = select(inward.x, inward.y, steep);
+    let smaller = select(inward.y, inward.x, steep);
+    // The slack in both directions, and 1/126 for the smaller component's rounding.
+    let generous = clamp(distance + 4.0 * SLACK, -1.0, 1.0);
+    return coarse_depth(depth) << 16u
+        | select(0u, 0x8000u, steep)
+        | select(0u, 0x4000u, larger < 0.0)
+        | u32(round((smaller + 1.0) * 31.5)) << 8u
+        | u32(ceil((generous + 1.0) * 127.5));
+}
+
+fn key_depth(key: u32) -> u32 {
+    return key >> 16u;
+}
+
+fn cuts_off(key: u32, offset: vec2<f32>) -> bool {
+    let steep = (key & 0x8000u) != 0u;
+    let larger = select(offset.x, offset.y, steep);
+    let smaller = select(offset.y, offset.x, steep);
+    let distance = f32(key & 0xffu) / 127.5 - 1.0;
+    let slope = f32(key >> 8u & 0x3fu) / 31.5 - 1.0;
+    return distance + select(larger, -larger, (key & 0x4000u) != 0u) + slope * smaller < 0.0;
+}

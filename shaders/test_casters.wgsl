@@ -1,0 +1,84 @@
+// Stage to ask, for each receiver, the casters that are listed in its texel, by the tracer's own
+// test; one thread per pixel. What no complete list answers is left to a ray.
+
+#import "shared/camera.wgsl"
+#import "shared/receiver.wgsl"
+#import "shared/light_buffer.wgsl"
+#import "shared/ray_triangle.wgsl"
+
+struct Params {
+    map_size: u32,
+    longest_list: u32,
+}
+
+var<uniform> params: Params;
+// As mark_receivers.wgsl has it.
+var<storage, read> farthest: array<u32>;
+// As bin_casters.wgsl has them.
+var<storage, read> heads: array<u32>;
+var<storage, read> entries: array<Entry>;
+var visibility: texture_storage_2d<r32uint, write>;
+var status: texture_storage_2d<r32uint, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    // Blocks of 4 by 2 pixels: neighbours that run in step have like lists.
+    let column = (lane & 3u) | (lane >> 1u & 4u);
+    let row = (lane >> 2u & 1u) | (lane >> 3u & 6u);
+    let pixel = 8u * group.xy + vec2(column, row);
+    if any(pixel >= textureDimensions(primitive)) {
+        return;
+    }
+    let receiver = textureLoad(position, pixel, 0);
+    var pixel_status = initial_status(pixel, receiver);
+    if pixel_status == STATUS_UNCERTAIN {
+        pixel_status = test_casters(receiver.xyz, textureLoad(primitive, pixel, 0).x);
+    }
+    textureStore(status, pixel, vec4(pixel_status));
+    textureStore(visibility, pixel, vec4(initial_visibility(pixel_status)));
+}
+
+fn test_casters(receiver: vec3<f32>, own: u32) -> u32 {
+    let place = place_of(receiver, params.map_size);
+    if place.texel == NO_TEXEL || heads[arrayLength(&heads) - 1u] != LIST_END {
+        return STATUS_UNCERTAIN;
+    }
+    // Two shaders may round a receiver to different texels: then nobody has marked this one.
+    if place.depth > farthest[place.texel] {
+        return STATUS_UNCERTAIN;
+    }
+    var number = heads[place.texel];
+    if number == LIST_END {
+        return STATUS_LIGHT;
+    }
+    let depth = coarse_depth(bitcast<f32>(place.depth));
+    let t_min = receiver_error_bound(receiver, camera.eye);
+    let ray = sheared(Ray(receiver, t_min, light.to_light, light.max_distance));
+    var hit = Hit(light.max_distance, NO_PRIMITIVE, 0.0, 0.0);
+    var left = params.longest_list;
+    loop {
+        // To the next one that could be hit, each thread in its own list: testing costs the most,
+        // so threads that run in step do it together.
+        var candidate = NO_PRIMITIVE;
+        while candidate == NO_PRIMITIVE && number != LIST_END && number != LIST_FULL && left != 0u {
+            let at = number - 1u;
+            let key = entries[at].key;
+            if key_depth(key) <= depth && !cuts_off(key, place.offset) {
+                let primitive = entries[at].primitive;
+                candidate = select(primitive, NO_PRIMITIVE, primitive == own);
+            }
+            number = entries[at].next;
+            left--;
+        }
+        if candidate == NO_PRIMITIVE {
+            return select(STATUS_UNCERTAIN, STATUS_LIGHT, number == LIST_END);
+        }
+        if intersect(ray, candidate, t_min, &hit) {
+            return STATUS_SHADOW;
+        }
+    }
+    return STATUS_UNCERTAIN;
+}

@@ -45,6 +45,7 @@ struct Executed {
     cached: Option<Cached>,
     outputs: Result<Outputs, String>,
     memory: (u64, u64),
+    scene_bytes: u64,
 }
 
 impl MeasureContext<'_> {
@@ -97,6 +98,7 @@ impl MeasureContext<'_> {
     ) -> Result<Option<Executed>, ExecuteError> {
         let memory = (plan.memory_bytes(), plan.saved_bytes());
         let mut executor = frame::executor(self.gpu, plan, provider)?;
+        let scene_bytes = self.scene_bytes(executor.plan(), provider)?;
         let count = [self.warmup, self.frames];
         let set_done = |frames| step.set_done(frames);
         let times = timing::times(
@@ -118,7 +120,27 @@ impl MeasureContext<'_> {
             cached,
             outputs: Outputs::decode(&contents),
             memory,
+            scene_bytes,
         }))
+    }
+
+    /// Bytes of what the scene gives to the plan.
+    fn scene_bytes(&self, plan: &Plan, provider: &mut dyn Provider) -> Result<u64, ExecuteError> {
+        let mut bytes = 0;
+        let provided = plan.provided().into_iter();
+        // Last frame's camera is a copy of the executor's own.
+        for name in provided
+            .filter(|name| provider.describe(name).is_some())
+            .collect::<Vec<_>>()
+        {
+            let built = provider.build(name, &self.gpu.device, &self.gpu.queue);
+            let buffer = built.map_err(|error| ExecuteError::Provider {
+                name: name.to_owned(),
+                why: error.to_string(),
+            })?;
+            bytes += buffer.size();
+        }
+        Ok(bytes)
     }
 
     fn judge(&self, method: &Method, executed: Executed) -> Result<Measured, CliError> {
@@ -127,6 +149,7 @@ impl MeasureContext<'_> {
             mut cached,
             outputs,
             memory: (memory_bytes, saved_bytes),
+            scene_bytes,
         } = executed;
         let (outputs, counts) = judged(method.preset, outputs, self.reference)?;
         if !self.timestamps {
@@ -152,6 +175,7 @@ impl MeasureContext<'_> {
             cached,
             memory_bytes,
             saved_bytes,
+            scene_bytes,
             images: images.transpose()?,
         })
     }

@@ -10,6 +10,8 @@
 
 struct Params {
     per_pixel: u32,
+    first: u32,
+    most: u32,
 }
 
 var<uniform> params: Params;
@@ -32,7 +34,9 @@ fn main(
 ) {
     let pixel = thread.xy;
     let viewport = textureDimensions(status);
-    let inside = all(pixel < viewport);
+    let place = pixel.y * viewport.x + pixel.x;
+    // A place before the first one wraps to beyond the last.
+    let inside = all(pixel < viewport) && place - params.first < params.most;
     let uncertain = inside && textureLoad(status, pixel, 0).x == STATUS_UNCERTAIN;
     let traced = uncertain || (inside && params.per_pixel != 0u);
     let word = lane / 32u;
@@ -63,5 +67,5 @@ fn main(
     rays[slot] = Ray(receiver, t_min, light.to_light, max_distance);
     ray_primitives[slot] = id;
     // Rays of certain pixels cost their time and change no pixel.
-    ray_pixels[slot] = select(NO_PIXEL, pixel.y * viewport.x + pixel.x, uncertain);
+    ray_pixels[slot] = select(NO_PIXEL, place, uncertain);
 }

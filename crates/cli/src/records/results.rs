@@ -194,9 +194,11 @@ pub struct Measured {
 }
 
 /// The step that a pass belongs to: its name up to the first dot, so that `create_shadow_map.outer`
-/// and `create_shadow_map.inner` are one.
+/// and `create_shadow_map.inner` are one. What is repeated is no step, but what is in it:
+/// `further[0].trace_rays` is of the step `trace_rays`.
 pub fn step(pass: &str) -> &str {
-    pass.split_once('.').map_or(pass, |(step, _)| step)
+    let mut steps = pass.split('.');
+    steps.find(|step| !step.ends_with(']')).unwrap_or(pass)
 }
 
 /// The step that every preset begins with, and that is not the method's own work.
@@ -415,6 +417,18 @@ pub(crate) mod tests {
                     ..run("rt_hw", None)
                 },
             ],
+        }
+    }
+
+    #[test]
+    fn a_step_is_what_stands_before_the_first_dot_but_no_repeat() {
+        for (pass, of) in [
+            ("trace_rays", "trace_rays"),
+            ("fill_rays.compact", "fill_rays"),
+            ("further[0].fill_rays.compact", "fill_rays"),
+            ("fill[3]", "fill[3]"),
+        ] {
+            assert_eq!(step(pass), of);
         }
     }
 

@@ -262,7 +262,7 @@ mod tests {
         let [panel] = &figure.panels[..] else {
             panic!("{figure:?}")
         };
-        assert_eq!(panel.title, "park, mean of 2 views, 512×256");
+        assert_eq!(panel.title, "park, mean of 2 views, 512x256");
         let [nsm] = &panel.series[..] else {
             panic!("{panel:?}")
         };

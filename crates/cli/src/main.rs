@@ -26,6 +26,7 @@ fn main() -> ExitCode {
     let outcome = match &cli.command {
         Command::Compare(args) => commands::compare::compare(args, gpu),
         Command::Run(args) => commands::run::run(args, gpu),
+        Command::Chart(args) => commands::chart::chart(args),
         Command::Profile(args) => commands::profile::profile(args, gpu),
         Command::Stress(args) => commands::stress::stress(args, gpu),
         Command::Check(args) => commands::check::check(args, gpu),

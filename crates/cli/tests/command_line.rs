@@ -397,3 +397,92 @@ fn a_scene_or_view_that_is_not_there_is_named() {
     assert_exit(&own, 2);
     assert!(stderr(&own).contains("--look"), "{}", stderr(&own));
 }
+
+/// The results that a unit test pins, as `compare` would have kept them.
+fn kept(folder: &Path, change: impl FnOnce(&mut serde_json::Value)) {
+    let pinned = include_str!(
+        "../src/records/snapshots/\
+         skiagraph__records__results__tests__the_schema_is_pinned_and_reads_back.snap"
+    );
+    let (_, text) = pinned.split_once("\n---\n").unwrap();
+    let mut results = serde_json::from_str(text).unwrap();
+    change(&mut results);
+    fs::create_dir_all(folder).unwrap();
+    fs::write(folder.join("results.json"), results.to_string()).unwrap();
+}
+
+#[test]
+fn chart_draws_kept_results_without_a_gpu() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let without_gpu_times = 1;
+    for (name, triangles) in [("small", 10_000), ("large", 1_000_000)] {
+        kept(&folder.join(name), |results| {
+            results["runs"]
+                .as_array_mut()
+                .unwrap()
+                .remove(without_gpu_times);
+            results["scene"]["triangles"] = triangles.into();
+        });
+    }
+    let output = skiagraph(folder, &["chart", "small"]);
+    assert_exit(&output, 0);
+    assert!(stdout(&output).starts_with("<svg") && stdout(&output).contains("map 1024²"));
+    assert!(stderr(&output).contains("not drawn: rt_hw: needs ray queries"));
+    let growth = [
+        "chart",
+        "large",
+        "small",
+        "--kind",
+        "growth",
+        "--out",
+        "growth.svg",
+    ];
+    let output = skiagraph(folder, &growth);
+    assert_exit(&output, 0);
+    assert_eq!(stdout(&output), "");
+    let svg = fs::read_to_string(folder.join("growth.svg")).unwrap();
+    assert!(svg.contains("park 10,000, park 1,000,000"), "{svg}");
+}
+
+#[test]
+fn chart_says_what_is_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::create_dir(folder.join("empty")).unwrap();
+    fs::create_dir(folder.join("foreign")).unwrap();
+    fs::write(folder.join("foreign/results.json"), "{\"a\": 1}").unwrap();
+    kept(&folder.join("timeless"), |_| {});
+    kept(&folder.join("good"), |results| {
+        results["runs"].as_array_mut().unwrap().truncate(1);
+    });
+    let refused = |arguments: &[&str]| {
+        let output = skiagraph(folder, &[&["chart"], arguments].concat());
+        assert_exit(&output, 1);
+        assert_eq!(stdout(&output), "");
+        stderr(&output)
+    };
+    for (arguments, message) in [
+        (
+            &["good", "nowhere"][..],
+            "there is no folder nowhere; name a folder that",
+        ),
+        (
+            &["empty"],
+            "there is no results.json in empty; name a folder that",
+        ),
+        (&["foreign"], "`foreign/results.json` is no results.json"),
+        (&["timeless"], "timeless: there are no GPU times to draw"),
+        (
+            &["good", "--size", "1x1"],
+            "there is nothing to draw: no run of 1x1 has measurements",
+        ),
+        (
+            &["good", "--out", "nowhere/a.svg"],
+            "there is no folder nowhere",
+        ),
+    ] {
+        let told = refused(arguments);
+        assert!(told.contains(message), "{arguments:?}: {told}");
+    }
+}

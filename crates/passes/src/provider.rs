@@ -101,11 +101,8 @@ impl SceneProvider {
         content: &[u8],
         device: &wgpu::Device,
     ) -> Result<(), Error> {
-        let limits = device.limits();
         let bytes = content.len() as u64;
-        let limit = limits
-            .max_buffer_size
-            .min(limits.max_storage_buffer_binding_size);
+        let limit = binding_limit(device);
         if bytes > limit {
             return Err(Error::TooLarge {
                 name: name.to_owned(),
@@ -140,7 +137,10 @@ impl SceneProvider {
     }
 
     fn upload_hierarchy(&mut self, device: &wgpu::Device) -> Result<(), Error> {
-        let mut bvh = Bvh::build(&self.scene.mesh);
+        // Beyond some four million triangles the boxes of all leaves exceed what Vulkan promises
+        // to bind, and so the smallest leaves are joined.
+        let most = binding_limit(device) / size_of::<BvhNode>() as u64;
+        let mut bvh = Bvh::build(&self.scene.mesh).merged(most as usize);
         if bvh.nodes.is_empty() {
             bvh.nodes.push(BvhNode {
                 min: [0.0; 3],
@@ -175,6 +175,14 @@ impl SceneProvider {
             _ => Ok(()),
         }
     }
+}
+
+/// The most bytes that a storage buffer can have and be bound whole.
+fn binding_limit(device: &wgpu::Device) -> u64 {
+    let limits = device.limits();
+    limits
+        .max_buffer_size
+        .min(limits.max_storage_buffer_binding_size)
 }
 
 /// A node as the shader reads it: the floats' bits and the two counts, in the order of [`BvhNode`].

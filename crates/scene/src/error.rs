@@ -141,6 +141,14 @@ pub enum SceneError {
         /// Names of the built-in scenes.
         builtin: Vec<&'static str>,
     },
+    /// A number of triangles was given for a scene that cannot have it.
+    #[error("{argument:?}: {reason}")]
+    Size {
+        /// What was asked for.
+        argument: String,
+        /// Why it cannot be had.
+        reason: String,
+    },
     /// A bare `.obj` came without the view and the light that a scene file would hold.
     #[error("{}: an .obj file holds no view and no light: give --eye x,y,z --look x,y,z \
         (direction) and --light x,y,z (the direction in which the light travels); --fov DEGREES, \

@@ -3,7 +3,6 @@
 use crate::{
     camera::View,
     error::SceneError,
-    generate::named,
     light::DirectionalLight,
     limit::Limit,
     obj::{
@@ -27,7 +26,9 @@ const SCENE_FILE: Limit = Limit {
 };
 
 /// Scene files that are part of the program: name and text.
-const BUILT_IN: [(&str, &str); 2] = [
+const BUILT_IN: [(&str, &str); 4] = [
+    ("city", include_str!("../../../scenes/city.ron")),
+    ("forest", include_str!("../../../scenes/forest.ron")),
     ("park", include_str!("../../../scenes/park.ron")),
     ("sponza", include_str!("../../../scenes/sponza.ron")),
 ];
@@ -36,7 +37,8 @@ const BUILT_IN: [(&str, &str); 2] = [
 #[derive(Clone, Debug, Default)]
 pub struct SceneRequest {
     /// A built-in name, a name in `scenes/`, the path of a `.ron` file, or the path of an `.obj`
-    /// file.
+    /// file. Behind a scene whose mesh is generated in any size may stand another one:
+    /// `city:1000000`.
     pub argument: String,
     /// View and light of a bare `.obj` file; must be absent for any other scene, which brings its
     /// own.
@@ -111,12 +113,20 @@ impl SceneLibrary {
                 argument: request.argument.clone(),
             });
         }
-        let (file, text) = self.locate(&request.argument)?;
+        let (argument, size) = sized(&request.argument);
+        let (file, text) = self.locate(argument)?;
         let name = file.as_ref().map_or_else(
-            || built_in_file(&request.argument),
+            || built_in_file(argument),
             |file| file.display().to_string(),
         );
-        self.assemble(SceneFile::parse(&text, &name)?, file.as_deref())
+        let mut scene = SceneFile::parse(&text, &name)?;
+        if let Some(size) = size {
+            resize(&mut scene, size).map_err(|reason| SceneError::Size {
+                argument: request.argument.clone(),
+                reason,
+            })?;
+        }
+        self.assemble(scene, file.as_deref())
     }
 
     /// Every scene that can be named: files of the scenes folder and built-in ones, by name.
@@ -215,13 +225,7 @@ impl SceneLibrary {
         file: Option<&Path>,
     ) -> Result<(Scene, ImportReport), SceneError> {
         let (mesh, report) = match &scene.mesh {
-            MeshSource::Generated(name) => {
-                // The scene file was refused where no generator has that name.
-                (
-                    named::by_name(name).unwrap_or_default(),
-                    ImportReport::default(),
-                )
-            }
+            MeshSource::Generated(generator) => (generator.build(), ImportReport::default()),
             MeshSource::Obj {
                 file: mesh,
                 leave_out,
@@ -268,6 +272,28 @@ impl SceneLibrary {
             },
             report,
         ))
+    }
+}
+
+/// A scene's name or path, and the number of triangles behind it.
+fn sized(argument: &str) -> (&str, Option<&str>) {
+    match argument.rsplit_once(':') {
+        // A colon further in front may belong to a path.
+        Some((scene, size)) if !scene.is_empty() && !size.contains(['/', '\\', '.']) => {
+            (scene, Some(size))
+        }
+        _ => (argument, None),
+    }
+}
+
+/// Gives a generated mesh another number of triangles.
+fn resize(scene: &mut SceneFile, size: &str) -> Result<(), String> {
+    match &mut scene.mesh {
+        MeshSource::Generated(generator) => {
+            *generator = generator.with_triangles(size)?;
+            Ok(())
+        }
+        MeshSource::Obj { file, .. } => Err(format!("the mesh {file:?} is a file of one size")),
     }
 }
 

@@ -18,7 +18,7 @@
 //! ```
 
 use crate::{
-    camera::View, error::SceneError, generate::named, light::DirectionalLight,
+    camera::View, error::SceneError, generate::Generator, light::DirectionalLight,
     obj::options::QuadDiagonal,
 };
 use serde::{Deserialize, Deserializer, de::Error};
@@ -66,8 +66,8 @@ pub enum MeshSource {
         #[serde(default, deserialize_with = "given")]
         source: Option<String>,
     },
-    /// A mesh that this crate generates, by name; see [`crate::generate`].
-    Generated(#[serde(deserialize_with = "generator")] String),
+    /// A mesh that this crate generates, by name: `"park"`, `"city:100000"`.
+    Generated(#[serde(deserialize_with = "generator")] Generator),
 }
 
 impl SceneFile {
@@ -143,15 +143,9 @@ fn format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
     }
 }
 
-fn generator<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+fn generator<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Generator, D::Error> {
     let name = String::deserialize(deserializer)?;
-    if named::NAMES.contains(&name.as_str()) {
-        return Ok(name);
-    }
-    let known = named::NAMES.join(", ");
-    Err(D::Error::custom(format!(
-        "no generated mesh is called {name:?}; there are: {known}"
-    )))
+    name.parse().map_err(D::Error::custom)
 }
 
 fn light<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DirectionalLight, D::Error> {

@@ -19,7 +19,10 @@ fn mesh(triangles: &[[Vec3; 3]]) -> Mesh {
 
 /// Checks the whole tree and returns it.
 fn checked(mesh: &Mesh) -> Bvh {
-    let bvh = Bvh::build(mesh);
+    check(mesh, Bvh::build(mesh))
+}
+
+fn check(mesh: &Mesh, bvh: Bvh) -> Bvh {
     if mesh.triangles.is_empty() {
         assert!(bvh.nodes.is_empty() && bvh.primitives.is_empty() && bvh.depth == 0);
         return bvh;
@@ -161,5 +164,27 @@ proptest! {
         size in prop_oneof![Just(0.0f32), Just(1e-3), Just(1.0), Just(200.0)],
     ) {
         checked(&mesh(&soup(count, seed, size)));
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_merged_tree_is_whole_and_no_larger_than_asked(
+        count in 0usize..400,
+        seed in any::<u32>(),
+        size in prop_oneof![Just(0.0f32), Just(1.0), Just(80.0)],
+        most in 0usize..300,
+    ) {
+        let mesh = mesh(&soup(count, seed, size));
+        let whole = Bvh::build(&mesh);
+        let before = whole.nodes.len();
+        let merged = check(&mesh, whole.clone().merged(most));
+        prop_assert!(merged.nodes.len() <= most.max(1));
+        if before <= most {
+            prop_assert_eq!(merged.nodes, whole.nodes);
+        } else if most > 60 {
+            // Not far below: subtrees of equally many triangles go together.
+            prop_assert!(merged.nodes.len() * 4 >= most, "{} of {most}", merged.nodes.len());
+        }
     }
 }

@@ -42,19 +42,8 @@ fn sponza_has_the_dissertations_triangles() {
     let to_light = scene.light.to_light();
     let mut facing = 0;
     for (x, y) in (0..128).flat_map(|x| (0..128).map(move |y| (x, y))) {
-        let mut nearest: Option<common::Hit> = None;
-        common::cast(
-            &scene.mesh,
-            &bvh,
-            camera.eye,
-            camera.pixel_direction(x, y),
-            |hit| {
-                if !hit.back && nearest.is_none_or(|n| hit.t < n.t) {
-                    nearest = Some(hit);
-                }
-                true
-            },
-        );
+        let direction = camera.pixel_direction(x, y);
+        let nearest = common::nearest(&scene.mesh, &bvh, camera.eye, direction);
         facing += i32::from(nearest.unwrap().normal(&scene.mesh).dot(to_light) > 0.0);
     }
     let share = f64::from(facing) / (128.0 * 128.0);

@@ -2,7 +2,9 @@
 //! 3 no usable GPU, or it was lost or hangs.
 
 use crate::args::{
-    commands::{CheckArgs, CompareArgs, GraphArgs, ProfileArgs, RunArgs, ShowArgs, StressArgs},
+    commands::{
+        ChartArgs, CheckArgs, CompareArgs, GraphArgs, ProfileArgs, RunArgs, ShowArgs, StressArgs,
+    },
     shared::GpuArgs,
 };
 use clap::{Parser, Subcommand};
@@ -39,6 +41,14 @@ pub enum Command {
         skiagraph compare --view all --map-size 512,1024,2048 --out park --resume   \
             # after Ctrl-C: only what is missing")]
     Compare(CompareArgs),
+    /// Draw what compare kept as SVG: time against error with its Pareto front, or growth with the
+    /// number of triangles. Needs no GPU.
+    #[command(after_help = "Examples:\n  \
+        skiagraph compare --scene park --map-size 512,1024,2048 --frames 11 --out park\n  \
+        skiagraph chart park --out front.svg\n  \
+        skiagraph chart sponza park --size 1024x1024 --out fronts.svg\n  \
+        skiagraph chart city-1e4 city-1e5 city-1e6 --kind growth --out growth.svg")]
+    Chart(ChartArgs),
     /// Render one frame with one graph and save any of its materials.
     #[command(
         after_help = "Examples:\n  skiagraph run nsm --save visibility=shadow.png\n  \
@@ -234,6 +244,8 @@ mod tests {
             "skiagraph profile rt nsm",
             "skiagraph profile nsm --frames 0",
             "skiagraph check a.ron --format yaml",
+            "skiagraph chart",
+            "skiagraph chart out --kind pie",
             "skiagraph doctor --memory-limit lots",
             "skiagraph doctor --timeout -1",
             "skiagraph doctor --timeout 86401",

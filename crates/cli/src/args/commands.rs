@@ -93,6 +93,35 @@ pub enum Format {
     Json,
 }
 
+/// `skiagraph chart`.
+#[derive(Args, Debug)]
+pub struct ChartArgs {
+    /// Folders that `compare --out` wrote, each with its results.json.
+    #[arg(value_name = "DIR", required = true)]
+    pub folders: Vec<PathBuf>,
+    /// What is drawn.
+    #[arg(long, value_enum, default_value_t = ChartKind::Front)]
+    pub kind: ChartKind,
+    /// Only runs of this viewport size. Without it: all, each in a panel of its own.
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// File to write. Without it: standard output.
+    #[arg(long, value_name = "FILE.svg")]
+    pub out: Option<PathBuf>,
+}
+
+/// What a chart shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ChartKind {
+    /// GPU time of a frame less its G-buffer against the share of wrong pixels outside the band:
+    /// a panel per folder and viewport, a mark per method and map size, the mean where there are
+    /// several views.
+    Front,
+    /// Time and memory against the number of triangles: two panels per scene, view and viewport, a
+    /// line per method and map size; give a folder for each size of a scene.
+    Growth,
+}
+
 /// `skiagraph show`.
 #[derive(Args, Debug)]
 pub struct ShowArgs {

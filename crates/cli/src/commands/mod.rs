@@ -1,5 +1,6 @@
 //! One file per command: arguments in, calls, an exit code out.
 
+pub mod chart;
 pub mod check;
 pub mod compare;
 pub mod doctor;

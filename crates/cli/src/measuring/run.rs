@@ -45,6 +45,7 @@ struct Executed {
     cached: Option<Cached>,
     outputs: Result<Outputs, String>,
     memory: (u64, u64),
+    scene_bytes: u64,
 }
 
 impl MeasureContext<'_> {
@@ -99,6 +100,7 @@ impl MeasureContext<'_> {
         frame::grow(self.gpu, &mut executor, provider)?;
         let plan = executor.plan();
         let memory = (plan.memory_bytes(), plan.saved_bytes());
+        let scene_bytes = self.scene_bytes(plan, provider)?;
         let count = [self.warmup, self.frames];
         let set_done = |frames| step.set_done(frames);
         let times = timing::times(
@@ -120,7 +122,27 @@ impl MeasureContext<'_> {
             cached,
             outputs: Outputs::decode(&contents),
             memory,
+            scene_bytes,
         }))
+    }
+
+    /// Bytes of what the scene gives to the plan.
+    fn scene_bytes(&self, plan: &Plan, provider: &mut dyn Provider) -> Result<u64, ExecuteError> {
+        let mut bytes = 0;
+        let provided = plan.provided().into_iter();
+        // Last frame's camera is a copy of the executor's own.
+        for name in provided
+            .filter(|name| provider.describe(name).is_some())
+            .collect::<Vec<_>>()
+        {
+            let built = provider.build(name, &self.gpu.device, &self.gpu.queue);
+            let buffer = built.map_err(|error| ExecuteError::Provider {
+                name: name.to_owned(),
+                why: error.to_string(),
+            })?;
+            bytes += buffer.size();
+        }
+        Ok(bytes)
     }
 
     fn judge(&self, method: &Method, executed: Executed) -> Result<Measured, CliError> {
@@ -129,6 +151,7 @@ impl MeasureContext<'_> {
             mut cached,
             outputs,
             memory: (memory_bytes, saved_bytes),
+            scene_bytes,
         } = executed;
         let (outputs, counts) = judged(method.preset, outputs, self.reference)?;
         if !self.timestamps {
@@ -154,6 +177,7 @@ impl MeasureContext<'_> {
             cached,
             memory_bytes,
             saved_bytes,
+            scene_bytes,
             images: images.transpose()?,
         })
     }

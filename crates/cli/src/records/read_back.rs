@@ -15,11 +15,14 @@ use std::{io, path::Path};
 pub const WITHOUT_RESULTS: &str =
     "give another --out, or leave out --resume, which measures everything and overwrites the file";
 
+/// Where results come from.
+const COMPARE_FIRST: &str = "name a folder that `skiagraph compare --out DIR` wrote";
+
 /// Some twenty thousand runs.
 const RESULTS: Limit = Limit {
     of: "a results.json",
     mib: 64,
-    way_out: WITHOUT_RESULTS,
+    way_out: "compare fewer views, viewports or maps into one folder",
 };
 
 /// The most frames that can be asked for, of fifty passes.
@@ -51,6 +54,37 @@ pub fn results(path: &Path) -> Result<Option<Results>, CliError> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(CliError::Input(format!("--resume {name}: {error}"))),
     }
+}
+
+/// Reads the results in a folder, to do something with them.
+///
+/// # Errors
+/// No such folder, no results.json in it, or a file that cannot be read or is no results.json; with
+/// the place.
+pub fn kept(folder: &Path) -> Result<Results, CliError> {
+    let path = folder.join("results.json");
+    let name = path.display().to_string();
+    let refused = |why: String| CliError::Input(format!("{why}; {COMPARE_FIRST}"));
+    if !folder.is_dir() {
+        return Err(refused(format!("there is no folder {}", folder.display())));
+    }
+    let text = RESULTS.read_text(&path).map_err(|error| {
+        refused(match error.kind() {
+            io::ErrorKind::NotFound => {
+                format!("there is no results.json in {}", folder.display())
+            }
+            _ => format!("{name}: {error}"),
+        })
+    })?;
+    let file = SourceFile::new(name, text);
+    parse_results(&file.text).map_err(|mistake| {
+        mistake.in_file(
+            &file,
+            "results.json",
+            COMPARE_FIRST,
+            "the results cannot be used",
+        )
+    })
 }
 
 fn profile_of(file: &SourceFile) -> Result<Profile, CliError> {

@@ -185,9 +185,51 @@ pub struct Measured {
     pub memory_bytes: u64,
     /// Bytes saved by letting materials share memory.
     pub saved_bytes: u64,
+    /// Bytes of what the scene gave: positions, indices, hierarchy … 0 in files of older programs.
+    #[serde(default)]
+    pub scene_bytes: u64,
     /// The run's pictures, file names in the results' folder; absent with `--images none`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub images: Option<Images>,
+}
+
+/// The step that a pass belongs to: its name up to the first dot, so that `create_shadow_map.outer`
+/// and `create_shadow_map.inner` are one. What is repeated is no step, but what is in it:
+/// `further[0].trace_rays` is of the step `trace_rays`.
+pub fn step(pass: &str) -> &str {
+    let mut steps = pass.split('.');
+    steps.find(|step| !step.ends_with(']')).unwrap_or(pass)
+}
+
+/// The step that every preset begins with, and that is not the method's own work.
+const GBUFFER: &str = "gbuffer";
+
+impl Measured {
+    /// The sum of the medians of a step's passes; `None` if it has none, or one without a GPU time.
+    pub fn step_ms(&self, name: &str) -> Option<f64> {
+        let passes = self.passes.iter();
+        let medians: Vec<f64> = passes
+            .filter(|pass| step(&pass.name) == name)
+            .map(|pass| Some(pass.gpu_ms?.median))
+            .collect::<Option<_>>()?;
+        (!medians.is_empty()).then(|| medians.iter().sum())
+    }
+
+    /// The sum of the medians of the G-buffer's passes, those of the step `gbuffer`.
+    pub fn gbuffer_ms(&self) -> Option<f64> {
+        self.step_ms(GBUFFER)
+    }
+
+    /// The median frame less its G-buffer; `None` without GPU times. A method that calls its
+    /// G-buffer something else keeps it in.
+    pub fn ms_without_gbuffer(&self) -> Option<f64> {
+        Some(self.frame.gpu_ms?.median - self.gbuffer_ms().unwrap_or(0.0))
+    }
+
+    /// Wrong pixels that are determinate: outside the band.
+    pub fn wrong_outside_band(&self) -> u64 {
+        self.wrong.total.saturating_sub(self.wrong.in_band)
+    }
 }
 
 /// Times of one pass.
@@ -330,6 +372,7 @@ pub(crate) mod tests {
             }),
             memory_bytes: 12_582_912,
             saved_bytes: 1_048_576,
+            scene_bytes: 2_000_000,
             images: gpu.then(|| Images {
                 shaded: format!("{name}-shaded.png"),
                 visibility: format!("{name}-visibility.png"),
@@ -374,6 +417,18 @@ pub(crate) mod tests {
                     ..run("rt_hw", None)
                 },
             ],
+        }
+    }
+
+    #[test]
+    fn a_step_is_what_stands_before_the_first_dot_but_no_repeat() {
+        for (pass, of) in [
+            ("trace_rays", "trace_rays"),
+            ("fill_rays.compact", "fill_rays"),
+            ("further[0].fill_rays.compact", "fill_rays"),
+            ("fill[3]", "fill[3]"),
+        ] {
+            assert_eq!(step(pass), of);
         }
     }
 

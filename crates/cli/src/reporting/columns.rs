@@ -74,6 +74,8 @@ const CSV: &[Figure] = &[
         Measure(|of| Count(of.split.shadow.certain_wrong_outside_band))),
     ("shadow_uncertain", Measure(|of| Count(of.split.shadow.uncertain))),
     ("shadow_uncertain_wrong", Measure(|of| Count(of.split.shadow.uncertain_wrong))),
+    ("gbuffer_gpu_ms", Measure(|of| of.gbuffer_ms().map_or(Unknown, Time))),
+    ("scene_bytes", Measure(|of| Count(of.scene_bytes))),
 ];
 
 /// Figures that only tables show.

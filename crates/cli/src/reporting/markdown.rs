@@ -2,17 +2,11 @@
 //! times of steps.
 
 use crate::args::values::PublishedFile;
-use crate::records::results::{Measured, Results, Run};
+use crate::records::results::{Measured, Results, Run, step};
 use crate::reporting::columns::{self, Column, STEPS};
 use crate::reporting::notes::{band_warning, times_missing};
 use crate::wording::{command_line, frames, ms, share, thousands};
 use std::{collections::BTreeSet, env};
-
-/// The step that a pass belongs to: its name up to the first dot, so that `create_shadow_map.outer`
-/// and `create_shadow_map.inner` are one.
-fn step(pass: &str) -> &str {
-    pass.split_once('.').map_or(pass, |(step, _)| step)
-}
 
 /// What all tables have in common. `today` is the date of the runs that are still to be measured,
 /// if there are any.
@@ -156,7 +150,7 @@ fn cells<'a>(
         (ours, column.quantity.to_owned())
     });
     let times = steps.iter().map(|step| {
-        let ours = step_ms(measured, step).map_or_else(|| "–".to_owned(), ms);
+        let ours = measured.step_ms(step).map_or_else(|| "–".to_owned(), ms);
         (ours, format!("ms.{step}"))
     });
     let cells = with_steps(figures, times).into_iter();
@@ -218,16 +212,6 @@ fn superscript(number: usize) -> String {
     digits
         .map(|digit| DIGITS[usize::from(digit - b'0')])
         .collect()
-}
-
-/// The sum of the medians of a step's passes; `None` if it has none, or one without a GPU time.
-fn step_ms(measured: &Measured, name: &str) -> Option<f64> {
-    let passes = measured.passes.iter();
-    let medians: Vec<f64> = passes
-        .filter(|pass| step(&pass.name) == name)
-        .map(|pass| Some(pass.gpu_ms?.median))
-        .collect::<Option<_>>()?;
-    (!medians.is_empty()).then(|| medians.iter().sum())
 }
 
 /// Which methods could not run, each reason once.
@@ -298,11 +282,11 @@ mod tests {
         let mut more = measured.passes[0].clone();
         more.name = "gbuffer.surface".into();
         measured.passes.push(more);
-        assert_eq!(step_ms(measured, "gbuffer"), Some(0.75));
-        assert_eq!(step_ms(measured, "create_shadow_map"), Some(0.375));
+        assert_eq!(measured.step_ms("gbuffer"), Some(0.75));
+        assert_eq!(measured.step_ms("create_shadow_map"), Some(0.375));
         measured.passes[0].gpu_ms = None;
-        assert_eq!(step_ms(measured, "gbuffer"), None);
-        assert_eq!(step_ms(measured, "trace_rays"), None);
+        assert_eq!(measured.step_ms("gbuffer"), None);
+        assert_eq!(measured.step_ms("trace_rays"), None);
     }
 
     #[test]

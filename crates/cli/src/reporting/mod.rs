@@ -1,6 +1,7 @@
 //! What was measured, as people and spreadsheets read it: tables, documents, CSV, traces. No
 //! figure is worked out here that `records` does not hold.
 
+pub mod charts;
 pub mod columns;
 pub mod markdown;
 pub mod notes;

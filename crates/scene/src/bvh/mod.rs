@@ -2,6 +2,7 @@
 
 mod build;
 mod median;
+mod merge;
 mod tree;
 
 pub use tree::{Bvh, BvhNode, MAX_DEPTH};

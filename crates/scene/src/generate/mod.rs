@@ -3,9 +3,13 @@
 //! Only operations that IEEE 754 rounds correctly are used (`+ − × ÷ √`): angles go through a
 //! series of our own, not through the platform's `sin`.
 
-pub(crate) mod named;
+mod city;
+mod forest;
+mod generator;
 pub mod numbers;
 mod park;
 mod solid;
+mod stamp;
+mod tree;
 
-pub use named::{NAMES, by_name};
+pub use generator::{Generator, TRIANGLES};

@@ -11,6 +11,9 @@ use glam::DVec3;
 /// cosine).
 const CREASE_COS: f64 = 0.643;
 
+/// Free space between two parts that would touch in the world; far below a pixel in every view.
+pub(super) const GAP: f64 = 0.02;
+
 /// A right-handed frame: where a part stands and how it is turned.
 #[derive(Clone, Copy)]
 pub(super) struct Frame {
@@ -70,8 +73,8 @@ impl Frame {
 /// A mesh under construction. Parts do not share vertices: each is a closed surface of its own.
 #[derive(Default)]
 pub(super) struct Builder {
-    mesh: Mesh,
-    normals: Welder,
+    pub(super) mesh: Mesh,
+    pub(super) normals: Welder,
 }
 
 impl Builder {

@@ -55,6 +55,18 @@ pub fn cast(
     true
 }
 
+/// The nearest front face.
+pub fn nearest(mesh: &Mesh, bvh: &Bvh, origin: DVec3, direction: DVec3) -> Option<Hit> {
+    let mut nearest: Option<Hit> = None;
+    cast(mesh, bvh, origin, direction, |hit| {
+        if !hit.back && nearest.is_none_or(|n| hit.t < n.t) {
+            nearest = Some(hit);
+        }
+        true
+    });
+    nearest
+}
+
 /// Möller and Trumbore 1997.
 fn cross(mesh: &Mesh, primitive: u32, origin: DVec3, direction: DVec3) -> Option<Hit> {
     let [a, b, c] = mesh.corners(primitive);

@@ -1,141 +1,31 @@
 //! Two trees of few, big triangles. The third group of views sees only their shadows.
 
-use super::placing::GAP;
-use crate::generate::{
-    numbers::{Random, turn},
-    solid::{Builder, Frame},
-};
+use crate::generate::{solid::Builder, tree::Tree};
 use glam::DVec3;
 
-/// Radius of a trunk at the ground.
-const TRUNK: f64 = 2.5;
-
-struct Tree {
-    foot: DVec3,
-    /// Centre of the crown above the foot, and its half axes across and up.
-    crown: f64,
-    across: f64,
-    up: f64,
-    leaves: usize,
-    /// Smallest and largest half length of a leaf.
-    leaf: (f64, f64),
-    seed: u64,
-}
-
 pub(super) fn trees(builder: &mut Builder) {
-    for (name, tree) in [
-        (
-            "tree 1",
-            Tree {
-                foot: DVec3::new(-41.5, 0.0, -36.0),
-                crown: 55.5,
-                across: 32.0,
-                up: 26.5,
-                leaves: 466,
-                leaf: (1.44, 2.72),
-                seed: 7,
-            },
-        ),
-        (
-            "tree 2",
-            Tree {
-                foot: DVec3::new(20.0, 0.0, -65.0),
-                crown: 29.0,
-                across: 18.0,
-                up: 11.0,
-                leaves: 261,
-                leaf: (1.5, 2.6),
-                seed: 11,
-            },
-        ),
-    ] {
-        builder.group(name);
-        grow(builder, &tree);
+    builder.group("tree 1");
+    Tree {
+        foot: DVec3::new(-41.5, 0.0, -36.0),
+        crown: 55.5,
+        across: 32.0,
+        up: 26.5,
+        branches: 9,
+        leaves: 466,
+        leaf: (1.44, 2.72),
+        seed: 7,
     }
-}
-
-/// A tapering limb: what leaves keep away from.
-struct Limb {
-    from: DVec3,
-    to: DVec3,
-    radius: f64,
-}
-
-impl Limb {
-    fn distance(&self, point: DVec3) -> f64 {
-        let along = self.to - self.from;
-        let t = ((point - self.from).dot(along) / along.length_squared()).clamp(0.0, 1.0);
-        (point - self.from - along * t).length() - self.radius
+    .grow(builder);
+    builder.group("tree 2");
+    Tree {
+        foot: DVec3::new(20.0, 0.0, -65.0),
+        crown: 29.0,
+        across: 18.0,
+        up: 11.0,
+        branches: 9,
+        leaves: 261,
+        leaf: (1.5, 2.6),
+        seed: 11,
     }
-}
-
-fn grow(builder: &mut Builder, tree: &Tree) {
-    let mut random = Random::new(tree.seed);
-    let limbs = limbs(builder, tree, &mut random);
-    let centre = tree.foot + DVec3::Y * tree.crown;
-    let half = DVec3::new(tree.across, tree.up, tree.across);
-    let mut leaves: Vec<(DVec3, f64)> = Vec::new();
-    // Dart throwing: a leaf's bounding ball meets no other leaf's and no limb.
-    for _ in 0..200_000 {
-        if leaves.len() == tree.leaves {
-            break;
-        }
-        let (position, radius) = (
-            centre + random.in_ball() * half,
-            random.range(tree.leaf.0, tree.leaf.1),
-        );
-        let free = leaves
-            .iter()
-            .all(|(other, r)| position.distance(*other) > radius + r + GAP)
-            && limbs
-                .iter()
-                .all(|limb| limb.distance(position) > radius + GAP);
-        if free {
-            leaves.push((position, radius));
-        }
-    }
-    for (position, radius) in leaves {
-        // Leaves lie rather than stand.
-        let up = (random.direction() + DVec3::Y)
-            .try_normalize()
-            .unwrap_or(DVec3::Y);
-        let along = random.direction();
-        let frame = Frame::along(position, up, along);
-        let frame = Frame {
-            origin: frame.at(-radius, 0.0, 0.0),
-            ..frame
-        };
-        builder.leaf(frame, 2.0 * radius, 0.8 * radius, 0.08 * radius, 6);
-    }
-}
-
-/// The trunk and its branches, which begin a gap outside it.
-fn limbs(builder: &mut Builder, tree: &Tree, random: &mut Random) -> Vec<Limb> {
-    let top = tree.crown + tree.up * 0.5;
-    let radius = |y: f64| TRUNK - 1.3 * (y / top);
-    let trunk: Vec<(DVec3, f64)> = (0..=4)
-        .map(|i| GAP + (top - GAP) * f64::from(i) / 4.0)
-        .map(|y| (tree.foot + DVec3::Y * y, radius(y)))
-        .collect();
-    builder.tube(&trunk, 8);
-    let mut limbs = vec![Limb {
-        from: tree.foot,
-        to: tree.foot + DVec3::Y * top,
-        radius: TRUNK,
-    }];
-    let count = 9;
-    for index in 0..count {
-        let y = tree.crown - tree.up * 0.8 + tree.up * 1.2 * f64::from(index) / f64::from(count);
-        let (cos, sin) = turn(0.382 * f64::from(index) + random.range(-0.03, 0.03));
-        let out = DVec3::new(cos, 0.0, sin);
-        let from = tree.foot + DVec3::Y * y + out * (radius(y) + 0.6 + GAP);
-        let to = from + (out + DVec3::Y * 0.5) * (tree.across * random.range(0.5, 0.65));
-        builder.tube(&[(from, 0.55), ((from + to) * 0.5, 0.35), (to, 0.12)], 6);
-        limbs.push(Limb {
-            from,
-            to,
-            radius: 0.55,
-        });
-    }
-    limbs
+    .grow(builder);
 }

@@ -1,0 +1,74 @@
+//! What a chart is made of.
+
+/// A picture of panels under one title and one legend.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// First line.
+    pub title: String,
+    /// Lines below the title: under which conditions the figures hold. Long ones are wrapped.
+    pub notes: Vec<String>,
+    /// What the sizes of marks stand for, smallest first; none if they are all alike.
+    pub sizes: Vec<String>,
+    /// What is drawn, row by row. Panels in which a series has the same name give it the same
+    /// colour and shape.
+    pub panels: Vec<Panel>,
+    /// Panels beside each other, at least 1.
+    pub columns: usize,
+}
+
+impl Default for Figure {
+    fn default() -> Self {
+        Self {
+            title: String::new(),
+            notes: Vec::new(),
+            sizes: Vec::new(),
+            panels: Vec::new(),
+            columns: 1,
+        }
+    }
+}
+
+/// One pair of logarithmic axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panel {
+    /// What stands above it.
+    pub title: String,
+    /// What is drawn beside the marks.
+    pub kind: Kind,
+    /// What grows to the right, with its unit.
+    pub x: String,
+    /// What grows upwards, with its unit.
+    pub y: String,
+    /// What is drawn, in the order of the legend.
+    pub series: Vec<Series>,
+}
+
+/// What a panel shows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Costs in both directions, less is better: the Pareto front. Zero is allowed upwards and has
+    /// a strip of its own.
+    Front,
+    /// How something grows: the marks of a series are joined, and a dashed line has slope 1.
+    Growth,
+}
+
+/// Marks of one colour and shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// Name in the legend.
+    pub name: String,
+    /// The marks; lines join them in this order.
+    pub marks: Vec<Mark>,
+}
+
+/// A measurement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mark {
+    /// To the right: finite and above 0.
+    pub x: f64,
+    /// Upwards: finite and above 0; in a [`Kind::Front`] also 0.
+    pub y: f64,
+    /// Index into [`Figure::sizes`]; 0 where these are empty.
+    pub size: usize,
+}

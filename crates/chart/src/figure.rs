@@ -1,0 +1,172 @@
+//! A figure's layout: title, notes, legend, then the panels in rows.
+
+use crate::{
+    data::{Figure, Kind, Panel},
+    error::Error,
+    legend::{Entry, Legend, Sign},
+    marker::Look,
+    panel::{self, failed},
+    text::{BODY, HEAD, TITLE, clean, wrap},
+};
+use plotters::{
+    coord::Shift,
+    prelude::*,
+    style::text_anchor::{HPos, Pos, VPos},
+};
+
+/// What is drawn on, in pixels.
+pub(crate) type Root<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// Width of every figure, pixels.
+pub(crate) const WIDTH: i32 = 800;
+/// Free at the left border, pixels.
+const LEFT: i32 = 12;
+/// Height of the title, of a line of the notes, and below the legend.
+const LINES: [i32; 3] = [34, 18, 8];
+/// plotters writes text of this share of the size that it is told.
+const TOLD: f64 = 1.24;
+
+impl Figure {
+    /// The figure as SVG, 800 pixels wide.
+    ///
+    /// # Errors
+    /// A panel without marks, values that have no place on its axes, sizes that there are not.
+    pub fn to_svg(&self) -> Result<String, Error> {
+        for panel in &self.panels {
+            panel.check(self.sizes.len())?;
+        }
+        let names = self.names();
+        let look = |name: &str| names.iter().position(|known| *known == name);
+        let look = |name: &str| look(name).map_or(Look::neutral(), Look::of);
+        let notes: Vec<String> = self
+            .notes
+            .iter()
+            .flat_map(|note| wrap(note, BODY, WIDTH - 2 * LEFT))
+            .collect();
+        let legend = Legend::new(self.entries(&names), LEFT);
+        let columns = self.columns.max(1);
+        let head = LINES[0] + LINES[1] * notes.len() as i32 + legend.height + LINES[2];
+        let rows: Vec<i32> = self
+            .panels
+            .chunks(columns)
+            .map(|row| row.iter().map(panel::height).max().unwrap_or(0))
+            .collect();
+        let height = head + rows.iter().sum::<i32>();
+        let mut svg = String::new();
+        {
+            let size = (WIDTH as u32, height as u32);
+            let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+            root.fill(&WHITE).map_err(failed)?;
+            words(&root, (LEFT, LINES[0] / 2 + 2), TITLE, &self.title)?;
+            let mut top = LINES[0];
+            for note in &notes {
+                words(&root, (LEFT, top + LINES[1] / 2), BODY, note)?;
+                top += LINES[1];
+            }
+            legend.draw(&root, top)?;
+            top = head;
+            let wide = WIDTH / columns as i32;
+            for (row, tall) in self.panels.chunks(columns).zip(&rows) {
+                for (column, panel) in row.iter().enumerate() {
+                    let corner = (column as i32 * wide, top);
+                    panel::draw(panel, &root, corner, (wide, *tall), look)?;
+                }
+                top += tall;
+            }
+            root.present().map_err(failed)?;
+        }
+        Ok(svg)
+    }
+
+    /// Of all series, in the order in which they first appear.
+    fn names(&self) -> Vec<&str> {
+        let mut names = Vec::new();
+        for series in self.panels.iter().flat_map(|panel| &panel.series) {
+            if !names.contains(&series.name.as_str()) {
+                names.push(series.name.as_str());
+            }
+        }
+        names
+    }
+
+    fn entries(&self, names: &[&str]) -> Vec<Entry> {
+        let entry = |sign, words: &str, begins_row| Entry {
+            sign,
+            words: words.to_owned(),
+            begins_row,
+        };
+        let mut entries: Vec<Entry> = names
+            .iter()
+            .enumerate()
+            .map(|(index, name)| entry(Sign::Series(Look::of(index)), name, false))
+            .collect();
+        for (size, name) in self.sizes.iter().enumerate() {
+            entries.push(entry(Sign::Size(size), name, size == 0));
+        }
+        let has = |kind: &Kind| self.panels.iter().any(|panel| panel.kind == *kind);
+        if has(&Kind::Front) {
+            let front = "Pareto front; what is on it is filled";
+            entries.push(entry(Sign::Front, front, true));
+            entries.push(entry(Sign::None, "grey strip: exactly 0", false));
+        }
+        if has(&Kind::Growth) {
+            entries.push(entry(Sign::Guide, "twice as much for twice as many", true));
+        }
+        entries
+    }
+}
+
+impl Panel {
+    fn check(&self, sizes: usize) -> Result<(), Error> {
+        let marks = self
+            .series
+            .iter()
+            .flat_map(|series| series.marks.iter().map(move |mark| (series, mark)));
+        for (series, mark) in marks.clone() {
+            let zero = self.kind == Kind::Front && mark.y == 0.0;
+            let is_in = |value: f64| value.is_finite() && value > 0.0;
+            if !is_in(mark.x) || !(zero || is_in(mark.y)) {
+                return Err(Error::Value {
+                    panel: self.title.clone(),
+                    series: series.name.clone(),
+                    x: mark.x,
+                    y: mark.y,
+                });
+            }
+            if mark.size >= sizes.max(1) {
+                return Err(Error::Size {
+                    panel: self.title.clone(),
+                    series: series.name.clone(),
+                    size: mark.size,
+                    sizes,
+                });
+            }
+        }
+        if marks.count() == 0 {
+            return Err(Error::Empty {
+                panel: self.title.clone(),
+            });
+        }
+        Ok(())
+    }
+}
+
+/// Text that begins at `at`, its middle at that height.
+pub(crate) fn words(root: &Root, at: (i32, i32), size: f64, text: &str) -> Result<(), Error> {
+    let style = style(size).pos(Pos::new(HPos::Left, VPos::Center));
+    // The library centres at half the height of an x, which is less than that of most words.
+    let at = (at.0, at.1 + 1);
+    root.draw(&Text::new(clean(text), at, style))
+        .map_err(failed)
+}
+
+/// Black words of a size; titles are bold.
+pub(crate) fn style(size: f64) -> TextStyle<'static> {
+    let font = ("sans-serif", size * TOLD).into_font();
+    let font = if size > HEAD {
+        font.style(FontStyle::Bold)
+    } else {
+        font
+    };
+    font.color(&RGBColor(30, 30, 30))
+}

@@ -1,0 +1,86 @@
+//! The legend: rows of entries above the panels, where they cover nothing.
+
+use crate::{
+    error::Error,
+    figure::{Root, WIDTH, words},
+    marker::Look,
+    panel::{FRONT, GUIDE, failed},
+    text::{BODY, width},
+};
+use plotters::{element::DashedPathElement, prelude::*};
+
+/// Width of what stands before an entry's words, pixels.
+const SIGN: i32 = 26;
+/// Between two entries.
+const GAP: i32 = 16;
+/// Height of a row.
+const ROW: i32 = 22;
+
+/// What stands before the words.
+#[derive(Clone, Copy)]
+pub(crate) enum Sign {
+    Series(Look),
+    Size(usize),
+    Front,
+    Guide,
+    /// A full mark and an empty one.
+    None,
+}
+
+/// An entry, and whether it begins a row.
+pub(crate) struct Entry {
+    pub sign: Sign,
+    pub words: String,
+    pub begins_row: bool,
+}
+
+/// Entries with their places, and the height of all.
+pub(crate) struct Legend {
+    entries: Vec<(Entry, (i32, i32))>,
+    pub height: i32,
+}
+
+impl Legend {
+    pub fn new(entries: Vec<Entry>, left: i32) -> Self {
+        let (mut x, mut y) = (left, 0);
+        let mut placed = Vec::new();
+        for entry in entries {
+            let sign = if let Sign::None = entry.sign { 0 } else { SIGN };
+            let wide = sign + width(&entry.words, BODY);
+            if x > left && (entry.begins_row || x + wide > WIDTH - left) {
+                (x, y) = (left, y + ROW);
+            }
+            placed.push((entry, (x, y)));
+            x += wide + GAP;
+        }
+        let height = if placed.is_empty() { 0 } else { y + ROW };
+        Self {
+            entries: placed,
+            height,
+        }
+    }
+
+    pub fn draw(&self, root: &Root, top: i32) -> Result<(), Error> {
+        for (entry, (x, y)) in &self.entries {
+            let middle = (x + SIGN / 2 - 3, top + y + ROW / 2);
+            let line = [(middle.0 - 10, middle.1), (middle.0 + 10, middle.1)];
+            let text = match entry.sign {
+                Sign::None => *x,
+                _ => x + SIGN,
+            };
+            match entry.sign {
+                Sign::Series(look) => look.draw(root, middle, 1, true)?,
+                Sign::Size(size) => Look::neutral().draw(root, middle, size, false)?,
+                Sign::Front => root
+                    .draw(&PathElement::new(line, FRONT.stroke_width(2)))
+                    .map_err(failed)?,
+                Sign::Guide => root
+                    .draw(&DashedPathElement::new(line.into_iter(), 4, 4, GUIDE))
+                    .map_err(failed)?,
+                Sign::None => {}
+            }
+            words(root, (text, middle.1), BODY, &entry.words)?;
+        }
+        Ok(())
+    }
+}

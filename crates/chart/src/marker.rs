@@ -1,0 +1,104 @@
+//! Colours and shapes: 7 × 6 of them before a pair returns.
+
+use crate::{error::Error, figure::Root, panel::failed};
+use plotters::prelude::*;
+
+/// Okabe and Ito, "Color Universal Design" (2008), without its black and with a darker yellow:
+/// theirs is hard to see on white.
+const COLOURS: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(148, 130, 0),
+];
+
+/// Corners in tenths of the radius; none for a circle.
+const SHAPES: [&[(i32, i32)]; 6] = [
+    &[],
+    &[(-9, -9), (9, -9), (9, 9), (-9, 9)],
+    &[(0, -12), (11, 8), (-11, 8)],
+    &[(0, -13), (11, 0), (0, 13), (-11, 0)],
+    &[(0, 12), (11, -8), (-11, -8)],
+    &[
+        (-4, -12),
+        (4, -12),
+        (4, -4),
+        (12, -4),
+        (12, 4),
+        (4, 4),
+        (4, 12),
+        (-4, 12),
+        (-4, 4),
+        (-12, 4),
+        (-12, -4),
+        (-4, -4),
+    ],
+];
+
+/// Radius of the smallest mark, pixels, and how much each size adds.
+const RADIUS: (f64, f64) = (4.0, 1.3);
+
+/// How a series looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Look {
+    pub colour: RGBColor,
+    shape: usize,
+}
+
+impl Look {
+    /// Of the series that stands at `index` in the legend.
+    pub fn of(index: usize) -> Self {
+        Self {
+            colour: COLOURS[index % COLOURS.len()],
+            shape: index % SHAPES.len(),
+        }
+    }
+
+    /// Of no series in particular.
+    pub fn neutral() -> Self {
+        Self {
+            colour: RGBColor(90, 90, 90),
+            shape: 0,
+        }
+    }
+
+    /// Draws a mark; an empty one is white inside.
+    pub fn draw(self, root: &Root, at: (i32, i32), size: usize, full: bool) -> Result<(), Error> {
+        let radius = RADIUS.0 + RADIUS.1 * size as f64;
+        let inside = if full { self.colour } else { WHITE };
+        let rim = self.colour.stroke_width(2);
+        let corners = SHAPES[self.shape];
+        if corners.is_empty() {
+            root.draw(&Circle::new(at, radius.round() as i32, inside.filled()))
+                .map_err(failed)?;
+            return root
+                .draw(&Circle::new(at, radius.round() as i32, rim))
+                .map_err(failed);
+        }
+        let place = |&(x, y): &(i32, i32)| {
+            let by = |tenths: i32| (f64::from(tenths) / 10.0 * radius).round() as i32;
+            (at.0 + by(x), at.1 + by(y))
+        };
+        let mut outline: Vec<(i32, i32)> = corners.iter().map(place).collect();
+        root.draw(&Polygon::new(outline.clone(), inside.filled()))
+            .map_err(failed)?;
+        outline.extend_from_within(..1);
+        root.draw(&PathElement::new(outline, rim)).map_err(failed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_two_of_the_first_forty_two_look_alike() {
+        let looks: Vec<Look> = (0..42).map(Look::of).collect();
+        for (index, look) in looks.iter().enumerate() {
+            assert!(!looks[..index].contains(look), "{index}");
+        }
+    }
+}

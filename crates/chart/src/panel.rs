@@ -1,0 +1,171 @@
+//! One panel: axes, strip for zero, lines, front, marks.
+
+use crate::{
+    data::{Kind, Mark, Panel, Series},
+    error::Error,
+    figure::{Root, style, words},
+    front::front,
+    marker::Look,
+    scale::Scale,
+    text::{BODY, HEAD, clean},
+};
+use plotters::{element::DashedPathElement, prelude::*};
+use std::fmt;
+
+/// The Pareto front's line.
+pub(crate) const FRONT: RGBColor = RGBColor(70, 70, 70);
+/// The line of slope 1.
+pub(crate) const GUIDE: RGBColor = RGBColor(120, 120, 120);
+const STRIP: RGBColor = RGBColor(238, 238, 238);
+const GRID: [RGBColor; 2] = [RGBColor(205, 205, 205), RGBColor(234, 234, 234)];
+
+/// Height of the axes without strip, pixels.
+const AXES: i32 = 300;
+/// Above the axes: the title. Right of them: half a label.
+const ABOVE: i32 = 30;
+const RIGHT: i32 = 22;
+/// Left of and below the axes: labels and what they count.
+const LABELS: (i32, i32) = (58, 50);
+/// Left of the labels.
+const BESIDE: i32 = 8;
+
+/// What the library says, as an error of ours.
+pub(crate) fn failed(error: impl fmt::Display) -> Error {
+    Error::Drawing(error.to_string())
+}
+
+/// Series that have a lane in the strip for zero.
+fn lanes(panel: &Panel) -> Vec<usize> {
+    let has_zero = |series: &Series| series.marks.iter().any(|mark| mark.y == 0.0);
+    let series = panel.series.iter().enumerate();
+    series
+        .filter(|(_, series)| has_zero(series))
+        .map(|(index, _)| index)
+        .collect()
+}
+
+fn scales(panel: &Panel) -> (Scale, Scale) {
+    let marks = || panel.series.iter().flat_map(|series| &series.marks);
+    let x = Scale::around(marks().map(|mark| mark.x), 0);
+    let y = Scale::around(marks().map(|mark| mark.y), lanes(panel).len());
+    (x, y)
+}
+
+/// Height that a panel needs, pixels.
+pub(crate) fn height(panel: &Panel) -> i32 {
+    ABOVE + AXES + scales(panel).1.strip().ceil() as i32 + LABELS.1
+}
+
+/// Draws a panel into a rectangle of `root`.
+pub(crate) fn draw(
+    panel: &Panel,
+    root: &Root,
+    corner: (i32, i32),
+    size: (i32, i32),
+    look: impl Fn(&str) -> Look,
+) -> Result<(), Error> {
+    let (x, y) = scales(panel);
+    let strip = y.strip();
+    let area = root.clone().shrink(corner, size);
+    let mut chart = ChartBuilder::on(&area)
+        .margin_top(ABOVE)
+        .margin_right(RIGHT)
+        .margin_left(BESIDE)
+        .x_label_area_size(LABELS.1)
+        .y_label_area_size(LABELS.0)
+        .build_cartesian_2d(x.clone(), y.clone())
+        .map_err(failed)?;
+    let (across, down) = chart.plotting_area().get_pixel_range();
+    if strip > 0.0 {
+        let top = down.end - strip.round() as i32;
+        let strip = [(across.start, top), (across.end, down.end)];
+        root.draw(&Rectangle::new(strip, STRIP.filled()))
+            .map_err(failed)?;
+    }
+    chart
+        .configure_mesh()
+        .x_labels(12)
+        .y_labels(12)
+        .bold_line_style(GRID[0])
+        .light_line_style(GRID[1])
+        .axis_style(RGBColor(90, 90, 90))
+        .label_style(style(BODY))
+        .axis_desc_style(style(HEAD))
+        .x_desc(clean(&panel.x))
+        .y_desc(clean(&panel.y))
+        .draw()
+        .map_err(failed)?;
+    let title = (across.start, corner.1 + ABOVE / 2);
+    words(root, title, HEAD, &panel.title)?;
+
+    let lanes = lanes(panel);
+    let place = |series: usize, mark: &Mark| {
+        let lane = lanes.iter().position(|lane| *lane == series);
+        let y = match lane {
+            Some(lane) if mark.y == 0.0 => -(lane as f64 + 1.0),
+            _ => mark.y,
+        };
+        chart.backend_coord(&(mark.x, y))
+    };
+    if panel.kind == Kind::Growth {
+        let ends = guide(&x, &y).map(|end| chart.backend_coord(&end));
+        root.draw(&DashedPathElement::new(ends.into_iter(), 4, 4, GUIDE))
+            .map_err(failed)?;
+    }
+    for (index, series) in panel.series.iter().enumerate() {
+        let way: Vec<(i32, i32)> = series.marks.iter().map(|mark| place(index, mark)).collect();
+        let opacity = if panel.kind == Kind::Growth { 1.0 } else { 0.4 };
+        let line = look(&series.name).colour.mix(opacity).stroke_width(2);
+        root.draw(&PathElement::new(way, line)).map_err(failed)?;
+    }
+    let marks: Vec<(usize, &Mark)> = panel
+        .series
+        .iter()
+        .enumerate()
+        .flat_map(|(index, series)| series.marks.iter().map(move |mark| (index, mark)))
+        .collect();
+    let on_front = match panel.kind {
+        Kind::Front => {
+            let points: Vec<(f64, f64)> = marks.iter().map(|(_, mark)| (mark.x, mark.y)).collect();
+            front(&points)
+        }
+        Kind::Growth => Vec::new(),
+    };
+    if panel.kind == Kind::Front {
+        let steps: Vec<(i32, i32)> = on_front
+            .iter()
+            .map(|&index| place(marks[index].0, marks[index].1))
+            .collect();
+        root.draw(&PathElement::new(
+            staircase(&steps, across.end, down.start),
+            FRONT.stroke_width(2),
+        ))
+        .map_err(failed)?;
+    }
+    for (index, &(series, mark)) in marks.iter().enumerate() {
+        let full = panel.kind == Kind::Growth || on_front.contains(&index);
+        let look = look(&panel.series[series].name);
+        look.draw(root, place(series, mark), mark.size, full)?;
+    }
+    Ok(())
+}
+
+/// The border of what the front's points beat, from the upper border to the right one.
+fn staircase(points: &[(i32, i32)], right: i32, top: i32) -> Vec<(i32, i32)> {
+    let mut way = Vec::new();
+    let mut y = top;
+    for &(x, below) in points {
+        way.extend([(x, y), (x, below)]);
+        y = below;
+    }
+    way.extend(way.last().map(|&(_, y)| (right, y)));
+    way
+}
+
+/// Ends of the longest line of slope 1 through the middle of the panel.
+fn guide(x: &Scale, y: &Scale) -> [(f64, f64); 2] {
+    let ((left, right), (low, high)) = (x.ends(), y.ends());
+    let middle = ((left * right).sqrt(), (low * high).sqrt());
+    let reach = (right / middle.0).min(high / middle.1);
+    [1.0 / reach, reach].map(|by| (middle.0 * by, middle.1 * by))
+}

@@ -1,0 +1,176 @@
+//! A logarithmic axis, with or without a strip for zero.
+
+use crate::text::number;
+use plotters::coord::ranged1d::{
+    KeyPointHint, NoDefaultFormatting, Ranged, ReversibleRanged, ValueFormatter,
+};
+use std::ops::Range;
+
+/// Height of a lane of the strip, pixels: the largest mark and a little air.
+const LANE: f64 = 16.0;
+/// Free of marks above and below the lanes.
+const RIM: f64 = 5.0;
+/// Least span of an axis, decades: there is always a 1, 2 or 5 in it.
+const LEAST: f64 = 0.6;
+/// Beyond the outermost values, as a share of the span between them.
+const MARGIN: f64 = 0.06;
+
+/// Values above 0 stand at their logarithm. A value −k is no value but the k-th lane of the strip
+/// below, counted from above; 0 is the middle of the strip.
+#[derive(Clone, Debug)]
+pub(crate) struct Scale {
+    /// Logarithms to base 10 of both ends.
+    low: f64,
+    high: f64,
+    lanes: usize,
+}
+
+impl Scale {
+    /// Around some values, of which those that are not above 0 do not count, with that many lanes
+    /// for zero.
+    pub fn around(values: impl Iterator<Item = f64>, lanes: usize) -> Self {
+        let logarithms = values.filter(|value| *value > 0.0).map(f64::log10);
+        let (low, high) = logarithms.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+            (low.min(v), high.max(v))
+        });
+        // Nothing but zeros: a decade of nothing above them.
+        let (low, high) = if low <= high {
+            (low, high)
+        } else {
+            (-1.0, 0.0)
+        };
+        let room = (high - low) * MARGIN;
+        let more = (LEAST - (high - low + 2.0 * room)).max(0.0) / 2.0;
+        Self {
+            low: low - room - more,
+            high: high + room + more,
+            lanes,
+        }
+    }
+
+    /// Height of the strip for zero, pixels.
+    pub fn strip(&self) -> f64 {
+        if self.lanes == 0 {
+            return 0.0;
+        }
+        self.lanes as f64 * LANE + 2.0 * RIM
+    }
+
+    /// The values at both ends of the logarithmic part.
+    pub fn ends(&self) -> (f64, f64) {
+        (10f64.powf(self.low), 10f64.powf(self.high))
+    }
+
+    /// Values m · 10ⁿ within the axis for each of some m, growing.
+    fn ticks(&self, leads: &[f64]) -> Vec<f64> {
+        let decades = self.low.floor() as i32..=self.high.ceil() as i32;
+        decades
+            .flat_map(|decade| leads.iter().map(move |lead| lead * 10f64.powi(decade)))
+            .filter(|value| (self.low..=self.high).contains(&value.log10()))
+            .collect()
+    }
+
+    /// Where labels stand: decades, or 1, 2, 5 where there are few of them.
+    fn labelled(&self) -> Vec<f64> {
+        let span = self.high - self.low;
+        let mut ticks = if span < 2.2 {
+            self.ticks(&[1.0, 2.0, 5.0])
+        } else {
+            self.ticks(&[1.0])
+        };
+        // No more than ten of them.
+        let step = ticks.len().div_ceil(10).max(1);
+        let mut index = 0;
+        ticks.retain(|_| {
+            index += 1;
+            (index - 1) % step == 0
+        });
+        if self.lanes > 0 {
+            ticks.insert(0, 0.0);
+        }
+        ticks
+    }
+}
+
+impl Ranged for Scale {
+    type FormatOption = NoDefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
+        let (from, to) = (f64::from(from), f64::from(to));
+        let sign = (to - from).signum();
+        let strip = self.strip();
+        let place = if *value > 0.0 {
+            let room = (to - from).abs() - strip;
+            strip + room * (value.log10() - self.low) / (self.high - self.low)
+        } else if *value == 0.0 {
+            strip / 2.0
+        } else {
+            strip - RIM - (-value - 0.5) * LANE
+        };
+        (from + sign * place).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        if hint.weight().allow_light_points() && self.high - self.low < 6.0 {
+            self.ticks(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0])
+        } else {
+            self.labelled()
+        }
+    }
+
+    fn range(&self) -> Range<f64> {
+        let (low, high) = self.ends();
+        low..high
+    }
+}
+
+impl ReversibleRanged for Scale {
+    fn unmap(&self, pixel: i32, (from, to): (i32, i32)) -> Option<f64> {
+        let (from, to) = (f64::from(from), f64::from(to));
+        let place = (f64::from(pixel) - from) * (to - from).signum() - self.strip();
+        let share = place / ((to - from).abs() - self.strip());
+        (0.0..=1.0)
+            .contains(&share)
+            .then(|| 10f64.powf(self.low + share * (self.high - self.low)))
+    }
+}
+
+impl ValueFormatter<f64> for Scale {
+    fn format_ext(&self, value: &f64) -> String {
+        number(*value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use plotters::coord::ranged1d::BoldPoints;
+
+    #[test]
+    fn zero_lies_below_everything_in_lanes_of_its_own() {
+        let scale = Scale::around([0.01, 5.0, 0.0].into_iter(), 3);
+        let at = |value: f64| scale.map(&value, (400, 0));
+        assert!(at(5.0) < at(0.01) && at(0.01) < at(-1.0), "upwards is less");
+        assert_eq!((at(-2.0) - at(-1.0), at(-3.0) - at(-2.0)), (16, 16));
+        assert_eq!(at(0.0), at(-2.0), "the label stands in the middle");
+        assert!(at(-3.0) < 400 && at(5.0) > 0);
+        let back = scale.unmap(at(0.5), (400, 0)).unwrap();
+        assert!((back / 0.5 - 1.0).abs() < 0.02, "{back}");
+        assert_eq!(scale.unmap(at(0.0), (400, 0)), None);
+    }
+
+    #[test]
+    fn there_are_two_to_ten_labels_whatever_the_span() {
+        for (low, high) in [(1.0, 1.0), (3.0, 4.0), (0.02, 700.0), (1e-12, 1e12)] {
+            let scale = Scale::around([low, high].into_iter(), 0);
+            let labels = scale.key_points(BoldPoints(10));
+            assert!((1..=10).contains(&labels.len()), "{labels:?}");
+            let (first, last) = scale.ends();
+            assert!(first < low && high < last);
+            assert!(labels.iter().all(|label| (first..=last).contains(label)));
+        }
+        let nothing = Scale::around([0.0].into_iter(), 1).key_points(BoldPoints(10));
+        assert_eq!(nothing.first(), Some(&0.0));
+    }
+}

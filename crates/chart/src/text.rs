@@ -1,0 +1,100 @@
+//! Words in charts: measured without a font, broken into lines, numbers as axes show them.
+
+/// Size of the title, pixels.
+pub(crate) const TITLE: f64 = 18.0;
+/// Size of panel titles and axis titles, pixels.
+pub(crate) const HEAD: f64 = 14.0;
+/// Size of everything else, pixels.
+pub(crate) const BODY: f64 = 13.0;
+
+/// Width of a text, never less than what a browser makes of it: which font a reader has is not
+/// known.
+pub(crate) fn width(text: &str, size: f64) -> i32 {
+    (text.chars().count() as f64 * size * 0.62).ceil() as i32
+}
+
+/// The text in lines no wider than `room`, broken between words.
+pub(crate) fn wrap(text: &str, size: f64, room: i32) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if width(line, size) + width(word, size) + size as i32 <= room => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// Without what XML cannot hold.
+pub(crate) fn clean(text: &str) -> String {
+    let fits = |c: char| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}');
+    text.chars()
+        .map(|c| if fits(c) { c } else { '\u{fffd}' })
+        .collect()
+}
+
+/// A tick's number: `0.05`, `200`, `10⁵`, `2·10⁵`.
+pub(crate) fn number(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    // A tick has one digit that is not 0; what f64 adds to it is rounding.
+    let exponent = (value.log10() + 1e-9).floor() as i32;
+    if (-3..4).contains(&exponent) {
+        let digits = (-exponent).max(0) as usize;
+        return format!("{value:.digits$}");
+    }
+    let lead = (value / 10f64.powi(exponent)).round();
+    let power: String = exponent
+        .to_string()
+        .chars()
+        .map(|c| match c {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            '4'..='9' => char::from_u32('⁴' as u32 + c as u32 - '4' as u32).unwrap_or(c),
+            _ => '⁰',
+        })
+        .collect();
+    match lead as i64 {
+        1 => format!("10{power}"),
+        lead => format!("{lead}·10{power}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_short() {
+        let cases = [
+            (0.0, "0"),
+            (0.001, "0.001"),
+            (0.05, "0.05"),
+            (0.5, "0.5"),
+            (1.0, "1"),
+            (200.0, "200"),
+            (5000.0, "5000"),
+            (1e4, "10⁴"),
+            (2e5, "2·10⁵"),
+            (5e-5, "5·10⁻⁵"),
+            (1e16, "10¹⁶"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(number(value), text);
+        }
+    }
+
+    #[test]
+    fn lines_are_broken_between_words_and_hold_no_control_characters() {
+        let lines = wrap("one two three four", 10.0, 70);
+        assert!(lines.len() > 1 && lines.iter().all(|line| width(line, 10.0) <= 70));
+        assert_eq!(lines.join(" "), "one two three four");
+        assert_eq!(clean("a\u{7}b"), "a\u{fffd}b");
+    }
+}

@@ -1,0 +1,264 @@
+//! Figures as SVG: what stands in them, that nothing covers anything, that they are the same every
+//! time.
+
+use roxmltree::{Document, Node};
+use skiagraph_chart::{Error, Figure, Kind, Mark, Panel, Series};
+
+fn series(name: &str, marks: &[(f64, f64)]) -> Series {
+    let mark = |(size, &(x, y))| Mark { x, y, size };
+    Series {
+        name: name.into(),
+        marks: marks.iter().enumerate().map(mark).collect(),
+    }
+}
+
+/// Two scenes, methods with one mark and with four, zeros in several lanes.
+fn time_against_error() -> Figure {
+    let panel = |title: &str, scale: f64| Panel {
+        title: title.into(),
+        kind: Kind::Front,
+        x: "GPU ms of a frame without its G-buffer".into(),
+        y: "wrong pixels, % of all".into(),
+        series: vec![
+            series("rt", &[(1205.0 * scale, 0.0)]),
+            series(
+                "light_buffer",
+                &[(300.0, 0.0), (240.0, 0.0), (260.0, 0.0), (410.0, 0.0)]
+                    .map(|(x, y)| (x * scale, y)),
+            ),
+            series(
+                "nsm",
+                &[(40.0, 6.7), (57.0, 4.7), (90.0, 3.6), (200.0, 3.0)].map(|(x, y)| (x * scale, y)),
+            ),
+            series(
+                "hybrid_pcf",
+                &[(260.0, 3.1), (236.0, 2.1), (250.0, 1.2), (380.0, 0.02)]
+                    .map(|(x, y)| (x * scale, y)),
+            ),
+            series(
+                "crsm",
+                &[(900.0, 0.0), (817.0, 0.9), (800.0, 0.9), (990.0, 0.0)]
+                    .map(|(x, y)| (x * scale, y)),
+            ),
+        ],
+    };
+    Figure {
+        title: "Time against error".into(),
+        notes: vec![
+            "llvmpipe (LLVM 15.0.6, 256 bits), medians of 11 frames; <made up> & \"quoted\"".into(),
+        ],
+        sizes: ["map 512²", "map 1024²", "map 2048²", "map 4096²"]
+            .map(str::to_owned)
+            .into(),
+        panels: vec![
+            panel("Sponza, view main", 1.0),
+            panel("park, mean of nine views", 0.3),
+        ],
+        columns: 2,
+    }
+}
+
+fn growth() -> Figure {
+    let line = |name: &str, base: f64, power: f64| {
+        let marks = [1e4, 1e5, 1e6, 1e7f64].map(|x| Mark {
+            x,
+            y: base * (x / 1e4).powf(power),
+            size: 0,
+        });
+        Series {
+            name: name.into(),
+            marks: marks.into(),
+        }
+    };
+    let panel = |title: &str, y: &str| Panel {
+        title: title.into(),
+        kind: Kind::Growth,
+        x: "triangles".into(),
+        y: y.into(),
+        series: vec![
+            line("rt", 500.0, 0.12),
+            line("nsm", 20.0, 0.5),
+            line("crsma_full", 150.0, 0.9),
+        ],
+    };
+    Figure {
+        title: "Growth".into(),
+        panels: vec![
+            panel("city", "GPU ms"),
+            panel("city", "MB"),
+            panel("forest", "GPU ms"),
+        ],
+        columns: 2,
+        ..Figure::default()
+    }
+}
+
+fn number(node: Node, name: &str) -> f64 {
+    node.attribute(name).unwrap_or_default().parse().unwrap()
+}
+
+/// Left, top, right, bottom of a text, generously.
+fn text_box(node: Node) -> [f64; 4] {
+    let (x, y, size) = (
+        number(node, "x"),
+        number(node, "y"),
+        number(node, "font-size"),
+    );
+    let text = node.text().unwrap_or_default().trim();
+    let wide = text.chars().count() as f64 * size * 0.6;
+    let left = match node.attribute("text-anchor") {
+        Some("middle") => -wide / 2.0,
+        Some("end") => -wide,
+        _ => 0.0,
+    };
+    let (top, bottom) = match node.attribute("dy") {
+        Some("0.76em") => (0.0, size),
+        Some("-0.5ex") => (-size, 0.0),
+        _ => (-size / 2.0, size / 2.0),
+    };
+    if node.attribute("transform").is_some() {
+        // Turned by 270° about its anchor: right is up.
+        return [x + top, y - left - wide, x + bottom, y - left];
+    }
+    [x + left, y + top, x + left + wide, y + bottom]
+}
+
+/// Each text with its box.
+fn texts<'a>(svg: &'a Document) -> Vec<(&'a str, [f64; 4])> {
+    let nodes = svg.descendants().filter(|node| node.has_tag_name("text"));
+    nodes
+        .map(|node| (node.text().unwrap_or_default().trim(), text_box(node)))
+        .collect()
+}
+
+fn svg(figure: &Figure) -> String {
+    figure.to_svg().unwrap()
+}
+
+#[test]
+fn no_text_covers_another_and_none_leaves_the_picture() {
+    for figure in [time_against_error(), growth()] {
+        let svg = svg(&figure);
+        let svg = Document::parse(&svg).unwrap();
+        let height = number(svg.root_element(), "height");
+        let texts = texts(&svg);
+        assert!(texts.len() > 30);
+        for (index, (text, [left, top, right, bottom])) in texts.iter().enumerate() {
+            assert!(
+                *left >= 0.0 && *right <= 800.0,
+                "{text:?} from {left} to {right}"
+            );
+            assert!(
+                *top >= 0.0 && *bottom <= height,
+                "{text:?} from {top} to {bottom}"
+            );
+            for (other, [l, t, r, b]) in &texts[..index] {
+                let apart = right <= l || r <= left || bottom <= t || b <= top;
+                assert!(apart, "{text:?} and {other:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn zeros_stand_in_the_strip_each_series_in_a_lane_and_nothing_else_does() {
+    let figure = Figure {
+        panels: time_against_error().panels[..1].to_vec(),
+        ..time_against_error()
+    };
+    let svg = svg(&figure);
+    let svg = Document::parse(&svg).unwrap();
+    let strip = svg
+        .descendants()
+        .find(|node| node.attribute("fill") == Some("#EEEEEE"))
+        .unwrap();
+    let (top, bottom) = (
+        number(strip, "y"),
+        number(strip, "y") + number(strip, "height"),
+    );
+    // The rims of `rt`'s circle and of four shapes, in the strip and above it.
+    let circles = svg.descendants().filter(|node| node.has_tag_name("circle"));
+    let in_strip = |y: f64| top < y && y < bottom;
+    let circle = circles
+        .clone()
+        .filter(|node| in_strip(number(*node, "cy")))
+        .count();
+    assert_eq!(circle, 2, "inside and rim of the only circle");
+    let mut lanes: Vec<i32> = svg
+        .descendants()
+        .filter(|node| node.has_tag_name("polygon"))
+        .filter_map(|node| {
+            let points = node.attribute("points")?.split_whitespace();
+            let heights: Vec<f64> = points
+                .map(|point| point.split_once(',').unwrap().1.parse().unwrap())
+                .collect();
+            let middle = heights.iter().sum::<f64>() / heights.len() as f64;
+            in_strip(middle).then_some(((middle - top) / 16.0) as i32)
+        })
+        .collect();
+    assert_eq!(lanes.len(), 6, "four of light_buffer, two of crsm");
+    lanes.dedup();
+    assert_eq!(lanes.len(), 2, "a lane each");
+    assert!(
+        texts(&svg)
+            .iter()
+            .any(|(text, place)| *text == "0" && in_strip(place[1]))
+    );
+}
+
+#[test]
+fn the_same_data_give_the_same_bytes_and_they_are_these() {
+    assert_eq!(svg(&growth()), svg(&growth()));
+    insta::assert_snapshot!(svg(&growth()));
+}
+
+#[test]
+fn whatever_names_say_it_stays_xml() {
+    let mut figure = growth();
+    figure.title = "a < b & \"c\" \u{7} d".into();
+    let svg = svg(&figure);
+    let svg = Document::parse(&svg).unwrap();
+    assert_eq!(texts(&svg)[0].0, "a < b & \"c\" \u{fffd} d");
+}
+
+#[test]
+fn what_has_no_place_is_refused_by_name() {
+    let with = |mark: Mark, kind: Kind| {
+        let mut figure = growth();
+        figure.panels[0].kind = kind;
+        figure.panels[0].series[1].marks = vec![mark];
+        figure.to_svg()
+    };
+    let mark = |x, y, size| Mark { x, y, size };
+    let told = |result: Result<String, Error>| result.unwrap_err().to_string();
+    for (x, y) in [
+        (0.0, 1.0),
+        (1.0, -1.0),
+        (f64::NAN, 1.0),
+        (1.0, f64::INFINITY),
+    ] {
+        let message = told(with(mark(x, y, 0), Kind::Front));
+        assert!(
+            message.contains("\"city\"") && message.contains("\"nsm\""),
+            "{message}"
+        );
+    }
+    assert!(with(mark(1.0, 0.0, 0), Kind::Front).is_ok());
+    assert!(with(mark(1.0, 0.0, 0), Kind::Growth).is_err());
+    assert!(told(with(mark(1.0, 1.0, 1), Kind::Growth)).contains("size 1"));
+    let mut empty = growth();
+    empty.panels[2].series.clear();
+    assert!(told(empty.to_svg()).contains("\"forest\" has no marks"));
+    // A single mark still has axes around it.
+    assert!(with(mark(7.0, 7.0, 0), Kind::Front).is_ok());
+}
+
+/// For a look: `cargo test -p skiagraph-chart -- --ignored`, then target/*.svg in a browser.
+#[test]
+#[ignore = "writes pictures"]
+fn pictures() {
+    for (name, figure) in [("front", time_against_error()), ("growth", growth())] {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../target");
+        std::fs::write(format!("{folder}/chart-{name}.svg"), svg(&figure)).unwrap();
+    }
+}

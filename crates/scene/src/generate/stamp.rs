@@ -1,0 +1,70 @@
+//! Parts that are made once and copied many times, turned by quarters: these change no bit of a
+//! normal, so that all copies share the few that there are.
+
+use super::solid::Builder;
+use crate::mesh::Mesh;
+use glam::{DVec3, Vec3};
+
+/// A part and its normals' places in the mesh, by quarter turn.
+pub(super) struct Stamp {
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    normal_indices: [Vec<[u32; 3]>; 4],
+}
+
+/// A vector turned about the y axis: a quarter takes z to x.
+pub(super) fn turned(v: DVec3, quarters: usize) -> DVec3 {
+    match quarters % 4 {
+        0 => v,
+        1 => DVec3::new(v.z, v.y, -v.x),
+        2 => DVec3::new(-v.x, v.y, -v.z),
+        _ => DVec3::new(-v.z, v.y, v.x),
+    }
+}
+
+impl Builder {
+    /// What `draw` builds around the origin, to be copied into this mesh.
+    pub fn stamp(&mut self, draw: impl FnOnce(&mut Self)) -> Stamp {
+        let mut part = Self::default();
+        draw(&mut part);
+        let part: Mesh = part.finish();
+        let normal_indices = std::array::from_fn(|quarters| {
+            let mut place = |normal: Vec3| {
+                let normal = turned(normal.as_dvec3(), quarters).as_vec3();
+                self.normals.index(normal)
+            };
+            let places: Vec<u32> = part.normals.iter().map(|&normal| place(normal)).collect();
+            let indices = part.normal_indices.iter();
+            indices
+                .map(|corners| corners.map(|index| places[index as usize]))
+                .collect()
+        });
+        Stamp {
+            positions: part.positions.iter().map(|p| p.as_dvec3()).collect(),
+            triangles: part.triangles,
+            normal_indices,
+        }
+    }
+
+    /// Copies a part, turned by quarters about the y axis, to `origin`.
+    pub fn place(&mut self, stamp: &Stamp, quarters: usize, origin: DVec3) {
+        let mesh = &mut self.mesh;
+        let base = mesh.positions.len() as u32;
+        let positions = stamp.positions.iter();
+        mesh.positions
+            .extend(positions.map(|&p| (origin + turned(p, quarters)).as_vec3()));
+        let triangles = stamp.triangles.iter();
+        mesh.triangles
+            .extend(triangles.map(|corners| corners.map(|corner| base + corner)));
+        mesh.normal_indices
+            .extend(&stamp.normal_indices[quarters % 4]);
+        if let Some(group) = mesh.groups.last_mut() {
+            group.triangles.end = mesh.triangles.len() as u32;
+        }
+    }
+
+    /// Triangles so far.
+    pub fn triangles(&self) -> u32 {
+        self.mesh.triangles.len() as u32
+    }
+}

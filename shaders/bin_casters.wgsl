@@ -119,11 +119,11 @@ fn caster_of(primitive: u32) -> Caster {
     let a = triangle.a;
     let b = triangle.b;
     let c = triangle.c;
-    let low = max(min(a.xy, min(b.xy, c.xy)) - SLACK, vec2(0.0));
-    let high = min(max(a.xy, max(b.xy, c.xy)) + SLACK, vec2(size - 1.0));
-    let is_outside = any(high < low);
-    let first = select(vec2<u32>(low), vec2(1u), is_outside);
-    let last = select(vec2<u32>(high), vec2(0u), is_outside);
+    let low = min(a.xy, min(b.xy, c.xy)) - SLACK;
+    let high = max(a.xy, max(b.xy, c.xy)) + SLACK;
+    let is_outside = any(high < vec2(0.0)) || any(low >= vec2(size));
+    let first = select(vec2<u32>(max(low, vec2(0.0))), vec2(1u), is_outside);
+    let last = select(min(vec2<u32>(high), vec2(params.map_size - 1u)), vec2(0u), is_outside);
     let least = depth_bits(min(a.z, min(b.z, c.z)));
     let reach = vec3(reach_of(b.xy - a.xy), reach_of(c.xy - b.xy), reach_of(a.xy - c.xy));
     return Caster(primitive, triangle, first, last, least, reach);

@@ -1,0 +1,387 @@
+//! The light buffer: its lists against a CPU reference, its answers against `rt`'s, to the bit,
+//! whatever has room and whatever has not.
+
+mod support;
+
+use glam::{DVec2, DVec3, Vec3};
+use skiagraph_gpu::{Executor, FrameReport, device::Gpu};
+use skiagraph_graph::{Capture, ParamValue};
+use skiagraph_passes::SceneProvider;
+use skiagraph_reference::statistics::status;
+use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
+use skiagraph_tests::cpu_reference::{LightSpace, SLACK, TexelTriangle, exact};
+use std::{collections::BTreeSet, sync::Arc};
+use support::{
+    graphs::{frame, open, plan, provider, run_on, values},
+    meshes::{mesh, potato, soup},
+    random::Random,
+};
+
+const VIEWPORT: [u32; 2] = [96, 64];
+
+fn scene(mesh: Mesh, eye: DVec3, light: DVec3) -> Arc<Scene> {
+    let view = View {
+        name: "main".into(),
+        eye,
+        direction: -eye,
+        up: DVec3::Y,
+        fov_y_degrees: 50.0,
+        near: 0.05,
+        far: 50.0,
+    };
+    Arc::new(Scene {
+        name: "test".into(),
+        mesh,
+        views: vec![view],
+        light: DirectionalLight { direction: light },
+    })
+}
+
+/// Two meshes as one.
+fn joined(mut first: Mesh, second: &Mesh) -> Mesh {
+    let (corners, normals) = (first.positions.len() as u32, first.normals.len() as u32);
+    first.positions.extend(&second.positions);
+    first.normals.extend(&second.normals);
+    let moved = |by: u32| move |triangle: &[u32; 3]| triangle.map(|index| index + by);
+    first
+        .triangles
+        .extend(second.triangles.iter().map(moved(corners)));
+    first
+        .normal_indices
+        .extend(second.normal_indices.iter().map(moved(normals)));
+    first
+}
+
+/// A horizontal square that faces up.
+fn floor(half: f32, y: f32) -> Mesh {
+    let corners = [(-half, half), (half, half), (half, -half), (-half, -half)];
+    let corners = corners.map(|(x, z)| Vec3::new(x, y, z));
+    mesh(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]])
+}
+
+/// So many specks over a point of a large floor, all of them in one texel of a map of 64.
+fn crowd(casters: u32, seed: u64) -> Mesh {
+    let mut random = Random(seed);
+    let corners = (0..casters).flat_map(|_| {
+        let centre = random.vector() * Vec3::new(0.3, 0.2, 0.3) + Vec3::Y * 0.5;
+        [(); 3].map(|()| centre + random.vector() * 0.01)
+    });
+    let positions: Vec<Vec3> = corners.collect();
+    let triangles = (0..casters).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+    joined(floor(30.0, 0.0), &mesh(positions, triangles.collect()))
+}
+
+/// A method on a scene.
+struct Bench {
+    gpu: Gpu,
+    provider: SceneProvider,
+}
+
+const CAPTURED: [&str; 5] = ["position", "primitive", "farthest", "heads", "entries"];
+
+impl Bench {
+    fn new(scene: &Arc<Scene>) -> Self {
+        Self {
+            gpu: open(),
+            provider: provider(scene, &scene.views[0], VIEWPORT),
+        }
+    }
+
+    fn executor(&mut self, preset: &str, params: &[(&str, u32)], captured: &[&str]) -> Executor {
+        let path = format!("pipelines/{preset}.ron");
+        let plan = plan(&path, &self.provider, VIEWPORT, |request| {
+            for (name, value) in params {
+                let value = ParamValue::U32(*value);
+                request.params.insert((*name).to_owned(), value);
+            }
+            request.captures.extend(captured.iter().map(|name| Capture {
+                material: (*name).to_owned(),
+                after: None,
+            }));
+        });
+        Executor::new(&self.gpu.device, &self.gpu.queue, plan, &mut self.provider)
+            .unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    /// Visibility of every pixel by rays alone.
+    fn by_rays(&mut self) -> Vec<u32> {
+        let plan = plan("pipelines/rt.ron", &self.provider, VIEWPORT, |_| {});
+        let report = run_on(&self.gpu, plan, &mut self.provider, &["visibility"]);
+        values(&report, "visibility")
+    }
+
+    /// One frame of the light buffer.
+    fn by_lists(&mut self, params: &[(&str, u32)]) -> Answer {
+        let mut executor = self.executor("light_buffer", params, &[]);
+        self.answer(&mut executor)
+    }
+
+    fn answer(&self, executor: &mut Executor) -> Answer {
+        let read = ["visibility", "status", "entry_count", "ray_count"];
+        let report = frame(&self.gpu, executor, &read);
+        let statuses = values(&report, "status");
+        let of = |wanted: u32| statuses.iter().filter(|status| **status == wanted).count();
+        let [lit, shadow, uncertain] = [
+            status::CERTAIN_LIGHT,
+            status::CERTAIN_SHADOW,
+            status::UNCERTAIN,
+        ]
+        .map(of);
+        assert_eq!(values(&report, "ray_count"), [uncertain as u32]);
+        Answer {
+            visibility: values(&report, "visibility"),
+            lit,
+            shadow,
+            uncertain,
+            entries: values(&report, "entry_count")[0],
+        }
+    }
+}
+
+struct Answer {
+    visibility: Vec<u32>,
+    lit: usize,
+    shadow: usize,
+    uncertain: usize,
+    /// That were needed.
+    entries: u32,
+}
+
+/// A soup over a potato over a floor: triangles of all sizes, open and closed, through each other.
+fn mixed(seed: u64) -> Arc<Scene> {
+    let mut random = Random(seed);
+    let size = [0.05, 0.3, 1.0][seed as usize % 3];
+    let solids = joined(floor(2.5, -1.2), &potato(3, 0.4, seed));
+    let light = (random.vector() - Vec3::Y * 1.3).as_dvec3();
+    let eye = random.vector().as_dvec3() + DVec3::new(1.5, 2.5, 3.0);
+    scene(joined(solids, &soup(300, size, seed)), eye, light)
+}
+
+/// Of the receivers in reach of the light: what a list must hold, and what it may.
+#[test]
+fn lists_hold_each_caster_that_shades_a_receiver_and_no_stranger() {
+    let mut shading = 0;
+    for (seed, map_size) in [(3, 8), (1, 8), (2, 31), (3, 64), (4, 200), (5, 16)] {
+        let scene = mixed(seed);
+        let mut bench = Bench::new(&scene);
+        let mut executor = bench.executor("light_buffer", &[("map_size", map_size)], &CAPTURED);
+        let report = frame(&bench.gpu, &mut executor, &CAPTURED);
+        shading += check_lists(&scene, map_size, &report);
+    }
+    assert!(shading > 10_000, "{shading}");
+}
+
+/// Checks all lists; returns how many pairs of a receiver and a caster there were.
+fn check_lists(scene: &Scene, map_size: u32, report: &FrameReport) -> usize {
+    let (heads, entries) = (values(report, "heads"), values(report, "entries"));
+    let (farthest, own) = (values(report, "farthest"), values(report, "primitive"));
+    let space = LightSpace::new(&scene.mesh, &scene.light, map_size);
+    let casters = (0..scene.mesh.triangles.len() as u32).map(|primitive| TexelTriangle {
+        corners: scene.mesh.corners(primitive).map(|p| space.texel(p)),
+    });
+    let casters: Vec<TexelTriangle> = casters.collect();
+    let texels = (map_size * map_size) as usize;
+    assert_eq!(heads[texels], 0, "no part of a large triangle lacks");
+    let list = |texel: usize| {
+        let mut list = Vec::new();
+        let mut number = heads[texel];
+        while number != 0 {
+            let entry = &entries[3 * (number as usize - 1)..];
+            (number, _) = (entry[0], list.push(entry[2]));
+        }
+        list
+    };
+    let lists: Vec<Vec<u32>> = (0..texels).map(list).collect();
+    for (texel, list) in lists.iter().enumerate() {
+        let known: BTreeSet<&u32> = list.iter().collect();
+        assert_eq!(known.len(), list.len(), "a caster is in a list twice");
+        let place = DVec2::new(
+            (texel as u32 % map_size).into(),
+            (texel as u32 / map_size).into(),
+        );
+        let farthest = f64::from(f32::from_bits(farthest[texel]));
+        for &primitive in list {
+            let caster = &casters[primitive as usize];
+            // The shader's slack, and as much for the corners' rounding.
+            assert!(
+                touches(caster, place + 0.5, 4.0 * SLACK),
+                "{primitive} is not in texel {place}"
+            );
+            let least = caster.corners.map(|corner| corner.z);
+            let least = least.into_iter().fold(f64::INFINITY, f64::min);
+            assert!(least <= farthest + 1e-5, "{primitive} is behind {place}");
+        }
+    }
+    let positions = report
+        .readbacks
+        .iter()
+        .find(|found| found.name == "position");
+    let positions = positions.unwrap().content.as_f32().unwrap();
+    let mut shading = 0;
+    for (receiver, &own) in positions.chunks_exact(4).zip(&own) {
+        if !(receiver[3] > 0.0) {
+            continue;
+        }
+        let position = Vec3::from_slice(receiver).as_dvec3();
+        let at = space.texel(position);
+        // On the border of two texels either may be the receiver's.
+        let border = (at.truncate() - at.truncate().round()).abs().min_element();
+        if border < SLACK {
+            continue;
+        }
+        let texel = at.y as usize * map_size as usize + at.x as usize;
+        for (primitive, caster) in (0u32..).zip(&casters) {
+            if primitive != own && depth_at(caster, at.truncate()).is_some_and(|z| z < at.z) {
+                shading += 1;
+                assert!(
+                    lists[texel].contains(&primitive),
+                    "{primitive} shades {position} and is not in the list of its texel"
+                );
+            }
+        }
+    }
+    shading
+}
+
+/// Whether a triangle touches a texel that is larger by so much on every side.
+fn touches(caster: &TexelTriangle, centre: DVec2, by: f64) -> bool {
+    let shrunk = 1.0 / (1.0 + 2.0 * by);
+    let corners = caster.corners.map(|corner| {
+        let place = centre + (corner.truncate() - centre) * shrunk;
+        place.extend(corner.z)
+    });
+    exact::touches(&TexelTriangle { corners }, centre)
+}
+
+/// The depth of a triangle at a point that is inside.
+fn depth_at(caster: &TexelTriangle, point: DVec2) -> Option<f64> {
+    let [a, b, c] = caster.corners.map(DVec3::truncate);
+    let weights = [
+        (b - point).perp_dot(c - point),
+        (c - point).perp_dot(a - point),
+        (a - point).perp_dot(b - point),
+    ];
+    let sum: f64 = weights.iter().sum();
+    let is_inside = sum != 0.0 && weights.iter().all(|weight| weight / sum >= 0.0);
+    let depths = weights.iter().zip(caster.corners);
+    is_inside.then(|| depths.map(|(weight, corner)| weight / sum * corner.z).sum())
+}
+
+#[test]
+fn answers_are_those_of_rays_whatever_the_map() {
+    let [mut lit, mut shadow] = [0; 2];
+    for seed in 0..24 {
+        let scene = mixed(seed);
+        let mut bench = Bench::new(&scene);
+        let rays = bench.by_rays();
+        for map_size in [8, 13, 64, 300] {
+            let lists = bench.by_lists(&[("map_size", map_size)]);
+            assert!(lists.visibility == rays, "scene {seed}, map {map_size}");
+            assert_eq!(lists.uncertain, 0, "scene {seed}, map {map_size}");
+            (lit, shadow) = (lit + lists.lit, shadow + lists.shadow);
+        }
+    }
+    assert!(
+        lit > 50_000 && shadow > 50_000,
+        "{lit} lit, {shadow} in shadow"
+    );
+}
+
+#[test]
+fn what_has_no_room_is_a_ray() {
+    let scene = mixed(2);
+    let mut bench = Bench::new(&scene);
+    let rays = bench.by_rays();
+    let with =
+        |bench: &mut Bench, most: u32| bench.by_lists(&[("map_size", 64), ("max_entries", most)]);
+    let needed = with(&mut bench, 65_536).entries;
+    assert!(needed < 65_536, "{needed}");
+    for (most, is_short) in [
+        (1, true),
+        (needed / 2, true),
+        (needed - 1, true),
+        (needed, false),
+    ] {
+        let lists = with(&mut bench, most);
+        assert!(lists.visibility == rays, "{most} of {needed} entries");
+        assert_eq!(lists.uncertain > 0, is_short, "{most} of {needed} entries");
+        assert_eq!(lists.entries, needed);
+    }
+    // One entry too few leaves one texel to rays.
+    let [all, most] = [1, needed - 1].map(|most| with(&mut bench, most).uncertain);
+    assert!(10 * most < all, "{most} of {all}");
+}
+
+#[test]
+fn a_list_that_is_too_long_to_look_at_is_a_ray() {
+    let scene = mixed(1);
+    let mut bench = Bench::new(&scene);
+    let rays = bench.by_rays();
+    let mut before = usize::MAX;
+    for longest in [0, 1, 4, 16] {
+        let lists = bench.by_lists(&[("map_size", 16), ("longest_list", longest)]);
+        assert!(lists.visibility == rays, "{longest}");
+        assert!(
+            (1..before).contains(&lists.uncertain),
+            "{longest}: {}",
+            lists.uncertain
+        );
+        before = lists.uncertain;
+    }
+}
+
+/// 100,000 casters in a texel, and every pixel's receiver in the same one.
+#[test]
+fn a_crowded_texel_is_exact_before_and_after_its_lists_have_grown() {
+    let scene = scene(crowd(100_000, 7), DVec3::new(0.3, 1.2, 0.9), DVec3::NEG_Y);
+    let mut bench = Bench::new(&scene);
+    let rays = bench.by_rays();
+    for longest in [64, 4096] {
+        let params = [("map_size", 8), ("longest_list", longest)];
+        let mut executor = bench.executor("light_buffer", &params, &[]);
+        let first = bench.answer(&mut executor);
+        assert!(first.visibility == rays);
+        assert!(
+            first.entries > 65_536 && first.uncertain > 0,
+            "{}",
+            first.entries
+        );
+        assert!(executor.grow(&mut bench.provider).unwrap().is_some());
+        let second = bench.answer(&mut executor);
+        assert!(second.visibility == rays);
+        assert_eq!(second.entries, first.entries);
+        assert!(executor.grow(&mut bench.provider).unwrap().is_none());
+    }
+}
+
+/// So many parts that one workgroup does not see them all.
+#[test]
+fn a_triangle_over_a_million_texels_is_shared_out() {
+    let sheet = joined(floor(3.0, -1.0), &soup(40, 4.0, 3));
+    let scene = scene(sheet, DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.3, -1.0, 0.2));
+    let mut bench = Bench::new(&scene);
+    let rays = bench.by_rays();
+    let lists = bench.by_lists(&[("map_size", 2048)]);
+    assert!(lists.visibility == rays);
+    assert_eq!(lists.uncertain, 0);
+}
+
+/// Texels as large as half a texel's rounding: where a receiver's texel is not certain, a ray is.
+#[test]
+fn far_from_the_origin_rays_answer() {
+    let mut far = mixed(4).mesh.clone();
+    far.positions
+        .iter_mut()
+        .for_each(|position| *position += Vec3::splat(4e5));
+    let mut bench = {
+        let mut scene =
+            (*scene(far, DVec3::new(1.5, 2.5, 3.0), DVec3::new(0.3, -1.0, 0.2))).clone();
+        scene.views[0].eye += DVec3::splat(4e5);
+        Bench::new(&Arc::new(scene))
+    };
+    let rays = bench.by_rays();
+    let lists = bench.by_lists(&[("map_size", 2048)]);
+    assert!(lists.visibility == rays);
+    assert_eq!((lists.lit, lists.shadow), (0, 0), "of {}", lists.uncertain);
+    assert!(lists.uncertain > 100);
+}

@@ -9,6 +9,8 @@
 struct Params {
     map_size: u32,
     cull: u32,
+    // The corners from this one on, as many as `selected` takes; a multiple of 3.
+    first: u32,
 }
 
 var<uniform> params: Params;
@@ -42,7 +44,7 @@ fn with_neighbours(thread: Thread) {
     let corner = corner_of(thread);
     let triangle = gather(corner, thread.lane);
     var kept = false;
-    if corner < arrayLength(&scene_indices) && casts(triangle, params.cull) {
+    if is_asked(corner) && casts(triangle, params.cull) {
         let first = thread.lane - thread.lane % 3u;
         let next = texels[first + (thread.lane + 1u) % 3u].xy;
         let own = texels[first + (thread.lane + 2u) % 3u].xy;
@@ -54,11 +56,16 @@ fn with_neighbours(thread: Thread) {
 }
 
 fn corner_of(thread: Thread) -> u32 {
-    return (thread.group.y * thread.groups.x + thread.group.x) * CORNERS + thread.lane;
+    let index = (thread.group.y * thread.groups.x + thread.group.x) * CORNERS + thread.lane;
+    return params.first + index;
+}
+
+fn is_asked(corner: u32) -> bool {
+    return corner < arrayLength(&scene_indices) && corner - params.first < arrayLength(&selected);
 }
 
 fn gather(corner: u32, lane: u32) -> LightTriangle {
-    if corner < arrayLength(&scene_indices) {
+    if is_asked(corner) {
         texels[lane] = light_texel(corner_position(corner), f32(params.map_size));
     }
     workgroupBarrier();
@@ -70,7 +77,7 @@ fn gather(corner: u32, lane: u32) -> LightTriangle {
 }
 
 fn place(corner: u32, lane: u32, triangle: LightTriangle, kept: bool) {
-    let in_map = corner < arrayLength(&scene_indices) && casts(triangle, params.cull);
+    let in_map = is_asked(corner) && casts(triangle, params.cull);
     let word = lane / 96u;
     let bit = 1u << (lane / 3u % 32u);
     if in_map {

@@ -202,15 +202,23 @@ fn what_no_output_needs_is_culled() {
 }
 
 #[test]
-fn more_rays_than_a_device_binds_are_refused_by_name() {
+fn more_rays_than_every_device_binds_are_traced_in_turns() {
     let provider = SceneProvider::new(Arc::new(empty()));
-    // 8.3 million rays of 32 bytes; the request's default limits bind 128 MiB.
-    let errors = load("pipelines/rt.ron")
-        .plan(&PlanRequest::new([3840, 2160], &provider))
-        .err();
-    let errors = errors.expect("a plan of 265 MB in one binding").to_string();
-    assert!(
-        errors.contains("rays") && errors.contains("pipelines/shared/fill_rays.ron"),
-        "{errors}"
-    );
+    let rt = load("pipelines/rt.ron");
+    // Rays of 32 bytes; the request's default limits bind 128 MiB, which four million have.
+    for (viewport, turns) in [
+        ([2048, 2048], 1),
+        ([2049, 2048], 2),
+        ([3840, 2160], 2),
+        ([7680, 4320], 8),
+    ] {
+        let plan = rt.plan(&PlanRequest::new(viewport, &provider));
+        let plan = plan.unwrap_or_else(|errors| panic!("{viewport:?}: {errors}"));
+        let traces = plan
+            .passes()
+            .iter()
+            .filter(|pass| pass.kind == "Trace")
+            .count();
+        assert_eq!(traces, turns, "{viewport:?}");
+    }
 }

@@ -5,13 +5,13 @@ mod support;
 
 use glam::{DVec3, Vec3};
 use skiagraph_gpu::Executor;
-use skiagraph_graph::ParamValue;
+use skiagraph_graph::{ParamValue, PassSummary};
 use skiagraph_passes::presets;
 use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
 use std::sync::Arc;
 use support::{
     brute::{self, MISS, Ray},
-    graphs::{open, plan, provider, run, values},
+    graphs::{open, plan, plan_files, provider, run, values},
 };
 
 const VIEWPORT: [u32; 2] = [96, 64];
@@ -173,6 +173,82 @@ fn rt_agrees_with_rays_traced_by_hand() {
         let asked = status.iter().filter(|&&status| status == 4).count();
         let rays = values(&report, "ray_count")[0] as usize;
         assert_eq!(rays, if per_pixel { truth.len() } else { asked });
+    }
+}
+
+/// Casters that one buffer does not hold are drawn in turns: here five triangles each of fourteen.
+#[test]
+fn casters_in_turns_make_the_layers_that_they_make_at_once() {
+    const OUTPUTS: [&str; 2] = ["visibility", "status"];
+    for preset in ["crsm", "crsm_depth", "crsma", "crsma_full"] {
+        let answers = |corners: u32| {
+            let document = format!(
+                r#"(
+                    format: 2,
+                    extends: "{preset}.ron",
+                    set: {{"map_size": 64}},
+                    materials: [Buffer(name: "casters", count: {corners})],
+                )"#
+            );
+            let scene = scene();
+            let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
+            let plan = plan_files(&[("test.ron", &document)], &provider, VIEWPORT);
+            let is_turn = |pass: &&PassSummary| pass.name.ends_with(".inner");
+            let turns = plan.passes().iter().filter(is_turn).count();
+            let report = run(plan, &mut provider, &OUTPUTS);
+            (turns, OUTPUTS.map(|name| values(&report, name)))
+        };
+        let (once, at_once) = answers(3 * 14);
+        let (turns, in_turns) = answers(3 * 5);
+        assert_eq!((once, turns), (1, 3), "{preset}");
+        assert_eq!(in_turns, at_once, "{preset}");
+        let certain = at_once[1].iter().filter(|&&status| status == 3).count();
+        assert!(certain > 50, "{preset} is certain of {certain} shadows");
+    }
+}
+
+/// Rays of more pixels than one buffer holds are traced in turns: here of a thousand each, the last
+/// turn being short.
+#[test]
+fn pixels_in_turns_get_the_answers_that_they_get_at_once() {
+    const OUTPUTS: [&str; 3] = ["visibility", "status", "ray_count"];
+    for (preset, set) in [
+        ("rt", r#""per_pixel": false"#),
+        ("rt", r#""per_pixel": true"#),
+        ("hybrid_pcf", r#""map_size": 64"#),
+        ("crsm", r#""map_size": 64"#),
+        ("crsm_single", r#""map_size": 64"#),
+        ("crsm_depth", r#""map_size": 64"#),
+    ] {
+        let answers = |most: u32| {
+            let document = format!(
+                r#"(
+                    format: 2,
+                    extends: "{preset}.ron",
+                    set: {{{set}}},
+                    passes: [Change(pass: "fill_rays", set: {{"most": {most}}})],
+                )"#
+            );
+            let scene = scene();
+            let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
+            let plan = plan_files(&[("test.ron", &document)], &provider, VIEWPORT);
+            let turns = plan
+                .passes()
+                .iter()
+                .filter(|pass| pass.name.ends_with("fix_pixels"))
+                .count();
+            let report = run(plan, &mut provider, &OUTPUTS);
+            (turns, OUTPUTS.map(|name| values(&report, name)))
+        };
+        let (once, at_once) = answers(1 << 22);
+        let (turns, in_turns) = answers(1000);
+        assert_eq!((once, turns), (1, 7), "{preset}");
+        assert!(
+            at_once[2][0] > 20,
+            "{preset} {set} traced {} rays",
+            at_once[2][0]
+        );
+        assert_eq!(in_turns, at_once, "{preset}, {set}");
     }
 }
 

@@ -97,6 +97,15 @@ pub fn run_text(document: &str, provider: &mut dyn Provider, output: &str) -> Ve
 /// The same with shaders that are given as text: paths and texts, the document's path is
 /// `test.ron`.
 pub fn run_files(files: &[(&str, &str)], provider: &mut dyn Provider, output: &str) -> Vec<u8> {
+    let plan = plan_files(files, provider, [1, 1]);
+    let report = run(plan, provider, &[output]);
+    match report.readbacks.into_iter().next().unwrap().content {
+        Content::Buffer(bytes) | Content::Texture { bytes, .. } => bytes,
+    }
+}
+
+/// Plans a document given as text, `test.ron`, with all outputs.
+pub fn plan_files(files: &[(&str, &str)], provider: &dyn Describe, viewport: [u32; 2]) -> Plan {
     let files = files
         .iter()
         .map(|&(path, text)| (path.to_owned(), text.to_owned()));
@@ -106,13 +115,9 @@ pub fn run_files(files: &[(&str, &str)], provider: &mut dyn Provider, output: &s
     ]);
     let graph =
         Graph::load("test.ron", &registry(), &sources).unwrap_or_else(|error| panic!("{error}"));
-    let plan = graph
-        .plan(&PlanRequest::new([1, 1], provider))
-        .unwrap_or_else(|error| panic!("{error}"));
-    let report = run(plan, provider, &[output]);
-    match report.readbacks.into_iter().next().unwrap().content {
-        Content::Buffer(bytes) | Content::Texture { bytes, .. } => bytes,
-    }
+    graph
+        .plan(&PlanRequest::new(viewport, provider))
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Traces on the GPU through a graph of one `Trace` pass: the first `count` rays, each past its

@@ -53,12 +53,14 @@ fn chosen(gpu: &Gpu) -> String {
     let mut text = format!("\nChosen: {}\n", adapter(&gpu.adapter.get_info()));
     let edge = limits.max_texture_dimension_2d;
     let storage = limits.max_storage_buffer_binding_size;
-    // 32 bytes per ray, as the ray buffer holds them.
-    let (storage, rays) = (bytes(storage), storage / 32 / 1_000_000);
+    // What there is more of is drawn and traced in parts, but indices are bound whole.
+    let (storage, triangles) = (bytes(storage), storage / 12 / 1_000_000);
     let memory = gpu.memory.map(bytes);
     let memory = memory.unwrap_or("what the driver gives (it does not say how much)".into());
     text += &format!("  textures: up to {edge}x{edge}\n");
-    text += &format!("  storage buffer binding: up to {storage} (rays of {rays} million pixels)\n");
+    text += &format!(
+        "  storage buffer binding: up to {storage} (indices of {triangles} million triangles)\n"
+    );
     text += &format!("  buffer: up to {}\n", bytes(limits.max_buffer_size));
     text += &format!("  memory for a graph: {memory}\n");
     text += &format!(

@@ -2,7 +2,7 @@
 
 use crate::error::CliError;
 use crate::records::results::{Measured, Results, Run};
-use crate::wording::{frames, size, thousands};
+use crate::wording::{frames, size};
 use skiagraph_chart::{Figure, Kind, Mark, Panel, Series};
 use std::{collections::BTreeSet, path::PathBuf};
 
@@ -36,7 +36,9 @@ pub fn front(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CliErr
             panels.push(front_panel(kept, viewport, &maps)?);
         }
     }
+    let scenes: BTreeSet<String> = results().map(|results| results.scene.to_string()).collect();
     let mut notes = conditions(kept);
+    notes.push(scenes.into_iter().collect::<Vec<_>>().join("; "));
     notes.push(
         "Left is faster, down is more right; where there are several views, the means of all."
             .into(),
@@ -100,15 +102,13 @@ fn front_panel(kept: &Kept, viewport: [u32; 2], maps: &[u32]) -> Result<Panel, C
 /// # Errors
 /// Results without GPU times.
 pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CliError> {
-    let mut order: Vec<&Kept> = kept.iter().collect();
-    order.sort_by_key(|kept| kept.results.scene.triangles);
     let runs = || {
-        order.iter().flat_map(|kept| {
+        kept.iter().flat_map(|kept| {
             let viewports = viewports(&kept.results, viewport);
             viewports
                 .into_iter()
                 .flat_map(|viewport| drawn(&kept.results, viewport))
-                .map(|(run, measured)| (*kept, run, measured))
+                .map(move |(run, measured)| (kept, run, measured))
         })
     };
     let maps: BTreeSet<Option<u32>> = runs().map(|(_, run, _)| run.map_size).collect();
@@ -145,6 +145,13 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CliEr
             let x = scene.triangles as f64;
             push(&mut panel.series, &name, Mark { x, y, size: 0 });
         }
+    }
+    for series in panels
+        .iter_mut()
+        .flatten()
+        .flat_map(|panel| &mut panel.series)
+    {
+        series.marks.sort_by(|a, b| a.x.total_cmp(&b.x));
     }
     let mut notes = conditions(kept);
     notes.push("Memory is the graph's own and the scene's buffers that it reads.".into());
@@ -219,19 +226,8 @@ fn conditions(kept: &[Kept]) -> Vec<String> {
         .collect();
     let medians: BTreeSet<u32> = kept.iter().map(|kept| kept.results.frames).collect();
     let medians: Vec<String> = medians.into_iter().map(frames).collect();
-    let triangles: BTreeSet<String> = kept
-        .iter()
-        .map(|kept| {
-            let scene = &kept.results.scene;
-            format!("{} {}", scene.name, thousands(scene.triangles))
-        })
-        .collect();
     let mut lines: Vec<String> = adapters.into_iter().collect();
-    lines.push(format!(
-        "Medians of {}; triangles: {}",
-        medians.join(" or "),
-        triangles.into_iter().collect::<Vec<_>>().join(", ")
-    ));
+    lines.push(format!("Medians of {}", medians.join(" or ")));
     lines
 }
 

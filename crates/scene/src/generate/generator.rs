@@ -27,7 +27,7 @@ pub enum Generator {
 }
 
 impl Generator {
-    /// Makes the mesh: up to 10⁷ triangles take some seconds and 1.3 GB at most. A city or forest
+    /// Makes the mesh: 10⁷ triangles take seconds and less than a GB. A city or forest
     /// is off its number of triangles by 3 % at most.
     pub fn build(self) -> Mesh {
         match self {

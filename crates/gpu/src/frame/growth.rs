@@ -121,16 +121,19 @@ impl Watch {
 impl Executor {
     /// Makes buffers with `grow` larger that were too small for a frame that is done; call it
     /// between frames. It never waits: a counter that has not arrived is looked at the next time.
-    /// `None` if there was nothing to do. What the document does for items that have no room holds
-    /// until then, and where the device refuses more memory.
+    /// `None` if there was nothing to do. Where the memory limit or the device refuses larger
+    /// buffers, what the document does for items that have no room holds, and nothing is tried
+    /// until the plan changes otherwise.
     ///
     /// # Errors
-    /// If the device was lost.
+    /// If the device was lost, or a provided resource that has changed cannot be built. The
+    /// executor is as it was then, and the next frame asks again.
     pub fn grow(
         &mut self,
         provider: &mut dyn Provider,
     ) -> Result<Option<ReplanReport>, ExecuteError> {
-        if self.state.watches.is_empty() {
+        let mut states = self.state.watches.iter().map(|watch| &watch.state);
+        if !states.any(|state| matches!(state, State::Mapping(_))) {
             return Ok(None);
         }
         poll(&self.device, wgpu::PollType::Poll)?;
@@ -152,12 +155,16 @@ impl Executor {
             Err(diagnostics) => Err(diagnostics.into()),
         };
         match report {
-            Err(lost @ ExecuteError::DeviceLost(_)) => Err(lost),
-            Err(_) => {
+            Err(
+                ExecuteError::Plan(_)
+                | ExecuteError::OutOfMemory { .. }
+                | ExecuteError::Resource { .. }
+                | ExecuteError::Gpu { .. },
+            ) => {
                 self.state.watches.clear();
                 Ok(None)
             }
-            Ok(report) => Ok(Some(report)),
+            report => report.map(Some),
         }
     }
 }

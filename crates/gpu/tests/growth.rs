@@ -153,6 +153,26 @@ fn frames_in_flight_are_not_waited_for() {
     shows(&mut executor, 20, 25);
 }
 
+/// A host may change its plan in every frame, before a counter has arrived.
+#[test]
+fn a_count_on_its_way_outlives_a_change_of_the_plan() {
+    let mut executor = wanting(10);
+    frame(&mut executor, &[]);
+    set(&mut executor, "wanted", ParamValue::U32(11));
+    assert!(grow(&mut executor).is_some());
+    shows(&mut executor, 11, 12);
+    // Of a frame that is encoded and not submitted, too.
+    set(&mut executor, "wanted", ParamValue::U32(20));
+    let mut encoder = encoder();
+    executor.encode(&mut encoder, &Frame::default()).unwrap();
+    executor.resize([9, 9], &mut NoProvider).unwrap();
+    GPU.queue.submit([encoder.finish()]);
+    executor.submitted().unwrap();
+    executor.finish().unwrap();
+    assert!(grow(&mut executor).is_some());
+    shows(&mut executor, 20, 25);
+}
+
 /// Number of items that a plan gives a buffer.
 fn items(plan: &Plan, name: &str) -> u64 {
     let mut resources = plan.resources().iter();

@@ -150,6 +150,32 @@ fn included_and_repeated_buffers_grow_alone() {
     assert_eq!(counts.collect::<Vec<_>>(), [4, 12]);
 }
 
+/// The buffer that the authoring guide shows.
+#[test]
+fn the_buffer_of_the_guide_grows() {
+    let guide = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/authoring.md");
+    let guide = std::fs::read_to_string(guide).expect("it is part of the repository");
+    let mut words = guide.split('`');
+    let shown = words.find(|word| word.contains("grow: ("));
+    let shown = shown.expect("the guide shows one");
+    let files = counted()
+        .edited(
+            "graph.ron",
+            r#"Buffer(name: "items", count: 4, grow: (counter: "needed", max: "most"))"#,
+            shown,
+        )
+        .edited("graph.ron", "\"needed\"", "\"hit_count\"")
+        .edited("graph.ron", "\"items\"", "\"hits\"")
+        .edited("graph.ron", "items.count", "hits.count")
+        .edited("count.wgsl", "needed", "hit_count")
+        .edited("fill.wgsl", "items", "hits");
+    let first = right(plan(&files));
+    assert_eq!(growing(&first), [("hits".to_owned(), 1_048_576)]);
+    assert_eq!(count(&first, "hits"), 1024);
+    let larger = grown(&first, [("hits", 1 << 30)]);
+    assert_eq!(count(&larger, "hits"), 1_048_576);
+}
+
 /// A graph whose grid is half as wide as the viewport, unless it is said otherwise.
 fn halves() -> Files {
     Files::graph(
@@ -200,7 +226,10 @@ fn an_included_default_follows_the_viewport() {
     let inner = files.texts["graph.ron"].clone();
     let files = files.with("inner.ron", inner).document(
         "graph.ron",
-        r#"passes: [Include(graph: "inner.ron", name: "inner")], outputs: [(name: "items", material: "inner.items")],"#,
+        r#"
+    passes: [Include(graph: "inner.ron", name: "inner")],
+    outputs: [(name: "items", material: "inner.items")],
+"#,
     );
     let first = right(plan(&files));
     assert_eq!(count(&first, "inner.items"), 32);

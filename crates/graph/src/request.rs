@@ -29,7 +29,9 @@ pub struct PlanRequest<'a> {
     /// What the host will import for the inputs of the root document, by name.
     pub imports: BTreeMap<String, Import>,
     /// Items that buffers with `grow` are known to need, by full name: they are made as large, up
-    /// to their `max`.
+    /// to their `max`. A graph that was loaded again goes on with what [`Plan::grown`] says.
+    ///
+    /// [`Plan::grown`]: crate::Plan::grown
     pub grown: BTreeMap<String, u64>,
     /// Fills memory between uses with a pattern made of this byte: a graph whose outputs change
     /// with it reads what it has not written. Costs time; for finding mistakes.

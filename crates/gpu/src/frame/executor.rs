@@ -3,9 +3,9 @@
 use super::{
     contents::{Contents, HostCopy},
     encode::encode_all,
-    growth::Watch,
     pass::GpuPass,
     poison::Poison,
+    watch::Watch,
 };
 use crate::{
     error::{ExecuteError, check_device_lost, scoped, wait, with_table},

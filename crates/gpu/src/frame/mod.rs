@@ -8,6 +8,7 @@ mod host;
 mod pass;
 mod poison;
 mod replan;
+mod watch;
 
 pub use executor::{Executor, Frame, FrameReport};
 pub use replan::ReplanReport;

@@ -11,9 +11,9 @@
 use super::{
     contents::Contents,
     executor::{Executor, State},
-    growth::Watch,
     pass::{GpuPass, Seen},
     poison::Poison,
+    watch::Watch,
 };
 use crate::{
     error::{ExecuteError, check_device_lost, with_table},
@@ -134,7 +134,8 @@ impl Executor {
             rebind(&mut state, &mut self.state, true);
             return Err(error);
         }
-        let before = std::mem::replace(&mut self.state, state);
+        let mut before = std::mem::replace(&mut self.state, state);
+        Watch::take_over(&mut self.state.watches, std::mem::take(&mut before.watches));
         self.ping_pong = self.state.ping_pong(false);
         report.uploads = self.upload(&before.plan, &positions);
         Ok(report)

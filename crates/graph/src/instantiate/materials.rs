@@ -302,7 +302,7 @@ impl World<'_> {
         if !(is_own && matches!(resource.kind, ResourceKind::Buffer(_))) {
             let what = match is_own {
                 true => resource.kind.describe(),
-                false => "not written by this graph",
+                false => "not made by this graph",
             };
             let text = grow.counter.text().to_owned();
             let name = Located::new(text, grow.counter.span.clone());

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     diagnostics::{diagnostic::Diagnostic, list::Diagnostics, reports::Reports},
-    errors::{flow::OrderError, instantiate::BorderError, plan::OutputError},
+    errors::{flow::OrderError, instantiate::BorderError, plan::OutputError, resource::SizeError},
     flow::{
         aliases::aliases,
         conditions::conditions,
@@ -96,7 +96,7 @@ impl Graph {
         let order = order(linked.work(), valid_prefix, reports);
         if is_complete {
             never_written(linked.work(), &order, reports);
-            never_counted(linked.work(), &order, reports);
+            check_counters(linked.work(), &order, reports);
             borders(&linked, reports);
         }
         let written = |target: &Target| !is_complete || !order.final_writers(target).is_empty();
@@ -280,13 +280,17 @@ fn live(work: Work<'_>, readable: &[(String, Target)], order: &Order) -> Vec<boo
     })
 }
 
-/// Those of some resources that are buffers and grow.
+/// Those of some resources that are buffers and grow; last frame's version of one is no other.
 pub(super) fn growing<'a>(
     ids: impl Iterator<Item = &'a ResourceId>,
     resources: &'a [Resource],
 ) -> impl Iterator<Item = (ResourceId, &'a Growth)> {
-    ids.filter_map(|id| match &resources[id.index()].kind {
-        ResourceKind::Buffer(buffer) => Some((*id, buffer.growth.as_ref()?)),
+    ids.filter_map(|id| match &resources[id.index()] {
+        Resource {
+            kind: ResourceKind::Buffer(buffer),
+            origin: Origin::Own,
+            ..
+        } => Some((*id, buffer.growth.as_ref()?)),
         _ => None,
     })
 }
@@ -382,16 +386,28 @@ fn never_written(work: Work<'_>, order: &Order, reports: &mut Reports) {
     }
 }
 
-/// Buffers that grow by what no pass counts.
-fn never_counted(work: Work<'_>, order: &Order, reports: &mut Reports) {
+/// Buffers that grow by what no pass counts, or by items of a size that cannot be copied.
+fn check_counters(work: Work<'_>, order: &Order, reports: &mut Reports) {
     let ids: Vec<ResourceId> = (0..work.resources.len()).map(ResourceId).collect();
-    for (id, growth) in growing(ids.iter(), work.resources) {
-        if order.final_writers(&growth.counter).is_empty()
-            && let Some(declared) = &work.resource(id).declared
-        {
+    for (id, Growth { counter, .. }) in growing(ids.iter(), work.resources) {
+        let Some(declared) = &work.resource(id).declared else {
+            continue;
+        };
+        let Resource { name, kind, .. } = work.resource(counter.id);
+        let stride = match kind {
+            ResourceKind::Buffer(buffer) => buffer.stride,
+            _ => 0,
+        };
+        let is_item = counter.part.items().is_some();
+        if order.final_writers(counter).is_empty() {
             reports.report(OrderError::NeverCounted {
                 name: Located::new(work.resource(id).name.clone(), declared.clone()),
-                counter: work.resource(growth.counter.id).name.clone(),
+                counter: name.clone(),
+            });
+        } else if is_item && (stride == 0 || stride % 4 != 0) {
+            reports.report(SizeError::Counter {
+                name: Located::new(name.clone(), declared.clone()),
+                what: "a buffer of which no shader says that its items are u32",
             });
         }
     }

@@ -81,8 +81,9 @@ impl Plan {
             let ResourceKind::Buffer(buffer) = &self.resource(id).kind else {
                 return None;
             };
-            let fixed = buffer.bytes.saturating_sub(buffer.stride * buffer.count?);
-            let fits = (largest - fixed).checked_div(buffer.stride)?;
+            let items = buffer.stride.saturating_mul(buffer.count?);
+            let fixed = buffer.bytes.saturating_sub(items);
+            let fits = largest.saturating_sub(fixed).checked_div(buffer.stride)?;
             let max = growth.max.min(fits);
             let counter = growth.counter.clone();
             Some((id, Growth { counter, max }))

@@ -7,15 +7,18 @@
 
 struct Params {
     map_size: u32,
+    longest_list: u32,
 }
 
-// Some of the tiles under the box of a large triangle, from `first_tile` on.
-struct Part {
-    primitive: u32,
-    first_tile: u32,
+struct List {
+    // Number of its first entry; LIST_FULL if one had no room.
+    head: atomic<u32>,
+    // Entries that it should have.
+    length: atomic<u32>,
 }
 
 struct Large {
+    // Those included for which there is no room.
     count: atomic<u32>,
     parts: array<Part>,
 }
@@ -23,9 +26,9 @@ struct Large {
 var<uniform> params: Params;
 // As mark_receivers.wgsl has it.
 var<storage, read> farthest: array<u32>;
-// Behind the last texel: LIST_FULL if any list may lack a caster.
-var<storage, read_write> heads: array<atomic<u32>>;
-// Of all that are needed, those included for which there is no room.
+// Of each texel.
+var<storage, read_write> lists: array<List>;
+// Those included for which there is no room.
 var<storage, read_write> entry_count: atomic<u32>;
 var<storage, read_write> entries: array<Entry>;
 var<storage, read_write> large: Large;
@@ -101,7 +104,6 @@ fn parts(thread: Thread) {
 fn append_part(part: Part) {
     let slot = atomicAdd(&large.count, 1u);
     if slot >= arrayLength(&large.parts) {
-        atomicStore(&heads[arrayLength(&heads) - 1u], LIST_FULL);
         return;
     }
     large.parts[slot] = part;
@@ -201,11 +203,15 @@ fn key_of(caster: Caster, depth: f32, inward: vec3<f32>) -> u32 {
 }
 
 fn append(texel: u32, primitive: u32, key: u32) {
-    let slot = atomicAdd(&entry_count, 1u);
-    if slot >= arrayLength(&entries) {
-        atomicStore(&heads[texel], LIST_FULL);
+    // Nobody reads a list that is longer.
+    if atomicAdd(&lists[texel].length, 1u) >= params.longest_list {
         return;
     }
-    let next = atomicExchange(&heads[texel], slot + 1u);
+    let slot = atomicAdd(&entry_count, 1u);
+    if slot >= arrayLength(&entries) {
+        atomicStore(&lists[texel].head, LIST_FULL);
+        return;
+    }
+    let next = atomicExchange(&lists[texel].head, slot + 1u);
     entries[slot] = Entry(next, key, primitive);
 }

@@ -11,11 +11,22 @@ struct Params {
     longest_list: u32,
 }
 
+struct List {
+    head: u32,
+    length: u32,
+}
+
+struct Large {
+    count: u32,
+    parts: array<Part>,
+}
+
 var<uniform> params: Params;
 // As mark_receivers.wgsl has it.
 var<storage, read> farthest: array<u32>;
 // As bin_casters.wgsl has them.
-var<storage, read> heads: array<u32>;
+var<storage, read> large: Large;
+var<storage, read> lists: array<List>;
 var<storage, read> entries: array<Entry>;
 var visibility: texture_storage_2d<r32uint, write>;
 var status: texture_storage_2d<r32uint, write>;
@@ -43,27 +54,31 @@ fn main(
 
 fn test_casters(receiver: vec3<f32>, own: u32) -> u32 {
     let place = place_of(receiver, params.map_size);
-    if place.texel == NO_TEXEL || heads[arrayLength(&heads) - 1u] != LIST_END {
+    // A part of a large triangle that had no room is in no list.
+    if place.texel == NO_TEXEL || large.count > arrayLength(&large.parts) {
         return STATUS_UNCERTAIN;
     }
     // Two shaders may round a receiver to different texels: then nobody has marked this one.
     if place.depth > farthest[place.texel] {
         return STATUS_UNCERTAIN;
     }
-    var number = heads[place.texel];
-    if number == LIST_END {
+    let list = lists[place.texel];
+    if list.length == 0u {
         return STATUS_LIGHT;
     }
+    if list.length > params.longest_list {
+        return STATUS_UNCERTAIN;
+    }
+    var number = list.head;
     let depth = coarse_depth(bitcast<f32>(place.depth));
     let t_min = receiver_error_bound(receiver, camera.eye);
     let ray = sheared(Ray(receiver, t_min, light.to_light, light.max_distance));
     var hit = Hit(light.max_distance, NO_PRIMITIVE, 0.0, 0.0);
-    var left = params.longest_list;
     loop {
         // To the next one that could be hit, each thread in its own list: testing costs the most,
         // so threads that run in step do it together.
         var candidate = NO_PRIMITIVE;
-        while candidate == NO_PRIMITIVE && number != LIST_END && number != LIST_FULL && left != 0u {
+        while candidate == NO_PRIMITIVE && number != LIST_END && number != LIST_FULL {
             let at = number - 1u;
             let key = entries[at].key;
             if key_depth(key) <= depth && !cuts_off(key, place.offset) {
@@ -71,7 +86,6 @@ fn test_casters(receiver: vec3<f32>, own: u32) -> u32 {
                 candidate = select(primitive, NO_PRIMITIVE, primitive == own);
             }
             number = entries[at].next;
-            left--;
         }
         if candidate == NO_PRIMITIVE {
             return select(STATUS_UNCERTAIN, STATUS_LIGHT, number == LIST_END);

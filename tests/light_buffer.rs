@@ -77,7 +77,7 @@ struct Bench {
     provider: SceneProvider,
 }
 
-const CAPTURED: [&str; 5] = ["position", "primitive", "farthest", "heads", "entries"];
+const CAPTURED: [&str; 5] = ["position", "primitive", "farthest", "lists", "entries"];
 
 impl Bench {
     fn new(scene: &Arc<Scene>) -> Self {
@@ -173,7 +173,7 @@ fn lists_hold_each_caster_that_shades_a_receiver_and_no_stranger() {
 
 /// Checks all lists; returns how many pairs of a receiver and a caster there were.
 fn check_lists(scene: &Scene, map_size: u32, report: &FrameReport) -> usize {
-    let (heads, entries) = (values(report, "heads"), values(report, "entries"));
+    let (heads, entries) = (values(report, "lists"), values(report, "entries"));
     let (farthest, own) = (values(report, "farthest"), values(report, "primitive"));
     let space = LightSpace::new(&scene.mesh, &scene.light, map_size);
     let casters = (0..scene.mesh.triangles.len() as u32).map(|primitive| TexelTriangle {
@@ -181,10 +181,9 @@ fn check_lists(scene: &Scene, map_size: u32, report: &FrameReport) -> usize {
     });
     let casters: Vec<TexelTriangle> = casters.collect();
     let texels = (map_size * map_size) as usize;
-    assert_eq!(heads[texels], 0, "no part of a large triangle lacks");
     let list = |texel: usize| {
         let mut list = Vec::new();
-        let mut number = heads[texel];
+        let mut number = heads[2 * texel];
         while number != 0 {
             let entry = &entries[3 * (number as usize - 1)..];
             (number, _) = (entry[0], list.push(entry[2]));
@@ -195,6 +194,7 @@ fn check_lists(scene: &Scene, map_size: u32, report: &FrameReport) -> usize {
     for (texel, list) in lists.iter().enumerate() {
         let known: BTreeSet<&u32> = list.iter().collect();
         assert_eq!(known.len(), list.len(), "a caster is in a list twice");
+        assert_eq!(heads[2 * texel + 1] as usize, list.len());
         let place = DVec2::new(
             (texel as u32 % map_size).into(),
             (texel as u32 / map_size).into(),

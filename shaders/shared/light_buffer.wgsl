@@ -17,6 +17,12 @@ struct Entry {
 const LIST_END: u32 = 0u;
 const LIST_FULL: u32 = 0xffffffffu;
 
+// Some of the tiles under the box of a large triangle, from `first_tile` on.
+struct Part {
+    primitive: u32,
+    first_tile: u32,
+}
+
 // Edge of a tile, texels. A tile keeps the farthest depth of its texels.
 const TILE: u32 = 8u;
 

@@ -161,6 +161,7 @@ fn a_count_on_its_way_outlives_a_change_of_the_plan() {
     set(&mut executor, "wanted", ParamValue::U32(11));
     assert!(grow(&mut executor).is_some());
     shows(&mut executor, 11, 12);
+    assert_eq!(grow(&mut executor), None);
     // Of a frame that is encoded and not submitted, too.
     set(&mut executor, "wanted", ParamValue::U32(20));
     let mut encoder = encoder();

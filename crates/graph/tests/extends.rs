@@ -56,7 +56,7 @@ fn a_document_that_edits_nothing_is_the_one_that_it_extends() {
 fn a_claim_is_never_inherited() {
     let claims = |files: &Files| {
         let graph = right(load(files));
-        let claims = right(graph.claims(&Default::default(), Default::default()));
+        let claims = right(graph.claims(&Default::default(), [8, 8], Default::default()));
         claims
             .iter()
             .map(|claim| claim.because.clone())

@@ -17,10 +17,6 @@ use serde::{Deserialize, Deserializer};
 
 /// A declared material.
 #[derive(Clone, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "most materials are textures, the largest"
-)]
 pub(crate) enum Material {
     Texture(TextureEntry),
     Buffer(BufferEntry),

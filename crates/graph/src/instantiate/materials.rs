@@ -280,7 +280,7 @@ impl World<'_> {
         };
         if let Some(grow) = &entry.grow {
             let Some(count) = buffer.count.filter(|_| entry.count.is_some()) else {
-                return Err(reports.report(SizeError::GrowWithoutCount(name(&grow.counter.span))));
+                return Err(reports.report(SizeError::GrowWithoutCount(name(&entry.name.span))));
             };
             let growth = self.growth(grow, place, reports)?;
             let grown = self.request.grown.get(full_name).copied().unwrap_or(0);
@@ -308,11 +308,14 @@ impl World<'_> {
             let name = Located::new(text, grow.counter.span.clone());
             return Err(reports.report(SizeError::Counter { name, what }));
         }
-        let max = grow.max.count(&mut self.at(place, None, reports))?;
-        if max == 0 {
-            let name = Located::new("max".to_owned(), grow.max.span.clone());
-            return Err(reports.report(SizeError::NoItems(name)));
-        }
+        let max = match grow.max.count(&mut self.at(place, None, reports))? {
+            0 if grow.max.is_taken() => 1,
+            0 => {
+                let name = Located::new("max".to_owned(), grow.max.span.clone());
+                return Err(reports.report(SizeError::NoItems(name)));
+            }
+            max => max,
+        };
         Ok(Growth { counter, max })
     }
 

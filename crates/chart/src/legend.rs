@@ -75,7 +75,7 @@ impl Legend {
                     .draw(&PathElement::new(line, FRONT.stroke_width(2)))
                     .map_err(failed)?,
                 Sign::Guide => root
-                    .draw(&DashedPathElement::new(line.into_iter(), 4, 4, GUIDE))
+                    .draw(&DashedPathElement::new(line, 4, 4, GUIDE))
                     .map_err(failed)?,
                 Sign::None => {}
             }

@@ -1,10 +1,9 @@
 //! The legend: rows of entries above the panels, where they cover nothing.
 
 use crate::{
+    canvas::{FRONT, GUIDE, Root, WIDTH, failed, words},
     error::Error,
-    figure::{Root, WIDTH, words},
     marker::Look,
-    panel::{FRONT, GUIDE, failed},
     text::{BODY, width},
 };
 use plotters::{element::DashedPathElement, prelude::*};

@@ -1,21 +1,16 @@
 //! One panel: axes, strip for zero, lines, front, marks.
 
 use crate::{
+    canvas::{FRONT, GUIDE, Root, failed, style, words},
     data::{Kind, Mark, Panel, Series},
     error::Error,
-    figure::{Root, style, words},
     front::front,
     marker::Look,
     scale::Scale,
     text::{BODY, HEAD, clean},
 };
 use plotters::{coord::cartesian::Cartesian2d, element::DashedPathElement, prelude::*};
-use std::fmt;
 
-/// The Pareto front's line.
-pub(crate) const FRONT: RGBColor = RGBColor(70, 70, 70);
-/// The line of slope 1.
-pub(crate) const GUIDE: RGBColor = RGBColor(120, 120, 120);
 const STRIP: RGBColor = RGBColor(238, 238, 238);
 const GRID: [RGBColor; 2] = [RGBColor(205, 205, 205), RGBColor(234, 234, 234)];
 
@@ -28,11 +23,6 @@ const RIGHT: i32 = 22;
 const LABELS: (i32, i32) = (58, 50);
 /// Left of the labels.
 const BESIDE: i32 = 8;
-
-/// What the library says, as an error of ours.
-pub(crate) fn failed(error: impl fmt::Display) -> Error {
-    Error::Drawing(error.to_string())
-}
 
 /// Series that have a lane in the strip for zero.
 fn lanes(panel: &Panel) -> Vec<usize> {

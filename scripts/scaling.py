@@ -19,7 +19,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENES = ["city", "forest"]
-METHODS = ["rt", "nsm", "crsma_full"]
+METHODS = ["rt", "nsm", "crsma_full", "light_buffer"]
 
 
 def arguments():

@@ -1,30 +1,20 @@
 //! A figure's layout: title, notes, legend, then the panels in rows.
 
 use crate::{
+    canvas::{WIDTH, failed, words},
     data::{Figure, Kind, Panel},
     error::Error,
     legend::{Entry, Legend, Sign},
     marker::Look,
-    panel::{self, failed},
-    text::{BODY, HEAD, TITLE, clean, wrap},
+    panel,
+    text::{BODY, TITLE, wrap},
 };
-use plotters::{
-    coord::Shift,
-    prelude::*,
-    style::text_anchor::{HPos, Pos, VPos},
-};
+use plotters::prelude::*;
 
-/// What is drawn on, in pixels.
-pub(crate) type Root<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-
-/// Width of every figure, pixels.
-pub(crate) const WIDTH: i32 = 800;
 /// Free at the left border, pixels.
 const LEFT: i32 = 12;
 /// Height of the title, of a line of the notes, and below the legend.
 const LINES: [i32; 3] = [34, 18, 8];
-/// plotters writes text of this share of the size that it is told.
-const TOLD: f64 = 1.24;
 
 impl Figure {
     /// The figure as SVG, 800 pixels wide.
@@ -149,24 +139,4 @@ impl Panel {
         }
         Ok(())
     }
-}
-
-/// Text that begins at `at`, its middle at that height.
-pub(crate) fn words(root: &Root, at: (i32, i32), size: f64, text: &str) -> Result<(), Error> {
-    let style = style(size).pos(Pos::new(HPos::Left, VPos::Center));
-    // The library centres at half the height of an x, which is less than that of most words.
-    let at = (at.0, at.1 + 1);
-    root.draw(&Text::new(clean(text), at, style))
-        .map_err(failed)
-}
-
-/// Black words of a size; titles are bold.
-pub(crate) fn style(size: f64) -> TextStyle<'static> {
-    let font = ("sans-serif", size * TOLD).into_font();
-    let font = if size > HEAD {
-        font.style(FontStyle::Bold)
-    } else {
-        font
-    };
-    font.color(&RGBColor(30, 30, 30))
 }

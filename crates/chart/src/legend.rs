@@ -1,10 +1,9 @@
 //! The legend: rows of entries above the panels, where they cover nothing.
 
 use crate::{
+    canvas::{FRONT, GUIDE, Root, WIDTH, failed, words},
     error::Error,
-    figure::{Root, WIDTH, words},
     marker::Look,
-    panel::{FRONT, GUIDE, failed},
     text::{BODY, width},
 };
 use plotters::{element::DashedPathElement, prelude::*};
@@ -75,7 +74,7 @@ impl Legend {
                     .draw(&PathElement::new(line, FRONT.stroke_width(2)))
                     .map_err(failed)?,
                 Sign::Guide => root
-                    .draw(&DashedPathElement::new(line.into_iter(), 4, 4, GUIDE))
+                    .draw(&DashedPathElement::new(line, 4, 4, GUIDE))
                     .map_err(failed)?,
                 Sign::None => {}
             }

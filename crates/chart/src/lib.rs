@@ -31,6 +31,7 @@
 //! # Ok::<(), skiagraph_chart::Error>(())
 //! ```
 
+mod canvas;
 mod data;
 mod error;
 mod figure;

@@ -1,6 +1,9 @@
 //! Colours and shapes: 7 × 6 of them before a pair returns.
 
-use crate::{error::Error, figure::Root, panel::failed};
+use crate::{
+    canvas::{Root, failed},
+    error::Error,
+};
 use plotters::prelude::*;
 
 /// Okabe and Ito, "Color Universal Design" (2008), without its black and with a darker yellow:

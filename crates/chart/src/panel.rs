@@ -1,21 +1,16 @@
 //! One panel: axes, strip for zero, lines, front, marks.
 
 use crate::{
+    canvas::{FRONT, GUIDE, Root, failed, style, words},
     data::{Kind, Mark, Panel, Series},
     error::Error,
-    figure::{Root, style, words},
     front::front,
     marker::Look,
     scale::Scale,
     text::{BODY, HEAD, clean},
 };
-use plotters::{element::DashedPathElement, prelude::*};
-use std::fmt;
+use plotters::{coord::cartesian::Cartesian2d, element::DashedPathElement, prelude::*};
 
-/// The Pareto front's line.
-pub(crate) const FRONT: RGBColor = RGBColor(70, 70, 70);
-/// The line of slope 1.
-pub(crate) const GUIDE: RGBColor = RGBColor(120, 120, 120);
 const STRIP: RGBColor = RGBColor(238, 238, 238);
 const GRID: [RGBColor; 2] = [RGBColor(205, 205, 205), RGBColor(234, 234, 234)];
 
@@ -28,11 +23,6 @@ const RIGHT: i32 = 22;
 const LABELS: (i32, i32) = (58, 50);
 /// Left of the labels.
 const BESIDE: i32 = 8;
-
-/// What the library says, as an error of ours.
-pub(crate) fn failed(error: impl fmt::Display) -> Error {
-    Error::Drawing(error.to_string())
-}
 
 /// Series that have a lane in the strip for zero.
 fn lanes(panel: &Panel) -> Vec<usize> {
@@ -56,6 +46,8 @@ pub(crate) fn height(panel: &Panel) -> i32 {
     ABOVE + AXES + scales(panel).1.strip().ceil() as i32 + LABELS.1
 }
 
+type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Scale, Scale>>;
+
 /// Draws a panel into a rectangle of `root`.
 pub(crate) fn draw(
     panel: &Panel,
@@ -65,9 +57,52 @@ pub(crate) fn draw(
     look: impl Fn(&str) -> Look,
 ) -> Result<(), Error> {
     let (x, y) = scales(panel);
-    let strip = y.strip();
-    let area = root.clone().shrink(corner, size);
-    let mut chart = ChartBuilder::on(&area)
+    let axes = axes(panel, root, &root.clone().shrink(corner, size), (&x, &y))?;
+    let (across, down) = axes.plotting_area().get_pixel_range();
+    let title = (across.start, corner.1 + ABOVE / 2);
+    words(root, title, HEAD, &panel.title)?;
+    if panel.kind == Kind::Growth {
+        let ends = guide(&x, &y).map(|end| axes.backend_coord(&end));
+        root.draw(&DashedPathElement::new(ends, 4, 4, GUIDE))
+            .map_err(failed)?;
+    }
+    let places = places(panel, &axes);
+    for (series, places) in panel.series.iter().zip(&places) {
+        let opacity = if panel.kind == Kind::Growth { 1.0 } else { 0.4 };
+        let line = look(&series.name).colour.mix(opacity).stroke_width(2);
+        root.draw(&PathElement::new(places.clone(), line))
+            .map_err(failed)?;
+    }
+    let marks: Vec<(&Series, &Mark)> = panel
+        .series
+        .iter()
+        .flat_map(|series| series.marks.iter().map(move |mark| (series, mark)))
+        .collect();
+    let places = places.concat();
+    let mut best = Vec::new();
+    if panel.kind == Kind::Front {
+        let points: Vec<(f64, f64)> = marks.iter().map(|(_, mark)| (mark.x, mark.y)).collect();
+        best = front(&points);
+        let steps: Vec<(i32, i32)> = best.iter().map(|&index| places[index]).collect();
+        let way = staircase(&steps, across.end, down.start);
+        root.draw(&PathElement::new(way, FRONT.stroke_width(2)))
+            .map_err(failed)?;
+    }
+    for (index, (series, mark)) in marks.into_iter().enumerate() {
+        let full = panel.kind == Kind::Growth || best.contains(&index);
+        look(&series.name).draw(root, places[index], mark.size, full)?;
+    }
+    Ok(())
+}
+
+/// The strip for zero, the grid and what stands beside it.
+fn axes<'a>(
+    panel: &Panel,
+    root: &Root<'a>,
+    area: &Root<'a>,
+    (x, y): (&Scale, &Scale),
+) -> Result<Axes<'a>, Error> {
+    let mut axes = ChartBuilder::on(area)
         .margin_top(ABOVE)
         .margin_right(RIGHT)
         .margin_left(BESIDE)
@@ -75,15 +110,14 @@ pub(crate) fn draw(
         .y_label_area_size(LABELS.0)
         .build_cartesian_2d(x.clone(), y.clone())
         .map_err(failed)?;
-    let (across, down) = chart.plotting_area().get_pixel_range();
-    if strip > 0.0 {
-        let top = down.end - strip.round() as i32;
-        let strip = [(across.start, top), (across.end, down.end)];
+    let (across, down) = axes.plotting_area().get_pixel_range();
+    let strip = y.strip().round() as i32;
+    if strip > 0 {
+        let strip = [(across.start, down.end - strip), (across.end, down.end)];
         root.draw(&Rectangle::new(strip, STRIP.filled()))
             .map_err(failed)?;
     }
-    chart
-        .configure_mesh()
+    axes.configure_mesh()
         .x_labels(12)
         .y_labels(12)
         .bold_line_style(GRID[0])
@@ -95,9 +129,11 @@ pub(crate) fn draw(
         .y_desc(clean(&panel.y))
         .draw()
         .map_err(failed)?;
-    let title = (across.start, corner.1 + ABOVE / 2);
-    words(root, title, HEAD, &panel.title)?;
+    Ok(axes)
+}
 
+/// Where the marks of each series stand.
+fn places(panel: &Panel, axes: &Axes) -> Vec<Vec<(i32, i32)>> {
     let lanes = lanes(panel);
     let place = |series: usize, mark: &Mark| {
         let lane = lanes.iter().position(|lane| *lane == series);
@@ -105,49 +141,12 @@ pub(crate) fn draw(
             Some(lane) if mark.y == 0.0 => -(lane as f64 + 1.0),
             _ => mark.y,
         };
-        chart.backend_coord(&(mark.x, y))
+        axes.backend_coord(&(mark.x, y))
     };
-    if panel.kind == Kind::Growth {
-        let ends = guide(&x, &y).map(|end| chart.backend_coord(&end));
-        root.draw(&DashedPathElement::new(ends.into_iter(), 4, 4, GUIDE))
-            .map_err(failed)?;
-    }
-    for (index, series) in panel.series.iter().enumerate() {
-        let way: Vec<(i32, i32)> = series.marks.iter().map(|mark| place(index, mark)).collect();
-        let opacity = if panel.kind == Kind::Growth { 1.0 } else { 0.4 };
-        let line = look(&series.name).colour.mix(opacity).stroke_width(2);
-        root.draw(&PathElement::new(way, line)).map_err(failed)?;
-    }
-    let marks: Vec<(usize, &Mark)> = panel
-        .series
-        .iter()
-        .enumerate()
-        .flat_map(|(index, series)| series.marks.iter().map(move |mark| (index, mark)))
-        .collect();
-    let on_front = match panel.kind {
-        Kind::Front => {
-            let points: Vec<(f64, f64)> = marks.iter().map(|(_, mark)| (mark.x, mark.y)).collect();
-            front(&points)
-        }
-        Kind::Growth => Vec::new(),
-    };
-    if panel.kind == Kind::Front {
-        let steps: Vec<(i32, i32)> = on_front
-            .iter()
-            .map(|&index| place(marks[index].0, marks[index].1))
-            .collect();
-        root.draw(&PathElement::new(
-            staircase(&steps, across.end, down.start),
-            FRONT.stroke_width(2),
-        ))
-        .map_err(failed)?;
-    }
-    for (index, &(series, mark)) in marks.iter().enumerate() {
-        let full = panel.kind == Kind::Growth || on_front.contains(&index);
-        let look = look(&panel.series[series].name);
-        look.draw(root, place(series, mark), mark.size, full)?;
-    }
-    Ok(())
+    let series = panel.series.iter().enumerate();
+    series
+        .map(|(index, series)| series.marks.iter().map(|mark| place(index, mark)).collect())
+        .collect()
 }
 
 /// The border of what the front's points beat, from the upper border to the right one.

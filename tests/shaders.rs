@@ -23,7 +23,11 @@ fn shaders_are_valid() {
     for file in files {
         // The graph assigns the bindings.
         let flags = ValidationFlags::all() - ValidationFlags::BINDINGS;
-        let mut validator = Validator::new(flags, Capabilities::empty());
+        let beyond = match file.as_str() {
+            "trace_ray_query.wgsl" => Capabilities::RAY_QUERY,
+            _ => Capabilities::empty(),
+        };
+        let mut validator = Validator::new(flags, beyond);
         if let Err(error) = validator.validate(&module(&file)) {
             panic!(
                 "{file}: {}",

@@ -2,6 +2,7 @@
 
 use crate::{
     error::Error,
+    ray_query,
     uniforms::{CameraUniform, LightUniform},
 };
 use skiagraph_gpu::{Provider, ProviderError};
@@ -17,12 +18,13 @@ const NORMAL_INDICES: &str = "scene.normal_indices";
 const ADJACENCY: &str = "scene.adjacency";
 const BVH_NODES: &str = "scene.bvh_nodes";
 const BVH_PRIMITIVES: &str = "scene.bvh_primitives";
+const TLAS: &str = "scene.tlas";
 /// The uniform of `shared/camera.wgsl`.
 pub const CAMERA: &str = "camera";
 /// The uniform of `shared/light.wgsl`.
 pub const LIGHT: &str = "light";
 
-const NAMES: [&str; 9] = [
+const NAMES: [&str; 10] = [
     POSITIONS,
     INDICES,
     NORMALS,
@@ -30,6 +32,7 @@ const NAMES: [&str; 9] = [
     ADJACENCY,
     BVH_NODES,
     BVH_PRIMITIVES,
+    TLAS,
     CAMERA,
     LIGHT,
 ];
@@ -45,6 +48,7 @@ const NAMES: [&str; 9] = [
 /// | `scene.adjacency` | `array<u32>`, three per primitive: [`Adjacency::opposite`] |
 /// | `scene.bvh_nodes` | 32-byte [`BvhNode`]s, node 0 is the root |
 /// | `scene.bvh_primitives` | `array<u32>`, primitive ids in leaf order |
+/// | `scene.tlas` | `acceleration_structure`, one instance; primitives have their ids |
 /// | `camera` | [`CameraUniform`] |
 /// | `light` | [`LightUniform`] |
 ///
@@ -61,6 +65,7 @@ pub struct SceneProvider {
     camera_version: u64,
     camera_uploaded: u64,
     buffers: BTreeMap<&'static str, wgpu::Buffer>,
+    tlas: Option<wgpu::Tlas>,
     built: Vec<&'static str>,
 }
 
@@ -74,6 +79,7 @@ impl SceneProvider {
             camera_version: 0,
             camera_uploaded: 0,
             buffers: BTreeMap::new(),
+            tlas: None,
             built: Vec::new(),
         }
     }
@@ -93,6 +99,25 @@ impl SceneProvider {
     /// Names of the resources that were built, in the order in which they first were.
     pub fn built(&self) -> &[&'static str] {
         &self.built
+    }
+
+    /// The buffer of that name, uploaded if it was not before.
+    fn buffer(
+        &mut self,
+        name: &'static str,
+        device: &wgpu::Device,
+    ) -> Result<wgpu::Buffer, Error> {
+        if !self.buffers.contains_key(name) {
+            self.upload_named(name, device)?;
+        }
+        let buffer = self.buffers.get(name);
+        buffer.cloned().ok_or_else(|| unknown(name))
+    }
+
+    fn note(&mut self, name: &'static str) {
+        if !self.built.contains(&name) {
+            self.built.push(name);
+        }
     }
 
     fn upload(
@@ -115,6 +140,12 @@ impl SceneProvider {
             wgpu::BufferUsages::UNIFORM
         } else {
             wgpu::BufferUsages::STORAGE
+        };
+        let is_mesh = matches!(name, POSITIONS | INDICES);
+        let queries = device.features().contains(wgpu::Features::EXPERIMENTAL_RAY_QUERY);
+        let usage = match is_mesh && queries {
+            true => usage | wgpu::BufferUsages::BLAS_INPUT,
+            false => usage,
         };
         let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some(name),
@@ -185,6 +216,13 @@ fn binding_limit(device: &wgpu::Device) -> u64 {
         .min(limits.max_storage_buffer_binding_size)
 }
 
+fn unknown(name: &str) -> Error {
+    Error::Unknown {
+        name: name.to_owned(),
+        known: NAMES.map(str::to_owned).to_vec(),
+    }
+}
+
 /// A node as the shader reads it: the floats' bits and the two counts, in the order of [`BvhNode`].
 fn node_words(node: &BvhNode) -> [u32; 8] {
     let [low_x, low_y, low_z] = node.min.map(f32::to_bits);
@@ -223,6 +261,7 @@ impl Describe for SceneProvider {
             // Known only once the hierarchy is built.
             BVH_NODES => array(None, 32),
             BVH_PRIMITIVES => array(Some(mesh.triangles.len()), 4),
+            TLAS => Some(Provided::ACCELERATION_STRUCTURE),
             CAMERA => uniform(size_of::<CameraUniform>()),
             LIGHT => uniform(size_of::<LightUniform>()),
             _ => None,
@@ -247,22 +286,37 @@ impl Provider for SceneProvider {
     ) -> Result<wgpu::Buffer, ProviderError> {
         let why = |error: Error| ProviderError(error.to_string());
         let known = NAMES.into_iter().find(|&known| known == name);
-        let unknown = || Error::Unknown {
-            name: name.to_owned(),
-            known: NAMES.map(str::to_owned).to_vec(),
-        };
-        let name = known.ok_or_else(unknown).map_err(why)?;
-        if !self.buffers.contains_key(name) {
-            self.upload_named(name, device).map_err(why)?;
-        }
-        let buffer = self.buffers.get(name).ok_or_else(unknown).map_err(why)?;
+        let name = known.ok_or_else(|| why(unknown(name)))?;
+        let buffer = self.buffer(name, device).map_err(why)?;
         if name == CAMERA && self.camera_uploaded != self.camera_version {
-            queue.write_buffer(buffer, 0, bytemuck::bytes_of(&self.camera));
+            queue.write_buffer(&buffer, 0, bytemuck::bytes_of(&self.camera));
             self.camera_uploaded = self.camera_version;
         }
-        if !self.built.contains(&name) {
-            self.built.push(name);
+        self.note(name);
+        Ok(buffer)
+    }
+
+    fn build_acceleration_structure(
+        &mut self,
+        name: &str,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<wgpu::Tlas, ProviderError> {
+        let why = |error: Error| ProviderError(error.to_string());
+        if name != TLAS {
+            return Err(why(unknown(name)));
         }
-        Ok(buffer.clone())
+        let tlas = match &self.tlas {
+            Some(tlas) => tlas.clone(),
+            None => {
+                let vertices = self.buffer(POSITIONS, device).map_err(why)?;
+                let indices = self.buffer(INDICES, device).map_err(why)?;
+                let of = [&vertices, &indices];
+                ray_query::build(&self.scene.mesh, of, device, queue).map_err(why)?
+            }
+        };
+        self.tlas = Some(tlas.clone());
+        self.note(TLAS);
+        Ok(tlas)
     }
 }

@@ -1,9 +1,8 @@
-//! `Trace`: rays in, hits out, through the scene's hierarchy, on compute shaders. The number of
-//! rays stays on the GPU.
+//! `Trace`: rays in, hits out, by one of several engines. The number of rays stays on the GPU.
 
 use serde::Deserialize;
 use skiagraph_graph::{
-    Lowering, PassKind, Reference,
+    Chosen, Lowering, PassKind, Reference,
     step::{Dispatch, Groups, Operand, Program, Step, Threads},
 };
 
@@ -14,6 +13,42 @@ pub enum Mode {
     Any,
     /// The nearest one.
     Closest,
+}
+
+/// What walks the rays through the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum Engine {
+    /// Compute shaders on a binary hierarchy; watertight, on every device.
+    Hierarchy,
+    /// The device's own ray queries, where it has `EXPERIMENTAL_RAY_QUERY`: its hierarchy and its
+    /// test of triangles, whose rounding is its own.
+    RayQuery,
+}
+
+impl Engine {
+    /// The engines as words of a `Choice`.
+    pub const WORDS: [(&str, Self); 2] =
+        [("hierarchy", Self::Hierarchy), ("ray_query", Self::RayQuery)];
+
+    /// The shader that traces.
+    fn shader(self) -> &'static str {
+        match self {
+            Self::Hierarchy => "trace_rays",
+            Self::RayQuery => "trace_ray_query",
+        }
+    }
+
+    /// What of a device it cannot do without.
+    fn features(self) -> wgpu::Features {
+        match self {
+            Self::Hierarchy => wgpu::Features::empty(),
+            Self::RayQuery => wgpu::Features::EXPERIMENTAL_RAY_QUERY,
+        }
+    }
+}
+
+fn hierarchy() -> Chosen<Engine> {
+    Chosen::Word(Engine::Hierarchy)
 }
 
 /// Body of a `Trace` pass:
@@ -39,6 +74,8 @@ pub enum Mode {
 /// - `skip` (optional): buffer of one u32 per ray, the primitive that the ray does not see, such as
 ///   its own.
 /// - `mode`: `Any` or `Closest`.
+/// - `engine` (optional): an [`Engine`], `Hierarchy` without it, or in quotes a `Choice` param of
+///   [`Engine::WORDS`]. Rays of `RayQuery` need t_min ≥ 0 and finite numbers; others hit nothing.
 ///
 /// Triangles are two-sided; those without area are never hit.
 #[derive(Clone, Debug, Deserialize)]
@@ -52,6 +89,8 @@ pub struct Trace {
     #[serde(default)]
     skip: Option<Reference>,
     mode: Mode,
+    #[serde(default = "hierarchy")]
+    engine: Chosen<Engine>,
 }
 
 impl Trace {
@@ -85,7 +124,15 @@ impl PassKind for Trace {
             Some(groups) => Operand::from(groups),
             None => self.count_groups(pass),
         };
-        let mut trace = pass.program_of("trace_rays");
+        // A document that chooses by a param is read with the shaders of all its words.
+        if let Chosen::Expr(_) = &self.engine {
+            for (_, engine) in Engine::WORDS {
+                pass.alternative(engine.shader(), engine.features());
+            }
+        }
+        let engine = pass.word(&self.engine, &Engine::WORDS);
+        pass.alternative(engine.shader(), engine.features());
+        let mut trace = pass.program_of(engine.shader());
         trace.compute = Some(pass.named(self.entry_point()));
         bind(pass, &mut trace, "count", (&self.count).into());
         bind(pass, &mut trace, "rays", (&self.rays).into());

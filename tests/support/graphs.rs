@@ -98,6 +98,17 @@ impl Sources for Files {
     }
 }
 
+/// Paths and texts before the embedded files.
+pub fn layered(files: &[(&str, &str)]) -> LayeredSources {
+    let files = files
+        .iter()
+        .map(|&(path, text)| (path.to_owned(), text.to_owned()));
+    LayeredSources(vec![
+        Box::new(Files(files.collect())),
+        Box::new(EmbeddedSources),
+    ])
+}
+
 /// Runs a document given as text once, and returns one output's bytes.
 pub fn run_text(document: &str, provider: &mut dyn Provider, output: &str) -> Vec<u8> {
     run_files(&[("test.ron", document)], provider, output)
@@ -115,15 +126,8 @@ pub fn run_files(files: &[(&str, &str)], provider: &mut dyn Provider, output: &s
 
 /// Plans a document given as text, `test.ron`, with all outputs.
 pub fn plan_files(files: &[(&str, &str)], provider: &dyn Describe, viewport: [u32; 2]) -> Plan {
-    let files = files
-        .iter()
-        .map(|&(path, text)| (path.to_owned(), text.to_owned()));
-    let sources = LayeredSources(vec![
-        Box::new(Files(files.collect())),
-        Box::new(EmbeddedSources),
-    ]);
-    let graph =
-        Graph::load("test.ron", &registry(), &sources).unwrap_or_else(|error| panic!("{error}"));
+    let graph = Graph::load("test.ron", &registry(), &layered(files))
+        .unwrap_or_else(|error| panic!("{error}"));
     let mut request = PlanRequest::new(viewport, provider);
     request.features = open().device.features() & RAY_QUERY;
     graph

@@ -21,8 +21,8 @@ pub(crate) fn token(features: wgpu::Features) -> wgpu::ExperimentalFeatures {
     //   the vertices: that wgpu does not see, so `SceneProvider` looks at each of them before it
     //   builds, whoever made the mesh.
     // - A shader asks a query only between `rayQueryInitialize` and its end, with a finite origin
-    //   and direction and 0 ≤ t_min ≤ t_max: naga's SPIR-V checks all of these as the shader runs
-    //   (`ray_query_initialization_tracking`, on unless a shader is made by `create_shader_module_
-    //   trusted`, which is unsafe and never called here), and leaves the query empty otherwise.
+    //   and direction and 0 ≤ t_min ≤ t_max: what naga writes checks all of these as the shader
+    //   runs, and leaves the query empty otherwise (`ray_query_initialization_tracking`, which only
+    //   the unsafe `create_shader_module_trusted` can turn off).
     unsafe { wgpu::ExperimentalFeatures::enabled() }
 }

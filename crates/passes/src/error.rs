@@ -23,6 +23,15 @@ pub enum Error {
         /// The device's limit.
         most: u32,
     },
+    /// The hierarchy in light space holds fewer triangles.
+    #[error(
+        "`scene.light_space_nodes` cannot hold {triangles} triangles on this device: trace with \
+         `engine: Hierarchy`"
+    )]
+    LightSpace {
+        /// Triangles of the mesh.
+        triangles: usize,
+    },
     /// A triangle without its corner.
     #[error("a triangle of the mesh has the corner {index}, but it has only {corners} positions")]
     Corner {

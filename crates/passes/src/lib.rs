@@ -40,4 +40,4 @@ pub mod uniforms;
 pub use error::Error;
 pub use presets::{EmbeddedSources, Preset, presets, registry};
 pub use provider::SceneProvider;
-pub use trace::{Engine, Trace};
+pub use trace::{Direction, Engine, Trace};

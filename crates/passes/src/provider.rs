@@ -7,7 +7,7 @@ use crate::{
 };
 use skiagraph_gpu::{Provider, ProviderError};
 use skiagraph_graph::{Describe, Provided, ProvidedBinding};
-use skiagraph_scene::{Adjacency, Bvh, BvhNode, Scene, View};
+use skiagraph_scene::{Adjacency, Bvh, BvhNode, LightSpace, LightSpaceNode, Scene, View};
 use std::{collections::BTreeMap, sync::Arc};
 use wgpu::util::DeviceExt;
 
@@ -18,13 +18,15 @@ const NORMAL_INDICES: &str = "scene.normal_indices";
 const ADJACENCY: &str = "scene.adjacency";
 const BVH_NODES: &str = "scene.bvh_nodes";
 const BVH_PRIMITIVES: &str = "scene.bvh_primitives";
+const LIGHT_SPACE_NODES: &str = "scene.light_space_nodes";
+const LIGHT_SPACE_PRIMITIVES: &str = "scene.light_space_primitives";
 const TLAS: &str = "scene.tlas";
 /// The uniform of `shared/camera.wgsl`.
 pub const CAMERA: &str = "camera";
 /// The uniform of `shared/light.wgsl`.
 pub const LIGHT: &str = "light";
 
-const NAMES: [&str; 10] = [
+const NAMES: [&str; 12] = [
     POSITIONS,
     INDICES,
     NORMALS,
@@ -32,6 +34,8 @@ const NAMES: [&str; 10] = [
     ADJACENCY,
     BVH_NODES,
     BVH_PRIMITIVES,
+    LIGHT_SPACE_NODES,
+    LIGHT_SPACE_PRIMITIVES,
     TLAS,
     CAMERA,
     LIGHT,
@@ -48,6 +52,8 @@ const NAMES: [&str; 10] = [
 /// | `scene.adjacency` | `array<u32>`, three per primitive: [`Adjacency::opposite`] |
 /// | `scene.bvh_nodes` | 32-byte [`BvhNode`]s, node 0 is the root |
 /// | `scene.bvh_primitives` | `array<u32>`, primitive ids in leaf order |
+/// | `scene.light_space_nodes` | 32-byte [`LightSpaceNode`]s, node 0 is the root |
+/// | `scene.light_space_primitives` | `array<u32>`, primitive ids in their leaf order |
 /// | `scene.tlas` | `acceleration_structure`, one instance; primitives have their ids |
 /// | `camera` | [`CameraUniform`] |
 /// | `light` | [`LightUniform`] |
@@ -102,11 +108,7 @@ impl SceneProvider {
     }
 
     /// The buffer of that name, uploaded if it was not before.
-    fn buffer(
-        &mut self,
-        name: &'static str,
-        device: &wgpu::Device,
-    ) -> Result<wgpu::Buffer, Error> {
+    fn buffer(&mut self, name: &'static str, device: &wgpu::Device) -> Result<wgpu::Buffer, Error> {
         if !self.buffers.contains_key(name) {
             self.upload_named(name, device)?;
         }
@@ -142,7 +144,9 @@ impl SceneProvider {
             wgpu::BufferUsages::STORAGE
         };
         let is_mesh = matches!(name, POSITIONS | INDICES);
-        let queries = device.features().contains(wgpu::Features::EXPERIMENTAL_RAY_QUERY);
+        let queries = device
+            .features()
+            .contains(wgpu::Features::EXPERIMENTAL_RAY_QUERY);
         let usage = match is_mesh && queries {
             true => usage | wgpu::BufferUsages::BLAS_INPUT,
             false => usage,
@@ -185,6 +189,32 @@ impl SceneProvider {
         self.upload_items(BVH_PRIMITIVES, &bvh.primitives, device)
     }
 
+    fn upload_light_space(&mut self, device: &wgpu::Device) -> Result<(), Error> {
+        let light = LightUniform::new(&self.scene);
+        let space = LightSpace {
+            direction: light.to_light,
+            centre: light.centre,
+        };
+        // As in the other hierarchy, leaves are joined where there are too many nodes to bind.
+        let most = binding_limit(device) / size_of::<LightSpaceNode>() as u64;
+        let mesh = &self.scene.mesh;
+        let built = space.build(mesh, most as usize);
+        let (mut nodes, primitives) = built.ok_or(Error::LightSpace {
+            triangles: mesh.triangles.len(),
+        })?;
+        if nodes.is_empty() {
+            nodes.push(LightSpaceNode {
+                low: [0.0; 2],
+                high: [0.0; 2],
+                farthest: [0.0; 3],
+                link: 1,
+            });
+        }
+        let nodes: Vec<[u32; 8]> = nodes.iter().map(light_space_words).collect();
+        self.upload_items(LIGHT_SPACE_NODES, &nodes, device)?;
+        self.upload_items(LIGHT_SPACE_PRIMITIVES, &primitives, device)
+    }
+
     fn upload_named(&mut self, name: &'static str, device: &wgpu::Device) -> Result<(), Error> {
         let scene = Arc::clone(&self.scene);
         let mesh = &scene.mesh;
@@ -203,6 +233,7 @@ impl SceneProvider {
             CAMERA => self.upload_items(name, &[self.camera], device),
             LIGHT => self.upload_items(name, &[LightUniform::new(&scene)], device),
             BVH_NODES | BVH_PRIMITIVES => self.upload_hierarchy(device),
+            LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.upload_light_space(device),
             _ => Ok(()),
         }
     }
@@ -232,6 +263,14 @@ fn node_words(node: &BvhNode) -> [u32; 8] {
     ]
 }
 
+/// The same of a node in light space.
+fn light_space_words(node: &LightSpaceNode) -> [u32; 8] {
+    let [low_x, low_y] = node.low.map(f32::to_bits);
+    let [high_x, high_y] = node.high.map(f32::to_bits);
+    let [x, y, z] = node.farthest.map(f32::to_bits);
+    [low_x, low_y, high_x, high_y, x, y, z, node.link]
+}
+
 impl Describe for SceneProvider {
     fn names(&self) -> Vec<String> {
         NAMES.map(str::to_owned).to_vec()
@@ -259,8 +298,8 @@ impl Describe for SceneProvider {
             INDICES | NORMAL_INDICES | ADJACENCY => array(Some(corners), 4),
             NORMALS => array(Some(mesh.normals.len()), 16),
             // Known only once the hierarchy is built.
-            BVH_NODES => array(None, 32),
-            BVH_PRIMITIVES => array(Some(mesh.triangles.len()), 4),
+            BVH_NODES | LIGHT_SPACE_NODES => array(None, 32),
+            BVH_PRIMITIVES | LIGHT_SPACE_PRIMITIVES => array(Some(mesh.triangles.len()), 4),
             TLAS => Some(Provided::ACCELERATION_STRUCTURE),
             CAMERA => uniform(size_of::<CameraUniform>()),
             LIGHT => uniform(size_of::<LightUniform>()),

@@ -9,8 +9,8 @@ use crate::{
     provider::Provider,
 };
 use skiagraph_graph::{
-    Address, FRAME_BYTES, Filter, Origin, Plan, Provided, Resource, ResourceId, ResourceKind, Sampler,
-    SubresourceRange, Target,
+    Address, FRAME_BYTES, Filter, Origin, Plan, Provided, Resource, ResourceId, ResourceKind,
+    Sampler, SubresourceRange, Target,
 };
 use std::{collections::BTreeMap, ops::Range};
 
@@ -283,15 +283,13 @@ impl Memory {
                 ),
             });
         }
-        let built = scoped(device, &resource.name, || {
-            match resource.kind {
-                ResourceKind::AccelerationStructure => provider
-                    .build_acceleration_structure(&resource.name, device, maker.queue)
-                    .map(Physical::AccelerationStructure),
-                _ => provider
-                    .build(&resource.name, device, maker.queue)
-                    .map(Physical::Buffer),
-            }
+        let built = scoped(device, &resource.name, || match resource.kind {
+            ResourceKind::AccelerationStructure => provider
+                .build_acceleration_structure(&resource.name, device, maker.queue)
+                .map(Physical::AccelerationStructure),
+            _ => provider
+                .build(&resource.name, device, maker.queue)
+                .map(Physical::Buffer),
         })?;
         let built = built.map_err(|why| ExecuteError::Provider {
             name: resource.name.clone(),

@@ -51,7 +51,8 @@ impl Linker<'_, '_> {
                     Some((_, operand)) => self.operand(operand, &pass.name)?.0,
                     None => self.target(global, pass)?,
                 };
-                let (bound, ty, usage) = self.binding(global, &mut target, (linked, program), pass)?;
+                let (bound, ty, usage) =
+                    self.binding(global, &mut target, (linked, program), pass)?;
                 if global.writes {
                     self.writable(target.id, &global.span)?;
                     self.stage_may_write(global)?;

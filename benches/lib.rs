@@ -128,11 +128,12 @@ pub fn graph(passes: usize, shaders: Shaders, seed: u64) -> Generated {
 }
 
 /// `splitmix64` (Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014): a
-/// sequence that stays the same whatever happens to libraries.
-struct Random(u64);
+/// sequence that stays the same whatever happens to libraries. Its seed.
+pub struct Random(pub u64);
 
 impl Random {
-    fn below(&mut self, end: usize) -> usize {
+    /// A number below `end`, which is not 0.
+    pub fn below(&mut self, end: usize) -> usize {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut bits = self.0;
         bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -4,7 +4,7 @@
 // Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013.
 
 #import "shared/ray_triangle.wgsl"
-#import "shared/ids.wgsl"
+#import "shared/trace_entries.wgsl"
 
 struct Node {
     low: vec3<f32>,
@@ -18,14 +18,7 @@ struct Node {
 
 var<storage, read> scene_bvh_nodes: array<Node>;
 var<storage, read> scene_bvh_primitives: array<u32>;
-var<storage, read> count: u32;
-var<storage, read> rays: array<Ray>;
-var<storage, read> skip: array<u32>;
-var<storage, read_write> hits: array<Hit>;
 
-// Both as in dispatch_arguments.wgsl.
-const GROUP_SIZE: u32 = 64u;
-const GROUPS_PER_ROW: u32 = 65535u;
 // As `MAX_DEPTH` in crates/scene/src/bvh/tree.rs, which builds no deeper hierarchy: a level adds
 // one entry at most.
 const STACK_SIZE: u32 = 64u;
@@ -38,55 +31,6 @@ const PAD: f32 = 1.9073486e-6;
 // no test makes inf or NaN of a ray along an axis, and so large that a ray leaves a padded slab far
 // beyond the scene.
 const STEEPEST: f32 = 1e18;
-
-@compute @workgroup_size(GROUP_SIZE)
-fn any_hit(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
-    let ray = ray_index(group, lane);
-    if ray < ray_total() {
-        hits[ray] = trace(rays[ray], NO_PRIMITIVE, true);
-    }
-}
-
-@compute @workgroup_size(GROUP_SIZE)
-fn any_hit_skip(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let ray = ray_index(group, lane);
-    if ray < ray_total() {
-        hits[ray] = trace(rays[ray], skip[ray], true);
-    }
-}
-
-@compute @workgroup_size(GROUP_SIZE)
-fn closest_hit(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let ray = ray_index(group, lane);
-    if ray < ray_total() {
-        hits[ray] = trace(rays[ray], NO_PRIMITIVE, false);
-    }
-}
-
-@compute @workgroup_size(GROUP_SIZE)
-fn closest_hit_skip(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let ray = ray_index(group, lane);
-    if ray < ray_total() {
-        hits[ray] = trace(rays[ray], skip[ray], false);
-    }
-}
-
-fn ray_index(group: vec3<u32>, lane: u32) -> u32 {
-    return (group.y * GROUPS_PER_ROW + group.x) * GROUP_SIZE + lane;
-}
-
-fn ray_total() -> u32 {
-    return min(count, min(arrayLength(&rays), arrayLength(&hits)));
-}
 
 // What a ray's tests share: with triangles, and the padded slabs' terms.
 struct Prepared {

@@ -8,6 +8,7 @@ use skiagraph_passes::{
     EmbeddedSources,
     uniforms::{CameraUniform, LightUniform},
 };
+use skiagraph_scene::LightSpaceNode;
 use std::mem::offset_of;
 
 fn module(path: &str) -> naga::Module {
@@ -23,7 +24,11 @@ fn shaders_are_valid() {
     for file in files {
         // The graph assigns the bindings.
         let flags = ValidationFlags::all() - ValidationFlags::BINDINGS;
-        let mut validator = Validator::new(flags, Capabilities::empty());
+        let beyond = match file.as_str() {
+            "trace_ray_query.wgsl" => Capabilities::RAY_QUERY,
+            _ => Capabilities::empty(),
+        };
+        let mut validator = Validator::new(flags, beyond);
         if let Err(error) = validator.validate(&module(&file)) {
             panic!(
                 "{file}: {}",
@@ -107,6 +112,14 @@ fn rays_hits_and_nodes_have_their_contracted_sizes() {
     let (members, size) = layout("trace_rays.wgsl", "Node");
     let offsets: Vec<u32> = members.iter().map(|member| member.1).collect();
     assert_eq!((offsets, size), (vec![0, 12, 16, 28], 32));
+    let (members, size) = layout("trace_light_space.wgsl", "Node");
+    let rust = rust_layout!(LightSpaceNode {
+        low,
+        high,
+        farthest,
+        link
+    });
+    assert_eq!((members, size), rust);
 }
 
 #[test]
@@ -132,5 +145,11 @@ fn constants_that_two_files_share_are_equal() {
         );
     }
     // One entry per level at most: an inner node pushes one child and goes on with the other.
-    assert!(constant("trace_rays.wgsl", "STACK_SIZE") >= skiagraph_scene::bvh::MAX_DEPTH);
+    for shader in ["trace_rays.wgsl", "trace_light_space.wgsl"] {
+        assert!(constant(shader, "STACK_SIZE") >= skiagraph_scene::bvh::MAX_DEPTH);
+    }
+    let bits = constant("trace_light_space.wgsl", "LEAF_BITS");
+    assert_eq!(bits, LightSpaceNode::LEAF_BITS);
+    let mask = constant("trace_light_space.wgsl", "LEAF_MASK");
+    assert_eq!(mask, (1 << bits) - 1);
 }

@@ -1,19 +1,26 @@
 //! A scene under a view, the oracle's word on it, and what runs presets on it.
 
-use super::graphs::{open, plan, provider, run_on, values};
+use super::graphs::{RAY_QUERY, open, plan, provider, run_on, values};
 use skiagraph_gpu::device::Gpu;
 use skiagraph_graph::{Capture, ParamValue};
 use skiagraph_passes::SceneProvider;
-use skiagraph_reference::{Oracle, OracleMode, Progress, Statistics};
+use skiagraph_reference::{Oracle, OracleMode, Progress, Reference, Statistics};
 use skiagraph_scene::{Scene, View};
 use std::sync::Arc;
+
+/// What a preset answers, pixel by pixel, and the oracle.
+pub struct Answers {
+    pub visibility: Vec<u32>,
+    pub reference: Reference,
+    pub counts: Statistics,
+}
 
 /// A scene under a view, its oracle, and what runs graphs on it.
 pub struct Bench<'a> {
     pub scene: &'a Scene,
     view: &'a View,
     viewport: [u32; 2],
-    gpu: Gpu,
+    pub gpu: Gpu,
     provider: SceneProvider,
     oracle: Oracle<'a>,
 }
@@ -39,6 +46,11 @@ impl<'a> Bench<'a> {
 
     /// What the oracle says of a preset's outputs, for the primitives that the preset saw itself.
     pub fn judge(&mut self, preset: &str, params: &[(&str, ParamValue)]) -> Statistics {
+        self.answers(preset, params).counts
+    }
+
+    /// A preset's answers, and what the oracle says of them.
+    pub fn answers(&mut self, preset: &str, params: &[(&str, ParamValue)]) -> Answers {
         let plan = plan(
             &format!("pipelines/{preset}.ron"),
             &self.provider,
@@ -48,6 +60,7 @@ impl<'a> Bench<'a> {
                     material: "primitive".into(),
                     after: None,
                 });
+                request.features = self.gpu.device.features() & RAY_QUERY;
                 request.params.extend(
                     params
                         .iter()
@@ -80,7 +93,11 @@ impl<'a> Bench<'a> {
             "{preset} {} {} {:?} {params:?}: {counts:?}",
             self.scene.name, self.view.name, self.viewport
         );
-        counts
+        Answers {
+            visibility,
+            reference,
+            counts,
+        }
     }
 
     /// Traced, no pixel is wrong but indeterminate ones, which are few.

@@ -56,6 +56,15 @@ impl Describe for Extended {
 }
 
 impl Provider for Extended {
+    fn build_acceleration_structure(
+        &mut self,
+        name: &str,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<wgpu::Tlas, ProviderError> {
+        self.scene.build_acceleration_structure(name, device, queue)
+    }
+
     fn build(
         &mut self,
         name: &str,
@@ -89,6 +98,17 @@ impl Sources for Files {
     }
 }
 
+/// Paths and texts before the embedded files.
+pub fn layered(files: &[(&str, &str)]) -> LayeredSources {
+    let files = files
+        .iter()
+        .map(|&(path, text)| (path.to_owned(), text.to_owned()));
+    LayeredSources(vec![
+        Box::new(Files(files.collect())),
+        Box::new(EmbeddedSources),
+    ])
+}
+
 /// Runs a document given as text once, and returns one output's bytes.
 pub fn run_text(document: &str, provider: &mut dyn Provider, output: &str) -> Vec<u8> {
     run_files(&[("test.ron", document)], provider, output)
@@ -106,31 +126,36 @@ pub fn run_files(files: &[(&str, &str)], provider: &mut dyn Provider, output: &s
 
 /// Plans a document given as text, `test.ron`, with all outputs.
 pub fn plan_files(files: &[(&str, &str)], provider: &dyn Describe, viewport: [u32; 2]) -> Plan {
-    let files = files
-        .iter()
-        .map(|&(path, text)| (path.to_owned(), text.to_owned()));
-    let sources = LayeredSources(vec![
-        Box::new(Files(files.collect())),
-        Box::new(EmbeddedSources),
-    ]);
-    let graph =
-        Graph::load("test.ron", &registry(), &sources).unwrap_or_else(|error| panic!("{error}"));
+    let graph = Graph::load("test.ron", &registry(), &layered(files))
+        .unwrap_or_else(|error| panic!("{error}"));
+    let mut request = PlanRequest::new(viewport, provider);
+    request.features = open().device.features() & RAY_QUERY;
     graph
-        .plan(&PlanRequest::new(viewport, provider))
+        .plan(&request)
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Traces on the GPU through a graph of one `Trace` pass: the first `count` rays, each past its
 /// primitive in `skip`.
 pub fn trace(mesh: &Mesh, rays: &[Ray], skip: Option<&[u32]>, count: u32, mode: &str) -> Vec<Hit> {
-    let light = DirectionalLight {
-        direction: glam::DVec3::NEG_Y,
-    };
+    let fields = format!("mode: {mode}");
+    trace_by(&fields, glam::DVec3::NEG_Y, mesh, rays, skip, count)
+}
+
+/// The same by a pass with these fields, under a light of this direction.
+pub fn trace_by(
+    fields: &str,
+    light: glam::DVec3,
+    mesh: &Mesh,
+    rays: &[Ray],
+    skip: Option<&[u32]>,
+    count: u32,
+) -> Vec<Hit> {
     let scene = Scene {
         name: "test".into(),
         mesh: mesh.clone(),
         views: vec![],
-        light,
+        light: DirectionalLight { direction: light },
     };
     let mut provider = Extended::new(SceneProvider::new(Arc::new(scene)));
     provider.add("test.rays", rays);
@@ -151,7 +176,7 @@ pub fn trace(mesh: &Mesh, rays: &[Ray], skip: Option<&[u32]>, count: u32, mode: 
             passes: [
                 Trace(
                     name: "trace", rays: "test.rays", hits: "hits", count: "test.number",
-                    {skip}mode: {mode},
+                    {skip}{fields},
                 ),
             ],
             outputs: ["hits"],
@@ -193,9 +218,13 @@ pub fn run(plan: Plan, provider: &mut dyn Provider, read: &[&str]) -> FrameRepor
     run_on(&open(), plan, provider, read)
 }
 
-/// A device; a machine without an adapter fails the test with the way out.
+/// What the tests of engines ask for beyond the baseline.
+pub const RAY_QUERY: wgpu::Features = wgpu::Features::EXPERIMENTAL_RAY_QUERY;
+
+/// A device, with ray queries where the adapter has them; a machine without an adapter fails the
+/// test with the way out.
 pub fn open() -> Gpu {
-    device::open(None).unwrap_or_else(|error| panic!("{error}"))
+    device::open_with(None, RAY_QUERY).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Runs one frame of a plan.

@@ -128,27 +128,27 @@ fn check_warns_of_what_not_every_adapter_can_and_asks_one_that_is_named() {
     );
     let needs = light.replace(
         "format: 2,",
-        "format: 2, requires: [\"EXPERIMENTAL_RAY_QUERY\"],",
+        "format: 2, requires: [\"EXPERIMENTAL_MESH_SHADER\"],",
     );
     fs::write(folder.path().join("needs.ron"), needs).unwrap();
     let (code, _, stderr) = run(folder.path(), "check needs.ron");
     assert_eq!((code, &*stderr), (0, ""), "it says so itself");
-    // Any adapter; its device never has experimental features.
+    // Any adapter; its device never has this one.
     let (code, _, stderr) = run(folder.path(), "check needs.ron --adapter=");
     assert_eq!(code, 1, "{stderr}");
-    assert!(stderr.contains("EXPERIMENTAL_RAY_QUERY"), "{stderr}");
+    assert!(stderr.contains("EXPERIMENTAL_MESH_SHADER"), "{stderr}");
     let (code, ..) = run(folder.path(), "check light.ron --adapter=");
     assert_eq!(code, 0);
     let (code, _, stderr) = run(folder.path(), "check light.ron --adapter no_such_adapter");
     assert_eq!(code, 3, "{stderr}");
 }
 
-/// Devices of this program never have experimental features.
+/// Devices of this program never have experimental features but ray queries.
 #[test]
 fn a_feature_that_the_adapter_lacks_is_one_diagnostic_before_anything_runs() {
     let folder = folder();
     let light = fs::read_to_string(folder.path().join("light.ron")).unwrap();
-    let needs = "format: 2,\n    requires: [\"EXPERIMENTAL_RAY_QUERY\"],";
+    let needs = "format: 2,\n    requires: [\"EXPERIMENTAL_MESH_SHADER\"],";
     fs::write(
         folder.path().join("light.ron"),
         light.replace("format: 2,", needs),
@@ -158,7 +158,7 @@ fn a_feature_that_the_adapter_lacks_is_one_diagnostic_before_anything_runs() {
         let (code, stdout, stderr) = run(folder.path(), &format!("{verb} light.ron --size 16x16"));
         assert_eq!((code, &*stdout), (1, ""), "{verb}: {stderr}");
         let begin =
-            "feature\n\n  × `light.ron` cannot run without the feature `EXPERIMENTAL_RAY_QUERY`";
+            "feature\n\n  × `light.ron` cannot run without the feature `EXPERIMENTAL_MESH_SHADER`";
         assert!(stderr.starts_with(begin), "{verb}: {stderr}");
         assert!(stderr.ends_with("1 error in 1 graph\n"), "{verb}: {stderr}");
     }

@@ -74,6 +74,8 @@ pub enum Kind {
     Buffer,
     /// A sampler.
     Sampler,
+    /// An acceleration structure.
+    AccelerationStructure,
 }
 
 /// Where a material comes from.

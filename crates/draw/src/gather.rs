@@ -99,7 +99,9 @@ fn material(resource: &Resource) -> Material {
         (Of::Own, _) => Origin::Declared,
         (Of::Constant, _) => Origin::Constant,
         (Of::Previous(_), _) => Origin::Previous,
-        (Of::Host, ResourceKind::Provided(_)) => Origin::Provided,
+        (Of::Host, ResourceKind::Provided(_) | ResourceKind::AccelerationStructure) => {
+            Origin::Provided
+        }
         (Of::Host, ResourceKind::Frame) => Origin::Frame,
         (Of::Host, _) => Origin::Imported,
     };
@@ -130,6 +132,7 @@ fn material(resource: &Resource) -> Material {
             (material.is_3d, material.samples) = (texture.is_3d, texture.samples);
         }
         ResourceKind::Sampler(_) => material.kind = Kind::Sampler,
+        ResourceKind::AccelerationStructure => material.kind = Kind::AccelerationStructure,
         ResourceKind::Buffer(_) | ResourceKind::Provided(_) | ResourceKind::Frame => {}
     }
     material

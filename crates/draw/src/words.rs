@@ -53,6 +53,7 @@ pub(crate) fn detail(material: &Material) -> String {
         (Kind::Texture, ..) => "texture".to_owned(),
         (Kind::Buffer, ..) => "buffer".to_owned(),
         (Kind::Sampler, ..) => "sampler".to_owned(),
+        (Kind::AccelerationStructure, ..) => "acceleration structure".to_owned(),
     }];
     if material.layers > 1 {
         let layer = Unit::of_layers(material).word();

@@ -1,6 +1,7 @@
 //! Opening an adapter and a device as the command line and the tests do. A host program brings its
 //! own.
 
+use crate::experimental;
 use std::{cmp::Reverse, time::Duration};
 
 /// An open device.
@@ -105,12 +106,13 @@ pub fn open(name: Option<&str>) -> Result<Gpu, GpuError> {
 }
 
 /// [`open`], and the device has those of `wanted` besides that its adapter offers: those of
-/// `Graph::features`. Experimental features stay off, for wgpu holds that they may misbehave.
+/// `Graph::features`. Experimental features, which wgpu holds may misbehave, stay off but for
+/// `EXPERIMENTAL_RAY_QUERY`, whose use here was reviewed.
 ///
 /// # Errors
 /// See [`GpuError`].
 pub fn open_with(name: Option<&str>, wanted: wgpu::Features) -> Result<Gpu, GpuError> {
-    let wanted = wanted - wgpu::Features::all_experimental_mask();
+    let wanted = wanted - (wgpu::Features::all_experimental_mask() - experimental::REVIEWED);
     let instance = instance();
     let adapters = enumerate(&instance);
     if adapters.is_empty() {
@@ -139,9 +141,11 @@ pub fn open_with(name: Option<&str>, wanted: wgpu::Features) -> Result<Gpu, GpuE
             seen: names.join(", "),
         });
     };
+    let features = adapter.features() & (useful_features() | wanted);
     let request = adapter.request_device(&wgpu::DeviceDescriptor {
         label: Some("skiagraph"),
-        required_features: adapter.features() & (useful_features() | wanted),
+        required_features: features,
+        experimental_features: experimental::token(features),
         required_limits: adapter.limits(),
         ..wgpu::DeviceDescriptor::default()
     });

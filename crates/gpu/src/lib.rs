@@ -5,6 +5,7 @@
 
 pub mod device;
 mod error;
+mod experimental;
 mod frame;
 pub mod import;
 mod memory;

@@ -25,6 +25,25 @@ pub trait Provider: Describe {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError>;
+
+    /// Builds what is described as
+    /// [`ACCELERATION_STRUCTURE`](skiagraph_graph::Provided::ACCELERATION_STRUCTURE), or hands out
+    /// the one built before, its build submitted to the queue. Called only for names that a live
+    /// pass binds, on devices with `EXPERIMENTAL_RAY_QUERY`.
+    ///
+    /// # Errors
+    /// Why it cannot be built; that of a provider that describes none, if it has no such function.
+    fn build_acceleration_structure(
+        &mut self,
+        name: &str,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<wgpu::Tlas, ProviderError> {
+        let _ = (device, queue);
+        Err(ProviderError(format!(
+            "this provider builds no acceleration structure `{name}`"
+        )))
+    }
 }
 
 /// Why a provided resource could not be built.

@@ -41,7 +41,7 @@ pub struct Graph {
     asked: Arc<Vec<Asked>>,
     /// What the documents require.
     pub(crate) required: wgt::Features,
-    /// What they ask for by `has`.
+    /// What they ask for by `has`, or their passes can make use of.
     asked_for: wgt::Features,
     warnings: Vec<Diagnostic>,
 }
@@ -241,9 +241,9 @@ impl Graph {
         inputs.map(|input| input.name.as_str()).collect()
     }
 
-    /// The features that the document and those that it includes require or ask for by `has`. A
-    /// device that has those of them that its adapter offers runs the graph as well as it can be
-    /// run there.
+    /// The features that the document and those that it includes require, ask for by `has`, or have
+    /// passes that can make use of. A device that has those of them that its adapter offers runs
+    /// the graph as well as it can be run there.
     pub fn features(&self) -> wgt::Features {
         self.required | self.asked_for
     }
@@ -384,6 +384,11 @@ fn asked_for(documents: &[&Document]) -> wgt::Features {
         document.visit(&mut |leaf| {
             if let Leaf::Has(flag) = leaf {
                 features |= flag;
+            }
+        });
+        each_entry(&document.entries, &mut |entry| {
+            if let What::Pass(pass) = &entry.what {
+                features |= pass.features;
             }
         });
     }

@@ -28,7 +28,7 @@ mod shader;
 mod source;
 
 pub use diagnostics::{Code, Diagnostic, Diagnostics, Label, Severity};
-pub use document::{Address, Filter, Param, ParamFault, ParamType, ParamValue};
+pub use document::{Address, Chosen, Filter, Param, ParamFault, ParamType, ParamValue};
 pub use flow::{
     Aliases, Allocation, Conditions, Dependences, Hazard, Lifetime, Lifetimes, Schedule, When,
 };

@@ -17,18 +17,27 @@ pub trait Describe {
     fn describe(&self, name: &str) -> Option<Provided>;
 }
 
-/// Description of a provided buffer.
+/// Description of a provided buffer or acceleration structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Provided {
     /// Number of items, where it is known without building.
     pub items: Option<u64>,
-    /// Bytes per item; of a uniform, its whole size.
+    /// Bytes per item; of a uniform, its whole size; 0 of what is no buffer.
     pub stride: u64,
     /// How shaders may bind it.
     pub binding: ProvidedBinding,
 }
 
-/// How shaders may bind a provided buffer.
+impl Provided {
+    /// What shaders see as `acceleration_structure`.
+    pub const ACCELERATION_STRUCTURE: Self = Self {
+        items: None,
+        stride: 0,
+        binding: ProvidedBinding::AccelerationStructure,
+    };
+}
+
+/// How shaders may bind what is provided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProvidedBinding {
     /// `var<uniform>`.
@@ -37,15 +46,18 @@ pub enum ProvidedBinding {
     Storage,
     /// Either: an array whose items can be bound alone, as `lights[2]`.
     Both,
+    /// `acceleration_structure`, which ray queries ask: no buffer.
+    AccelerationStructure,
 }
 
 impl ProvidedBinding {
-    /// The usages that the buffer is made with.
+    /// The usages that the buffer is made with; none of what is no buffer.
     pub fn usages(self) -> wgt::BufferUsages {
         match self {
             Self::Uniform => wgt::BufferUsages::UNIFORM,
             Self::Storage => wgt::BufferUsages::STORAGE,
             Self::Both => wgt::BufferUsages::UNIFORM | wgt::BufferUsages::STORAGE,
+            Self::AccelerationStructure => wgt::BufferUsages::empty(),
         }
     }
 }

@@ -55,6 +55,8 @@ pub enum ResourceKind {
     Sampler(Sampler),
     /// A buffer of the host's, described before it is built.
     Provided(Provided),
+    /// An acceleration structure of the host's.
+    AccelerationStructure,
     /// The graph's own uniform `frame`: number and seconds of the frame (`shared/frame.wgsl`).
     Frame,
 }
@@ -76,6 +78,7 @@ impl ResourceKind {
             }) => "a sampler with `compare`",
             Self::Sampler(_) => "a sampler without `compare`",
             Self::Provided(_) => "a provided buffer",
+            Self::AccelerationStructure => "an acceleration structure",
             Self::Frame => "the frame's uniform",
         }
     }

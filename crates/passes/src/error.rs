@@ -12,6 +12,34 @@ pub enum Error {
         /// What there is.
         known: Vec<String>,
     },
+    /// The device's acceleration structures hold fewer triangles.
+    #[error(
+        "`scene.tlas` needs {triangles} triangles, but the device takes {most} at most: trace with \
+         `engine: Hierarchy`"
+    )]
+    TooManyTriangles {
+        /// Triangles of the mesh.
+        triangles: usize,
+        /// The device's limit.
+        most: u32,
+    },
+    /// The hierarchy in light space holds fewer triangles.
+    #[error(
+        "`scene.light_space_nodes` cannot hold {triangles} triangles on this device: trace with \
+         `engine: Hierarchy`"
+    )]
+    LightSpace {
+        /// Triangles of the mesh.
+        triangles: usize,
+    },
+    /// A triangle without its corner.
+    #[error("a triangle of the mesh has the corner {index}, but it has only {corners} positions")]
+    Corner {
+        /// The index.
+        index: u32,
+        /// Number of positions.
+        corners: usize,
+    },
     /// The device cannot bind a buffer of that size.
     #[error("`{name}` needs a buffer of {bytes} bytes, but the device binds at most {limit}")]
     TooLarge {

@@ -33,10 +33,11 @@
 pub mod error;
 pub mod presets;
 pub mod provider;
+mod ray_query;
 pub mod trace;
 pub mod uniforms;
 
 pub use error::Error;
 pub use presets::{EmbeddedSources, Preset, presets, registry};
 pub use provider::SceneProvider;
-pub use trace::Trace;
+pub use trace::{Direction, Engine, Trace};

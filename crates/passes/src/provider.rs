@@ -2,11 +2,12 @@
 
 use crate::{
     error::Error,
+    ray_query,
     uniforms::{CameraUniform, LightUniform},
 };
 use skiagraph_gpu::{Provider, ProviderError};
 use skiagraph_graph::{Describe, Provided, ProvidedBinding};
-use skiagraph_scene::{Adjacency, Bvh, BvhNode, Scene, View};
+use skiagraph_scene::{Adjacency, Bvh, BvhNode, LightSpace, LightSpaceNode, Scene, View};
 use std::{collections::BTreeMap, sync::Arc};
 use wgpu::util::DeviceExt;
 
@@ -17,12 +18,15 @@ const NORMAL_INDICES: &str = "scene.normal_indices";
 const ADJACENCY: &str = "scene.adjacency";
 const BVH_NODES: &str = "scene.bvh_nodes";
 const BVH_PRIMITIVES: &str = "scene.bvh_primitives";
+const LIGHT_SPACE_NODES: &str = "scene.light_space_nodes";
+const LIGHT_SPACE_PRIMITIVES: &str = "scene.light_space_primitives";
+const TLAS: &str = "scene.tlas";
 /// The uniform of `shared/camera.wgsl`.
 pub const CAMERA: &str = "camera";
 /// The uniform of `shared/light.wgsl`.
 pub const LIGHT: &str = "light";
 
-const NAMES: [&str; 9] = [
+const NAMES: [&str; 12] = [
     POSITIONS,
     INDICES,
     NORMALS,
@@ -30,6 +34,9 @@ const NAMES: [&str; 9] = [
     ADJACENCY,
     BVH_NODES,
     BVH_PRIMITIVES,
+    LIGHT_SPACE_NODES,
+    LIGHT_SPACE_PRIMITIVES,
+    TLAS,
     CAMERA,
     LIGHT,
 ];
@@ -45,6 +52,9 @@ const NAMES: [&str; 9] = [
 /// | `scene.adjacency` | `array<u32>`, three per primitive: [`Adjacency::opposite`] |
 /// | `scene.bvh_nodes` | 32-byte [`BvhNode`]s, node 0 is the root |
 /// | `scene.bvh_primitives` | `array<u32>`, primitive ids in leaf order |
+/// | `scene.light_space_nodes` | 32-byte [`LightSpaceNode`]s, node 0 is the root |
+/// | `scene.light_space_primitives` | `array<u32>`, primitive ids in their leaf order |
+/// | `scene.tlas` | `acceleration_structure`, one instance; primitives have their ids |
 /// | `camera` | [`CameraUniform`] |
 /// | `light` | [`LightUniform`] |
 ///
@@ -61,6 +71,7 @@ pub struct SceneProvider {
     camera_version: u64,
     camera_uploaded: u64,
     buffers: BTreeMap<&'static str, wgpu::Buffer>,
+    tlas: Option<wgpu::Tlas>,
     built: Vec<&'static str>,
 }
 
@@ -74,6 +85,7 @@ impl SceneProvider {
             camera_version: 0,
             camera_uploaded: 0,
             buffers: BTreeMap::new(),
+            tlas: None,
             built: Vec::new(),
         }
     }
@@ -93,6 +105,21 @@ impl SceneProvider {
     /// Names of the resources that were built, in the order in which they first were.
     pub fn built(&self) -> &[&'static str] {
         &self.built
+    }
+
+    /// The buffer of that name, uploaded if it was not before.
+    fn buffer(&mut self, name: &'static str, device: &wgpu::Device) -> Result<wgpu::Buffer, Error> {
+        if !self.buffers.contains_key(name) {
+            self.upload_named(name, device)?;
+        }
+        let buffer = self.buffers.get(name);
+        buffer.cloned().ok_or_else(|| unknown(name))
+    }
+
+    fn note(&mut self, name: &'static str) {
+        if !self.built.contains(&name) {
+            self.built.push(name);
+        }
     }
 
     fn upload(
@@ -115,6 +142,14 @@ impl SceneProvider {
             wgpu::BufferUsages::UNIFORM
         } else {
             wgpu::BufferUsages::STORAGE
+        };
+        let is_mesh = matches!(name, POSITIONS | INDICES);
+        let queries = device
+            .features()
+            .contains(wgpu::Features::EXPERIMENTAL_RAY_QUERY);
+        let usage = match is_mesh && queries {
+            true => usage | wgpu::BufferUsages::BLAS_INPUT,
+            false => usage,
         };
         let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some(name),
@@ -154,6 +189,32 @@ impl SceneProvider {
         self.upload_items(BVH_PRIMITIVES, &bvh.primitives, device)
     }
 
+    fn upload_light_space(&mut self, device: &wgpu::Device) -> Result<(), Error> {
+        let light = LightUniform::new(&self.scene);
+        let space = LightSpace {
+            direction: light.to_light,
+            centre: light.centre,
+        };
+        // As in the other hierarchy, leaves are joined where there are too many nodes to bind.
+        let most = binding_limit(device) / size_of::<LightSpaceNode>() as u64;
+        let mesh = &self.scene.mesh;
+        let built = space.build(mesh, most as usize);
+        let (mut nodes, primitives) = built.ok_or(Error::LightSpace {
+            triangles: mesh.triangles.len(),
+        })?;
+        if nodes.is_empty() {
+            nodes.push(LightSpaceNode {
+                low: [0.0; 2],
+                high: [0.0; 2],
+                farthest: [0.0; 3],
+                link: 1,
+            });
+        }
+        let nodes: Vec<[u32; 8]> = nodes.iter().map(light_space_words).collect();
+        self.upload_items(LIGHT_SPACE_NODES, &nodes, device)?;
+        self.upload_items(LIGHT_SPACE_PRIMITIVES, &primitives, device)
+    }
+
     fn upload_named(&mut self, name: &'static str, device: &wgpu::Device) -> Result<(), Error> {
         let scene = Arc::clone(&self.scene);
         let mesh = &scene.mesh;
@@ -172,6 +233,7 @@ impl SceneProvider {
             CAMERA => self.upload_items(name, &[self.camera], device),
             LIGHT => self.upload_items(name, &[LightUniform::new(&scene)], device),
             BVH_NODES | BVH_PRIMITIVES => self.upload_hierarchy(device),
+            LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.upload_light_space(device),
             _ => Ok(()),
         }
     }
@@ -185,6 +247,13 @@ fn binding_limit(device: &wgpu::Device) -> u64 {
         .min(limits.max_storage_buffer_binding_size)
 }
 
+fn unknown(name: &str) -> Error {
+    Error::Unknown {
+        name: name.to_owned(),
+        known: NAMES.map(str::to_owned).to_vec(),
+    }
+}
+
 /// A node as the shader reads it: the floats' bits and the two counts, in the order of [`BvhNode`].
 fn node_words(node: &BvhNode) -> [u32; 8] {
     let [low_x, low_y, low_z] = node.min.map(f32::to_bits);
@@ -192,6 +261,14 @@ fn node_words(node: &BvhNode) -> [u32; 8] {
     [
         low_x, low_y, low_z, node.first, high_x, high_y, high_z, node.count,
     ]
+}
+
+/// The same of a node in light space.
+fn light_space_words(node: &LightSpaceNode) -> [u32; 8] {
+    let [low_x, low_y] = node.low.map(f32::to_bits);
+    let [high_x, high_y] = node.high.map(f32::to_bits);
+    let [x, y, z] = node.farthest.map(f32::to_bits);
+    [low_x, low_y, high_x, high_y, x, y, z, node.link]
 }
 
 impl Describe for SceneProvider {
@@ -221,8 +298,9 @@ impl Describe for SceneProvider {
             INDICES | NORMAL_INDICES | ADJACENCY => array(Some(corners), 4),
             NORMALS => array(Some(mesh.normals.len()), 16),
             // Known only once the hierarchy is built.
-            BVH_NODES => array(None, 32),
-            BVH_PRIMITIVES => array(Some(mesh.triangles.len()), 4),
+            BVH_NODES | LIGHT_SPACE_NODES => array(None, 32),
+            BVH_PRIMITIVES | LIGHT_SPACE_PRIMITIVES => array(Some(mesh.triangles.len()), 4),
+            TLAS => Some(Provided::ACCELERATION_STRUCTURE),
             CAMERA => uniform(size_of::<CameraUniform>()),
             LIGHT => uniform(size_of::<LightUniform>()),
             _ => None,
@@ -247,22 +325,37 @@ impl Provider for SceneProvider {
     ) -> Result<wgpu::Buffer, ProviderError> {
         let why = |error: Error| ProviderError(error.to_string());
         let known = NAMES.into_iter().find(|&known| known == name);
-        let unknown = || Error::Unknown {
-            name: name.to_owned(),
-            known: NAMES.map(str::to_owned).to_vec(),
-        };
-        let name = known.ok_or_else(unknown).map_err(why)?;
-        if !self.buffers.contains_key(name) {
-            self.upload_named(name, device).map_err(why)?;
-        }
-        let buffer = self.buffers.get(name).ok_or_else(unknown).map_err(why)?;
+        let name = known.ok_or_else(|| why(unknown(name)))?;
+        let buffer = self.buffer(name, device).map_err(why)?;
         if name == CAMERA && self.camera_uploaded != self.camera_version {
-            queue.write_buffer(buffer, 0, bytemuck::bytes_of(&self.camera));
+            queue.write_buffer(&buffer, 0, bytemuck::bytes_of(&self.camera));
             self.camera_uploaded = self.camera_version;
         }
-        if !self.built.contains(&name) {
-            self.built.push(name);
+        self.note(name);
+        Ok(buffer)
+    }
+
+    fn build_acceleration_structure(
+        &mut self,
+        name: &str,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<wgpu::Tlas, ProviderError> {
+        let why = |error: Error| ProviderError(error.to_string());
+        if name != TLAS {
+            return Err(why(unknown(name)));
         }
-        Ok(buffer.clone())
+        let tlas = match &self.tlas {
+            Some(tlas) => tlas.clone(),
+            None => {
+                let vertices = self.buffer(POSITIONS, device).map_err(why)?;
+                let indices = self.buffer(INDICES, device).map_err(why)?;
+                let of = [&vertices, &indices];
+                ray_query::build(&self.scene.mesh, of, device, queue).map_err(why)?
+            }
+        };
+        self.tlas = Some(tlas.clone());
+        self.note(TLAS);
+        Ok(tlas)
     }
 }

@@ -1,9 +1,8 @@
-//! `Trace`: rays in, hits out, through the scene's hierarchy, on compute shaders. The number of
-//! rays stays on the GPU.
+//! `Trace`: rays in, hits out, by one of several engines. The number of rays stays on the GPU.
 
 use serde::Deserialize;
 use skiagraph_graph::{
-    Lowering, PassKind, Reference,
+    Chosen, Code, Diagnostic, Lowering, PassKind, Reference,
     step::{Dispatch, Groups, Operand, Program, Step, Threads},
 };
 
@@ -14,6 +13,56 @@ pub enum Mode {
     Any,
     /// The nearest one.
     Closest,
+}
+
+/// What walks the rays through the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum Engine {
+    /// Compute shaders on a binary hierarchy; watertight, on every device.
+    Hierarchy,
+    /// The device's own ray queries, where it has `EXPERIMENTAL_RAY_QUERY`: its hierarchy and its
+    /// test of triangles, whose rounding is its own.
+    RayQuery,
+    /// Compute shaders on a hierarchy that is made for one direction, the light's; watertight, the
+    /// same hits as those of `Hierarchy`, on every device.
+    LightSpace,
+}
+
+/// What all rays of a pass have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum Direction {
+    /// The direction of each is `light.to_light`, to the bit.
+    Light,
+}
+
+impl Engine {
+    /// The engines as words of a `Choice`.
+    pub const WORDS: [(&str, Self); 3] = [
+        ("hierarchy", Self::Hierarchy),
+        ("ray_query", Self::RayQuery),
+        ("light_space", Self::LightSpace),
+    ];
+
+    /// The shader that traces.
+    fn shader(self) -> &'static str {
+        match self {
+            Self::Hierarchy => "trace_rays",
+            Self::RayQuery => "trace_ray_query",
+            Self::LightSpace => "trace_light_space",
+        }
+    }
+
+    /// What of a device it cannot do without.
+    fn features(self) -> wgpu::Features {
+        match self {
+            Self::Hierarchy | Self::LightSpace => wgpu::Features::empty(),
+            Self::RayQuery => wgpu::Features::EXPERIMENTAL_RAY_QUERY,
+        }
+    }
+}
+
+fn hierarchy() -> Chosen<Engine> {
+    Chosen::Word(Engine::Hierarchy)
 }
 
 /// Body of a `Trace` pass:
@@ -39,6 +88,10 @@ pub enum Mode {
 /// - `skip` (optional): buffer of one u32 per ray, the primitive that the ray does not see, such as
 ///   its own.
 /// - `mode`: `Any` or `Closest`.
+/// - `engine` (optional): an [`Engine`], `Hierarchy` without it, or in quotes a `Choice` param of
+///   [`Engine::WORDS`]. Rays of `RayQuery` need t_min ≥ 0 and finite numbers; others hit nothing.
+/// - `direction` (optional): `Light` is your word that all rays go towards the light, without which
+///   `LightSpace` is refused. A ray that does not is recorded as a miss with t = −1.
 ///
 /// Triangles are two-sided; those without area are never hit.
 #[derive(Clone, Debug, Deserialize)]
@@ -52,6 +105,10 @@ pub struct Trace {
     #[serde(default)]
     skip: Option<Reference>,
     mode: Mode,
+    #[serde(default = "hierarchy")]
+    engine: Chosen<Engine>,
+    #[serde(default)]
+    direction: Option<Direction>,
 }
 
 impl Trace {
@@ -62,6 +119,21 @@ impl Trace {
             (Mode::Closest, None) => "closest_hit",
             (Mode::Closest, Some(_)) => "closest_hit_skip",
         }
+    }
+
+    fn refuse(&self, pass: &mut Lowering<'_>) {
+        let place = match &self.engine {
+            Chosen::Expr(expr) => expr.span().clone(),
+            Chosen::Word(_) => pass.name().span,
+        };
+        let what = "`LightSpace` traces only rays that go towards the light";
+        let mistake = Diagnostic::error(Code::Unasked, what)
+            .at(place, "nothing says that those of this pass do")
+            .help(
+                "say `direction: Light` if the direction of every ray is `light.to_light`, as \
+                 `shared/fill_rays.ron` makes them; else take `engine: Hierarchy`",
+            );
+        pass.report(mistake);
     }
 
     /// A dispatch of its own, because a buffer cannot be written and be the size of the dispatch
@@ -85,7 +157,18 @@ impl PassKind for Trace {
             Some(groups) => Operand::from(groups),
             None => self.count_groups(pass),
         };
-        let mut trace = pass.program_of("trace_rays");
+        // A document that chooses by a param is read with the shaders of all its words.
+        if let Chosen::Expr(_) = &self.engine {
+            for (_, engine) in Engine::WORDS {
+                pass.alternative(engine.shader(), engine.features());
+            }
+        }
+        let engine = pass.word(&self.engine, &Engine::WORDS);
+        pass.alternative(engine.shader(), engine.features());
+        if engine == Engine::LightSpace && self.direction.is_none() {
+            self.refuse(pass);
+        }
+        let mut trace = pass.program_of(engine.shader());
         trace.compute = Some(pass.named(self.entry_point()));
         bind(pass, &mut trace, "count", (&self.count).into());
         bind(pass, &mut trace, "rays", (&self.rays).into());

@@ -21,7 +21,7 @@ pub mod scene_file;
 pub mod weld;
 
 pub use adjacency::{Adjacency, NO_NEIGHBOUR};
-pub use bvh::{Bvh, BvhNode};
+pub use bvh::{Bvh, BvhNode, LightSpace, LightSpaceNode};
 pub use camera::{Camera, View};
 pub use error::SceneError;
 pub use library::{ObjSetup, SceneLibrary, SceneListing, SceneRequest};

@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 use proptest::prelude::*;
-use skiagraph_scene::{Bvh, Mesh, bvh::MAX_DEPTH};
+use skiagraph_scene::{Bvh, LightSpace, LightSpaceNode, Mesh, bvh::MAX_DEPTH};
 
 fn mesh(triangles: &[[Vec3; 3]]) -> Mesh {
     let positions = triangles.concat();
@@ -68,7 +68,70 @@ fn check(mesh: &Mesh, bvh: Bvh) -> Bvh {
     assert_eq!(visited, bvh.nodes.len(), "unreachable nodes");
     assert_eq!(deepest, bvh.depth);
     assert!(bvh.depth <= MAX_DEPTH, "depth {}", bvh.depth);
+    for direction in [Vec3::Y, Vec3::new(2.0, -0.9, 1.4)] {
+        assert!(fits_light_space(mesh, direction, usize::MAX));
+        fits_light_space(mesh, direction, bvh.nodes.len().div_ceil(2));
+    }
     bvh
+}
+
+/// Checks the tree of `most` nodes for rays of one direction; false if a leaf is too large.
+fn fits_light_space(mesh: &Mesh, direction: Vec3, most: usize) -> bool {
+    let (low, high) = mesh.bounds().expect("it is not empty");
+    let space = LightSpace {
+        direction,
+        centre: low * 0.5 + high * 0.5,
+    };
+    let Some((nodes, primitives)) = space.build(mesh, most) else {
+        return false;
+    };
+    assert!(nodes.len() <= most);
+    let mut seen = vec![0; mesh.triangles.len()];
+    let (mut visited, mut open) = (0, vec![(0, 1, None::<LightSpaceNode>)]);
+    while let Some((index, level, outer)) = open.pop() {
+        let node: LightSpaceNode = nodes[index as usize];
+        assert!(level <= MAX_DEPTH);
+        visited += 1;
+        if let Some(outer) = outer {
+            let within = |a: &[f32], b: &[f32]| a.iter().zip(b).all(|(a, b)| a <= b);
+            assert!(
+                within(&outer.low, &node.low)
+                    && within(&node.high, &outer.high)
+                    && within(&node.farthest, &outer.farthest),
+                "node {index} leaves its parent"
+            );
+        }
+        let count = node.link & ((1 << LightSpaceNode::LEAF_BITS) - 1);
+        let first = node.link >> LightSpaceNode::LEAF_BITS;
+        if count == 0 {
+            open.extend([first, first + 1].map(|child| (child, level + 1, Some(node))));
+            continue;
+        }
+        for slot in first..first + count {
+            let primitive = primitives[slot as usize] as usize;
+            seen[primitive] += 1;
+            for corner in mesh.triangles[primitive] {
+                let (at, up) = space.place(mesh.positions[corner as usize]);
+                let (at, up) = (at.to_array(), up.to_array());
+                let is_in = (0..2).all(|axis| {
+                    f64::from(node.low[axis]) <= at[axis] && at[axis] <= f64::from(node.high[axis])
+                });
+                let is_before = (0..3).all(|axis| up[axis] <= f64::from(node.farthest[axis]));
+                assert!(is_in && is_before, "triangle {primitive} leaves its leaf");
+            }
+        }
+    }
+    assert!(seen.iter().all(|&count| count == 1), "{seen:?}");
+    assert_eq!(visited, nodes.len(), "unreachable nodes");
+    true
+}
+
+#[test]
+fn a_leaf_in_light_space_has_63_triangles_at_most() {
+    let soup = mesh(&soup(2000, 7, 5.0));
+    let nodes = Bvh::build(&soup).nodes.len();
+    assert!(fits_light_space(&soup, Vec3::Y, nodes / 8));
+    assert!(!fits_light_space(&soup, Vec3::Y, 3));
 }
 
 fn soup(count: usize, seed: u32, size: f32) -> Vec<[Vec3; 3]> {

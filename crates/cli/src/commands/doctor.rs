@@ -49,7 +49,7 @@ fn adapter(info: &wgpu::AdapterInfo) -> String {
 
 fn chosen(gpu: &Gpu) -> String {
     let limits = gpu.device.limits();
-    let features = gpu.device.features();
+    let features = gpu.adapter.features();
     let mut text = format!("\nChosen: {}\n", adapter(&gpu.adapter.get_info()));
     let edge = limits.max_texture_dimension_2d;
     let storage = limits.max_storage_buffer_binding_size;
@@ -77,7 +77,7 @@ fn chosen(gpu: &Gpu) -> String {
     text
 }
 
-const FEATURES: [(wgpu::Features, &str); 4] = [
+const FEATURES: [(wgpu::Features, &str); 5] = [
     (
         wgpu::Features::TIMESTAMP_QUERY,
         "timestamps: GPU time of each pass",
@@ -93,6 +93,10 @@ const FEATURES: [(wgpu::Features, &str); 4] = [
     (
         wgpu::Features::FLOAT32_FILTERABLE,
         "filtering of 32-bit float textures",
+    ),
+    (
+        wgpu::Features::EXPERIMENTAL_RAY_QUERY,
+        "ray queries: `Trace` with `engine: RayQuery`",
     ),
 ];
 

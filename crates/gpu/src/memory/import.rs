@@ -50,6 +50,7 @@ pub(crate) fn differs(physical: &Physical, described: &Import) -> Option<String>
                 Physical::Texture(_) => "a texture",
                 Physical::Buffer(_) => "a buffer",
                 Physical::Sampler(_) => "a sampler",
+                Physical::AccelerationStructure(_) => "an acceleration structure",
             };
             let planned = match described {
                 Import::Texture { .. } => "a texture",

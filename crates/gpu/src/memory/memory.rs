@@ -9,8 +9,8 @@ use crate::{
     provider::Provider,
 };
 use skiagraph_graph::{
-    Address, FRAME_BYTES, Filter, Origin, Plan, Resource, ResourceId, ResourceKind, Sampler,
-    SubresourceRange, Target,
+    Address, FRAME_BYTES, Filter, Origin, Plan, Provided, Resource, ResourceId, ResourceKind,
+    Sampler, SubresourceRange, Target,
 };
 use std::{collections::BTreeMap, ops::Range};
 
@@ -106,7 +106,9 @@ impl Memory {
             (_, Origin::Previous(base)) => {
                 self.bases.insert(id, base);
             }
-            (ResourceKind::Provided(_), _) => self.refresh(id, resource, old, maker)?,
+            (ResourceKind::Provided(_) | ResourceKind::AccelerationStructure, _) => {
+                self.refresh(id, resource, old, maker)?;
+            }
             (ResourceKind::Frame, _) => {
                 let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_SRC;
                 self.own_buffer(id, &resource.name, (FRAME_BYTES, usage), old, maker.device)?;
@@ -203,6 +205,15 @@ impl Memory {
         }
     }
 
+    pub fn acceleration_structure(&self, id: ResourceId) -> Result<&wgpu::Tlas, ExecuteError> {
+        match self.host.get(&id) {
+            Some(Physical::AccelerationStructure(structure)) => Ok(structure),
+            _ => Err(ExecuteError::Internal(
+                "an acceleration structure that a live pass uses was not made",
+            )),
+        }
+    }
+
     pub fn sampler(&self, id: ResourceId) -> Result<&wgpu::Sampler, ExecuteError> {
         match self.host.get(&id) {
             Some(Physical::Sampler(sampler)) => Ok(sampler),
@@ -258,9 +269,12 @@ impl Memory {
             return Ok(());
         }
         // The plan has counted items and sized buffers by what was described to it.
-        if let (ResourceKind::Provided(planned), Some(now)) =
-            (&resource.kind, provider.describe(&resource.name))
-            && now != *planned
+        let planned = match &resource.kind {
+            ResourceKind::Provided(planned) => *planned,
+            _ => Provided::ACCELERATION_STRUCTURE,
+        };
+        if let Some(now) = provider.describe(&resource.name)
+            && now != planned
         {
             return Err(ExecuteError::Provider {
                 name: resource.name.clone(),
@@ -269,15 +283,20 @@ impl Memory {
                 ),
             });
         }
-        let built = scoped(device, &resource.name, || {
-            provider.build(&resource.name, device, maker.queue)
+        let built = scoped(device, &resource.name, || match resource.kind {
+            ResourceKind::AccelerationStructure => provider
+                .build_acceleration_structure(&resource.name, device, maker.queue)
+                .map(Physical::AccelerationStructure),
+            _ => provider
+                .build(&resource.name, device, maker.queue)
+                .map(Physical::Buffer),
         })?;
-        let buffer = built.map_err(|why| ExecuteError::Provider {
+        let built = built.map_err(|why| ExecuteError::Provider {
             name: resource.name.clone(),
             why: why.0,
         })?;
         // Only now: what could not be built is asked for again.
-        self.host.insert(id, Physical::Buffer(buffer));
+        self.host.insert(id, built);
         self.provided.insert(id, version);
         Ok(())
     }

@@ -3,12 +3,13 @@
 use skiagraph_graph::ResourceId;
 use std::collections::BTreeMap;
 
-/// A texture, buffer or sampler on the device.
+/// A texture, buffer, sampler or acceleration structure on the device.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Physical {
     Texture(wgpu::Texture),
     Buffer(wgpu::Buffer),
     Sampler(wgpu::Sampler),
+    AccelerationStructure(wgpu::Tlas),
 }
 
 /// Which of its two allocations a resource is written to in a frame, and which one holds what it

@@ -258,6 +258,9 @@ impl Binder<'_> {
                 Bound::View(self.memory.view(target, *dimension, self.ping_pong)?)
             }
             BindTarget::Sampler(id) => Bound::Sampler(self.memory.sampler(*id)?.clone()),
+            BindTarget::AccelerationStructure(id) => {
+                Bound::AccelerationStructure(self.memory.acceleration_structure(*id)?.clone())
+            }
             BindTarget::Params(_) => {
                 let missing = ExecuteError::Internal("the params of a pass were not uploaded");
                 let buffer = params.ok_or(missing)?.clone();
@@ -272,6 +275,7 @@ enum Bound {
     Buffer(wgpu::Buffer, std::ops::Range<u64>),
     View(wgpu::TextureView),
     Sampler(wgpu::Sampler),
+    AccelerationStructure(wgpu::Tlas),
 }
 
 impl Bound {
@@ -287,6 +291,7 @@ impl Bound {
             }
             Self::View(view) => wgpu::BindingResource::TextureView(view),
             Self::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
+            Self::AccelerationStructure(structure) => structure.as_binding(),
         }
     }
 }

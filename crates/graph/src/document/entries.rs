@@ -157,15 +157,16 @@ fn pass(
     let mut lowering = Lowering::new(name, common.shader.as_ref(), &[], None);
     body.lower(&mut lowering);
     let programs = lowering.steps.iter().filter_map(Step::program);
-    let shaders = programs
-        .filter_map(|program| program.shader.clone())
-        .collect();
+    let run = programs.filter_map(|program| program.shader.clone());
+    let shaders = run.chain(lowering.alternatives).collect();
+    let features = lowering.features;
     Ok(Pass {
         shader: common.shader,
         overwrites: common.overwrites,
         kind: kind.name,
         body,
         shaders,
+        features,
         mentions,
     })
 }

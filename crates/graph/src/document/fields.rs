@@ -113,9 +113,10 @@ impl<'de> Deserialize<'de> for Expr {
     }
 }
 
-/// A word of the language, or an expression that comes to a word.
+/// A word of the language, or an expression that comes to a word: what a field of a pass kind may
+/// hold that [`Lowering::word`](crate::Lowering::word) reads.
 #[derive(Clone, Debug)]
-pub(crate) enum Chosen<T> {
+pub enum Chosen<T> {
     /// Written out.
     Word(T),
     /// A `Choice` param, in quotes.

@@ -11,5 +11,6 @@ pub(crate) mod read;
 pub(crate) mod ron;
 pub(crate) mod typed;
 
+pub use fields::Chosen;
 pub use materials::{Address, Filter};
 pub use params::{Param, ParamFault, ParamType, ParamValue};

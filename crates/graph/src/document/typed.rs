@@ -147,8 +147,10 @@ pub(crate) struct Pass {
     pub overwrites: Vec<Reference>,
     pub kind: &'static str,
     pub body: Arc<dyn PassKind>,
-    /// Names of the shaders that it runs.
+    /// Names of the shaders that it runs, or may run for other values.
     pub shaders: Vec<Located<String>>,
+    /// The features that it can make use of.
+    pub features: wgt::Features,
     /// What its fields name.
     pub mentions: Mentions,
 }

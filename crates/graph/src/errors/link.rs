@@ -22,6 +22,8 @@ pub(crate) enum LinkError {
     WritesProvided { name: String, span: Span },
     #[error("the vertex shader writes `{global}`, which most devices cannot")]
     VertexWrites { global: String, span: Span },
+    #[error("pass `{}` asks the device for ray queries, which it does not have", **pass)]
+    RayQuery { pass: Located<String>, span: Span },
     #[error("pass `{pass}` uses `{name}` twice at once, and writes it")]
     Feedback {
         pass: String,
@@ -385,7 +387,9 @@ impl LinkError {
         match self {
             Self::ShaderNotLoaded(_) => Code::MissingFile,
             Self::NoShader | Self::WorkgroupOverride { .. } => Code::Shader,
-            Self::VertexWrites { .. } | Self::DrawFeature { .. } => Code::Feature,
+            Self::VertexWrites { .. } | Self::DrawFeature { .. } | Self::RayQuery { .. } => {
+                Code::Feature
+            }
             Self::Feedback { .. } => Code::FeedbackLoop,
             Self::UnaskedSet { .. } | Self::UnaskedBind { .. } => Code::Unasked,
             Self::BindGroup { .. }
@@ -444,6 +448,14 @@ impl Mistake for LinkError {
             Self::VertexWrites { span, .. } => told
                 .at(span, "")
                 .help("say `requires: [\"VERTEX_WRITABLE_STORAGE\"]`, or write it elsewhere"),
+            Self::RayQuery { pass, span } => told
+                .at(pass.span, "")
+                .at(span, "needs the feature EXPERIMENTAL_RAY_QUERY")
+                .help(
+                    "take another adapter, or trace by compute shaders: `Trace` with \
+                     `engine: Hierarchy` runs everywhere; a pass of your own that does without: \
+                     `if: \"has(EXPERIMENTAL_RAY_QUERY)\"`",
+                ),
             Self::Feedback {
                 reader,
                 reads,

@@ -57,7 +57,9 @@ impl<'a> World<'a> {
             }
             ResourceKind::Buffer(buffer) => ("items", buffer.count),
             ResourceKind::Provided(provided) => ("items", provided.items),
-            ResourceKind::Sampler(_) | ResourceKind::Frame => {
+            ResourceKind::Sampler(_)
+            | ResourceKind::AccelerationStructure
+            | ResourceKind::Frame => {
                 return Err(reports.report(BorderError::NoPart {
                     text: reference.text().to_owned(),
                     span: reference.span.clone(),

@@ -13,6 +13,7 @@ use crate::{
         parser,
         syntax::{Reference, Segment, Selection},
     },
+    provider::{Provided, ProvidedBinding},
     request::PlanRequest,
     resource::{FRAME, Origin, Resource, ResourceId, ResourceKind, SubresourceRange, Target},
     source::span::{Located, SourceFile},
@@ -248,6 +249,10 @@ impl<'a> World<'a> {
             Some(id) => *id,
             None => {
                 let kind = match self.request.provider.describe(name) {
+                    Some(Provided {
+                        binding: ProvidedBinding::AccelerationStructure,
+                        ..
+                    }) => ResourceKind::AccelerationStructure,
                     Some(provided) => ResourceKind::Provided(provided),
                     None if name == FRAME => ResourceKind::Frame,
                     None => return None,

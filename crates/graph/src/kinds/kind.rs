@@ -19,8 +19,8 @@ use std::fmt;
 /// `shader`, `bind`, `set`, `if`, `repeat`, `run` and `overwrites`.
 pub trait PassKind: fmt::Debug + Send + Sync {
     /// Says which GPU work the pass is, in order. Called without a GPU, more than once; it must
-    /// depend on nothing but the body and values that it asks for, and the shaders it names must
-    /// not depend on these.
+    /// depend on nothing but the body and values that it asks for. A shader that it names only for
+    /// some of these is a [`Lowering::alternative`].
     fn lower(&self, pass: &mut Lowering<'_>);
 }
 
@@ -34,6 +34,9 @@ pub struct Lowering<'a> {
     /// `None` where a document is only read: nothing has a value then.
     pub(crate) environment: Option<&'a mut dyn Environment>,
     pub(crate) steps: Vec<Step<Names>>,
+    /// Shaders that are named for other values.
+    pub(crate) alternatives: Vec<Located<String>>,
+    pub(crate) features: wgt::Features,
     /// Name and bytes of the pass's own buffers.
     pub(crate) scratch: Vec<(String, u64)>,
     pub(crate) diagnostics: Vec<Diagnostic>,
@@ -53,6 +56,8 @@ impl<'a> Lowering<'a> {
             environment,
             // Most have one, and it is large.
             steps: Vec::with_capacity(1),
+            alternatives: Vec::new(),
+            features: wgt::Features::empty(),
             scratch: Vec::new(),
             diagnostics: Vec::new(),
         }
@@ -94,6 +99,13 @@ impl<'a> Lowering<'a> {
     pub fn scratch(&mut self, name: &str, bytes: u64) -> Scratch {
         self.scratch.push((name.to_owned(), bytes));
         Scratch(self.scratch.len() - 1)
+    }
+
+    /// Says that for other values a step may run this shader, which comes with the kind, and that
+    /// it can make use of these features of a device.
+    pub fn alternative(&mut self, shader: &str, features: wgt::Features) {
+        self.alternatives.push(self.named(shader));
+        self.features |= features;
     }
 
     /// Appends a step.
@@ -167,8 +179,9 @@ impl<'a> Lowering<'a> {
     }
 
     /// A word of the language that may be that of a `Choice` param, all of whose words must be in
-    /// `words`: a document must not fail on some of its params' values.
-    pub(crate) fn word<T: Copy>(&mut self, chosen: &Chosen<T>, words: &[(&str, T)]) -> T {
+    /// `words`: a document must not fail on some of its params' values. The first where the
+    /// document is only read. `words` must not be empty.
+    pub fn word<T: Copy>(&mut self, chosen: &Chosen<T>, words: &[(&str, T)]) -> T {
         let expr = match chosen {
             Chosen::Word(word) => return *word,
             Chosen::Expr(expr) => expr,

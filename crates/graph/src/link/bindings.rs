@@ -51,7 +51,8 @@ impl Linker<'_, '_> {
                     Some((_, operand)) => self.operand(operand, &pass.name)?.0,
                     None => self.target(global, pass)?,
                 };
-                let (bound, ty, usage) = self.binding(global, &mut target, linked, program)?;
+                let (bound, ty, usage) =
+                    self.binding(global, &mut target, (linked, program), pass)?;
                 if global.writes {
                     self.writable(target.id, &global.span)?;
                     self.stage_may_write(global)?;
@@ -79,6 +80,18 @@ impl Linker<'_, '_> {
             false => Ok(()),
             true => self.reports.beyond(LinkError::VertexWrites {
                 global: global.name.clone(),
+                span: global.span.clone(),
+            }),
+        }
+    }
+
+    /// Not every device queries rays.
+    fn ray_query(&mut self, global: &Global, pass: &LinkedPass) -> Result<(), Reported> {
+        let needed = wgt::Features::EXPERIMENTAL_RAY_QUERY;
+        match self.world.request.features.contains(needed) {
+            true => Ok(()),
+            false => self.reports.beyond(LinkError::RayQuery {
+                pass: pass.name.clone(),
                 span: global.span.clone(),
             }),
         }
@@ -137,8 +150,8 @@ impl Linker<'_, '_> {
         &mut self,
         global: &Global,
         target: &mut Target,
-        linked: &LinkedProgram,
-        program: &Program,
+        (linked, program): (&LinkedProgram, &Program),
+        pass: &LinkedPass,
     ) -> Result<Binding, Reported> {
         let resource = self.world.get(target.id).clone();
         let needed = match (&global.class, &resource.kind) {
@@ -188,6 +201,15 @@ impl Linker<'_, '_> {
                     Err(needed) => needed,
                 }
             }
+            (Class::AccelerationStructure, ResourceKind::AccelerationStructure) => {
+                self.ray_query(global, pass)?;
+                let ty = wgt::BindingType::AccelerationStructure {
+                    vertex_return: false,
+                };
+                let bound = BindTarget::AccelerationStructure(target.id);
+                return Ok((bound, ty, Usage::None));
+            }
+            (Class::AccelerationStructure, _) => "an acceleration structure",
             (Class::Uniform { .. }, _) => "a uniform buffer",
             (Class::Storage { .. }, _) => "a storage buffer",
             (Class::Texture(_), _) => "a texture",

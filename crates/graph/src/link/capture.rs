@@ -74,6 +74,10 @@ impl Linker<'_, '_> {
             ResourceKind::Sampler(_) => {
                 return Err(self.reports.report(OutputError::Sampler(name)));
             }
+            ResourceKind::AccelerationStructure => {
+                let what = "an acceleration structure".to_owned();
+                return Err(self.reports.report(OutputError::Unreadable { name, what }));
+            }
         })
     }
 }

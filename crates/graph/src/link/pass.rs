@@ -76,7 +76,7 @@ pub enum Usage {
     Texture(wgt::TextureUsages),
     /// A buffer's.
     Buffer(wgt::BufferUsages),
-    /// A sampler needs none.
+    /// A sampler or an acceleration structure needs none.
     None,
 }
 
@@ -147,6 +147,8 @@ pub enum BindTarget {
     },
     /// A sampler.
     Sampler(ResourceId),
+    /// An acceleration structure.
+    AccelerationStructure(ResourceId),
     /// The `params` uniform, already laid out.
     Params(Block),
 }

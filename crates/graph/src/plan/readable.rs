@@ -83,7 +83,7 @@ pub(super) fn readable(
         };
         if matches!(
             world.get(target.id).kind,
-            ResourceKind::Provided(_) | ResourceKind::Frame
+            ResourceKind::Provided(_) | ResourceKind::AccelerationStructure | ResourceKind::Frame
         ) {
             reports.report(OutputError::Provided(name));
         } else if !written(&target) {

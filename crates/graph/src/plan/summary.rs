@@ -51,7 +51,12 @@ impl Plan {
             .lifetimes
             .keys()
             .map(|id| self.resource(*id))
-            .filter(|resource| matches!(resource.kind, ResourceKind::Provided(_)))
+            .filter(|resource| {
+                matches!(
+                    resource.kind,
+                    ResourceKind::Provided(_) | ResourceKind::AccelerationStructure
+                )
+            })
             .map(|resource| resource.name.as_str())
             .collect()
     }

@@ -23,6 +23,7 @@ pub(crate) enum Class {
     Sampler {
         comparison: bool,
     },
+    AccelerationStructure,
     Unsupported(&'static str),
 }
 
@@ -138,8 +139,14 @@ pub(super) fn class_of(
         (AddressSpace::Handle, TypeInner::Sampler { comparison }) => Class::Sampler {
             comparison: *comparison,
         },
+        (
+            AddressSpace::Handle,
+            TypeInner::AccelerationStructure {
+                vertex_return: false,
+            },
+        ) => Class::AccelerationStructure,
         (AddressSpace::Handle, TypeInner::AccelerationStructure { .. }) => {
-            Class::Unsupported("an acceleration structure")
+            Class::Unsupported("an acceleration structure that returns vertices")
         }
         (AddressSpace::Handle, TypeInner::BindingArray { .. }) => {
             Class::Unsupported("a binding array")

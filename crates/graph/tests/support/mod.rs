@@ -78,8 +78,8 @@ impl Sources for Files {
     }
 }
 
-/// What a scene of one triangle gives: its buffers, a camera of 64 bytes, three lights of 256, and
-/// a stream of items that nobody has counted.
+/// What a scene of one triangle gives: its buffers, a camera of 64 bytes, three lights of 256, a
+/// stream of items that nobody has counted, and an acceleration structure.
 pub struct Triangle;
 
 impl Describe for Triangle {
@@ -88,6 +88,7 @@ impl Describe for Triangle {
             "scene.positions",
             "scene.indices",
             "scene.stream",
+            "scene.tlas",
             "camera",
             "light",
             "lights",
@@ -100,6 +101,7 @@ impl Describe for Triangle {
             "scene.positions" => (Some(3), 16, ProvidedBinding::Storage),
             "scene.indices" => (Some(3), 4, ProvidedBinding::Storage),
             "scene.stream" => (None, 4, ProvidedBinding::Storage),
+            "scene.tlas" => return Some(Provided::ACCELERATION_STRUCTURE),
             "camera" => (Some(1), 64, ProvidedBinding::Uniform),
             "light" => (Some(1), 256, ProvidedBinding::Uniform),
             "lights" => (Some(3), 256, ProvidedBinding::Both),

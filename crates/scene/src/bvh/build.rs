@@ -6,6 +6,7 @@ use super::{
     tree::{Bvh, BvhNode, MAX_DEPTH, MAX_LEAF},
 };
 use crate::mesh::Mesh;
+use glam::Vec3;
 use obvhs::{
     BvhBuildParams,
     bvh2::{Bvh2, leaf_collapser::collapse, reinsertion::ReinsertionOptimizer},
@@ -28,20 +29,14 @@ impl Bvh {
         if triangles.is_empty() {
             return Self::default();
         }
-        // Where half the surface of the scene's box overflows, the surface area heuristic has
-        // nothing to compare.
-        let measurable = mesh.bounds().is_some_and(|(min, max)| {
-            let size = max - min;
-            (size.x * size.y + size.y * size.z + size.z * size.x).is_finite()
-        });
-        let ploc = measurable.then(|| Self::from_obvhs(ploc(&triangles)));
+        let ploc = measurable(mesh.bounds()).then(|| Self::from_obvhs(ploc(&triangles)));
         match ploc {
             Some(bvh) if bvh.depth <= MAX_DEPTH => bvh,
             _ => median::build(&triangles),
         }
     }
 
-    fn from_obvhs(tree: Bvh2) -> Self {
+    pub(super) fn from_obvhs(tree: Bvh2) -> Self {
         let nodes: Vec<BvhNode> = tree
             .nodes
             .iter()
@@ -56,13 +51,22 @@ impl Bvh {
     }
 }
 
+/// Where half the surface of the scene's box overflows, the surface area heuristic has nothing to
+/// compare; nor has it of no box.
+pub(super) fn measurable(bounds: Option<(Vec3, Vec3)>) -> bool {
+    bounds.is_some_and(|(min, max)| {
+        let size = max - min;
+        (size.x * size.y + size.y * size.z + size.z * size.x).is_finite()
+    })
+}
+
 /// obvhs's `slow_build` with two changes. Triangles stay whole (no spatial splits): a split one
 /// would be tested, and counted, more than once. And leaves are smaller: on Sponza's shadow rays a
 /// traversal cost of 1.5 instead of 3 halves the triangle tests (8.0 → 4.2 per ray) for 5 % more
 /// box tests (64.5 → 67.6), and a watertight triangle test costs several boxes. The faster presets
 /// build in a third of the time for as many boxes; half a second for Sponza on two cores is little
 /// beside its import.
-fn ploc(triangles: &[Triangle]) -> Bvh2 {
+pub(super) fn ploc(triangles: &[Triangle]) -> Bvh2 {
     let params = BvhBuildParams {
         collapse_traversal_cost: 1.5,
         ..BvhBuildParams::slow_build()
@@ -89,7 +93,6 @@ fn ploc(triangles: &[Triangle]) -> Bvh2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
 
     #[test]
     fn some_meshes_do_need_the_tree_of_last_resort() {

@@ -1,8 +1,10 @@
 //! A binary bounding volume hierarchy over a mesh's triangles.
 
 mod build;
+mod light_space;
 mod median;
 mod merge;
 mod tree;
 
+pub use light_space::{LightSpace, LightSpaceNode};
 pub use tree::{Bvh, BvhNode, MAX_DEPTH};

@@ -59,11 +59,12 @@ fn floor(half: f32, y: f32) -> Mesh {
     mesh(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]])
 }
 
-/// So many specks over a point of a large floor, all of them in one texel of a map of 64.
-fn crowd(casters: u32, seed: u64) -> Mesh {
-    let mut random = Random(seed);
+/// 100,000 specks over the middle of a floor of 60 by 60, no farther out than `spread`.
+fn crowd(spread: f32) -> Mesh {
+    let casters = 100_000;
+    let mut random = Random(7);
     let corners = (0..casters).flat_map(|_| {
-        let centre = random.vector() * Vec3::new(0.3, 0.2, 0.3) + Vec3::Y * 0.5;
+        let centre = random.vector() * Vec3::new(spread, 0.2, spread) + Vec3::Y * 0.5;
         [(); 3].map(|()| centre + random.vector() * 0.01)
     });
     let positions: Vec<Vec3> = corners.collect();
@@ -219,7 +220,7 @@ fn check_lists(scene: &Scene, map_size: u32, report: &FrameReport) -> usize {
     let positions = positions.unwrap().content.as_f32().unwrap();
     let mut shading = 0;
     for (receiver, &own) in positions.chunks_exact(4).zip(&own) {
-        if !(receiver[3] > 0.0) {
+        if receiver[3] <= 0.0 {
             continue;
         }
         let position = Vec3::from_slice(receiver).as_dvec3();
@@ -330,28 +331,38 @@ fn a_list_that_is_too_long_to_look_at_is_a_ray() {
     }
 }
 
-/// 100,000 casters in a texel, and every pixel's receiver in the same one.
+/// 100,000 casters in a texel, and every pixel's receiver in the same one: nobody walks its list.
 #[test]
-fn a_crowded_texel_is_exact_before_and_after_its_lists_have_grown() {
-    let scene = scene(crowd(100_000, 7), DVec3::new(0.3, 1.2, 0.9), DVec3::NEG_Y);
+fn a_crowded_texel_is_exact_and_takes_no_more_room_than_others() {
+    let crowd = crowd(0.3);
+    let scene = scene(crowd, DVec3::new(0.3, 1.2, 0.9), DVec3::NEG_Y);
     let mut bench = Bench::new(&scene);
     let rays = bench.by_rays();
-    for longest in [64, 4096] {
-        let params = [("map_size", 8), ("longest_list", longest)];
-        let mut executor = bench.executor("light_buffer", &params, &[]);
-        let first = bench.answer(&mut executor);
-        assert!(first.visibility == rays);
-        assert!(
-            first.entries > 65_536 && first.uncertain > 0,
-            "{}",
-            first.entries
-        );
-        assert!(executor.grow(&mut bench.provider).unwrap().is_some());
-        let second = bench.answer(&mut executor);
-        assert!(second.visibility == rays);
-        assert_eq!(second.entries, first.entries);
-        assert!(executor.grow(&mut bench.provider).unwrap().is_none());
+    for (map_size, longest) in [(8, 64), (8, 4096), (64, 512)] {
+        let params = [("map_size", map_size), ("longest_list", longest)];
+        let lists = bench.by_lists(&params);
+        assert!(lists.visibility == rays, "map {map_size}, {longest}");
+        assert!(lists.uncertain > 1000, "{}", lists.uncertain);
+        assert!(lists.entries <= longest * map_size * map_size);
     }
+}
+
+#[test]
+fn lists_are_exact_before_and_after_they_have_grown() {
+    let scene = scene(crowd(0.6), DVec3::new(0.3, 1.2, 0.9), DVec3::NEG_Y);
+    let mut bench = Bench::new(&scene);
+    let rays = bench.by_rays();
+    let params = [("map_size", 362), ("longest_list", 4096)];
+    let mut executor = bench.executor("light_buffer", &params, &[]);
+    let first = bench.answer(&mut executor);
+    assert!(first.visibility == rays);
+    assert!(first.entries > 65_536, "{}", first.entries);
+    assert!(first.uncertain > 0);
+    assert!(executor.grow(&mut bench.provider).unwrap().is_some());
+    let second = bench.answer(&mut executor);
+    assert!(second.visibility == rays);
+    assert_eq!((second.entries, second.uncertain), (first.entries, 0));
+    assert!(executor.grow(&mut bench.provider).unwrap().is_none());
 }
 
 /// So many parts that one workgroup does not see them all.

@@ -22,7 +22,13 @@ const COMPARE_FIRST: &str = "name a folder that `skiagraph compare --out DIR` wr
 const RESULTS: Limit = Limit {
     of: "a results.json",
     mib: 64,
+    way_out: WITHOUT_RESULTS,
+};
+
+/// The same, not to be resumed.
+const KEPT: Limit = Limit {
     way_out: "compare fewer views, viewports or maps into one folder",
+    ..RESULTS
 };
 
 /// The most frames that can be asked for, of fifty passes.
@@ -68,7 +74,7 @@ pub fn kept(folder: &Path) -> Result<Results, CliError> {
     if !folder.is_dir() {
         return Err(refused(format!("there is no folder {}", folder.display())));
     }
-    let text = RESULTS.read_text(&path).map_err(|error| {
+    let text = KEPT.read_text(&path).map_err(|error| {
         refused(match error.kind() {
             io::ErrorKind::NotFound => {
                 format!("there is no results.json in {}", folder.display())

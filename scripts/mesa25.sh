@@ -11,7 +11,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 mkdir -p "${1:-target/mesa25}"
 folder=$(cd "${1:-target/mesa25}" && pwd)
-library="$folder/root/usr/lib/$(dpkg --print-architecture | sed 's/amd64/x86_64/; s/arm64/aarch64/')-linux-gnu"
+library="$folder/unpacked/usr/lib/$(dpkg --print-architecture | sed 's/amd64/x86_64/; s/arm64/aarch64/')-linux-gnu"
 suite=bookworm
 
 fetch() {
@@ -32,7 +32,7 @@ fetch() {
     "${apt[@]}" --yes --download-only --no-install-recommends -t "$suite-backports" install mesa-vulkan-drivers libvulkan1 >&2
     local package
     for package in "$folder"/cache/archives/*.deb; do
-        dpkg-deb --extract "$package" "$folder/root"
+        dpkg-deb --extract "$package" "$folder/unpacked"
     done
 }
 

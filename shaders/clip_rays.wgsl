@@ -3,15 +3,16 @@
 // their traversal at that depth.
 
 #import "shared/light_triangle.wgsl"
-#import "shared/ray_slots.wgsl"
+#import "shared/groups.wgsl"
 #import "shared/ray.wgsl"
 
 var nearest: texture_depth_2d;
+var<storage, read> ray_count: u32;
 var<storage, read_write> rays: array<Ray>;
 
-@compute @workgroup_size(RAYS_PER_GROUP)
+@compute @workgroup_size(GROUP_SIZE)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
-    let slot = ray_slot(group, lane);
+    let slot = thread_number(group, lane);
     if slot >= ray_count {
         return;
     }

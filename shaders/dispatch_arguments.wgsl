@@ -1,13 +1,10 @@
 // Stage to turn the number of rays on the GPU into the arguments of an indirect dispatch of
-// `trace_rays`; a single thread. A dimension of a dispatch ends at 65,535 groups and a larger
-// indirect one silently runs nothing: the rest goes into y.
+// `trace_rays`; a single thread.
+
+#import "shared/groups.wgsl"
 
 var<storage, read> count: u32;
 var<storage, read_write> groups: array<u32, 3>;
-
-// Both as in trace_rays.wgsl.
-const GROUP_SIZE: u32 = 64u;
-const GROUPS_PER_ROW: u32 = 65535u;
 
 @compute @workgroup_size(1)
 fn main() {

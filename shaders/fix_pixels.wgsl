@@ -1,16 +1,17 @@
 // Stage to carry the tracer's answers back to the uncertain pixels; one thread per ray.
 
-#import "shared/ray_slots.wgsl"
+#import "shared/groups.wgsl"
 #import "shared/ray.wgsl"
 #import "shared/ids.wgsl"
 
+var<storage, read> ray_count: u32;
 var<storage, read> ray_pixels: array<u32>;
 var<storage, read> hits: array<Hit>;
 var visibility: texture_storage_2d<r32uint, write>;
 
-@compute @workgroup_size(RAYS_PER_GROUP)
+@compute @workgroup_size(GROUP_SIZE)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
-    let slot = ray_slot(group, lane);
+    let slot = thread_number(group, lane);
     if slot >= ray_count || ray_pixels[slot] == NO_PIXEL {
         return;
     }

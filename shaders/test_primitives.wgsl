@@ -3,18 +3,19 @@
 // first; the dissertation's section 5.4.1 leaves it out because of its errors.
 
 #import "shared/light_triangle.wgsl"
-#import "shared/ray_slots.wgsl"
+#import "shared/groups.wgsl"
 #import "shared/ray_triangle.wgsl"
 #import "shared/ids.wgsl"
 
 var outer_primitive: texture_2d<u32>;
+var<storage, read> ray_count: u32;
 var<storage, read> rays: array<Ray>;
 var<storage, read> ray_primitives: array<u32>;
 var<storage, read_write> hits: array<Hit>;
 
-@compute @workgroup_size(RAYS_PER_GROUP)
+@compute @workgroup_size(GROUP_SIZE)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
-    let slot = ray_slot(group, lane);
+    let slot = thread_number(group, lane);
     if slot >= ray_count {
         return;
     }

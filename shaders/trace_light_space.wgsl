@@ -25,8 +25,6 @@ var<storage, read> scene_light_space_primitives: array<u32>;
 
 const LEAF_BITS: u32 = 6u;
 const LEAF_MASK: u32 = 63u;
-// As in trace_rays.wgsl: no hierarchy is deeper.
-const STACK_SIZE: u32 = 64u;
 
 // A share of the distance from the ray's origin to the scene's farthest side, by which nodes are
 // grown: 16 ulp. The shear errs by 3 ulp of a distance (WGSL's division by 2.5), the origin's place

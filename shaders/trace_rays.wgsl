@@ -19,10 +19,6 @@ struct Node {
 var<storage, read> scene_bvh_nodes: array<Node>;
 var<storage, read> scene_bvh_primitives: array<u32>;
 
-// As `MAX_DEPTH` in crates/scene/src/bvh/tree.rs, which builds no deeper hierarchy: a level adds
-// one entry at most.
-const STACK_SIZE: u32 = 64u;
-
 // Boxes are padded by this share of the distance to the scene's farthest side: 16 ulp, where Woop
 // et al. prove 5 enough for correctly rounded arithmetic; WGSL's division may err by 2.5 ulp, and
 // the slab distances' own rounding (4 ulp, Ize) is in it.

@@ -8,12 +8,13 @@ use skiagraph_gpu::device::Gpu;
 use skiagraph_graph::{Capture, ParamValue};
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Progress, statistics::status};
-use skiagraph_scene::{Adjacency, DirectionalLight, Scene, SceneLibrary, SceneRequest, View};
+use skiagraph_scene::{Adjacency, DirectionalLight, Scene, View};
 use skiagraph_tests::cpu_reference::{CpuReference, Cull, Depth, LightSpace, Method, SLACK};
 use std::sync::Arc;
 use support::{
     graphs::{open, plan, provider, run_on, values},
     meshes,
+    scenes::load,
 };
 
 /// A scene under one view on one device.
@@ -159,18 +160,9 @@ fn all_methods(map_size: u32, cull: Cull, n: f64) -> Vec<CpuReference> {
         .collect()
 }
 
-fn park() -> Arc<Scene> {
-    let request = SceneRequest {
-        argument: "park".into(),
-        obj: None,
-    };
-    let (scene, _) = SceneLibrary::from_environment().load(&request).unwrap();
-    Arc::new(scene)
-}
-
 #[test]
 fn the_statuses_on_park_are_the_cpu_references() {
-    let scene = park();
+    let scene = load("park");
     let mut bench = Bench::new(&scene, [128, 96]);
     for (map_size, n) in [(200, 1.0), (512, 0.51)] {
         for cpu in all_methods(map_size, Cull::Front, n) {
@@ -249,7 +241,7 @@ fn the_statuses_on_a_hard_mesh_are_the_cpu_references() {
 /// Beyond that `light_space_error_bound` leaves every pixel uncertain.
 #[test]
 fn the_presets_maps_end_where_f32_places_no_receiver() {
-    let scene = park();
+    let scene = load("park");
     let graph = skiagraph_graph::Graph::load(
         "pipelines/crsm.ron",
         &skiagraph_passes::registry(),

@@ -11,7 +11,7 @@ use skiagraph_graph::{
 };
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
 use skiagraph_reference::{Oracle, OracleMode, Progress, Reference, Statistics};
-use skiagraph_scene::{DirectionalLight, Scene, SceneLibrary, SceneRequest, View};
+use skiagraph_scene::{DirectionalLight, Scene, View};
 use std::{path::Path, sync::Arc};
 use support::{
     graphs::{frame, open, provider, values},
@@ -131,17 +131,6 @@ fn the_lines_of_the_readme_are_those_of_the_files() {
 
 const PARK: [u32; 2] = [256, 256];
 
-fn park() -> Arc<Scene> {
-    let request = SceneRequest {
-        argument: "park".into(),
-        obj: None,
-    };
-    let (scene, _) = SceneLibrary::from_environment()
-        .load(&request)
-        .unwrap_or_else(|error| panic!("{error}"));
-    Arc::new(scene)
-}
-
 /// What the oracle says of the park's first view.
 fn reference(scene: &Arc<Scene>, light: &DirectionalLight) -> Reference {
     let mut provider = provider(scene, &scene.views[0], PARK);
@@ -187,7 +176,7 @@ fn wrong(
 
 #[test]
 fn each_method_is_as_wrong_on_park_as_its_author_has_measured() {
-    let scene = park();
+    let scene = load("park");
     let reference = reference(&scene, &scene.light);
     let far = [
         ("map_size", ParamValue::U32(1024)),
@@ -214,7 +203,7 @@ fn each_method_is_as_wrong_on_park_as_its_author_has_measured() {
 /// A quarter of the pixels in each frame; what no ray has reached yet is dark.
 #[test]
 fn temporal_is_right_once_every_pixel_has_had_its_ray() {
-    let scene = park();
+    let scene = load("park");
     let reference = reference(&scene, &scene.light);
     let found = wrong("temporal/temporal.ron", &[], 5, &scene, &reference);
     println!("{found:?}");
@@ -225,7 +214,7 @@ fn temporal_is_right_once_every_pixel_has_had_its_ray() {
 
 #[test]
 fn the_two_lights_are_each_asked_by_itself() {
-    let scene = park();
+    let scene = load("park");
     let mut provider = provider(&scene, &scene.views[0], PARK);
     let lights = ["sun", "sky"];
     let plan = plan("twolights/two.ron", &provider, PARK, |request| {
@@ -262,7 +251,7 @@ fn the_two_lights_are_each_asked_by_itself() {
 /// And says no where half of it is missing, as `vsm` does.
 #[test]
 fn softvis_hands_out_the_share_that_arrives() {
-    let scene = park();
+    let scene = load("park");
     let mut provider = provider(&scene, &scene.views[0], PARK);
     let plan = plan("vsm/softvis.ron", &provider, PARK, |_| {});
     let names = ["visibility", "soft", "status"];

@@ -6,7 +6,7 @@ mod support;
 use glam::{DVec3, Vec3};
 use skiagraph_graph::{Graph, ParamValue, PlanRequest, Sources};
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry, uniforms::LightUniform};
-use skiagraph_scene::{DirectionalLight, Mesh, Scene, SceneLibrary, SceneRequest};
+use skiagraph_scene::{DirectionalLight, Mesh, Scene};
 use std::sync::Arc;
 use support::{
     bench::Bench,
@@ -14,18 +14,8 @@ use support::{
     graphs::{layered, trace_by},
     meshes,
     random::Random,
+    scenes::{load, sponza},
 };
-
-fn load(name: &str) -> Arc<Scene> {
-    let request = SceneRequest {
-        argument: name.to_owned(),
-        obj: None,
-    };
-    let (scene, _) = SceneLibrary::from_environment()
-        .load(&request)
-        .unwrap_or_else(|error| panic!("{error}"));
-    Arc::new(scene)
-}
 
 #[test]
 fn rt_answers_as_by_the_compute_hierarchy() {
@@ -44,11 +34,7 @@ fn rt_answers_as_by_the_compute_hierarchy() {
 
 #[test]
 fn rt_on_sponza_answers_as_by_the_compute_hierarchy() {
-    if std::env::var_os("SKIAGRAPH_ASSETS").is_none() {
-        println!("SKIAGRAPH_ASSETS is not set, so there is no Sponza to test with");
-        return;
-    }
-    let scene = load("sponza");
+    let Some(scene) = sponza() else { return };
     let mut bench = Bench::new(&scene, [512, 512]);
     let [ours, theirs] = ["hierarchy", "light_space"].map(|engine| {
         let engine = ParamValue::Choice(engine.to_owned());

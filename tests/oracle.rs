@@ -4,20 +4,11 @@ mod support;
 
 use glam::Vec3;
 use skiagraph_graph::ParamValue;
-use skiagraph_scene::{Scene, SceneLibrary, SceneRequest};
 use std::sync::Arc;
-use support::bench::Bench;
-
-fn load(name: &str) -> Arc<Scene> {
-    let request = SceneRequest {
-        argument: name.to_owned(),
-        obj: None,
-    };
-    let (scene, _) = SceneLibrary::from_environment()
-        .load(&request)
-        .unwrap_or_else(|error| panic!("{error}"));
-    Arc::new(scene)
-}
+use support::{
+    bench::Bench,
+    scenes::{load, sponza},
+};
 
 #[test]
 fn rt_on_park_is_exact() {
@@ -28,16 +19,6 @@ fn rt_on_park_is_exact() {
         bench.look(view);
         bench.rt_is_exact();
     }
-}
-
-/// The real Sponza is too large to come with the sources: the folder above `sponza/sponza.obj` is
-/// taken from the environment.
-fn sponza() -> Option<Arc<Scene>> {
-    if std::env::var_os("SKIAGRAPH_ASSETS").is_none() {
-        println!("SKIAGRAPH_ASSETS is not set, so there is no Sponza to test with");
-        return None;
-    }
-    Some(load("sponza"))
 }
 
 #[test]

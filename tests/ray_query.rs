@@ -8,7 +8,7 @@ mod support;
 
 use glam::{DVec3, Vec3};
 use skiagraph_graph::ParamValue;
-use skiagraph_scene::{Mesh, Scene, SceneLibrary, SceneRequest};
+use skiagraph_scene::{Mesh, Scene};
 use std::sync::Arc;
 use support::{
     bench::Bench,
@@ -16,6 +16,7 @@ use support::{
     graphs::{RAY_QUERY, open, trace_by},
     meshes,
     random::Random,
+    scenes::load,
 };
 
 /// No more of all pixels, and of random rays, may be answered in another way.
@@ -28,17 +29,6 @@ fn traced(engine: &str, mode: &str, mesh: &Mesh, rays: &[Ray], skip: Option<&[u3
     );
     let fields = format!("mode: {mode}, engine: {engine}");
     trace_by(&fields, DVec3::NEG_Y, mesh, rays, skip, rays.len() as u32)
-}
-
-fn load(name: &str) -> Arc<Scene> {
-    let request = SceneRequest {
-        argument: name.to_owned(),
-        obj: None,
-    };
-    let (scene, _) = SceneLibrary::from_environment()
-        .load(&request)
-        .unwrap_or_else(|error| panic!("{error}"));
-    Arc::new(scene)
 }
 
 /// Holds `rt` by ray queries against `rt` by the hierarchy, pixel by pixel, and against the oracle.

@@ -123,7 +123,7 @@ fn rays_hits_and_nodes_have_their_contracted_sizes() {
 }
 
 #[test]
-fn constants_that_two_files_share_are_equal() {
+fn constants_that_shaders_and_rust_share_agree() {
     let constant = |path: &str, name: &str| {
         let text = support::expanded(path);
         let line = text
@@ -138,16 +138,9 @@ fn constants_that_two_files_share_are_equal() {
             .parse::<u32>()
             .unwrap()
     };
-    for name in ["GROUP_SIZE", "GROUPS_PER_ROW"] {
-        assert_eq!(
-            constant("dispatch_arguments.wgsl", name),
-            constant("trace_rays.wgsl", name)
-        );
-    }
     // One entry per level at most: an inner node pushes one child and goes on with the other.
-    for shader in ["trace_rays.wgsl", "trace_light_space.wgsl"] {
-        assert!(constant(shader, "STACK_SIZE") >= skiagraph_scene::bvh::MAX_DEPTH);
-    }
+    let stack = constant("shared/trace_entries.wgsl", "STACK_SIZE");
+    assert!(stack >= skiagraph_scene::bvh::MAX_DEPTH);
     let bits = constant("trace_light_space.wgsl", "LEAF_BITS");
     assert_eq!(bits, LightSpaceNode::LEAF_BITS);
     let mask = constant("trace_light_space.wgsl", "LEAF_MASK");

@@ -6,6 +6,7 @@ pub mod brute;
 pub mod graphs;
 pub mod meshes;
 pub mod random;
+pub mod scenes;
 
 use skiagraph_graph::Sources;
 use skiagraph_passes::EmbeddedSources;

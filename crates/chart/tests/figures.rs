@@ -252,13 +252,3 @@ fn what_has_no_place_is_refused_by_name() {
     // A single mark still has axes around it.
     assert!(with(mark(7.0, 7.0, 0), Kind::Front).is_ok());
 }
-
-/// For a look: `cargo test -p skiagraph-chart -- --ignored`, then target/*.svg in a browser.
-#[test]
-#[ignore = "writes pictures"]
-fn pictures() {
-    for (name, figure) in [("front", time_against_error()), ("growth", growth())] {
-        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../target");
-        std::fs::write(format!("{folder}/chart-{name}.svg"), svg(&figure)).unwrap();
-    }
-}

@@ -452,9 +452,8 @@ impl Mistake for LinkError {
                 .at(pass.span, "")
                 .at(span, "needs the feature EXPERIMENTAL_RAY_QUERY")
                 .help(
-                    "take another adapter, or trace by compute shaders: `Trace` with \
-                     `engine: Hierarchy` runs everywhere; a pass of your own that does without: \
-                     `if: \"has(EXPERIMENTAL_RAY_QUERY)\"`",
+                    "take another adapter, another value of the param that chose this pass, or a \
+                     pass that does without: `if: \"has(EXPERIMENTAL_RAY_QUERY)\"`",
                 ),
             Self::Feedback {
                 reader,

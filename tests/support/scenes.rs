@@ -1,0 +1,26 @@
+//! Scenes by name.
+
+use skiagraph_scene::{Scene, SceneLibrary, SceneRequest};
+use std::sync::Arc;
+
+/// A scene of the library; one that is not there fails the test.
+pub fn load(name: &str) -> Arc<Scene> {
+    let request = SceneRequest {
+        argument: name.to_owned(),
+        obj: None,
+    };
+    let (scene, _) = SceneLibrary::from_environment()
+        .load(&request)
+        .unwrap_or_else(|error| panic!("{error}"));
+    Arc::new(scene)
+}
+
+/// The real Sponza is too large to come with the sources: the folder above `sponza/sponza.obj` is
+/// taken from the environment.
+pub fn sponza() -> Option<Arc<Scene>> {
+    if std::env::var_os("SKIAGRAPH_ASSETS").is_none() {
+        println!("SKIAGRAPH_ASSETS is not set, so there is no Sponza to test with");
+        return None;
+    }
+    Some(load("sponza"))
+}

@@ -3,10 +3,10 @@
 // many tiles to `parts`: one workgroup per part of a large one, whose threads take its tiles in
 // turns. So no thread looks at more than 4,096 texels, however large a triangle is.
 
+#import "shared/groups.wgsl"
 #import "shared/light_buffer.wgsl"
 
 struct Params {
-    map_size: u32,
     longest_list: u32,
 }
 
@@ -24,6 +24,7 @@ struct Large {
 }
 
 var<uniform> params: Params;
+var<uniform> grid: Grid;
 // As mark_receivers.wgsl has it.
 var<storage, read> farthest: array<u32>;
 // Of each texel.
@@ -35,19 +36,17 @@ var<storage, read_write> large: Large;
 // Workgroups in x, y, z: one for each part.
 var<storage, read_write> large_groups: array<atomic<u32>, 3>;
 
-const THREADS: u32 = 64u;
 // Tiles under the box of a triangle that one thread does alone.
 const ALONE: u32 = 32u;
 // Tiles of a part.
 const PART: u32 = 4096u;
-// Most workgroups in one dimension of a dispatch.
-const GROUPS_PER_ROW: u32 = 65535u;
 
 struct Caster {
     primitive: u32,
     // Its corners are counter-clockwise where y is up: inside is to the left of its edges.
     triangle: LightTriangle,
-    // The first and the last of the texels under its box, in each direction.
+    plane: DepthPlane,
+    // The first and the last of the window's texels under its box, in each direction.
     first: vec2<u32>,
     last: vec2<u32>,
     // Bits of its least depth.
@@ -63,9 +62,9 @@ struct Thread {
     @builtin(local_invocation_index) lane: u32,
 }
 
-@compute @workgroup_size(THREADS)
+@compute @workgroup_size(GROUP_SIZE)
 fn whole(thread: Thread) {
-    let primitive = (thread.group.y * thread.groups.x + thread.group.x) * THREADS + thread.lane;
+    let primitive = (thread.group.y * thread.groups.x + thread.group.x) * GROUP_SIZE + thread.lane;
     if 3u * primitive >= arrayLength(&scene_indices) {
         return;
     }
@@ -81,14 +80,12 @@ fn whole(thread: Thread) {
         }
         return;
     }
-    for (var tile = 0u; tile < count; tile++) {
-        bin(caster, tile, tiles.x);
-    }
+    bin(caster, 0u, count, 1u);
 }
 
-@compute @workgroup_size(THREADS)
+@compute @workgroup_size(GROUP_SIZE)
 fn parts(thread: Thread) {
-    let number = thread.group.y * GROUPS_PER_ROW + thread.group.x;
+    let number = group_number(thread.group);
     if number >= min(atomicLoad(&large.count), arrayLength(&large.parts)) {
         return;
     }
@@ -96,9 +93,7 @@ fn parts(thread: Thread) {
     let caster = caster_of(part.primitive);
     let tiles = tiles_of(caster);
     let end = min(tiles.x * tiles.y, part.first_tile + PART);
-    for (var tile = part.first_tile + thread.lane; tile < end; tile += THREADS) {
-        bin(caster, tile, tiles.x);
-    }
+    bin(caster, part.first_tile + thread.lane, end, GROUP_SIZE);
 }
 
 fn append_part(part: Part) {
@@ -113,22 +108,23 @@ fn append_part(part: Part) {
 }
 
 fn caster_of(primitive: u32) -> Caster {
-    let size = f32(params.map_size);
-    var triangle = light_triangle(primitive, size);
+    var triangle = light_triangle(primitive, grid.scene_size);
     if triangle.area < 0.0 {
         triangle = LightTriangle(triangle.a, triangle.c, triangle.b, -triangle.area);
     }
     let a = triangle.a;
     let b = triangle.b;
     let c = triangle.c;
-    let low = min(a.xy, min(b.xy, c.xy)) - SLACK;
-    let high = max(a.xy, max(b.xy, c.xy)) + SLACK;
-    let is_outside = any(high < vec2(0.0)) || any(low >= vec2(size));
+    // Whole numbers away, and rounded towards the box: `floor` comes first.
+    let low = floor(min(a.xy, min(b.xy, c.xy)) - SLACK) - grid.first;
+    let high = floor(max(a.xy, max(b.xy, c.xy)) + SLACK) - grid.first;
+    let end = f32(grid.size) - 1.0;
+    let is_outside = any(high < vec2(0.0)) || any(low > vec2(end));
     let first = select(vec2<u32>(max(low, vec2(0.0))), vec2(1u), is_outside);
-    let last = select(min(vec2<u32>(high), vec2(params.map_size - 1u)), vec2(0u), is_outside);
-    let least = depth_bits(min(a.z, min(b.z, c.z)));
+    let last = select(vec2<u32>(min(high, vec2(end))), vec2(0u), is_outside);
+    let plane = depth_plane(triangle);
     let reach = vec3(reach_of(b.xy - a.xy), reach_of(c.xy - b.xy), reach_of(a.xy - c.xy));
-    return Caster(primitive, triangle, first, last, least, reach);
+    return Caster(primitive, triangle, plane, first, last, depth_bits(plane.least), reach);
 }
 
 fn reach_of(edge: vec2<f32>) -> f32 {
@@ -140,36 +136,74 @@ fn tiles_of(caster: Caster) -> vec2<u32> {
     return caster.last / TILE - caster.first / TILE + 1u;
 }
 
-// Appends the caster to the lists of one tile's texels.
-fn bin(caster: Caster, number: u32, columns: u32) {
-    let tile = caster.first / TILE + vec2(number % columns, number / columns);
-    if farthest[tile_number(tile, params.map_size)] < caster.least {
-        return;
-    }
-    let middle = (vec2<f32>(tile) + 0.5) * f32(TILE);
-    if any(inward_of(caster.triangle, middle) < -f32(TILE) * caster.reach) {
-        return;
-    }
-    let first = max(caster.first, tile * TILE);
-    let last = min(caster.last, tile * TILE + (TILE - 1u));
-    for (var y = first.y; y <= last.y; y++) {
-        for (var x = first.x; x <= last.x; x++) {
-            let texel = y * params.map_size + x;
-            let far = farthest[texel];
-            if far == 0u || far < caster.least {
-                continue;
+// Appends the caster to the lists of the texels in those tiles under its box whose numbers are
+// `first`, `first + step`, … below `end`. Threads run in step, and some adapters run what any of
+// them could need: so each looks for its next tile, then for its next texel, in a short loop.
+fn bin(caster: Caster, first: u32, end: u32, step: u32) {
+    let columns = tiles_of(caster).x;
+    let corner = caster.first / TILE;
+    var tile = corner + vec2(first % columns, first / columns);
+    // A division in every round would cost more than all else.
+    let advance = vec2(step % columns, step / columns);
+    var number = first;
+    loop {
+        var texels = vec2(0u);
+        var at = tile;
+        while all(texels == vec2(0u)) && number < end {
+            at = tile;
+            texels = texels_in(caster, tile);
+            number += step;
+            tile += advance;
+            tile = select(tile, vec2(tile.x - columns, tile.y + 1u), tile.x >= corner.x + columns);
+        }
+        if all(texels == vec2(0u)) {
+            return;
+        }
+        loop {
+            var found = false;
+            var texel = vec2(0u);
+            var inward = vec3(0.0);
+            var depth = 0.0;
+            while !found && any(texels != vec2(0u)) {
+                let half = select(0u, 1u, texels.x == 0u);
+                let bit = countTrailingZeros(texels[half]);
+                texels[half] &= texels[half] - 1u;
+                texel = at * TILE + vec2(bit % TILE, 4u * half + bit / TILE);
+                let centre = grid.first + vec2<f32>(texel) + 0.5;
+                inward = inward_of(caster.triangle, centre);
+                // Of -0, too.
+                depth = abs(depth_bound(caster.plane, centre, 0.5, NEAREST));
+                found = all(inward >= -caster.reach)
+                    && depth_bits(depth) <= farthest[texel_number(texel, grid)];
             }
-            let centre = vec2(f32(x), f32(y)) + 0.5;
-            let inward = inward_of(caster.triangle, centre);
-            if any(inward < -caster.reach) {
-                continue;
+            if !found {
+                break;
             }
-            let depth = abs(texel_depth(caster.triangle, centre, DEPTH_CONSERVATIVE, NEAREST));
-            if depth_bits(depth) <= far {
-                append(texel, caster.primitive, key_of(caster, depth, inward));
-            }
+            let key = key_of(caster, depth, inward);
+            append(texel_number(texel, grid), caster.primitive, key);
         }
     }
+}
+
+// A bit for each texel of the tile that is under the triangle's box and has a receiver in it; none
+// if the triangle is not in the tile, or farther from the light than all its receivers.
+fn texels_in(caster: Caster, tile: vec2<u32>) -> vec2<u32> {
+    let words = tile_number(tile, grid);
+    let middle = grid.first + (vec2<f32>(tile) + 0.5) * f32(TILE);
+    let depth = depth_bound(caster.plane, middle, 0.5 * f32(TILE), NEAREST);
+    let may_shade = depth_bits(depth) <= farthest[words]
+        && all(inward_of(caster.triangle, middle) >= -f32(TILE) * caster.reach);
+    let low = max(caster.first, tile * TILE) - tile * TILE;
+    let high = min(caster.last - tile * TILE, vec2(TILE - 1u));
+    let columns = (0xffu << low.x) & (0xffu >> (TILE - 1u - high.x));
+    let rows = (0xffu << low.y) & (0xffu >> (TILE - 1u - high.y));
+    let texels = vec2(bytes_of(rows & 0xfu), bytes_of(rows >> 4u)) * columns;
+    return select(vec2(0u), texels & vec2(farthest[words + 1u], farthest[words + 2u]), may_shade);
+}
+
+// 1 in each byte whose bit is set in a number of four bits.
+fn bytes_of(bits: u32) -> u32 {
+    return (bits * 0x204081u) & 0x1010101u;
 }
 
 // Distances of a point from the lines of ab, bc and ca, times their lengths; inside is positive.

@@ -4,11 +4,7 @@
 #import "shared/receiver.wgsl"
 #import "shared/light_buffer.wgsl"
 
-struct Params {
-    map_size: u32,
-}
-
-var<uniform> params: Params;
+var<uniform> grid: Grid;
 // Of each texel, then of each tile: bits of an f32, which are in the order of the depths; 0 where
 // nobody is.
 var<storage, read_write> farthest: array<atomic<u32>>;
@@ -16,14 +12,14 @@ var<storage, read_write> farthest: array<atomic<u32>>;
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
     let pixel = thread.xy;
-    if any(pixel >= textureDimensions(primitive)) {
+    if any(pixel >= textureDimensions(position)) {
         return;
     }
     let receiver = textureLoad(position, pixel, 0);
-    if initial_status(pixel, receiver) != STATUS_UNCERTAIN {
+    if !faces_light(receiver) {
         return;
     }
-    let place = place_of(receiver.xyz, params.map_size);
+    let place = place_of(receiver.xyz, grid);
     if place.texel == NO_TEXEL {
         return;
     }
@@ -33,5 +29,10 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
     }
     if atomicLoad(&farthest[place.tile]) < place.depth {
         atomicMax(&farthest[place.tile], place.depth);
+    }
+    let word = place.tile + 1u + place.bit / 32u;
+    let bit = 1u << (place.bit % 32u);
+    if (atomicLoad(&farthest[word]) & bit) == 0u {
+        atomicOr(&farthest[word], bit);
     }
 }

@@ -7,7 +7,6 @@
 #import "shared/ray_triangle.wgsl"
 
 struct Params {
-    map_size: u32,
     longest_list: u32,
 }
 
@@ -22,6 +21,7 @@ struct Large {
 }
 
 var<uniform> params: Params;
+var<uniform> grid: Grid;
 // As mark_receivers.wgsl has it.
 var<storage, read> farthest: array<u32>;
 // As bin_casters.wgsl has them.
@@ -53,7 +53,7 @@ fn main(
 }
 
 fn test_casters(receiver: vec3<f32>, own: u32) -> u32 {
-    let place = place_of(receiver, params.map_size);
+    let place = place_of(receiver, grid);
     // A part of a large triangle that had no room is in no list.
     if place.texel == NO_TEXEL || large.count > arrayLength(&large.parts) {
         return STATUS_UNCERTAIN;
@@ -69,30 +69,46 @@ fn test_casters(receiver: vec3<f32>, own: u32) -> u32 {
     if list.length > params.longest_list {
         return STATUS_UNCERTAIN;
     }
-    var number = list.head;
-    let depth = coarse_depth(bitcast<f32>(place.depth));
+    var walk = Walk(list.head, coarse_depth(bitcast<f32>(place.depth)), place.offset, own);
     let t_min = receiver_error_bound(receiver, camera.eye);
     let ray = sheared(Ray(receiver, t_min, light.to_light, light.max_distance));
     var hit = Hit(light.max_distance, NO_PRIMITIVE, 0.0, 0.0);
+    var candidate = next_candidate(&walk);
+    var is_hit = false;
+    // Testing costs the most: threads that run in step do it together.
     loop {
-        // To the next one that could be hit, each thread in its own list: testing costs the most,
-        // so threads that run in step do it together.
-        var candidate = NO_PRIMITIVE;
-        while candidate == NO_PRIMITIVE && number != LIST_END && number != LIST_FULL {
-            let at = number - 1u;
-            let key = entries[at].key;
-            if key_depth(key) <= depth && !cuts_off(key, place.offset) {
-                let primitive = entries[at].primitive;
-                candidate = select(primitive, NO_PRIMITIVE, primitive == own);
-            }
-            number = entries[at].next;
-        }
-        if candidate == NO_PRIMITIVE {
-            return select(STATUS_UNCERTAIN, STATUS_LIGHT, number == LIST_END);
-        }
-        if intersect(ray, candidate, t_min, &hit) {
-            return STATUS_SHADOW;
+        is_hit = candidate != NO_PRIMITIVE && intersect(ray, candidate, t_min, &hit);
+        candidate = next_candidate(&walk);
+        if is_hit || candidate == NO_PRIMITIVE {
+            break;
         }
     }
-    return STATUS_UNCERTAIN;
+    if is_hit {
+        return STATUS_SHADOW;
+    }
+    return select(STATUS_UNCERTAIN, STATUS_LIGHT, walk.number == LIST_END);
+}
+
+// A receiver's way through its list.
+struct Walk {
+    // Of the next entry.
+    number: u32,
+    // Of the receiver.
+    depth: u32,
+    offset: vec2<f32>,
+    own: u32,
+}
+
+// The next caster that could be hit; NO_PRIMITIVE if there is none.
+fn next_candidate(walk: ptr<function, Walk>) -> u32 {
+    var candidate = NO_PRIMITIVE;
+    while candidate == NO_PRIMITIVE && (*walk).number != LIST_END && (*walk).number != LIST_FULL {
+        let at = (*walk).number - 1u;
+        let key = entries[at].key;
+        let primitive = entries[at].primitive;
+        let may_hit = key_depth(key) <= (*walk).depth && !cuts_off(key, (*walk).offset);
+        candidate = select(NO_PRIMITIVE, primitive, may_hit && primitive != (*walk).own);
+        (*walk).number = entries[at].next;
+    }
+    return candidate;
 }

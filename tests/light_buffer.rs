@@ -78,7 +78,16 @@ struct Bench {
     provider: SceneProvider,
 }
 
-const CAPTURED: [&str; 5] = ["position", "primitive", "farthest", "lists", "entries"];
+const FITS: [&str; 2] = ["scene", "receivers"];
+
+const CAPTURED: [&str; 6] = [
+    "position",
+    "primitive",
+    "grid",
+    "farthest",
+    "lists",
+    "entries",
+];
 
 impl Bench {
     fn new(scene: &Arc<Scene>) -> Self {
@@ -88,9 +97,11 @@ impl Bench {
         }
     }
 
-    fn executor(&mut self, preset: &str, params: &[(&str, u32)], captured: &[&str]) -> Executor {
-        let path = format!("pipelines/{preset}.ron");
-        let plan = plan(&path, &self.provider, VIEWPORT, |request| {
+    fn executor(&mut self, fit: &str, params: &[(&str, u32)], captured: &[&str]) -> Executor {
+        let path = "pipelines/light_buffer.ron";
+        let plan = plan(path, &self.provider, VIEWPORT, |request| {
+            let fit = ParamValue::Choice(fit.to_owned());
+            request.params.insert("fit".to_owned(), fit);
             for (name, value) in params {
                 let value = ParamValue::U32(*value);
                 request.params.insert((*name).to_owned(), value);
@@ -112,8 +123,8 @@ impl Bench {
     }
 
     /// One frame of the light buffer.
-    fn by_lists(&mut self, params: &[(&str, u32)]) -> Answer {
-        let mut executor = self.executor("light_buffer", params, &[]);
+    fn by_lists(&mut self, fit: &str, params: &[(&str, u32)]) -> Answer {
+        let mut executor = self.executor(fit, params, &[]);
         self.answer(&mut executor)
     }
 
@@ -161,22 +172,48 @@ fn mixed(seed: u64) -> Arc<Scene> {
 /// Of the receivers in reach of the light: what a list must hold, and what it may.
 #[test]
 fn lists_hold_each_caster_that_shades_a_receiver_and_no_stranger() {
-    let mut shading = 0;
-    for (seed, map_size) in [(3, 8), (1, 8), (2, 31), (3, 64), (4, 200), (5, 16)] {
-        let scene = mixed(seed);
-        let mut bench = Bench::new(&scene);
-        let mut executor = bench.executor("light_buffer", &[("map_size", map_size)], &CAPTURED);
-        let report = frame(&bench.gpu, &mut executor, &CAPTURED);
-        shading += check_lists(&scene, map_size, &report);
+    for fit in FITS {
+        let mut shading = 0;
+        for (seed, map_size) in [(3, 8), (1, 8), (2, 31), (3, 64), (4, 200), (5, 16)] {
+            let scene = mixed(seed);
+            let mut bench = Bench::new(&scene);
+            let mut executor = bench.executor(fit, &[("map_size", map_size)], &CAPTURED);
+            let report = frame(&bench.gpu, &mut executor, &CAPTURED);
+            let grid = Grid::of(&report);
+            assert_eq!(grid.size, map_size);
+            shading += check_lists(&scene, &grid, &report);
+        }
+        assert!(shading > 10_000, "{fit}: {shading}");
     }
-    assert!(shading > 10_000, "{shading}");
+}
+
+/// As shaders/shared/light_buffer.wgsl has it.
+struct Grid {
+    first: DVec2,
+    scene_size: u32,
+    size: u32,
+}
+
+impl Grid {
+    fn of(report: &FrameReport) -> Self {
+        let [x, y, scene_size, size] = values(report, "grid")[..] else {
+            panic!("no grid of four words")
+        };
+        let number = |bits| f64::from(f32::from_bits(bits));
+        Self {
+            first: DVec2::new(number(x), number(y)),
+            scene_size: number(scene_size) as u32,
+            size,
+        }
+    }
 }
 
 /// Checks all lists; returns how many pairs of a receiver and a caster there were.
-fn check_lists(scene: &Scene, map_size: u32, report: &FrameReport) -> usize {
+fn check_lists(scene: &Scene, grid: &Grid, report: &FrameReport) -> usize {
     let (heads, entries) = (values(report, "lists"), values(report, "entries"));
     let (farthest, own) = (values(report, "farthest"), values(report, "primitive"));
-    let space = LightSpace::new(&scene.mesh, &scene.light, map_size);
+    let map_size = grid.size;
+    let space = LightSpace::new(&scene.mesh, &scene.light, grid.scene_size);
     let casters = (0..scene.mesh.triangles.len() as u32).map(|primitive| TexelTriangle {
         corners: scene.mesh.corners(primitive).map(|p| space.texel(p)),
     });
@@ -200,6 +237,7 @@ fn check_lists(scene: &Scene, map_size: u32, report: &FrameReport) -> usize {
             (texel as u32 % map_size).into(),
             (texel as u32 / map_size).into(),
         );
+        let place = grid.first + place;
         let farthest = f64::from(f32::from_bits(farthest[texel]));
         for &primitive in list {
             let caster = &casters[primitive as usize];
@@ -230,7 +268,13 @@ fn check_lists(scene: &Scene, map_size: u32, report: &FrameReport) -> usize {
         if border < SLACK {
             continue;
         }
-        let texel = at.y as usize * map_size as usize + at.x as usize;
+        let place = at.truncate() - grid.first;
+        assert!(place.min_element() > 0.0, "{position} is outside");
+        assert!(
+            place.max_element() < map_size.into(),
+            "{position} is outside"
+        );
+        let texel = place.y as usize * map_size as usize + place.x as usize;
         for (primitive, caster) in (0u32..).zip(&casters) {
             if primitive != own && depth_at(caster, at.truncate()).is_some_and(|z| z < at.z) {
                 shading += 1;
@@ -275,8 +319,13 @@ fn answers_are_those_of_rays_whatever_the_map() {
         let scene = mixed(seed);
         let mut bench = Bench::new(&scene);
         let rays = bench.by_rays();
-        for map_size in [8, 13, 64, 300] {
-            let lists = bench.by_lists(&[("map_size", map_size)]);
+        for (fit, map_size) in [
+            ("scene", 8),
+            ("receivers", 13),
+            ("scene", 64),
+            ("receivers", 300),
+        ] {
+            let lists = bench.by_lists(fit, &[("map_size", map_size)]);
             assert!(lists.visibility == rays, "scene {seed}, map {map_size}");
             assert_eq!(lists.uncertain, 0, "scene {seed}, map {map_size}");
             (lit, shadow) = (lit + lists.lit, shadow + lists.shadow);
@@ -293,8 +342,9 @@ fn what_has_no_room_is_a_ray() {
     let scene = mixed(2);
     let mut bench = Bench::new(&scene);
     let rays = bench.by_rays();
-    let with =
-        |bench: &mut Bench, most: u32| bench.by_lists(&[("map_size", 64), ("max_entries", most)]);
+    let with = |bench: &mut Bench, most: u32| {
+        bench.by_lists("receivers", &[("map_size", 64), ("max_entries", most)])
+    };
     let needed = with(&mut bench, 65_536).entries;
     assert!(needed < 65_536, "{needed}");
     for (most, is_short) in [
@@ -320,7 +370,7 @@ fn a_list_that_is_too_long_to_look_at_is_a_ray() {
     let rays = bench.by_rays();
     let mut before = usize::MAX;
     for longest in [0, 1, 4, 16] {
-        let lists = bench.by_lists(&[("map_size", 16), ("longest_list", longest)]);
+        let lists = bench.by_lists("receivers", &[("map_size", 16), ("longest_list", longest)]);
         assert!(lists.visibility == rays, "{longest}");
         assert!(
             (1..before).contains(&lists.uncertain),
@@ -338,9 +388,9 @@ fn a_crowded_texel_is_exact_and_takes_no_more_room_than_others() {
     let scene = scene(crowd, DVec3::new(0.3, 1.2, 0.9), DVec3::NEG_Y);
     let mut bench = Bench::new(&scene);
     let rays = bench.by_rays();
-    for (map_size, longest) in [(8, 64), (8, 4096), (64, 512)] {
+    for (map_size, longest) in [(8, 64), (8, 2048), (64, 512)] {
         let params = [("map_size", map_size), ("longest_list", longest)];
-        let lists = bench.by_lists(&params);
+        let lists = bench.by_lists("scene", &params);
         assert!(lists.visibility == rays, "map {map_size}, {longest}");
         assert!(lists.uncertain > 1000, "{}", lists.uncertain);
         assert!(lists.entries <= longest * map_size * map_size);
@@ -349,11 +399,11 @@ fn a_crowded_texel_is_exact_and_takes_no_more_room_than_others() {
 
 #[test]
 fn lists_are_exact_before_and_after_they_have_grown() {
-    let scene = scene(crowd(0.6), DVec3::new(0.3, 1.2, 0.9), DVec3::NEG_Y);
+    let scene = scene(crowd(0.8), DVec3::new(0.3, 1.2, 0.9), DVec3::NEG_Y);
     let mut bench = Bench::new(&scene);
     let rays = bench.by_rays();
-    let params = [("map_size", 362), ("longest_list", 4096)];
-    let mut executor = bench.executor("light_buffer", &params, &[]);
+    let params = [("map_size", 362), ("longest_list", 2048)];
+    let mut executor = bench.executor("scene", &params, &[]);
     let first = bench.answer(&mut executor);
     assert!(first.visibility == rays);
     assert!(first.entries > 65_536, "{}", first.entries);
@@ -372,26 +422,83 @@ fn a_triangle_over_a_million_texels_is_shared_out() {
     let scene = scene(sheet, DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.3, -1.0, 0.2));
     let mut bench = Bench::new(&scene);
     let rays = bench.by_rays();
-    let lists = bench.by_lists(&[("map_size", 2048)]);
+    let lists = bench.by_lists("scene", &[("map_size", 2048)]);
     assert!(lists.visibility == rays);
     assert_eq!(lists.uncertain, 0);
+}
+
+/// The window is no larger than its receivers need, unless f32 ends the map.
+#[test]
+fn the_grid_is_laid_over_the_receivers() {
+    let mut narrower = 0;
+    for seed in 0..12 {
+        let mut scene = (*mixed(seed)).clone();
+        scene.views[0].fov_y_degrees = 10.0;
+        let mut bench = Bench::new(&Arc::new(scene.clone()));
+        let mut executor = bench.executor("receivers", &[("map_size", 100)], &["grid", "position"]);
+        let report = frame(&bench.gpu, &mut executor, &["grid", "position"]);
+        let grid = Grid::of(&report);
+        let space = LightSpace::new(&scene.mesh, &scene.light, grid.scene_size);
+        let positions = report
+            .readbacks
+            .iter()
+            .find(|found| found.name == "position");
+        let positions = positions.unwrap().content.as_f32().unwrap();
+        let facing = positions
+            .chunks_exact(4)
+            .filter(|receiver| receiver[3] > 0.0);
+        let places = facing.map(|receiver| {
+            let place = space.texel(Vec3::from_slice(receiver).as_dvec3());
+            place.truncate() - grid.first
+        });
+        let (low, high) = places.fold((DVec2::MAX, DVec2::MIN), |(low, high), place| {
+            (low.min(place), high.max(place))
+        });
+        assert!(
+            low.min_element() >= 0.0 && high.max_element() < 100.0,
+            "{low} {high}"
+        );
+        assert!(
+            (high - low).max_element() > 90.0,
+            "scene {seed}: {low} {high}"
+        );
+        narrower += u32::from(grid.scene_size > 120);
+    }
+    assert!(narrower > 3, "{narrower}");
+}
+
+/// Where f32 cannot place a receiver in as many texels, there are fewer, and no rays.
+#[test]
+fn far_from_the_origin_the_grid_is_coarser() {
+    let scene = moved(&mixed(4), 1e3);
+    let mut bench = Bench::new(&scene);
+    let rays = bench.by_rays();
+    for fit in FITS {
+        let params = [("map_size", 2048)];
+        let mut executor = bench.executor(fit, &params, &["grid"]);
+        let grid = Grid::of(&frame(&bench.gpu, &mut executor, &["grid"]));
+        assert!((4..200).contains(&grid.scene_size), "{}", grid.scene_size);
+        let lists = bench.by_lists(fit, &params);
+        assert!(lists.visibility == rays);
+        assert_eq!(lists.uncertain, 0);
+    }
+}
+
+/// So much farther from the origin than it is wide.
+fn moved(scene: &Scene, by: f32) -> Arc<Scene> {
+    let mut scene = scene.clone();
+    let positions = &mut scene.mesh.positions;
+    positions.iter_mut().for_each(|position| *position += by);
+    scene.views[0].eye += f64::from(by);
+    Arc::new(scene)
 }
 
 /// Texels as large as half a texel's rounding: where a receiver's texel is not certain, a ray is.
 #[test]
 fn far_from_the_origin_rays_answer() {
-    let mut far = mixed(4).mesh.clone();
-    far.positions
-        .iter_mut()
-        .for_each(|position| *position += Vec3::splat(4e5));
-    let mut bench = {
-        let mut scene =
-            (*scene(far, DVec3::new(1.5, 2.5, 3.0), DVec3::new(0.3, -1.0, 0.2))).clone();
-        scene.views[0].eye += DVec3::splat(4e5);
-        Bench::new(&Arc::new(scene))
-    };
+    let mut bench = Bench::new(&moved(&mixed(4), 4e5));
     let rays = bench.by_rays();
-    let lists = bench.by_lists(&[("map_size", 2048)]);
+    let lists = bench.by_lists("scene", &[("map_size", 2048)]);
     assert!(lists.visibility == rays);
     assert_eq!((lists.lit, lists.shadow), (0, 0), "of {}", lists.uncertain);
     assert!(lists.uncertain > 100);

@@ -4,6 +4,16 @@
 
 #import "shared/light_triangle.wgsl"
 
+// The grid is a square window of a map over all of the scene, in whose texels coordinates are.
+struct Grid {
+    // The window's first texel, whole numbers.
+    first: vec2<f32>,
+    // Edge of the map over the scene, texels.
+    scene_size: f32,
+    // Edge of the window, texels.
+    size: u32,
+}
+
 // One caster in the list of a texel.
 struct Entry {
     // Number of the next entry; LIST_END after the last one, LIST_FULL where a caster is missing.
@@ -23,15 +33,18 @@ struct Part {
     first_tile: u32,
 }
 
-// Edge of a tile, texels. A tile keeps the farthest depth of its texels.
+// Edge of a tile, texels. Behind the texels' depths in `farthest`, a tile has three words: the
+// farthest depth of its texels, and a bit for each of them, row by row, that somebody is in.
 const TILE: u32 = 8u;
 
 // Where a receiver is in the grid.
 struct Place {
-    // Number of its texel; NO_TEXEL if it is outside, or rounding may move it too far.
+    // Number of its texel; NO_TEXEL if it is outside the window, or rounding may move it too far.
     texel: u32,
-    // Number of its tile, which stands behind the texels.
+    // Of its tile, the number of the first word.
     tile: u32,
+    // Of its texel in the tile.
+    bit: u32,
     // Bits of its depth, an f32 above 0. What is farther from the light does not shade it.
     depth: u32,
     // Relative to the texel's centre.
@@ -40,24 +53,35 @@ struct Place {
 
 const NO_TEXEL: u32 = 0xffffffffu;
 
-fn tile_number(tile: vec2<u32>, map_size: u32) -> u32 {
-    return map_size * map_size + tile.y * ((map_size + TILE - 1u) / TILE) + tile.x;
+// In `farthest`: of a texel of the window, and of the first word of a tile.
+fn texel_number(texel: vec2<u32>, grid: Grid) -> u32 {
+    return texel.y * grid.size + texel.x;
 }
 
-fn place_of(receiver: vec3<f32>, map_size: u32) -> Place {
-    let at = light_texel(receiver, f32(map_size));
+fn tile_number(tile: vec2<u32>, grid: Grid) -> u32 {
+    let columns = (grid.size + TILE - 1u) / TILE;
+    return grid.size * grid.size + 3u * (tile.y * columns + tile.x);
+}
+
+fn place_of(receiver: vec3<f32>, grid: Grid) -> Place {
+    let at = light_texel(receiver, grid.scene_size);
     let error = light_space_error_bound(receiver);
-    let inside = all(at.xy >= vec2(0.0)) && all(at.xy < vec2(f32(map_size)));
+    let inside = all(at.xy >= grid.first) && all(at.xy < grid.first + f32(grid.size));
     // Half of the slack is for rounding, half for the tracer, to whom a point so near an edge may
     // be on it. NaN is not inside.
-    if !(inside && error.x * f32(map_size) <= 0.5 * SLACK && abs(at.z) <= 2.0) {
-        return Place(NO_TEXEL, 0u, 0u, vec2(0.0));
+    if !(inside && error.x * grid.scene_size <= 0.5 * SLACK && abs(at.z) <= 2.0) {
+        return Place(NO_TEXEL, 0u, 0u, 0u, vec2(0.0));
     }
-    let texel = vec2<u32>(at.xy);
+    let texel = vec2<u32>(at.xy) - vec2<u32>(grid.first);
     // 0 says that nobody is there.
     let depth = max(depth_bits(at.z + error.y), 1u);
-    let number = texel.y * map_size + texel.x;
-    return Place(number, tile_number(texel / TILE, map_size), depth, fract(at.xy) - 0.5);
+    return Place(
+        texel_number(texel, grid),
+        tile_number(texel / TILE, grid),
+        texel.y % TILE * TILE + texel.x % TILE,
+        depth,
+        fract(at.xy) - 0.5,
+    );
 }
 
 // In the order of the depths; of -0, too.

@@ -60,35 +60,64 @@ fn inward_distances(triangle: LightTriangle, point: vec2<f32>) -> vec3<f32> {
 // A triangle lower than this, in texels, has no plane to speak of.
 const LOWEST: f32 = 0.125;
 
-// Depth of the triangle in the texel around `centre`: of its plane at the centre (`depth: plane`),
-// or a bound on its nearest (`end` = NEAREST) or farthest point in the texel: z_c -+ (|dz/dx| +
-// |dz/dy|) / 2, within the depths of its corners.
-fn texel_depth(triangle: LightTriangle, centre: vec2<f32>, depth: u32, end: f32) -> f32 {
+// The depths of a triangle over the map.
+struct DepthPlane {
+    // A corner.
+    corner: vec3<f32>,
+    // dz/dx and dz/dy.
+    slope: vec2<f32>,
+    // What a square is taken wider for, for rounding, in texels on each side; negative if only the
+    // depths of the corners tell.
+    margin: f32,
+    // Of the corners.
+    least: f32,
+    greatest: f32,
+}
+
+fn depth_plane(triangle: LightTriangle) -> DepthPlane {
     let depths = vec3(triangle.a.z, triangle.b.z, triangle.c.z);
     let least = min(depths.x, min(depths.y, depths.z));
     let greatest = max(depths.x, max(depths.y, depths.z));
-    let extreme = select(least, greatest, end > 0.0);
+    if triangle.area == 0.0 {
+        return DepthPlane(triangle.a, vec2(0.0), -1.0, least, greatest);
+    }
     let p = triangle.b - triangle.a;
     let q = triangle.c - triangle.a;
-    if triangle.area == 0.0 {
-        return saturate(extreme);
-    }
     let slope = vec2(p.z * q.y - q.z * p.y, q.z * p.x - p.z * q.x) / triangle.area;
-    let plane = triangle.a.z + dot(slope, centre - triangle.a.xy);
     let side = triangle.c.xy - triangle.b.xy;
     let longest = sqrt(max(dot(p.xy, p.xy), max(dot(q.xy, q.xy), dot(side, side))));
     let height = abs(triangle.area) / longest;
-    if depth == DEPTH_PLANE {
-        // A plane that is all but edge-on overflows.
-        return saturate(select(extreme, plane, abs(plane) < 3e38));
-    }
-    if !(height >= LOWEST) {
-        return saturate(extreme);
-    }
     // Corners that are off by the slack tilt the plane, the more so the lower the triangle; and the
     // area of a long one is a small difference of large products, 4 ulp of the longest edge's
     // square.
-    let half_width = 0.5 + SLACK * (1.0 + 2.0 / height) + 2.3841858e-7 * longest * longest / height;
-    let bound = plane + end * half_width * (abs(slope.x) + abs(slope.y));
-    return saturate(clamp(bound, least, greatest));
+    let margin = SLACK * (1.0 + 2.0 / height) + 2.3841858e-7 * longest * longest / height;
+    return DepthPlane(triangle.a, slope, select(-1.0, margin, height >= LOWEST), least, greatest);
+}
+
+fn plane_depth(plane: DepthPlane, point: vec2<f32>) -> f32 {
+    return plane.corner.z + dot(plane.slope, point - plane.corner.xy);
+}
+
+// A bound on the nearest (`end` = NEAREST) or farthest depth of the triangle in a square around
+// `centre`: z_c -+ (|dz/dx| + |dz/dy|) times half its width, within the depths of its corners.
+fn depth_bound(plane: DepthPlane, centre: vec2<f32>, half_width: f32, end: f32) -> f32 {
+    if plane.margin < 0.0 {
+        return saturate(select(plane.least, plane.greatest, end > 0.0));
+    }
+    let change = (half_width + plane.margin) * (abs(plane.slope.x) + abs(plane.slope.y));
+    let bound = plane_depth(plane, centre) + end * change;
+    return saturate(clamp(bound, plane.least, plane.greatest));
+}
+
+// Depth of the triangle in the texel around `centre`: of its plane at the centre (`depth: plane`),
+// or a bound over all of the texel.
+fn texel_depth(triangle: LightTriangle, centre: vec2<f32>, depth: u32, end: f32) -> f32 {
+    let plane = depth_plane(triangle);
+    if depth == DEPTH_CONSERVATIVE || triangle.area == 0.0 {
+        return depth_bound(plane, centre, 0.5, end);
+    }
+    // A plane that is all but edge-on overflows.
+    let at_centre = plane_depth(plane, centre);
+    let extreme = select(plane.least, plane.greatest, end > 0.0);
+    return saturate(select(extreme, at_centre, abs(at_centre) < 3e38));
 }

@@ -4,8 +4,12 @@
 #import "shared/ids.wgsl"
 
 var primitive: texture_2d<u32>;
-// The receiver of the pixel, where `scene_positions` are; w: dot(n, l).
+// The receiver of the pixel, where `scene_positions` are; w: dot(n, l), 0 where there is none.
 var position: texture_2d<f32>;
+
+fn faces_light(receiver: vec4<f32>) -> bool {
+    return receiver.w > 0.0;
+}
 
 // The status before any map lookup or ray: STATUS_UNCERTAIN where the `receiver` (of `position`)
 // faces the light.
@@ -13,5 +17,5 @@ fn initial_status(pixel: vec2<u32>, receiver: vec4<f32>) -> u32 {
     if textureLoad(primitive, pixel, 0).x == NO_PRIMITIVE {
         return STATUS_BACKGROUND;
     }
-    return select(STATUS_FACING_AWAY, STATUS_UNCERTAIN, receiver.w > 0.0);
+    return select(STATUS_FACING_AWAY, STATUS_UNCERTAIN, faces_light(receiver));
 }

@@ -1,7 +1,7 @@
 // Stage to append each caster to the lists of the texels that it overlaps and in which some
 // receiver is not nearer to the light. `whole`: one thread per triangle, which leaves those over
 // many tiles to `parts`: one workgroup per part of a large one, whose threads take its tiles in
-// turns. So no thread looks at more than 4,096 texels, however large a triangle is.
+// turns. So no thread looks at more than 2,048 texels, however large a triangle is.
 
 #import "shared/groups.wgsl"
 #import "shared/light_buffer.wgsl"
@@ -39,7 +39,7 @@ var<storage, read_write> large_groups: array<atomic<u32>, 3>;
 // Tiles under the box of a triangle that one thread does alone.
 const ALONE: u32 = 32u;
 // Tiles of a part.
-const PART: u32 = 4096u;
+const PART: u32 = 2048u;
 
 struct Caster {
     primitive: u32,

@@ -63,3 +63,20 @@ pub(crate) fn in_disc(point: DVec3, light: DVec3, [x, y, z]: [f64; 3], radius: f
     let inside = |met: DVec2| radius - met.distance(DVec2::new(x, z));
     at_height(point, light, y).map_or(f64::NEG_INFINITY, inside)
 }
+
+/// Inside a triangle.
+pub(crate) fn in_triangle(point: DVec3, light: DVec3, corners: [[f32; 3]; 3]) -> f64 {
+    let [a, b, c] = corners.map(|corner| glam::Vec3::from(corner).as_dvec3());
+    let normal = (b - a).cross(c - a);
+    let t = normal.dot(point - a) / normal.dot(light);
+    // A point of the plane itself is no further from it than rounding.
+    if t * light.length() <= 1e-9 || t.is_nan() {
+        return f64::NEG_INFINITY;
+    }
+    let met = point - light * t;
+    let inward = normal.normalize();
+    [(a, b), (b, c), (c, a)]
+        .map(|(from, to)| inward.dot((to - from).normalize().cross(met - from)))
+        .into_iter()
+        .fold(f64::INFINITY, f64::min)
+}

@@ -9,6 +9,7 @@ mod case;
 mod catalogue;
 mod fences;
 mod light;
+mod lists;
 mod map;
 mod plain;
 mod rounding;

@@ -292,6 +292,7 @@ fn one() -> Arc<Scene> {
         fov_y_degrees: 60.0,
         near: 0.5,
         far: 10.0,
+        light: None,
     };
     Arc::new(Scene {
         name: "one".into(),

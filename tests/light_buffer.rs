@@ -28,6 +28,7 @@ fn scene(mesh: Mesh, eye: DVec3, light: DVec3) -> Arc<Scene> {
         fov_y_degrees: 50.0,
         near: 0.05,
         far: 50.0,
+        light: None,
     };
     Arc::new(Scene {
         name: "test".into(),

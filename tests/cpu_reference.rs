@@ -211,6 +211,7 @@ fn hard() -> Arc<Scene> {
         fov_y_degrees: 50.0,
         near: 0.5,
         far: 50.0,
+        light: None,
     };
     Arc::new(Scene {
         name: "hard".into(),

@@ -24,6 +24,7 @@ fn scene(mesh: Mesh, eye: DVec3, target: DVec3, far: f64, direction: DVec3) -> A
             fov_y_degrees: 50.0,
             near: 0.01 * (target - eye).length(),
             far,
+            light: None,
         }],
         light: DirectionalLight { direction },
     })

@@ -16,6 +16,7 @@ use std::{path::Path, sync::Arc};
 use support::{
     graphs::{frame, open, provider, values},
     meshes,
+    scenes::load,
 };
 use wgpu::util::DeviceExt;
 
@@ -281,6 +282,7 @@ fn one() -> Arc<Scene> {
         fov_y_degrees: 60.0,
         near: 0.5,
         far: 10.0,
+        light: None,
     };
     Arc::new(Scene {
         name: "one".into(),

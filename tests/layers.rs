@@ -34,6 +34,7 @@ fn scene(mesh: Mesh, direction: DVec3) -> Arc<Scene> {
             fov_y_degrees: 60.0,
             near: 0.1,
             far: 100.0,
+            light: None,
         }],
         light: DirectionalLight { direction },
     })
@@ -393,7 +394,7 @@ impl Provider for OtherLight {
 fn what_crosses_the_near_plane_still_casts() {
     let mesh = one_above_floor([[-4.0, 1.0, -4.0], [4.0, 5.0, -4.0], [0.0, 3.0, 4.0]]);
     let scene = scene(mesh, STRAIGHT_DOWN);
-    let mut light = LightUniform::new(&scene);
+    let mut light = LightUniform::new(&scene.light, &scene.mesh);
     // The near plane moves into the caster, from the top of the scene to its middle.
     light.clip_from_relative.w_axis.z -= 0.5;
     for preset in ["crsm", "crsma", "crsma_full", "crsm_depth"] {
@@ -419,7 +420,7 @@ fn receivers_outside_the_map_are_uncertain() {
     let mesh = one_above_floor([[-2.0, 2.0, -2.0], [2.0, 2.0, -2.0], [0.0, 2.0, 2.0]]);
     let scene = scene(mesh, STRAIGHT_DOWN);
     let judge_under = |preset: &str, zoom: f32, aside: f32| {
-        let mut light = LightUniform::new(&scene);
+        let mut light = LightUniform::new(&scene.light, &scene.mesh);
         let zoomed = glam::Mat4::from_scale(Vec3::new(zoom, zoom, 1.0));
         let moved = glam::Mat4::from_translation(Vec3::new(aside, 0.0, 0.0));
         light.clip_from_relative = moved * zoomed * light.clip_from_relative;

@@ -28,6 +28,7 @@ fn scene(mesh: Mesh, eye: DVec3, light: DVec3) -> Arc<Scene> {
         fov_y_degrees: 50.0,
         near: 0.05,
         far: 50.0,
+        light: None,
     };
     Arc::new(Scene {
         name: "test".into(),
@@ -76,6 +77,7 @@ fn crowd(spread: f32) -> Mesh {
 struct Bench {
     gpu: Gpu,
     provider: SceneProvider,
+    viewport: [u32; 2],
 }
 
 const FITS: [&str; 2] = ["scene", "receivers"];
@@ -91,15 +93,20 @@ const CAPTURED: [&str; 6] = [
 
 impl Bench {
     fn new(scene: &Arc<Scene>) -> Self {
+        Self::of(scene, VIEWPORT)
+    }
+
+    fn of(scene: &Arc<Scene>, viewport: [u32; 2]) -> Self {
         Self {
             gpu: open(),
-            provider: provider(scene, &scene.views[0], VIEWPORT),
+            provider: provider(scene, &scene.views[0], viewport),
+            viewport,
         }
     }
 
     fn executor(&mut self, fit: &str, params: &[(&str, u32)], captured: &[&str]) -> Executor {
         let path = "pipelines/light_buffer.ron";
-        let plan = plan(path, &self.provider, VIEWPORT, |request| {
+        let plan = plan(path, &self.provider, self.viewport, |request| {
             let fit = ParamValue::Choice(fit.to_owned());
             request.params.insert("fit".to_owned(), fit);
             for (name, value) in params {
@@ -117,7 +124,7 @@ impl Bench {
 
     /// Visibility of every pixel by rays alone.
     fn by_rays(&mut self) -> Vec<u32> {
-        let plan = plan("pipelines/rt.ron", &self.provider, VIEWPORT, |_| {});
+        let plan = plan("pipelines/rt.ron", &self.provider, self.viewport, |_| {});
         let report = run_on(&self.gpu, plan, &mut self.provider, &["visibility"]);
         values(&report, "visibility")
     }
@@ -425,6 +432,19 @@ fn a_triangle_over_a_million_texels_is_shared_out() {
     let lists = bench.by_lists("scene", &[("map_size", 2048)]);
     assert!(lists.visibility == rays);
     assert_eq!(lists.uncertain, 0);
+}
+
+/// Whose texels are decided by rounding: the grid of the hard case is that over its scene.
+#[test]
+fn receivers_on_texel_corners_are_right() {
+    let case = skiagraph_cases::case("receivers_on_texel_corners").unwrap();
+    let mut bench = Bench::of(&Arc::new(case.scene()), [128, 128]);
+    let rays = bench.by_rays();
+    for map_size in [128, 256] {
+        let lists = bench.by_lists("scene", &[("map_size", map_size)]);
+        assert!(lists.visibility == rays, "map {map_size}");
+        assert_eq!(lists.uncertain, 0);
+    }
 }
 
 /// The window is no larger than its receivers need, unless f32 ends the map.

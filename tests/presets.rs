@@ -47,6 +47,7 @@ fn scene() -> Arc<Scene> {
         fov_y_degrees: 50.0,
         near: 0.5,
         far: 50.0,
+        light: None,
     };
     Arc::new(Scene {
         name: "box".into(),

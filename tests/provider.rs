@@ -8,7 +8,7 @@ use skiagraph_graph::{
     Describe, Graph, LayeredSources, ParamValue, PlanRequest, Provided, ProvidedBinding, Sources,
 };
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
-use skiagraph_scene::{DirectionalLight, Mesh, Scene, SceneLibrary, SceneRequest};
+use skiagraph_scene::{DirectionalLight, Mesh, Scene, SceneLibrary, SceneRequest, View};
 use std::sync::Arc;
 use support::{
     graphs::{self, open},
@@ -112,17 +112,19 @@ impl Sources for Cached {
     }
 }
 
+fn park() -> Scene {
+    let request = SceneRequest {
+        argument: "park".to_owned(),
+        obj: None,
+    };
+    SceneLibrary::default().load(&request).unwrap().0
+}
+
 /// A pass runs again if what it depends on has changed, and no other pass does.
 #[test]
 fn a_new_camera_renews_what_depends_on_the_camera() {
     let gpu = open();
-    let (scene, _) = SceneLibrary::default()
-        .load(&SceneRequest {
-            argument: "park".to_owned(),
-            obj: None,
-        })
-        .unwrap();
-    let scene = Arc::new(scene);
+    let scene = Arc::new(park());
     let viewport = [48, 32];
     let sources = LayeredSources(vec![Box::new(Cached), Box::new(EmbeddedSources)]);
     let graph = Graph::load("pipelines/nsm.ron", &registry(), &sources)
@@ -190,4 +192,70 @@ fn a_new_camera_renews_what_depends_on_the_camera() {
     }
     executor.touch("light").unwrap();
     assert_eq!(next(&mut executor).skipped, ["gbuffer.primitive"]);
+}
+
+/// Everything that depends on the light follows a view that has one of its own, also if it is used
+/// with executors that are there already.
+#[test]
+fn a_view_with_its_own_light_is_drawn_as_its_scene_would_be_under_that_light() {
+    let gpu = open();
+    let viewport = [48, 32];
+    let mut scene = park();
+    let own = DirectionalLight {
+        direction: DVec3::new(-0.4, -0.8, 0.3),
+    };
+    scene.views[3].light = Some(own);
+    let under_it = Arc::new(Scene {
+        light: own,
+        ..scene.clone()
+    });
+    let scene = Arc::new(scene);
+    let engine = |name: &str| ("engine", ParamValue::Choice(name.into()));
+    for (preset, params) in [
+        ("nsm", vec![]),
+        ("light_buffer", vec![]),
+        ("rt", vec![engine("light_space")]),
+    ] {
+        let path = format!("pipelines/{preset}.ron");
+        let graph = Graph::load(&path, &registry(), &EmbeddedSources)
+            .unwrap_or_else(|errors| panic!("{errors}"));
+        let start = |provider: &mut SceneProvider| {
+            let mut request = PlanRequest::new(viewport, provider);
+            for (name, value) in &params {
+                request.params.insert((*name).to_owned(), value.clone());
+            }
+            let plan = graph
+                .plan(&request)
+                .unwrap_or_else(|errors| panic!("{errors}"));
+            Executor::new(&gpu.device, &gpu.queue, plan, provider).unwrap()
+        };
+        let next = |executor: &mut Executor| {
+            let report = graphs::frame(&gpu, executor, &["visibility", "status"]);
+            report.readbacks
+        };
+        let of = |scene: &Arc<Scene>| {
+            let mut provider = graphs::provider(scene, &scene.views[3], viewport);
+            next(&mut start(&mut provider))
+        };
+        let expected = of(&under_it);
+        assert_eq!(of(&scene), expected, "{preset}");
+
+        let mut provider = graphs::provider(&scene, &scene.views[0], viewport);
+        let mut executor = start(&mut provider);
+        let first = next(&mut executor);
+        for (view, expected) in [(3, &expected), (0, &first), (3, &expected)] {
+            provider.set_view(&scene.views[view], viewport);
+            executor.refresh(&mut provider).unwrap();
+            assert_eq!(next(&mut executor), *expected, "{preset}, view {view}");
+        }
+        provider.set_view(
+            &View {
+                light: None,
+                ..scene.views[3].clone()
+            },
+            viewport,
+        );
+        executor.refresh(&mut provider).unwrap();
+        assert_ne!(next(&mut executor), expected, "{preset}: the scene's light");
+    }
 }

@@ -57,6 +57,7 @@ fn f32_stays_within_the_bounds() {
             fov_y_degrees: 60.0,
             near: 1.0,
             far: 1e4,
+            light: None,
         };
         let camera = view.camera([640, 480]);
         let light = vector(1.0).normalize();

@@ -453,6 +453,37 @@ fn a_resumed_comparison_is_the_one_in_one_go() {
     );
 }
 
+/// `rt` is judged under the light that it has drawn with, and a run of another light is not kept.
+#[test]
+fn a_views_own_light_is_drawn_judged_and_remembered() {
+    let folder = tempfile::tempdir().unwrap();
+    let compare = |light: &str, rest: &str| {
+        let scene = format!(
+            r#"(format: 1, name: "s", mesh: Generated("park"), light: (direction: (1, -1, 0)),
+            views: [(name: "a", eye: (-23.277, 18.541, 30.143), direction: (0.397, -0.645, -0.652),
+                fov_y_degrees: 60, near: 1, far: 400{light})])"#
+        );
+        fs::write(folder.path().join("s.ron"), scene).unwrap();
+        let line = format!(
+            "compare rt --scene s.ron --size 48x48 --frames 1 --warmup 0 --images none --out out \
+             {rest}"
+        );
+        let output = skiagraph(folder.path(), &line);
+        let run = results(&folder.path().join("out"))["runs"][0].clone();
+        let wrong = &run["wrong"];
+        assert_eq!(wrong["total"], wrong["in_band"], "{light}");
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        (count(&run["pixels"]["shadow"]), text)
+    };
+    let (of_scene, _) = compare("", "");
+    let (own, text) = compare(", light: (direction: (-1, -0.3, 0.2))", "--resume");
+    assert!(text.contains("0 of 1 runs are kept"), "{text}");
+    assert!(own > 0 && own != of_scene, "{own} shadow pixels");
+    let (same, text) = compare(", light: (direction: (-1, -0.3, 0.2))", "--resume");
+    assert!(text.contains("1 of 1 runs are kept"), "{text}");
+    assert_eq!(same, own);
+}
+
 #[test]
 fn a_document_holds_what_was_measured_and_needs_no_pictures() {
     let folder = tempfile::tempdir().unwrap();

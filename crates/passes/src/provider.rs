@@ -7,7 +7,9 @@ use crate::{
 };
 use skiagraph_gpu::{Provider, ProviderError};
 use skiagraph_graph::{Describe, Provided, ProvidedBinding};
-use skiagraph_scene::{Adjacency, Bvh, BvhNode, LightSpace, LightSpaceNode, Scene, View};
+use skiagraph_scene::{
+    Adjacency, Bvh, BvhNode, DirectionalLight, LightSpace, LightSpaceNode, Scene, View,
+};
 use std::{collections::BTreeMap, sync::Arc};
 use wgpu::util::DeviceExt;
 
@@ -41,6 +43,9 @@ const NAMES: [&str; 12] = [
     LIGHT,
 ];
 
+/// What is built anew for another light.
+const OF_LIGHT: [&str; 3] = [LIGHT, LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES];
+
 /// Provides one scene under one view, on one device.
 ///
 /// | resource | content |
@@ -60,16 +65,19 @@ const NAMES: [&str; 12] = [
 ///
 /// What was built stays and is shared by all graphs that are executed with the same provider, which
 /// therefore belongs to the device that it was first used with;
-/// [`set_view`](SceneProvider::set_view) changes the one camera that they all see. wgpu binds no
-/// buffer of size zero: an array of an empty scene holds one zero item, its hierarchy one leaf
-/// around a triangle without area, which no ray hits; [`Describe::describe`] still says 0 items, so
-/// that nothing is drawn.
+/// [`set_view`](SceneProvider::set_view) changes the one camera that they all see, and the light if
+/// the view has one of its own. wgpu binds no buffer of size zero: an array of an empty scene holds
+/// one zero item, its hierarchy one leaf around a triangle without area, which no ray hits;
+/// [`Describe::describe`] still says 0 items, so that nothing is drawn.
 pub struct SceneProvider {
     scene: Arc<Scene>,
     camera: CameraUniform,
     /// How often the camera was set, and which of these is in its buffer.
     camera_version: u64,
     camera_uploaded: u64,
+    light: DirectionalLight,
+    /// How often the light was changed.
+    light_version: u64,
     buffers: BTreeMap<&'static str, wgpu::Buffer>,
     tlas: Option<wgpu::Tlas>,
     built: Vec<&'static str>,
@@ -77,9 +85,11 @@ pub struct SceneProvider {
 
 impl SceneProvider {
     /// Provides `scene`. Builds nothing; until [`set_view`](Self::set_view) the `camera` is all
-    /// zeros.
+    /// zeros, and the light is the scene's.
     pub fn new(scene: Arc<Scene>) -> Self {
         Self {
+            light: scene.light,
+            light_version: 0,
             scene,
             camera: CameraUniform::default(),
             camera_version: 0,
@@ -95,11 +105,17 @@ impl SceneProvider {
         &self.scene
     }
 
-    /// The camera of executors made from now on, and of others from their next
+    /// The camera and the light of executors made from now on, and of others from their next
     /// [`refresh`](skiagraph_gpu::Executor::refresh) on.
     pub fn set_view(&mut self, view: &View, viewport: [u32; 2]) {
         self.camera = CameraUniform::from(&view.camera(viewport));
         self.camera_version += 1;
+        let light = self.scene.light_of(view);
+        if light != self.light {
+            self.light = light;
+            self.light_version += 1;
+            self.buffers.retain(|name, _| !OF_LIGHT.contains(name));
+        }
     }
 
     /// Names of the resources that were built, in the order in which they first were.
@@ -189,8 +205,12 @@ impl SceneProvider {
         self.upload_items(BVH_PRIMITIVES, &bvh.primitives, device)
     }
 
+    fn light_uniform(&self) -> LightUniform {
+        LightUniform::new(&self.light, &self.scene.mesh)
+    }
+
     fn upload_light_space(&mut self, device: &wgpu::Device) -> Result<(), Error> {
-        let light = LightUniform::new(&self.scene);
+        let light = self.light_uniform();
         let space = LightSpace {
             direction: light.to_light,
             centre: light.centre,
@@ -231,7 +251,7 @@ impl SceneProvider {
             NORMAL_INDICES => self.upload_items(name, mesh.normal_indices.as_flattened(), device),
             ADJACENCY => self.upload_items(name, &Adjacency::new(mesh).opposite, device),
             CAMERA => self.upload_items(name, &[self.camera], device),
-            LIGHT => self.upload_items(name, &[LightUniform::new(&scene)], device),
+            LIGHT => self.upload_items(name, &[self.light_uniform()], device),
             BVH_NODES | BVH_PRIMITIVES => self.upload_hierarchy(device),
             LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.upload_light_space(device),
             _ => Ok(()),
@@ -310,10 +330,10 @@ impl Describe for SceneProvider {
 
 impl Provider for SceneProvider {
     fn version(&self, name: &str) -> u64 {
-        if name == CAMERA {
-            self.camera_version
-        } else {
-            0
+        match name {
+            CAMERA => self.camera_version,
+            _ if OF_LIGHT.contains(&name) => self.light_version,
+            _ => 0,
         }
     }
 

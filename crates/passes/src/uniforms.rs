@@ -2,7 +2,7 @@
 //! `light.wgsl` are laid out alike; a test compares both with what naga makes of them.
 
 use glam::{Mat3, Mat4, Vec3};
-use skiagraph_scene::{Camera, Scene};
+use skiagraph_scene::{Camera, DirectionalLight, Mesh};
 
 /// WGSL's `Camera`: a perspective camera, 80 bytes.
 #[repr(C)]
@@ -74,11 +74,10 @@ pub struct LightUniform {
 }
 
 impl LightUniform {
-    /// The light of `scene` over all corners of its mesh; an empty mesh counts as a point at the
-    /// origin.
-    pub fn new(scene: &Scene) -> Self {
-        let (min, max) = scene.mesh.bounds().unwrap_or((Vec3::ZERO, Vec3::ZERO));
-        let fit = scene.light.fit(scene.mesh.corner_positions());
+    /// The light over all corners of a mesh; an empty one counts as a point at the origin.
+    pub fn new(light: &DirectionalLight, mesh: &Mesh) -> Self {
+        let (min, max) = mesh.bounds().unwrap_or((Vec3::ZERO, Vec3::ZERO));
+        let fit = light.fit(mesh.corner_positions());
         let (min, max) = (min.as_dvec3(), max.as_dvec3());
         let centre = ((min + max) * 0.5).as_vec3();
         let to_relative = glam::DMat4::from_translation(centre.as_dvec3());
@@ -92,7 +91,7 @@ impl LightUniform {
         ) * half;
         Self {
             clip_from_relative,
-            to_light: scene.light.to_light().as_vec3(),
+            to_light: light.to_light().as_vec3(),
             // Doubled: receivers may lie a rounding outside of the box, and it costs nothing.
             max_distance: (2.0 * min.distance(max)) as f32,
             centre,

@@ -169,6 +169,7 @@ proptest! {
             fov_y_degrees: 60.0,
             near: 1e-3 * f64::from(scale),
             far: 1e3 * f64::from(scale),
+            light: None,
         };
         let camera = view.camera([40, 30]);
         let light = light(direction.0, direction.1, direction.2);

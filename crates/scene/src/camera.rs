@@ -1,5 +1,6 @@
 //! Views and the cameras they make on a given viewport.
 
+use crate::light::DirectionalLight;
 use glam::{DMat4, DVec3};
 
 /// A named view of a scene: a perspective camera without a viewport.
@@ -19,6 +20,8 @@ pub struct View {
     pub near: f64,
     /// Distance of the far plane, above `near`.
     pub far: f64,
+    /// Light under which this view is drawn instead of the scene's.
+    pub light: Option<DirectionalLight>,
 }
 
 /// A view on a viewport: orthonormal frame and extents, in f64.
@@ -65,7 +68,7 @@ impl View {
         }
     }
 
-    /// Whether a camera can be made of this view.
+    /// Whether a camera can be made of this view, and its light has a direction.
     ///
     /// # Errors
     /// What is wrong with it, naming the view.
@@ -110,7 +113,10 @@ impl View {
                 self.eye, self.fov_y_degrees, self.near, self.far
             ));
         }
-        Ok(())
+        self.light.map_or(Ok(()), |light| {
+            let named = |reason| format!("view {name:?}: {reason}");
+            light.check().map_err(named)
+        })
     }
 }
 
@@ -168,6 +174,7 @@ mod tests {
             fov_y_degrees: 60.0,
             near: 1.0,
             far: 2800.0,
+            light: None,
         };
         view.camera([40, 20])
     }

@@ -11,7 +11,7 @@ pub struct Scene {
     pub mesh: Mesh,
     /// At least one view; the first is the default.
     pub views: Vec<View>,
-    /// The light.
+    /// The light of all views that have none of their own.
     pub light: DirectionalLight,
 }
 
@@ -19,5 +19,10 @@ impl Scene {
     /// The view of that name, if the scene has one.
     pub fn view(&self, name: &str) -> Option<&View> {
         self.views.iter().find(|view| view.name == name)
+    }
+
+    /// The light under which a view is drawn.
+    pub fn light_of(&self, view: &View) -> DirectionalLight {
+        view.light.unwrap_or(self.light)
     }
 }

@@ -10,10 +10,11 @@
 //!     views: [(
 //!         name: "bench", eye: (-23, 18, 30), direction: (0.4, -0.6, -0.7),
 //!         fov_y_degrees: 60, near: 1, far: 400,
+//!         light: (direction: (0, -1, 0)), // without it: the scene's
 //!     )],
 //! )"#;
 //! let scene = skiagraph_scene::SceneFile::parse(text, "garden.ron")?;
-//! assert_eq!(scene.views[0].name, "bench");
+//! assert_eq!(scene.views[0].light.unwrap().direction, glam::DVec3::NEG_Y);
 //! # Ok::<(), skiagraph_scene::SceneError>(())
 //! ```
 
@@ -38,7 +39,7 @@ pub struct SceneFile {
     pub description: String,
     /// Where the triangles come from.
     pub mesh: MeshSource,
-    /// The light.
+    /// The light of all views that have none of their own.
     #[serde(deserialize_with = "light")]
     pub light: DirectionalLight,
     /// At least one view, no two of the same name.
@@ -100,6 +101,8 @@ struct ViewText {
     fov_y_degrees: f64,
     near: f64,
     far: f64,
+    #[serde(default, deserialize_with = "own_light")]
+    light: Option<DirectionalLight>,
 }
 
 fn y_axis() -> (f64, f64, f64) {
@@ -123,6 +126,7 @@ impl<'de> Deserialize<'de> for View {
             fov_y_degrees: text.fov_y_degrees,
             near: text.near,
             far: text.far,
+            light: text.light,
         };
         view.check().map_err(D::Error::custom)?;
         Ok(view)
@@ -149,11 +153,21 @@ fn generator<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Generator, D:
 }
 
 fn light<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DirectionalLight, D::Error> {
-    let light = DirectionalLight {
-        direction: LightText::deserialize(deserializer)?.direction.into(),
-    };
+    let light = any_light(deserializer)?;
     light.check().map_err(D::Error::custom)?;
     Ok(light)
+}
+
+/// That of a view, which checks it and says whose it is.
+fn own_light<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<DirectionalLight>, D::Error> {
+    any_light(deserializer).map(Some)
+}
+
+fn any_light<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DirectionalLight, D::Error> {
+    let direction = LightText::deserialize(deserializer)?.direction.into();
+    Ok(DirectionalLight { direction })
 }
 
 fn views<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<View>, D::Error> {

@@ -33,13 +33,33 @@ fn a_good_file() {
     );
     assert_eq!(scene.views[0].up, glam::DVec3::Y);
     assert_eq!(scene.light.to_light(), glam::DVec3::Y);
+    assert_eq!(scene.views[0].light, None);
+}
+
+#[test]
+fn a_view_may_have_a_light_of_its_own() {
+    let view = GOOD.lines().nth(6).unwrap();
+    let own = view
+        .replace("\"a\"", "\"b\"")
+        .replace("far: 100", "far: 100, light: (direction: (0, 0, 2))");
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("garden.ron");
+    fs::write(&file, GOOD.replace(view, &format!("{view}\n{own}"))).unwrap();
+    let (scene, _) = SceneLibrary::default().load(&request(&file)).unwrap();
+    let lights = ["a", "b"].map(|name| scene.light_of(scene.view(name).unwrap()).to_light());
+    assert_eq!(lights, [glam::DVec3::Y, glam::DVec3::NEG_Z]);
 }
 
 #[test]
 fn broken_files_are_explained_with_line_and_column() {
     assert_snapshot!(error("near: 1", "naer: 1"), @"garden.ron:7:78: Unexpected field named \
         `naer` in `View`, expected one of `name`, `eye`, `direction`, `up`, `fov_y_degrees`, \
-        `near`, or `far` instead");
+        `near`, `far`, or `light` instead");
+    let own_light = |text: &str| error("far: 100", &format!("far: 100, light: ({text})"));
+    assert_snapshot!(own_light("direction: (0, 0, 0)"), @"garden.ron:7:126: view \"a\": the \
+        light's direction [0, 0, 0] must be finite and longer than 0");
+    assert_snapshot!(own_light("towards: (0, 1, 0)"), @"garden.ron:7:105: Unexpected field named \
+        `towards` in `Light`, expected `direction` instead");
     assert_snapshot!(error("name: \"garden\",", ""), @"garden.ron:9:1: Unexpected missing field \
         named `name` in `SceneFile`");
     assert_snapshot!(error("format: 1", "format: 2"), @"garden.ron:2:13: format 2 is unknown; \

@@ -85,6 +85,7 @@ pub fn placeholder(viewport: [u32; 2]) -> SceneProvider {
         fov_y_degrees: 60.0,
         near: 0.1,
         far: 10.0,
+        light: None,
     };
     let mesh = Mesh {
         positions: [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]

@@ -225,7 +225,8 @@ impl<'a> Comparison<'a> {
         let ids = primary.ids(self.setup.gpu, viewport, &mut self.provider)?;
         step.end();
         let (camera, mode) = (view.camera(viewport), self.args.oracle);
-        let reference = shade_with_progress(oracle, &camera, &scene.light, &ids, mode, &what)?;
+        let light = scene.light_of(view);
+        let reference = shade_with_progress(oracle, &camera, &light, &ids, mode, &what)?;
         if let Some(folder) = self.pictures() {
             save_reference(folder, &view.name, &reference)?;
         }

@@ -214,7 +214,7 @@ impl HardCaseContext<'_> {
         shade(
             &oracle,
             &view.camera(self.viewport),
-            &scene.light,
+            &scene.light_of(view),
             &ids,
             OracleMode::Exact,
             &|_| (),

@@ -95,6 +95,7 @@ fn obj_setup(args: &SceneArgs) -> Result<Option<ObjSetup>, CliError> {
             fov_y_degrees: args.fov.unwrap_or(60.0),
             near: args.near.unwrap_or(far / NEAR_TO_FAR),
             far,
+            light: None,
         },
         light: DirectionalLight { direction: light },
         quads: QuadDiagonal::default(),

@@ -4,6 +4,7 @@ mod support;
 
 use glam::Vec3;
 use skiagraph_graph::ParamValue;
+use skiagraph_scene::Scene;
 use std::sync::Arc;
 use support::{
     bench::Bench,

@@ -1,5 +1,5 @@
-// Stage to lay the grid over the receivers, or over the scene if no box of theirs is known; a single
-// thread.
+// Stage to lay the grid over the receivers, or over the scene if no box of theirs is known; a
+// single thread.
 
 #import "shared/light_buffer.wgsl"
 

@@ -4,8 +4,8 @@
 #import "shared/receiver.wgsl"
 #import "shared/light_triangle.wgsl"
 
-// Bits of f32 from 0 to 1, which are in the order of the numbers: the greatest x, y, 1 - x and 1 - y
-// in shares of the scene's edge. All 0 if there is no receiver.
+// Bits of f32 from 0 to 1, which are in the order of the numbers: the greatest x, y, 1 - x and
+// 1 - y in shares of the scene's edge. All 0 if there is no receiver.
 var<storage, read_write> receiver_box: array<atomic<u32>, 4>;
 
 @compute @workgroup_size(8, 8)

@@ -181,7 +181,7 @@ fn mixed(seed: u64) -> Arc<Scene> {
 fn lists_hold_each_caster_that_shades_a_receiver_and_no_stranger() {
     for fit in FITS {
         let mut shading = 0;
-        for (seed, map_size) in [(3, 8), (1, 8), (2, 31), (3, 64), (4, 200), (5, 16)] {
+        for (seed, map_size) in [(3, 8), (1, 8), (2, 31), (3, 64), (4, 150), (5, 16)] {
             let scene = mixed(seed);
             let mut bench = Bench::new(&scene);
             let mut executor = bench.executor(fit, &[("map_size", map_size)], &CAPTURED);
@@ -407,7 +407,7 @@ fn a_crowded_texel_is_exact_and_takes_no_more_room_than_others() {
 #[test]
 fn lists_are_exact_before_and_after_they_have_grown() {
     let scene = scene(crowd(0.8), DVec3::new(0.3, 1.2, 0.9), DVec3::NEG_Y);
-    let mut bench = Bench::new(&scene);
+    let mut bench = Bench::of(&scene, [256, 192]);
     let rays = bench.by_rays();
     let params = [("map_size", 362), ("longest_list", 2048)];
     let mut executor = bench.executor("scene", &params, &[]);
@@ -427,9 +427,9 @@ fn lists_are_exact_before_and_after_they_have_grown() {
 fn a_triangle_over_a_million_texels_is_shared_out() {
     let sheet = joined(floor(3.0, -1.0), &soup(40, 4.0, 3));
     let scene = scene(sheet, DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.3, -1.0, 0.2));
-    let mut bench = Bench::new(&scene);
+    let mut bench = Bench::of(&scene, [640, 448]);
     let rays = bench.by_rays();
-    let lists = bench.by_lists("scene", &[("map_size", 2048)]);
+    let lists = bench.by_lists("scene", &[("map_size", 1024)]);
     assert!(lists.visibility == rays);
     assert_eq!(lists.uncertain, 0);
 }

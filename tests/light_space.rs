@@ -6,8 +6,7 @@ mod support;
 use glam::{DVec3, Vec3};
 use skiagraph_graph::{Graph, ParamValue, PlanRequest, Sources};
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry, uniforms::LightUniform};
-use skiagraph_scene::{DirectionalLight, Mesh, Scene};
-use std::sync::Arc;
+use skiagraph_scene::{DirectionalLight, Mesh};
 use support::{
     bench::Bench,
     brute::{Hit, MISS, Ray},

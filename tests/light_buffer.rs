@@ -330,7 +330,7 @@ fn answers_are_those_of_rays_whatever_the_map() {
             ("scene", 8),
             ("receivers", 13),
             ("scene", 64),
-            ("receivers", 300),
+            ("receivers", 160),
         ] {
             let lists = bench.by_lists(fit, &[("map_size", map_size)]);
             assert!(lists.visibility == rays, "scene {seed}, map {map_size}");

@@ -24,7 +24,6 @@ struct Large {
 }
 
 var<uniform> params: Params;
-var<uniform> grid: Grid;
 // As mark_receivers.wgsl has it.
 var<storage, read> farthest: array<u32>;
 // Of each texel.
@@ -46,7 +45,7 @@ struct Caster {
     // Its corners are counter-clockwise where y is up: inside is to the left of its edges.
     triangle: LightTriangle,
     plane: DepthPlane,
-    // The first and the last of the window's texels under its box, in each direction.
+    // The first and the last of the map's texels under its box, in each direction.
     first: vec2<u32>,
     last: vec2<u32>,
     // Bits of its least depth.
@@ -108,20 +107,19 @@ fn append_part(part: Part) {
 }
 
 fn caster_of(primitive: u32) -> Caster {
-    var triangle = light_triangle(primitive, grid.scene_size);
+    var triangle = light_triangle(primitive);
     if triangle.area < 0.0 {
         triangle = LightTriangle(triangle.a, triangle.c, triangle.b, -triangle.area);
     }
     let a = triangle.a;
     let b = triangle.b;
     let c = triangle.c;
-    // Whole numbers away, and rounded towards the box: `floor` comes first.
-    let low = floor(min(a.xy, min(b.xy, c.xy)) - SLACK) - grid.first;
-    let high = floor(max(a.xy, max(b.xy, c.xy)) + SLACK) - grid.first;
-    let end = f32(grid.size) - 1.0;
-    let is_outside = any(high < vec2(0.0)) || any(low > vec2(end));
-    let first = select(vec2<u32>(max(low, vec2(0.0))), vec2(1u), is_outside);
-    let last = select(vec2<u32>(min(high, vec2(end))), vec2(0u), is_outside);
+    let low = floor(min(a.xy, min(b.xy, c.xy)) - SLACK);
+    let high = floor(max(a.xy, max(b.xy, c.xy)) + SLACK);
+    let end = map_fit.size - 1.0;
+    let is_beside = any(high < vec2(0.0)) || any(low > vec2(end));
+    let first = select(vec2<u32>(max(low, vec2(0.0))), vec2(1u), is_beside);
+    let last = select(vec2<u32>(min(high, vec2(end))), vec2(0u), is_beside);
     let plane = depth_plane(triangle);
     let reach = vec3(reach_of(b.xy - a.xy), reach_of(c.xy - b.xy), reach_of(a.xy - c.xy));
     return Caster(primitive, triangle, plane, first, last, depth_bits(plane.least), reach);
@@ -169,18 +167,18 @@ fn bin(caster: Caster, first: u32, end: u32, step: u32) {
                 let bit = countTrailingZeros(texels[half]);
                 texels[half] &= texels[half] - 1u;
                 texel = at * TILE + vec2(bit % TILE, 4u * half + bit / TILE);
-                let centre = grid.first + vec2<f32>(texel) + 0.5;
+                let centre = vec2<f32>(texel) + 0.5;
                 inward = inward_of(caster.triangle, centre);
                 // Of -0, too.
                 depth = abs(depth_bound(caster.plane, centre, 0.5, NEAREST));
                 found = all(inward >= -caster.reach)
-                    && depth_bits(depth) <= farthest[texel_number(texel, grid)];
+                    && depth_bits(depth) <= farthest[texel_number(texel)];
             }
             if !found {
                 break;
             }
             let key = key_of(caster, depth, inward);
-            append(texel_number(texel, grid), caster.primitive, key);
+            append(texel_number(texel), caster.primitive, key);
         }
     }
 }
@@ -188,8 +186,8 @@ fn bin(caster: Caster, first: u32, end: u32, step: u32) {
 // A bit for each texel of the tile that is under the triangle's box and has a receiver in it; none
 // if the triangle is not in the tile, or farther from the light than all its receivers.
 fn texels_in(caster: Caster, tile: vec2<u32>) -> vec2<u32> {
-    let words = tile_number(tile, grid);
-    let middle = grid.first + (vec2<f32>(tile) + 0.5) * f32(TILE);
+    let words = tile_number(tile);
+    let middle = (vec2<f32>(tile) + 0.5) * f32(TILE);
     let depth = depth_bound(caster.plane, middle, 0.5 * f32(TILE), NEAREST);
     let may_shade = depth_bits(depth) <= farthest[words]
         && all(inward_of(caster.triangle, middle) >= -f32(TILE) * caster.reach);

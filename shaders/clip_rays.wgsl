@@ -16,12 +16,10 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     if slot >= ray_count {
         return;
     }
-    let size = textureDimensions(nearest);
-    let place = light_texel(rays[slot].origin, f32(size.x));
-    let error = light_space_error_bound(rays[slot].origin);
+    let place = light_texel(rays[slot].origin);
+    let error = light_texel_error_bound(rays[slot].origin);
     // A ray whose origin may lie in another texel than it seems is not clipped.
-    let outside = any(place.xy < vec2(0.0)) || any(place.xy >= vec2<f32>(size));
-    if outside || error.x * f32(size.x) > SLACK {
+    if is_outside(place.xy) || error.x > SLACK {
         return;
     }
     let stored = textureLoad(nearest, vec2<u32>(place.xy), 0);

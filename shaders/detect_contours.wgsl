@@ -1,12 +1,13 @@
-// Stage to compare each pixel's depth in light space with the four texels of the shadow map around
-// it; one thread per pixel. All agree: certain. Otherwise, and outside the map: uncertain. Beister,
+// Stage to compare each pixel's depth in light space with the texels of the shadow map around it;
+// one thread per pixel. All agree: certain. Otherwise, and outside the map: uncertain. Beister,
 // Ernst, Stamminger, "A Hybrid GPU-CPU Renderer", 2005.
 
-#import "shared/light_triangle.wgsl"
+#import "shared/footprint.wgsl"
 #import "shared/receiver.wgsl"
 
 struct Params {
     bias: f32,
+    footprint: u32,
 }
 
 var<uniform> params: Params;
@@ -30,23 +31,21 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
 }
 
 fn compare(receiver: vec3<f32>) -> u32 {
-    let size = textureDimensions(shadow_map);
-    let place = light_texel(receiver, f32(size.x));
-    if any(place.xy < vec2(0.0)) || any(place.xy >= vec2<f32>(size)) {
+    let place = light_texel(receiver);
+    if is_outside(place.xy) {
         return STATUS_UNCERTAIN;
     }
-    // The texels that a bilinear lookup blends.
-    let low = vec2<u32>(max(place.xy - 0.5, vec2(0.0)));
-    let high = min(vec2<u32>(place.xy + 0.5), size - 1u);
-    let lit = u32(is_lit(low, place.z))
-        + u32(is_lit(vec2(high.x, low.y), place.z))
-        + u32(is_lit(vec2(low.x, high.y), place.z))
-        + u32(is_lit(high, place.z));
-    return select(select(STATUS_UNCERTAIN, STATUS_SHADOW, lit == 0u), STATUS_LIGHT, lit == 4u);
-}
-
-fn is_lit(texel: vec2<u32>, depth: f32) -> bool {
-    let stored = textureLoad(shadow_map, texel, 0);
-    // 1 is what the map was cleared to: no caster, however far.
-    return stored >= 1.0 || depth <= stored + params.bias;
+    let asked = footprint(place.xy, params.footprint);
+    var lit = true;
+    var shadowed = true;
+    for (var y = asked.first.y; y <= asked.last.y; y += asked.step) {
+        for (var x = asked.first.x; x <= asked.last.x; x += asked.step) {
+            let stored = textureLoad(shadow_map, vec2(x, y), 0);
+            // 1 is what the map was cleared to: no caster, however far.
+            let is_lit = stored >= 1.0 || place.z <= stored + params.bias;
+            lit &= is_lit;
+            shadowed &= !is_lit;
+        }
+    }
+    return select(select(STATUS_UNCERTAIN, STATUS_SHADOW, shadowed), STATUS_LIGHT, lit);
 }

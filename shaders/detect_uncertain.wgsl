@@ -1,10 +1,16 @@
 // Stage to compare each pixel's depth in light space with the outer and the inner depth of the map;
-// one thread per pixel. Both say light, or both shadow: certain. Otherwise, and outside the map:
-// uncertain. Hertel, Hormann, Westermann 2009.
+// one thread per pixel. Both say light, or both shadow, in each texel asked: certain. Otherwise, and
+// outside the map: uncertain. Hertel, Hormann, Westermann 2009.
 
 #import "shared/light_triangle.wgsl"
+#import "shared/footprint.wgsl"
 #import "shared/receiver.wgsl"
 
+struct Params {
+    footprint: u32,
+}
+
+var<uniform> params: Params;
 var outer: texture_depth_2d;
 var inner: texture_depth_2d;
 var visibility: texture_storage_2d<r32uint, write>;
@@ -26,21 +32,31 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
 }
 
 fn compare(receiver: vec3<f32>) -> u32 {
-    let size = textureDimensions(outer);
-    let place = light_texel(receiver, f32(size.x));
-    let error = light_space_error_bound(receiver);
+    let place = light_texel(receiver);
+    let error = light_texel_error_bound(receiver);
     // What may lie in another texel than it seems, even one grown by the slack, is not compared.
-    let outside = any(place.xy < vec2(0.0)) || any(place.xy >= vec2<f32>(size));
-    if outside || error.x * f32(size.x) > SLACK {
+    if is_outside(place.xy) || error.x > SLACK {
         return STATUS_UNCERTAIN;
     }
-    let texel = vec2<u32>(place.xy);
-    let in_outer = textureLoad(outer, texel, 0);
-    let in_inner = textureLoad(inner, texel, 0);
-    // 1 is what both were cleared to: no caster, however far.
     let far = place.z + error.y;
     let near = place.z - error.y;
-    let lit = (in_outer >= 1.0 || far <= in_outer) && (in_inner >= 1.0 || far <= in_inner);
-    let shadowed = in_outer < 1.0 && near > in_outer && in_inner < 1.0 && near > in_inner;
+    let asked = footprint(place.xy, params.footprint);
+    var lit = true;
+    var shadowed = true;
+    for (var y = asked.first.y; y <= asked.last.y; y += asked.step) {
+        for (var x = asked.first.x; x <= asked.last.x; x += asked.step) {
+            let in_outer = textureLoad(outer, vec2(x, y), 0);
+            let in_inner = textureLoad(inner, vec2(x, y), 0);
+            // 1 is what both were cleared to: no caster, however far.
+            lit &= (in_outer >= 1.0 || far <= in_outer) && (in_inner >= 1.0 || far <= in_inner);
+            shadowed &= in_outer < 1.0 && near > in_outer && in_inner < 1.0 && near > in_inner;
+        }
+    }
+    if params.footprint == FOOTPRINT_CORNERS {
+        // The dissertation's fifth tap of both layers reads the outer one, at the place itself.
+        let in_outer = textureLoad(outer, vec2<u32>(place.xy), 0);
+        lit &= in_outer >= 1.0 || far <= in_outer;
+        shadowed &= in_outer < 1.0 && near > in_outer;
+    }
     return select(select(STATUS_UNCERTAIN, STATUS_SHADOW, shadowed), STATUS_LIGHT, lit);
 }

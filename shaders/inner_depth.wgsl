@@ -6,16 +6,16 @@
 #import "shared/casters.wgsl"
 
 struct Params {
-    map_size: u32,
     n: f32,
     depth: u32,
+    small: u32,
 }
 
 var<uniform> params: Params;
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Vertex {
-    return caster_vertex(index, f32(params.map_size));
+    return inner_vertex(index, params.n, params.small);
 }
 
 @fragment

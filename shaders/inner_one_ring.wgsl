@@ -8,16 +8,17 @@
 #import "shared/casters.wgsl"
 
 struct Params {
-    map_size: u32,
     cull: u32,
     depth: u32,
+    n: f32,
+    small: u32,
 }
 
 var<uniform> params: Params;
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Vertex {
-    return caster_vertex(index, f32(params.map_size));
+    return inner_vertex(index, params.n, params.small);
 }
 
 // Triangles of a patch; a texel that needs more is not covered.
@@ -61,11 +62,10 @@ fn patch_depth(vertex: Vertex) -> f32 {
             count += 1u;
         }
     }
-    let map_size = f32(params.map_size);
     var containing = select(0u, 1u, contains(first, triangle, centre));
     for (var member = 1u; member < count; member++) {
         let primitive = members[member];
-        triangle = light_triangle(primitive, map_size);
+        triangle = light_triangle(primitive);
         if params.depth != DEPTH_PLANE {
             depth = max(depth, texel_depth(triangle, centre, params.depth, FARTHEST));
         }
@@ -79,7 +79,7 @@ fn patch_depth(vertex: Vertex) -> f32 {
             }
             let own = corners[(side + 2u) % 3u];
             let edge = 3u * primitive + side;
-            let beyond = adjacent_triangle(edge, p, q, own, params.cull, map_size);
+            let beyond = adjacent_triangle(edge, p, q, own, params.cull);
             if beyond == NO_NEIGHBOUR {
                 return NOT_COVERED;
             }

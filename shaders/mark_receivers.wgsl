@@ -4,7 +4,6 @@
 #import "shared/receiver.wgsl"
 #import "shared/light_buffer.wgsl"
 
-var<uniform> grid: Grid;
 // Of each texel, then of each tile: bits of an f32, which are in the order of the depths; 0 where
 // nobody is.
 var<storage, read_write> farthest: array<atomic<u32>>;
@@ -19,7 +18,7 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
     if !faces_light(receiver) {
         return;
     }
-    let place = place_of(receiver.xyz, grid);
+    let place = place_of(receiver.xyz);
     if place.texel == NO_TEXEL {
         return;
     }

@@ -8,11 +8,14 @@
 #import "shared/ids.wgsl"
 
 struct Params {
-    map_size: u32,
     cull: u32,
     n: f32,
     depth: u32,
+    box: u32,
 }
+
+// Word of the param `box`.
+const BOX_BY_N: u32 = 1u;
 
 var<uniform> params: Params;
 
@@ -27,11 +30,10 @@ struct Vertex {
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Vertex {
     let primitive = index / 3u;
-    let map_size = f32(params.map_size);
-    let triangle = light_triangle(primitive, map_size);
+    let triangle = light_triangle(primitive);
     var vertex = Vertex(vec4(0.0), triangle.a, triangle.b, triangle.c, primitive);
     if casts(triangle, params.cull) {
-        vertex.clip = texel_clip(cover(triangle, index % 3u), map_size);
+        vertex.clip = texel_clip(cover(triangle, index % 3u), MIDDLE);
     }
     return vertex;
 }
@@ -100,8 +102,9 @@ fn nearest(vertex: Vertex) -> f32 {
     let ab = vertex.b.xy - vertex.a.xy;
     let area = cross_2d(ab, vertex.c.xy - vertex.a.xy);
     let triangle = LightTriangle(vertex.a, vertex.b, vertex.c, area);
-    let low = min(triangle.a.xy, min(triangle.b.xy, triangle.c.xy)) - (0.5 + SLACK);
-    let high = max(triangle.a.xy, max(triangle.b.xy, triangle.c.xy)) + (0.5 + SLACK);
+    let around = select(0.5 + SLACK, params.n * 1.4142136, params.box == BOX_BY_N);
+    let low = min(triangle.a.xy, min(triangle.b.xy, triangle.c.xy)) - around;
+    let high = max(triangle.a.xy, max(triangle.b.xy, triangle.c.xy)) + around;
     let outward = -min_of(inward_distances(triangle, centre));
     if any(centre < low) || any(centre > high) || outward > params.n * 1.4142136 {
         discard;

@@ -5,7 +5,6 @@
 #import "shared/casters.wgsl"
 
 struct Params {
-    map_size: u32,
     depth: u32,
 }
 
@@ -13,7 +12,7 @@ var<uniform> params: Params;
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Vertex {
-    return caster_vertex(index, f32(params.map_size));
+    return caster_vertex(index);
 }
 
 @fragment

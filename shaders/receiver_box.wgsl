@@ -2,7 +2,7 @@
 // per pixel.
 
 #import "shared/receiver.wgsl"
-#import "shared/light_triangle.wgsl"
+#import "shared/light.wgsl"
 
 // Bits of f32 from 0 to 1, which are in the order of the numbers: the greatest x, y, 1 - x and
 // 1 - y in shares of the scene's edge. All 0 if there is no receiver.
@@ -18,7 +18,8 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
     if !faces_light(receiver) {
         return;
     }
-    let at = light_texel(receiver.xyz, 1.0).xy;
+    let clip = light_clip(receiver.xyz);
+    let at = vec2(clip.x, -clip.y) * 0.5 + 0.5;
     raise(0u, at.x);
     raise(1u, at.y);
     raise(2u, 1.0 - at.x);

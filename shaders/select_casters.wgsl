@@ -7,7 +7,6 @@
 #import "shared/casters.wgsl"
 
 struct Params {
-    map_size: u32,
     cull: u32,
     // The corners from this one on, as many as `selected` takes; a multiple of 3.
     first: u32,
@@ -49,8 +48,7 @@ fn with_neighbours(thread: Thread) {
         let next = texels[first + (thread.lane + 1u) % 3u].xy;
         let own = texels[first + (thread.lane + 2u) % 3u].xy;
         let here = texels[thread.lane].xy;
-        let map_size = f32(params.map_size);
-        kept = adjacent_triangle(corner, here, next, own, params.cull, map_size) != NO_NEIGHBOUR;
+        kept = adjacent_triangle(corner, here, next, own, params.cull) != NO_NEIGHBOUR;
     }
     place(corner, thread.lane, triangle, kept);
 }
@@ -66,7 +64,7 @@ fn is_asked(corner: u32) -> bool {
 
 fn gather(corner: u32, lane: u32) -> LightTriangle {
     if is_asked(corner) {
-        texels[lane] = light_texel(corner_position(corner), f32(params.map_size));
+        texels[lane] = light_texel(corner_position(corner));
     }
     workgroupBarrier();
     let first = lane - lane % 3u;

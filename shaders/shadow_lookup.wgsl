@@ -1,7 +1,7 @@
 // Stage to compare each pixel's depth in light space with the nearest texel of the shadow map; a
 // full-screen triangle. Williams, "Casting Curved Shadows on Curved Surfaces", SIGGRAPH 1978.
 
-#import "shared/light.wgsl"
+#import "shared/map_fit.wgsl"
 #import "shared/receiver.wgsl"
 
 struct Params {
@@ -33,22 +33,21 @@ fn compare(pixel: vec2<u32>) -> u32 {
 }
 
 fn is_lit(receiver: vec3<f32>, n_dot_l: f32) -> bool {
-    let clip = light_clip(receiver);
-    let size = textureDimensions(shadow_map);
-    // Clip y is up, texel rows go down.
-    let place = (vec2(clip.x, -clip.y) * 0.5 + 0.5) * vec2<f32>(size);
-    if any(place < vec2(0.0)) || any(place >= vec2<f32>(size)) {
+    let place = light_texel(receiver);
+    if is_outside(place.xy) {
         return true;
     }
-    let stored = textureLoad(shadow_map, vec2<u32>(place), 0);
+    let stored = textureLoad(shadow_map, vec2<u32>(place.xy), 0);
     // 1 is what the map was cleared to: no caster, however far.
-    return stored >= 1.0 || clip.z <= stored + depth_bias(vec2<f32>(size), n_dot_l);
+    return stored >= 1.0 || place.z <= stored + depth_bias(n_dot_l);
 }
 
 // The plane of the receiver rises by tan(angle to the light) per unit across; slope_bias counts in
 // texels of that rise.
-fn depth_bias(size: vec2<f32>, n_dot_l: f32) -> f32 {
-    let texel = 2.0 * light.extent.xy / size;
+fn depth_bias(n_dot_l: f32) -> f32 {
+    // Units of the scene.
+    let extent = light.extent.xy;
+    let texel = 1.0 / vec2(length(map_fit.x.xy / extent), length(map_fit.y.xy / extent));
     let slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0)) / n_dot_l;
     return params.bias + params.slope_bias * slope * max(texel.x, texel.y) / light.extent.z;
 }

@@ -21,7 +21,6 @@ struct Large {
 }
 
 var<uniform> params: Params;
-var<uniform> grid: Grid;
 // As mark_receivers.wgsl has it.
 var<storage, read> farthest: array<u32>;
 // As bin_casters.wgsl has them.
@@ -53,7 +52,7 @@ fn main(
 }
 
 fn test_casters(receiver: vec3<f32>, own: u32) -> u32 {
-    let place = place_of(receiver, grid);
+    let place = place_of(receiver);
     // A part of a large triangle that had no room is in no list.
     if place.texel == NO_TEXEL || large.count > arrayLength(&large.parts) {
         return STATUS_UNCERTAIN;

@@ -20,10 +20,9 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         return;
     }
     let ray = rays[slot];
-    let size = textureDimensions(outer_primitive);
-    let place = light_texel(ray.origin, f32(size.x));
+    let place = light_texel(ray.origin);
     var candidate = NO_PRIMITIVE;
-    if all(place.xy >= vec2(0.0)) && all(place.xy < vec2<f32>(size)) {
+    if !is_outside(place.xy) {
         candidate = textureLoad(outer_primitive, vec2<u32>(place.xy), 0).x;
     }
     var hit = Hit(ray.t_max, NO_PRIMITIVE, 0.0, 0.0);

@@ -22,13 +22,15 @@ fn light_clip(position: vec3<f32>) -> vec3<f32> {
     return (light.clip_from_relative * vec4(position - light.centre.xyz, 1.0)).xyz;
 }
 
-// What rounding may move a receiver and the corners of its casters by, together, in shares of a
-// square map's edge and of its depth: 4 half ulps each of all that is summed up for clip space,
-// which is two edges wide, and on the way from there. Valid if products are fused.
-fn light_space_error_bound(receiver: vec3<f32>) -> vec2<f32> {
+// 4 half ulps: what clip space is off by, for each unit of what is summed up. Valid if products are
+// fused.
+const CLIP_ROUNDING: f32 = 2.3841858e-7;
+
+// All that is summed up, sizes alone, for clip x or y, and for clip z, of a receiver and of the
+// corners of its casters.
+fn light_clip_summands(receiver: vec3<f32>) -> vec2<f32> {
     let matrix = transpose(light.clip_from_relative);
     let size = abs(receiver) + abs(light.centre.xyz);
-    let across = max(dot(abs(matrix[0].xyz), size), dot(abs(matrix[1].xyz), size)) + light.centre.w;
-    let along = dot(abs(matrix[2].xyz), size) + light.extent.w;
-    return 2.3841858e-7 * vec2(0.5 * across + 1.0, along + 2.0);
+    let across = max(dot(abs(matrix[0].xyz), size), dot(abs(matrix[1].xyz), size));
+    return vec2(across + light.centre.w, dot(abs(matrix[2].xyz), size) + light.extent.w);
 }

@@ -4,16 +4,6 @@
 
 #import "shared/light_triangle.wgsl"
 
-// The grid is a square window of a map over all of the scene, in whose texels coordinates are.
-struct Grid {
-    // The window's first texel, whole numbers.
-    first: vec2<f32>,
-    // Edge of the map over the scene, texels.
-    scene_size: f32,
-    // Edge of the window, texels.
-    size: u32,
-}
-
 // One caster in the list of a texel.
 struct Entry {
     // Number of the next entry; LIST_END after the last one, LIST_FULL where a caster is missing.
@@ -39,7 +29,7 @@ const TILE: u32 = 8u;
 
 // Where a receiver is in the grid.
 struct Place {
-    // Number of its texel; NO_TEXEL if it is outside the window, or rounding may move it too far.
+    // Number of its texel; NO_TEXEL if it is outside the map, or rounding may move it too far.
     texel: u32,
     // Of its tile, the number of the first word.
     tile: u32,
@@ -53,31 +43,30 @@ struct Place {
 
 const NO_TEXEL: u32 = 0xffffffffu;
 
-// In `farthest`: of a texel of the window, and of the first word of a tile.
-fn texel_number(texel: vec2<u32>, grid: Grid) -> u32 {
-    return texel.y * grid.size + texel.x;
+// In `farthest`: of a texel, and of the first word of a tile.
+fn texel_number(texel: vec2<u32>) -> u32 {
+    return texel.y * u32(map_fit.size) + texel.x;
 }
 
-fn tile_number(tile: vec2<u32>, grid: Grid) -> u32 {
-    let columns = (grid.size + TILE - 1u) / TILE;
-    return grid.size * grid.size + 3u * (tile.y * columns + tile.x);
+fn tile_number(tile: vec2<u32>) -> u32 {
+    let size = u32(map_fit.size);
+    return size * size + 3u * (tile.y * ((size + TILE - 1u) / TILE) + tile.x);
 }
 
-fn place_of(receiver: vec3<f32>, grid: Grid) -> Place {
-    let at = light_texel(receiver, grid.scene_size);
-    let error = light_space_error_bound(receiver);
-    let inside = all(at.xy >= grid.first) && all(at.xy < grid.first + f32(grid.size));
+fn place_of(receiver: vec3<f32>) -> Place {
+    let at = light_texel(receiver);
+    let error = light_texel_error_bound(receiver);
     // Half of the slack is for rounding, half for the tracer, to whom a point so near an edge may
-    // be on it. NaN is not inside.
-    if !(inside && error.x * grid.scene_size <= 0.5 * SLACK && abs(at.z) <= 2.0) {
+    // be on it. NaN is outside.
+    if is_outside(at.xy) || !(error.x <= 0.5 * SLACK && abs(at.z) <= 2.0) {
         return Place(NO_TEXEL, 0u, 0u, 0u, vec2(0.0));
     }
-    let texel = vec2<u32>(at.xy) - vec2<u32>(grid.first);
+    let texel = vec2<u32>(at.xy);
     // 0 says that nobody is there.
     let depth = max(depth_bits(at.z + error.y), 1u);
     return Place(
-        texel_number(texel, grid),
-        tile_number(texel / TILE, grid),
+        texel_number(texel),
+        tile_number(texel / TILE),
         texel.y % TILE * TILE + texel.x % TILE,
         depth,
         fract(at.xy) - 0.5,

@@ -17,13 +17,12 @@ fn adjacent_triangle(
     q: vec2<f32>,
     own: vec2<f32>,
     cull: u32,
-    map_size: f32,
 ) -> u32 {
     let corner = scene_adjacency[entry];
     if corner == NO_NEIGHBOUR {
         return NO_NEIGHBOUR;
     }
-    let opposite = light_texel(corner_position(corner), map_size).xy;
+    let opposite = light_texel(corner_position(corner)).xy;
     if side_of_edge(p, q, own) * side_of_edge(p, q, opposite) >= 0.0 {
         return NO_NEIGHBOUR;
     }

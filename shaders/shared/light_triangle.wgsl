@@ -2,7 +2,7 @@
 // which grows away from the light. Texel (i, j) is the closed square around its centre (i + 0.5, j
 // + 0.5).
 
-#import "shared/light.wgsl"
+#import "shared/map_fit.wgsl"
 #import "shared/geometry.wgsl"
 #import "shared/predicates.wgsl"
 
@@ -20,25 +20,17 @@ const CULL_BACK: u32 = 2u;
 const DEPTH_PLANE: u32 = 0u;
 const DEPTH_CONSERVATIVE: u32 = 1u;
 
+// Of what is drawn whose depth is the fragment shader's affair: nothing is clipped by the near or
+// the far plane.
+const MIDDLE: f32 = 0.5;
+
 const NEAREST: f32 = -1.0;
 const FARTHEST: f32 = 1.0;
 
-fn light_texel(position: vec3<f32>, map_size: f32) -> vec3<f32> {
-    let clip = light_clip(position);
-    return vec3((vec2(clip.x, -clip.y) * 0.5 + 0.5) * map_size, clip.z);
-}
-
-// The way back, for drawing; depth is the fragment shader's affair, so that nothing is clipped by
-// the near or the far plane.
-fn texel_clip(texel: vec2<f32>, map_size: f32) -> vec4<f32> {
-    let across = texel / map_size * 2.0 - 1.0;
-    return vec4(across.x, -across.y, 0.5, 1.0);
-}
-
-fn light_triangle(primitive: u32, map_size: f32) -> LightTriangle {
-    let a = light_texel(corner_position(3u * primitive), map_size);
-    let b = light_texel(corner_position(3u * primitive + 1u), map_size);
-    let c = light_texel(corner_position(3u * primitive + 2u), map_size);
+fn light_triangle(primitive: u32) -> LightTriangle {
+    let a = light_texel(corner_position(3u * primitive));
+    let b = light_texel(corner_position(3u * primitive + 1u));
+    let c = light_texel(corner_position(3u * primitive + 2u));
     return LightTriangle(a, b, c, cross_2d(b.xy - a.xy, c.xy - a.xy));
 }
 

@@ -47,14 +47,18 @@ fn presets_are_listed_by_name() {
         names,
         [
             "crsm",
+            "crsm_d",
             "crsm_depth",
             "crsm_hw",
             "crsm_single",
             "crsma",
+            "crsma_d",
             "crsma_full",
             "hybrid_pcf",
+            "hybrid_pcf_d",
             "light_buffer",
             "nsm",
+            "nsm_d",
             "rt"
         ]
     );
@@ -106,9 +110,10 @@ fn the_steps_of_a_frame_are_passes() {
     ];
     assert_eq!(live(&plan("pipelines/rt.ron", None)), rt);
     let nsm = [
-        "create_shadow_map.draw",
         "gbuffer.primitive",
         "gbuffer.surface",
+        "create_shadow_map.fit_map.over_scene",
+        "create_shadow_map.draw",
         "shadow_lookup",
     ];
     assert_eq!(live(&plan("pipelines/nsm.ron", None)), nsm);
@@ -117,12 +122,13 @@ fn the_steps_of_a_frame_are_passes() {
         ["primitive"]
     );
     let crsma = [
+        "gbuffer.primitive",
+        "gbuffer.surface",
+        "fit_map.over_scene",
         "create_shadow_map.reset",
         "create_shadow_map.select",
         "create_shadow_map.outer",
         "create_shadow_map.inner",
-        "gbuffer.primitive",
-        "gbuffer.surface",
         "detect_uncertain",
         "fill_rays.clear",
         "fill_rays.compact",
@@ -139,7 +145,7 @@ fn only_what_asks_for_neighbours_needs_adjacency() {
         let needs = plan(&preset.path, None)
             .provided()
             .contains(&"scene.adjacency");
-        let asks = ["crsma", "crsma_full"].contains(&preset.name.as_str());
+        let asks = ["crsma", "crsma_d", "crsma_full"].contains(&preset.name.as_str());
         assert_eq!(needs, asks, "{}", preset.name);
     }
 }

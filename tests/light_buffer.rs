@@ -80,12 +80,12 @@ struct Bench {
     viewport: [u32; 2],
 }
 
-const FITS: [&str; 2] = ["scene", "receivers"];
+const FITS: [&str; 3] = ["scene", "eye", "receivers"];
 
 const CAPTURED: [&str; 6] = [
     "position",
     "primitive",
-    "grid",
+    "map_fit",
     "farthest",
     "lists",
     "entries",
@@ -186,43 +186,55 @@ fn lists_hold_each_caster_that_shades_a_receiver_and_no_stranger() {
             let mut bench = Bench::new(&scene);
             let mut executor = bench.executor(fit, &[("map_size", map_size)], &CAPTURED);
             let report = frame(&bench.gpu, &mut executor, &CAPTURED);
-            let grid = Grid::of(&report);
-            assert_eq!(grid.size, map_size);
-            shading += check_lists(&scene, &grid, &report);
+            let fit = MapFit::of(&report, &scene);
+            assert_eq!(fit.size, map_size);
+            shading += check_lists(&scene, &fit, &report);
         }
         assert!(shading > 10_000, "{fit}: {shading}");
     }
 }
 
-/// As shaders/shared/light_buffer.wgsl has it.
-struct Grid {
-    first: DVec2,
-    scene_size: u32,
+/// As shaders/shared/map_fit.wgsl has it.
+struct MapFit {
+    /// A map of one texel over all of the scene.
+    scene: LightSpace,
+    /// From clip space to texels.
+    rows: [DVec3; 2],
     size: u32,
 }
 
-impl Grid {
-    fn of(report: &FrameReport) -> Self {
-        let [x, y, scene_size, size] = values(report, "grid")[..] else {
-            panic!("no grid of four words")
-        };
-        let number = |bits| f64::from(f32::from_bits(bits));
+impl MapFit {
+    fn of(report: &FrameReport, scene: &Scene) -> Self {
+        let words = values(report, "map_fit");
+        let number = |at: usize| f64::from(f32::from_bits(words[at]));
+        let row = |at: usize| DVec3::new(number(at), number(at + 1), number(at + 2));
         Self {
-            first: DVec2::new(number(x), number(y)),
-            scene_size: number(scene_size) as u32,
-            size,
+            scene: LightSpace::new(&scene.mesh, &scene.light, 1),
+            rows: [row(0), row(4)],
+            size: number(8) as u32,
         }
+    }
+
+    /// A point in texels and depth.
+    fn texel(&self, position: DVec3) -> DVec3 {
+        let share = self.scene.texel(position);
+        let clip = DVec3::new(2.0 * share.x - 1.0, 1.0 - 2.0 * share.y, 1.0);
+        DVec3::new(self.rows[0].dot(clip), self.rows[1].dot(clip), share.z)
+    }
+
+    /// Texels along the scene's edges, if the map is upright.
+    fn scene_size(&self) -> DVec2 {
+        2.0 * DVec2::new(self.rows[0].x, -self.rows[1].y)
     }
 }
 
 /// Checks all lists; returns how many pairs of a receiver and a caster there were.
-fn check_lists(scene: &Scene, grid: &Grid, report: &FrameReport) -> usize {
+fn check_lists(scene: &Scene, fit: &MapFit, report: &FrameReport) -> usize {
     let (heads, entries) = (values(report, "lists"), values(report, "entries"));
     let (farthest, own) = (values(report, "farthest"), values(report, "primitive"));
-    let map_size = grid.size;
-    let space = LightSpace::new(&scene.mesh, &scene.light, grid.scene_size);
+    let map_size = fit.size;
     let casters = (0..scene.mesh.triangles.len() as u32).map(|primitive| TexelTriangle {
-        corners: scene.mesh.corners(primitive).map(|p| space.texel(p)),
+        corners: scene.mesh.corners(primitive).map(|p| fit.texel(p)),
     });
     let casters: Vec<TexelTriangle> = casters.collect();
     let texels = (map_size * map_size) as usize;
@@ -244,7 +256,6 @@ fn check_lists(scene: &Scene, grid: &Grid, report: &FrameReport) -> usize {
             (texel as u32 % map_size).into(),
             (texel as u32 / map_size).into(),
         );
-        let place = grid.first + place;
         let farthest = f64::from(f32::from_bits(farthest[texel]));
         for &primitive in list {
             let caster = &casters[primitive as usize];
@@ -269,13 +280,13 @@ fn check_lists(scene: &Scene, grid: &Grid, report: &FrameReport) -> usize {
             continue;
         }
         let position = Vec3::from_slice(receiver).as_dvec3();
-        let at = space.texel(position);
+        let at = fit.texel(position);
         // On the border of two texels either may be the receiver's.
         let border = (at.truncate() - at.truncate().round()).abs().min_element();
         if border < SLACK {
             continue;
         }
-        let place = at.truncate() - grid.first;
+        let place = at.truncate();
         assert!(place.min_element() > 0.0, "{position} is outside");
         assert!(
             place.max_element() < map_size.into(),
@@ -455,10 +466,10 @@ fn the_grid_is_laid_over_the_receivers() {
         let mut scene = (*mixed(seed)).clone();
         scene.views[0].fov_y_degrees = 10.0;
         let mut bench = Bench::new(&Arc::new(scene.clone()));
-        let mut executor = bench.executor("receivers", &[("map_size", 100)], &["grid", "position"]);
-        let report = frame(&bench.gpu, &mut executor, &["grid", "position"]);
-        let grid = Grid::of(&report);
-        let space = LightSpace::new(&scene.mesh, &scene.light, grid.scene_size);
+        let captured = ["map_fit", "position"];
+        let mut executor = bench.executor("receivers", &[("map_size", 100)], &captured);
+        let report = frame(&bench.gpu, &mut executor, &captured);
+        let fit = MapFit::of(&report, &scene);
         let positions = report
             .readbacks
             .iter()
@@ -468,8 +479,8 @@ fn the_grid_is_laid_over_the_receivers() {
             .chunks_exact(4)
             .filter(|receiver| receiver[3] > 0.0);
         let places = facing.map(|receiver| {
-            let place = space.texel(Vec3::from_slice(receiver).as_dvec3());
-            place.truncate() - grid.first
+            let place = fit.texel(Vec3::from_slice(receiver).as_dvec3());
+            place.truncate()
         });
         let (low, high) = places.fold((DVec2::MAX, DVec2::MIN), |(low, high), place| {
             (low.min(place), high.max(place))
@@ -479,10 +490,10 @@ fn the_grid_is_laid_over_the_receivers() {
             "{low} {high}"
         );
         assert!(
-            (high - low).max_element() > 90.0,
+            (high - low).min_element() > 90.0,
             "scene {seed}: {low} {high}"
         );
-        narrower += u32::from(grid.scene_size > 120);
+        narrower += u32::from(fit.scene_size().min_element() > 120.0);
     }
     assert!(narrower > 3, "{narrower}");
 }
@@ -495,9 +506,13 @@ fn far_from_the_origin_the_grid_is_coarser() {
     let rays = bench.by_rays();
     for fit in FITS {
         let params = [("map_size", 2048)];
-        let mut executor = bench.executor(fit, &params, &["grid"]);
-        let grid = Grid::of(&frame(&bench.gpu, &mut executor, &["grid"]));
-        assert!((4..200).contains(&grid.scene_size), "{}", grid.scene_size);
+        let mut executor = bench.executor(fit, &params, &["map_fit"]);
+        let report = frame(&bench.gpu, &mut executor, &["map_fit"]);
+        let size = MapFit::of(&report, &scene)
+            .rows
+            .map(|row| 2.0 * row.truncate().length());
+        let is_coarse = |edge: &f64| (4.0..200.0).contains(edge);
+        assert!(size.iter().all(is_coarse), "{fit}: {size:?}");
         let lists = bench.by_lists(fit, &params);
         assert!(lists.visibility == rays);
         assert_eq!(lists.uncertain, 0);

@@ -126,8 +126,8 @@ const DOCUMENTS: [(&str, usize); 8] = [
     ("softer.ron", 21),
     ("extended.ron", 4),
     ("history.ron", 1),
-    ("filtered.ron", 4),
-    ("claims.ron", 4),
+    ("filtered.ron", 5),
+    ("claims.ron", 5),
 ];
 
 /// Every document of the authoring guide, as a file beside the shaders that it shows.

@@ -213,7 +213,7 @@ fn show_writes_out_what_a_document_extends_with_its_origins() {
         stdout(&output) + &stderr(&output)
     };
     let own = show(&["show", "crsma_full"], 0);
-    assert!(own.contains("extends: \"crsma.ron\""), "{own}");
+    assert!(own.contains("extends: \"crsm.ron\""), "{own}");
     let flat = show(&["show", "crsma_full", "--flat"], 0);
     let inner = flat
         .lines()

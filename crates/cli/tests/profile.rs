@@ -42,10 +42,11 @@ fn json(path: &Path) -> Value {
 }
 
 const NSM: &str = "profile nsm --size 32x24 --map-size 32 --frames 6 --warmup 1";
-const PASSES: [&str; 4] = [
-    "create_shadow_map.draw",
+const PASSES: [&str; 5] = [
     "gbuffer.primitive",
     "gbuffer.surface",
+    "create_shadow_map.fit_map.over_scene",
+    "create_shadow_map.draw",
     "shadow_lookup",
 ];
 
@@ -179,7 +180,7 @@ fn a_baseline_stands_beside_and_other_conditions_are_called_out() {
         "WARNING: measured under other conditions",
         "viewport: then 32x24, now 16x16",
         "method: then nsm, now rt",
-        "Only then: create_shadow_map.draw, shadow_lookup",
+        "Only then: create_shadow_map.fit_map.over_scene, create_shadow_map.draw, shadow_lookup",
         "Only now: detect_facing, fill_rays.clear, fill_rays.compact, \
          fill_rays.dispatch_arguments, trace_rays, fix_pixels",
     ] {

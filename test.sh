@@ -2,7 +2,8 @@
 # Runs all tests. They create GPU devices, so a machine without any adapter gets a software Vulkan
 # driver first. Arguments go to `cargo test`:   ./test.sh -p skiagraph-graph timing
 #
-# Tests on the real Sponza mesh look for it in $SKIAGRAPH_ASSETS and say so where that is not set.
+# Tests on the meshes of Sponza and bench look for them in $SKIAGRAPH_ASSETS and say so where that is
+# not set.
 set -euo pipefail
 cd "$(dirname "$0")"
 # Without a session (a container, say) Mesa asks for this folder and complains on stderr.

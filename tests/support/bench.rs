@@ -4,7 +4,7 @@ use super::graphs::{RAY_QUERY, open, plan, provider, run_on, values};
 use skiagraph_gpu::device::Gpu;
 use skiagraph_graph::{Capture, ParamValue};
 use skiagraph_passes::SceneProvider;
-use skiagraph_reference::{Oracle, OracleMode, Progress, Reference, Statistics};
+use skiagraph_reference::{Oracle, OracleMode, PixelCounts, Progress, Reference, Statistics};
 use skiagraph_scene::{Scene, View};
 use std::sync::Arc;
 
@@ -98,6 +98,22 @@ impl<'a> Bench<'a> {
             reference,
             counts,
         }
+    }
+
+    /// The oracle's pixels, for the primitives of the G-buffer.
+    pub fn reference_pixels(&mut self, mode: OracleMode) -> PixelCounts {
+        let gbuffer = "pipelines/shared/gbuffer.ron";
+        let plan = plan(gbuffer, &self.provider, self.viewport, |_| {});
+        let report = run_on(&self.gpu, plan, &mut self.provider, &["primitive"]);
+        let (primitives, progress) = (values(&report, "primitive"), Progress::default());
+        let (camera, light) = (self.view.camera(self.viewport), &self.scene.light);
+        let shaded = self
+            .oracle
+            .shade(&camera, light, &primitives, mode, progress);
+        let reference = shaded.unwrap();
+        Statistics::judged(&reference.visibility(), &reference.status(), &reference)
+            .unwrap()
+            .pixels
     }
 
     /// Traced, no pixel is wrong but indeterminate ones, which are few.

@@ -484,6 +484,60 @@ fn a_views_own_light_is_drawn_judged_and_remembered() {
     assert_eq!(same, own);
 }
 
+/// A floor, a sheet above it whose front faces the light, and a box beside the sheet.
+const SHEET_AND_BOX: &str = "
+v -9 0 -9\nv -9 0 9\nv 9 0 9\nv 9 0 -9\nf 1 2 3 4
+v -4 2 -1\nv -4 2 1\nv -2 2 1\nv -2 2 -1\nf 5 6 7 8
+v 2 1 -1\nv 2 1 1\nv 4 1 1\nv 4 1 -1\nv 2 2 -1\nv 2 2 1\nv 4 2 1\nv 4 2 -1
+f 12 11 10 9\nf 13 14 15 16\nf 9 10 14 13\nf 10 11 15 14\nf 11 12 16 15\nf 12 9 13 16
+";
+
+/// The sheet deceives a proven method that culls front faces, the box only one that is wrong.
+#[test]
+fn what_blocks_certain_wrong_pixels_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("mesh.obj"), SHEET_AND_BOX).unwrap();
+    fs::write(folder.path().join("lit.ron"), LIT).unwrap();
+    let compare = |rest: &str| {
+        let line = format!(
+            "compare {rest} --scene mesh.obj --eye 0,12,0 --look 0.001,-1,0.001 --light 1,-1.5,0.4 \
+             --fov 60 --near 1 --far 100 --size 96x96 --map-size 256 --frames 1 --warmup 0 \
+             --images none --out out"
+        );
+        let output = skiagraph(folder.path(), &line);
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        (text, results(&folder.path().join("out"))["runs"].clone())
+    };
+    let (text, runs) = compare("crsm lit.ron rt");
+    let blockers = |run: &Value| {
+        let kinds = ["open_part", "closed_part", "none"];
+        kinds.map(|kind| count(&run["certain_wrong_blockers"][kind]))
+    };
+    let [open, 0, 0] = blockers(&runs[0]) else {
+        panic!("{}", runs[0]);
+    };
+    assert!(
+        open > 50 && open == count(&runs[0]["wrong"]["certain"]),
+        "{runs}"
+    );
+    let line = format!(
+        "crsm 256: certain wrong outside the band {open}, blocker in an open part {open}\n"
+    );
+    assert!(text.contains(&line), "{text}");
+    let [in_open, in_closed, 0] = blockers(&runs[1]) else {
+        panic!("{}", runs[1]);
+    };
+    assert!(in_open >= open && in_closed > 50, "{}", runs[1]);
+    let line = format!("blocker in an open part {in_open}, blocker in a closed part {in_closed}\n");
+    assert!(text.contains(&line), "{text}");
+    assert_eq!(runs[2].get("certain_wrong_blockers"), None);
+
+    let (text, runs) = compare("crsm --set cull=none");
+    assert_eq!(runs[0]["wrong"]["certain"], 0);
+    assert_eq!(runs[0].get("certain_wrong_blockers"), None);
+    assert!(!text.contains("blocker"), "{text}");
+}
+
 #[test]
 fn a_document_holds_what_was_measured_and_needs_no_pictures() {
     let folder = tempfile::tempdir().unwrap();

@@ -28,6 +28,7 @@
 //! # Ok::<(), skiagraph_reference::Error>(())
 //! ```
 
+pub mod blockers;
 mod contact;
 mod error;
 pub mod error_bound;
@@ -39,6 +40,7 @@ pub mod receiver;
 pub mod statistics;
 mod tree;
 
+pub use blockers::BlockerCounts;
 pub use error::Error;
 pub use image::Image;
 pub use oracle::{Class, Occlusion, Oracle, OracleMode, Reference};

@@ -11,8 +11,8 @@ use crate::{
 };
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-use skiagraph_scene::{Bvh, Camera, DirectionalLight, Mesh};
-use std::{borrow::Cow, fmt, ops::ControlFlow, str::FromStr};
+use skiagraph_scene::{Bvh, Camera, DirectionalLight, Mesh, Parts};
+use std::{borrow::Cow, fmt, ops::ControlFlow, str::FromStr, sync::OnceLock};
 
 /// How a shadow ray leaves its receiver.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -20,9 +20,19 @@ pub enum OracleMode {
     /// From the receiver itself; the pixel's own primitive is no caster.
     #[default]
     Exact,
-    /// From the receiver moved by this length, in scene units, to_light the light; every primitive
+    /// From the receiver moved by this length, in scene units, towards the light; every primitive
     /// is a caster. 0.03 on Sponza is the dissertation's convention.
     Offset(f64),
+}
+
+impl OracleMode {
+    /// Where the receiver's shadow ray begins, and the primitive that it passes.
+    pub(crate) fn ray(self, receiver: &Receiver, to_light: DVec3) -> (DVec3, u32) {
+        match self {
+            Self::Exact => (receiver.position, receiver.primitive),
+            Self::Offset(length) => (receiver.position + to_light * length, BACKGROUND),
+        }
+    }
 }
 
 impl FromStr for OracleMode {
@@ -94,8 +104,10 @@ pub struct Reference {
 
 /// The f64 ray tracer over one mesh.
 pub struct Oracle<'a> {
-    mesh: &'a Mesh,
-    tree: Tree<'a>,
+    pub(crate) mesh: &'a Mesh,
+    pub(crate) tree: Tree<'a>,
+    /// Of the mesh, once somebody asks for blockers.
+    pub(crate) parts: OnceLock<Parts>,
 }
 
 /// What the oracle says of a ray.
@@ -123,7 +135,8 @@ impl<'a> Oracle<'a> {
     pub fn new(mesh: &'a Mesh) -> Self {
         let tree = Tree::new(mesh, Cow::Owned(Bvh::build(mesh)))
             .expect("the hierarchy was built over this very mesh");
-        Self { mesh, tree }
+        let parts = OnceLock::new();
+        Self { mesh, tree, parts }
     }
 
     /// Uses a hierarchy that was built over `mesh` before.
@@ -134,6 +147,7 @@ impl<'a> Oracle<'a> {
         Ok(Self {
             mesh,
             tree: Tree::new(mesh, Cow::Borrowed(bvh))?,
+            parts: OnceLock::new(),
         })
     }
 
@@ -254,10 +268,7 @@ impl<'a> Oracle<'a> {
                 n_dot_l,
             };
         }
-        let (origin, excluded) = match mode {
-            OracleMode::Exact => (receiver.position, receiver.primitive),
-            OracleMode::Offset(length) => (receiver.position + to_light * length, BACKGROUND),
-        };
+        let (origin, excluded) = mode.ray(receiver, to_light);
         let (shadow, indeterminate) = match &receiver.uncertainty {
             Some(uncertainty) => self.visibility(origin, to_light, uncertainty, excluded, stack),
             None => (self.occluded(origin, to_light, excluded, stack), true),

@@ -208,8 +208,32 @@ impl Statistics {
         }
         self.wrong.total += 1;
         self.wrong.in_band += u64::from(indeterminate);
-        let certain = matches!(status, status::CERTAIN_LIGHT | status::CERTAIN_SHADOW);
-        self.wrong.certain += u64::from(certain && !indeterminate);
+        self.wrong.certain += u64::from(is_certain_wrong(status, indeterminate, verdict));
+    }
+
+    /// The pixels that [`WrongCounts::certain`] counts, by their places in the buffers.
+    ///
+    /// # Errors
+    /// Those of [`judged`](Self::judged).
+    pub fn certain_wrong_pixels(
+        visibility: &[impl Copy + Into<u32>],
+        status: &[impl Copy + Into<u32>],
+        reference: &Reference,
+    ) -> Result<Vec<usize>, Error> {
+        let mut pixels = Vec::new();
+        let mut place = 0;
+        for_each_verdict(
+            visibility,
+            status,
+            reference,
+            |_, status, indeterminate, verdict| {
+                if is_certain_wrong(status, indeterminate, verdict) {
+                    pixels.push(place);
+                }
+                place += 1;
+            },
+        )?;
+        Ok(pixels)
     }
 
     /// A count as a share of the pixels facing the light, 0..1; 0 where none does.
@@ -243,6 +267,12 @@ pub(crate) enum Verdict {
     Right,
     WronglyLit,
     WronglyShadowed,
+}
+
+/// Whether the method called the pixel certain and is wrong of it outside the band.
+fn is_certain_wrong(status: u32, indeterminate: bool, verdict: Verdict) -> bool {
+    let certain = matches!(status, status::CERTAIN_LIGHT | status::CERTAIN_SHADOW);
+    certain && !indeterminate && verdict != Verdict::Right
 }
 
 /// Calls `pixel` with class, status, whether it is indeterminate, and verdict of every pixel.
@@ -371,6 +401,10 @@ mod tests {
         assert_eq!(
             Statistics::judged(&visibility, &status, &reference),
             Ok(expected)
+        );
+        assert_eq!(
+            Statistics::certain_wrong_pixels(&visibility, &status, &reference),
+            Ok(vec![3, 7, 13])
         );
         // The same values as u32.
         let (visibility, status) = (visibility.map(u32::from), status.map(u32::from));

@@ -1,7 +1,8 @@
-//! The views that results are published for: Sponza's `main` and the nine of `park`.
+//! The views that results are published for: Sponza's `main`, the nine of `bench` and of `park`.
 //!
-//! Sponza's mesh is not part of the repository: its tests need the folder with `sponza/sponza.obj`
-//! in the environment variable `SKIAGRAPH_ASSETS`, relative to the workspace or absolute.
+//! The meshes of Sponza and of `bench` are not part of the repository: their tests need the folder
+//! with `sponza/sponza.obj` and `bench/bench.obj` in the environment variable `SKIAGRAPH_ASSETS`,
+//! relative to the workspace or absolute.
 
 mod common;
 
@@ -13,30 +14,31 @@ use std::{path::Path, sync::OnceLock, time::Instant};
 /// Most indeterminate pixels, as a share of those facing the light.
 const INDETERMINATE_CAP: f64 = 1e-3;
 
-/// The scene, or `None`, with a word why, where no folder is named. A folder without the mesh is a
-/// failure.
+/// A scene whose mesh is not part of the repository, or `None`, with a word why, where no folder is
+/// named. A folder without the mesh is a failure.
+fn downloaded(name: &str) -> Option<Scene> {
+    let Some(folders) = std::env::var_os("SKIAGRAPH_ASSETS") else {
+        println!("SKIAGRAPH_ASSETS is not set: nothing to test without the mesh of {name}");
+        return None;
+    };
+    // Tests run in the crate's folder, but a relative path is meant from where the command is
+    // typed.
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let assets = std::env::split_paths(&folders)
+        .map(|folder| workspace.join(folder))
+        .collect();
+    Some(scene(
+        name,
+        SceneLibrary {
+            assets,
+            ..SceneLibrary::default()
+        },
+    ))
+}
+
 fn sponza() -> Option<&'static Scene> {
     static SPONZA: OnceLock<Option<Scene>> = OnceLock::new();
-    let load = || {
-        let Some(folders) = std::env::var_os("SKIAGRAPH_ASSETS") else {
-            println!("SKIAGRAPH_ASSETS is not set: nothing to test without the Sponza mesh");
-            return None;
-        };
-        // Tests run in the crate's folder, but a relative path is meant from where the command is
-        // typed.
-        let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-        let assets = std::env::split_paths(&folders)
-            .map(|folder| workspace.join(folder))
-            .collect();
-        Some(scene(
-            "sponza",
-            SceneLibrary {
-                assets,
-                ..SceneLibrary::default()
-            },
-        ))
-    };
-    SPONZA.get_or_init(load).as_ref()
+    SPONZA.get_or_init(|| downloaded("sponza")).as_ref()
 }
 
 fn scene(name: &str, library: SceneLibrary) -> Scene {
@@ -148,6 +150,15 @@ fn sponza_has_the_dissertations_counts() {
             }
         }
     }
+}
+
+#[test]
+fn bench_in_f32() {
+    let Some(scene) = downloaded("bench") else {
+        return;
+    };
+    assert_eq!(scene.views.len(), 9);
+    f32_errs_in_few_indeterminate_pixels_only(&scene, OracleMode::Exact);
 }
 
 #[test]

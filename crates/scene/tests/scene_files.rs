@@ -150,6 +150,7 @@ fn a_file_in_the_scenes_folder_wins_over_the_built_in_scene() {
     assert_eq!(
         listed,
         [
+            ("bench".to_owned(), false, false),
             ("city".to_owned(), true, false),
             ("forest".to_owned(), true, false),
             ("park".to_owned(), true, true),
@@ -178,7 +179,7 @@ fn unknown_scenes_and_missing_files() {
     };
     assert_snapshot!(library.load(&request("parc")).unwrap_err(), @"no scene \"parc\": it is \
         neither the path of a .ron or .obj file, nor the name of a .ron file in scenes, nor one of \
-        the built-in scenes city, forest, park, sponza");
+        the built-in scenes bench, city, forest, park, sponza");
     assert!(matches!(
         library.load(&request("nowhere/parc.ron")),
         Err(SceneError::Read { .. })

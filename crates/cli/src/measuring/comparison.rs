@@ -6,7 +6,7 @@ use crate::files::fingerprint::Fingerprint;
 use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
-use crate::measuring::reference::{PrimaryVisibility, shade_with_progress};
+use crate::measuring::reference::{Judge, PrimaryVisibility};
 use crate::measuring::resume::{RunKey, resume};
 use crate::measuring::run::MeasureContext;
 use crate::pictures::run_pictures::save_reference;
@@ -18,9 +18,9 @@ use crate::terminal::progress::Step;
 use crate::wording::size;
 use skiagraph_gpu::device::Gpu;
 use skiagraph_passes::SceneProvider;
-use skiagraph_reference::{Oracle, Reference};
+use skiagraph_reference::Oracle;
 use skiagraph_scene::{Scene, View};
-use std::{cell::OnceCell, ops::Range, path::Path};
+use std::{cell::OnceCell, ops::Range, path::Path, rc::Rc};
 
 /// What a comparison is of.
 pub struct ComparisonSetup<'a> {
@@ -68,7 +68,7 @@ pub struct Comparison<'a> {
     setup: ComparisonSetup<'a>,
     provider: SceneProvider,
     /// Built when the first run needs it.
-    oracle: OnceCell<Oracle<'a>>,
+    oracle: OnceCell<Rc<Oracle<'a>>>,
     /// What others have published.
     published: Vec<Row>,
     /// Of each planned run.
@@ -157,13 +157,13 @@ impl<'a> Comparison<'a> {
         if self.states[places.clone()].iter().all(is_done) {
             return Ok(());
         }
-        let reference = self.reference(view, viewport)?;
+        let judge = self.judge(view, viewport)?;
         let context = MeasureContext {
             gpu: self.setup.gpu,
             timestamps: self.results.adapter.gpu_unavailable.is_none(),
             view: &view.name,
             fingerprint: self.setup.fingerprint.with_view(view),
-            reference: &reference,
+            judge: &judge,
             frames: self.args.frames,
             warmup: self.args.warmup,
             cached_frames: self.results.cached_frames,
@@ -212,13 +212,13 @@ impl<'a> Comparison<'a> {
     }
 
     /// The right answer, with its picture.
-    fn reference(&mut self, view: &View, viewport: [u32; 2]) -> Result<Reference, CliError> {
+    fn judge(&mut self, view: &View, viewport: [u32; 2]) -> Result<Judge<'a>, CliError> {
         let (scene, primary) = (self.setup.scene, self.setup.primary);
         let oracle = self.oracle.get_or_init(|| {
             let step = Step::begin(format!("hierarchy of {}", scene.name), 1, "steps");
             let oracle = Oracle::new(&scene.mesh);
             step.end();
-            oracle
+            Rc::new(oracle)
         });
         let what = format!("{} {}", view.name, size(viewport));
         let step = Step::begin(format!("visible triangles, {what}"), 1, "frames");
@@ -226,11 +226,11 @@ impl<'a> Comparison<'a> {
         step.end();
         let (camera, mode) = (view.camera(viewport), self.args.oracle);
         let light = scene.light_of(view);
-        let reference = shade_with_progress(oracle, &camera, &light, &ids, mode, &what)?;
+        let judge = Judge::new(oracle.clone(), camera, light, ids, mode, &what)?;
         if let Some(folder) = self.pictures() {
-            save_reference(folder, &view.name, &reference)?;
+            save_reference(folder, &view.name, &judge.reference)?;
         }
-        Ok(reference)
+        Ok(judge)
     }
 
     /// Where pictures go, if there are to be any.

@@ -2,6 +2,7 @@
 
 use crate::error::CliError;
 use crate::files::fingerprint::{Fingerprint, RecordedSources};
+use crate::graphs::contract::Outputs;
 use crate::graphs::faults::GraphFaults;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::frame;
@@ -10,8 +11,11 @@ use crate::terminal::progress::Step;
 use skiagraph_gpu::{Content, Provider, device::Gpu};
 use skiagraph_graph::{Graph, Plan, Sources};
 use skiagraph_passes::registry;
-use skiagraph_reference::{Error, Oracle, OracleMode, Progress, Reference, Statistics};
+use skiagraph_reference::{
+    BlockerCounts, Error, Oracle, OracleMode, Progress, Reference, Statistics,
+};
 use skiagraph_scene::{Camera, DirectionalLight};
+use std::rc::Rc;
 
 /// The graph that every comparison draws first, as far as its output `primitive` needs: which one
 /// does each pixel show?
@@ -85,27 +89,70 @@ pub fn own_counts(reference: &Reference) -> Statistics {
     Statistics::judged(&visibility, &status, reference).unwrap_or_default()
 }
 
-/// Runs the oracle with a progress bar.
-///
-/// # Errors
-/// Those of [`shade`].
-pub fn shade_with_progress(
-    oracle: &Oracle,
-    camera: &Camera,
-    light: &DirectionalLight,
-    primitives: &[u32],
+/// The oracle on one view and viewport.
+pub struct Judge<'a> {
+    oracle: Rc<Oracle<'a>>,
+    camera: Camera,
+    light: DirectionalLight,
+    primitives: Vec<u32>,
     mode: OracleMode,
-    what: &str,
-) -> Result<Reference, CliError> {
-    let step = Step::begin(
-        format!("reference, {what}"),
-        camera.viewport[1].into(),
-        "rows",
-    );
-    let rows_done = |rows| step.set_done(rows);
-    let reference = shade(oracle, camera, light, primitives, mode, &rows_done, what)?;
-    step.end();
-    Ok(reference)
+    /// The right answer.
+    pub reference: Reference,
+}
+
+impl<'a> Judge<'a> {
+    /// Runs the oracle with a progress bar.
+    ///
+    /// # Errors
+    /// Those of [`shade`].
+    pub fn new(
+        oracle: Rc<Oracle<'a>>,
+        camera: Camera,
+        light: DirectionalLight,
+        primitives: Vec<u32>,
+        mode: OracleMode,
+        what: &str,
+    ) -> Result<Self, CliError> {
+        let step = Step::begin(
+            format!("reference, {what}"),
+            camera.viewport[1].into(),
+            "rows",
+        );
+        let rows_done = |rows| step.set_done(rows);
+        let reference = shade(
+            &oracle,
+            &camera,
+            &light,
+            &primitives,
+            mode,
+            &rows_done,
+            what,
+        )?;
+        step.end();
+        Ok(Self {
+            oracle,
+            camera,
+            light,
+            primitives,
+            mode,
+            reference,
+        })
+    }
+
+    /// What blocks the pixels that a method is certain and wrong of.
+    ///
+    /// # Errors
+    /// Outputs that do not fit the reference.
+    pub fn blockers(&self, outputs: &Outputs) -> Result<BlockerCounts, CliError> {
+        let (visibility, status) = (&outputs.visibility, &outputs.status);
+        let pixels = Statistics::certain_wrong_pixels(visibility, status, &self.reference);
+        let (camera, light, primitives) = (&self.camera, &self.light, &self.primitives);
+        let blockers = pixels.and_then(|pixels| {
+            let oracle = &self.oracle;
+            oracle.blockers(camera, light, primitives, self.mode, &pixels)
+        });
+        blockers.map_err(|error| CliError::Input(format!("no blockers: {error}")))
+    }
 }
 
 /// Runs the oracle; `rows_done` hears how far it is.

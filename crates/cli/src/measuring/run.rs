@@ -6,7 +6,7 @@ use crate::graphs::contract::{Outputs, judged};
 use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
-use crate::measuring::reference::own_counts;
+use crate::measuring::reference::{Judge, own_counts};
 use crate::measuring::timing::{self, FrameMode, Times};
 use crate::measuring::{date, frame};
 use crate::pictures::run_pictures::{conditions, save_pictures, stem};
@@ -14,7 +14,6 @@ use crate::records::results::{Cached, Measured, Run};
 use crate::terminal::progress::Step;
 use skiagraph_gpu::{ExecuteError, Provider, device::Gpu};
 use skiagraph_graph::Plan;
-use skiagraph_reference::Reference;
 use std::path::Path;
 
 /// What all methods on one view and viewport share.
@@ -27,8 +26,8 @@ pub struct MeasureContext<'a> {
     pub view: &'a str,
     /// Of mesh, light and view.
     pub fingerprint: Fingerprint,
-    /// The right answer.
-    pub reference: &'a Reference,
+    /// The right answer, and where it is from.
+    pub judge: &'a Judge<'a>,
     /// Timed frames.
     pub frames: u32,
     /// Frames before them.
@@ -55,7 +54,7 @@ impl MeasureContext<'_> {
     /// Ctrl-C, a lost device, outputs that break the contract ([`CliError::Contract`]), a picture
     /// that cannot be written.
     pub fn measure(&self, method: &Method, provider: &mut dyn Provider) -> Result<Run, CliError> {
-        let viewport = self.reference.viewport;
+        let viewport = self.judge.reference.viewport;
         let plan = match method.plan(viewport, Capabilities::of(self.gpu), provider) {
             Ok(plan) => plan,
             // The graph itself is sound: that was checked before anything ran.
@@ -153,7 +152,12 @@ impl MeasureContext<'_> {
             memory: (memory_bytes, saved_bytes),
             scene_bytes,
         } = executed;
-        let (outputs, counts) = judged(method.preset, outputs, self.reference)?;
+        let reference = &self.judge.reference;
+        let (outputs, counts) = judged(method.preset, outputs, reference)?;
+        let blockers = match counts.wrong.certain {
+            0 => None,
+            _ => Some(self.judge.blockers(&outputs)?),
+        };
         if !self.timestamps {
             times.frame.gpu_ms = None;
             cached
@@ -162,8 +166,8 @@ impl MeasureContext<'_> {
             times.passes.iter_mut().for_each(|pass| pass.gpu_ms = None);
         }
         let images = self.pictures.map(|folder| {
-            let stem = stem(method, self.view, self.reference.viewport);
-            save_pictures(folder, &stem, self.reference, &outputs, &counts)
+            let stem = stem(method, self.view, reference.viewport);
+            save_pictures(folder, &stem, reference, &outputs, &counts)
         });
         Ok(Measured {
             certain: counts.certain,
@@ -171,6 +175,7 @@ impl MeasureContext<'_> {
             split: counts.split,
             rays: outputs.rays,
             wrong: counts.wrong,
+            certain_wrong_blockers: blockers,
             facing_mismatch: counts.facing_mismatch,
             passes: times.passes,
             frame: times.frame,
@@ -184,7 +189,7 @@ impl MeasureContext<'_> {
 
     /// The run with nothing measured.
     fn empty(&self, method: &Method) -> Run {
-        let reference = self.reference;
+        let reference = &self.judge.reference;
         let counts = own_counts(reference);
         Run {
             preset: method.preset.name.clone(),

@@ -4,7 +4,7 @@
 use crate::records::statistics::Spread;
 use crate::wording::{size, thousands};
 use serde::{Deserialize, Serialize};
-use skiagraph_reference::{CertainCounts, PixelCounts, Split, WrongCounts};
+use skiagraph_reference::{BlockerCounts, CertainCounts, PixelCounts, Split, WrongCounts};
 use std::{collections::BTreeMap, fmt};
 
 /// The program that measures, as files name it.
@@ -172,6 +172,10 @@ pub struct Measured {
     pub rays: Option<u64>,
     /// Pixels facing the light on which method and reference disagree.
     pub wrong: WrongCounts,
+    /// The pixels of `wrong.certain` by what blocks them; absent where there are none, and in files
+    /// of older programs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certain_wrong_blockers: Option<BlockerCounts>,
     /// Pixels that face the light by the reference but not by the method, or the other way round.
     pub facing_mismatch: u64,
     /// Times of each pass, in the order in which they ran.
@@ -351,6 +355,11 @@ pub(crate) mod tests {
                 certain: 495,
                 in_band: 6,
             },
+            certain_wrong_blockers: gpu.then_some(BlockerCounts {
+                open_part: 90,
+                closed_part: 9,
+                none: 396,
+            }),
             facing_mismatch: 3,
             passes: ["gbuffer", name]
                 .map(|name| Pass {

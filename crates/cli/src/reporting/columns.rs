@@ -6,6 +6,7 @@ use crate::records::statistics::Spread;
 use crate::wording::{ms, thousands};
 use Source::{Always, Measure};
 use Value::{Count, Share, Text, Time, Unknown};
+use skiagraph_reference::BlockerCounts;
 
 /// A name, and where the figure of that name comes from.
 type Figure = (&'static str, Source);
@@ -76,6 +77,9 @@ const CSV: &[Figure] = &[
     ("shadow_uncertain_wrong", Measure(|of| Count(of.split.shadow.uncertain_wrong))),
     ("gbuffer_gpu_ms", Measure(|of| of.gbuffer_ms().map_or(Unknown, Time))),
     ("scene_bytes", Measure(|of| Count(of.scene_bytes))),
+    ("wrong_certain_open_part", Measure(|of| blocked(of, |by| by.open_part))),
+    ("wrong_certain_closed_part", Measure(|of| blocked(of, |by| by.closed_part))),
+    ("wrong_certain_no_blocker", Measure(|of| blocked(of, |by| by.none))),
 ];
 
 /// Figures that only tables show.
@@ -137,6 +141,15 @@ fn text(text: &str) -> Value {
 
 fn median(times: Option<Spread>) -> Value {
     times.map_or(Unknown, |spread| Time(spread.median))
+}
+
+/// Certain wrong pixels of one kind of blocker; a file of an older program does not know.
+fn blocked(measured: &Measured, count: fn(BlockerCounts) -> u64) -> Value {
+    match measured.certain_wrong_blockers {
+        Some(blockers) => Count(count(blockers)),
+        None if measured.wrong.certain == 0 => Count(0),
+        None => Unknown,
+    }
 }
 
 /// A column of a table.

@@ -4,7 +4,7 @@
 use crate::args::values::PublishedFile;
 use crate::records::results::{Measured, Results, Run, step};
 use crate::reporting::columns::{self, Column, STEPS};
-use crate::reporting::notes::{band_warning, times_missing};
+use crate::reporting::notes::{band_warning, certain_wrong, times_missing};
 use crate::wording::{command_line, frames, ms, share, thousands};
 use std::{collections::BTreeSet, env};
 
@@ -78,6 +78,7 @@ pub fn viewport(results: &Results, runs: &[Run]) -> String {
         }
     }
     let mut notes: Vec<String> = band_warning(first).into_iter().collect();
+    notes.extend(certain_wrong(runs));
     if results.adapter.gpu_unavailable.is_none() {
         notes.extend(runs.iter().filter_map(times_missing));
     }

@@ -1,6 +1,7 @@
 //! What is said below tables, wherever they stand.
 
-use crate::records::results::Run;
+use crate::records::results::{Measured, Run};
+use crate::wording::thousands;
 
 /// A band of more than one pixel in so many of those facing the light leaves too much open.
 const MAX_BAND: u128 = 1000;
@@ -10,6 +11,55 @@ pub fn band_warning(run: &Run) -> Option<String> {
     let is_large = u128::from(run.band) * MAX_BAND > u128::from(run.pixels.facing_light);
     let text = "warning: the band is larger than 0.1 % of PFL; what lies in it is not proven";
     is_large.then(|| text.to_owned())
+}
+
+/// Of each method that is wrong of certain pixels: how many, and what blocks them. All maps of a
+/// method, whose runs stand together, are in one line.
+pub fn certain_wrong(runs: &[Run]) -> Vec<String> {
+    let wrong = |run: &Run| run.measured.as_ref().is_some_and(|of| of.wrong.certain > 0);
+    runs.chunk_by(|one, other| one.preset == other.preset)
+        .map(|runs| runs.iter().filter(|run| wrong(run)).collect::<Vec<_>>())
+        .filter_map(|runs| Some(format!("{}: {}", maps(&runs)?, blockers(&runs))))
+        .collect()
+}
+
+/// A method with those of its maps that the runs are of; `None` without runs.
+fn maps(runs: &[&Run]) -> Option<String> {
+    let preset = &runs.first()?.preset;
+    let maps: Vec<String> = runs
+        .iter()
+        .filter_map(|run| Some(run.map_size?.to_string()))
+        .collect();
+    Some(match maps.is_empty() {
+        true => preset.clone(),
+        false => format!("{preset} {}", maps.join(" / ")),
+    })
+}
+
+/// Certain wrong pixels of each run, then of each kind of blocker that one of them has.
+fn blockers(runs: &[&Run]) -> String {
+    type Kind = (&'static str, fn(&Measured) -> Option<u64>);
+    const KINDS: [Kind; 4] = [
+        ("certain wrong outside the band", |of| {
+            Some(of.wrong.certain)
+        }),
+        ("blocker in an open part", |of| {
+            Some(of.certain_wrong_blockers?.open_part)
+        }),
+        ("blocker in a closed part", |of| {
+            Some(of.certain_wrong_blockers?.closed_part)
+        }),
+        ("no blocker", |of| Some(of.certain_wrong_blockers?.none)),
+    ];
+    let measured = || runs.iter().filter_map(|run| run.measured.as_ref());
+    let kinds = KINDS.iter().filter_map(|(what, count)| {
+        // Files of older programs do not know the blockers.
+        let counts = measured().map(count).collect::<Option<Vec<u64>>>()?;
+        let text: Vec<String> = counts.iter().copied().map(thousands).collect();
+        let any = counts.iter().any(|&count| count > 0);
+        any.then(|| format!("{what} {}", text.join(" / ")))
+    });
+    kinds.collect::<Vec<_>>().join(", ")
 }
 
 /// Which GPU times a run lacks on an adapter whose timestamps are true.
@@ -35,4 +85,42 @@ pub fn untimed<'a>(passes: impl Iterator<Item = (&'a str, bool)>, frame: bool) -
         (false, "") => "no GPU time of the whole frame: some frames had none".into(),
         (false, _) => format!("no GPU time of the whole frame: there are none of {untimed}"),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::records::results::tests::sample;
+    use skiagraph_reference::BlockerCounts;
+
+    #[test]
+    fn blockers_of_all_maps_stand_in_a_line_and_only_those_there_are() {
+        let mut runs = vec![sample().runs.remove(0); 3];
+        let of = |open_part, closed_part, none| BlockerCounts {
+            open_part,
+            closed_part,
+            none,
+        };
+        let counts = [of(1_200, 0, 0), of(0, 0, 0), of(7, 0, 2)];
+        for ((run, counts), map) in runs.iter_mut().zip(counts).zip([512, 1024, 2048]) {
+            run.map_size = Some(map);
+            let measured = run.measured.as_mut().unwrap();
+            measured.wrong.certain = counts.open_part + counts.none;
+            measured.certain_wrong_blockers = Some(counts);
+        }
+        assert_eq!(
+            certain_wrong(&runs),
+            [
+                "nsm 512 / 2048: certain wrong outside the band 1,200 / 9, blocker in an open part \
+                 1,200 / 7, no blocker 0 / 2"
+            ]
+        );
+        // From a file of an older program.
+        runs.truncate(1);
+        runs[0].measured.as_mut().unwrap().certain_wrong_blockers = None;
+        let expected = "nsm 512: certain wrong outside the band 1,200";
+        assert_eq!(certain_wrong(&runs), [expected]);
+        runs[0].measured.as_mut().unwrap().wrong.certain = 0;
+        assert_eq!(certain_wrong(&runs), [""; 0]);
+    }
 }

@@ -3,7 +3,7 @@
 use crate::records::results::{Results, Run};
 use crate::records::statistics::Spread;
 use crate::reporting::columns::{self, Column};
-use crate::reporting::notes::{band_warning, times_missing};
+use crate::reporting::notes::{band_warning, certain_wrong, times_missing};
 use crate::reporting::table::table;
 use crate::wording::{frames, ms, percent, size, thousands};
 
@@ -115,7 +115,7 @@ fn passes(runs: &[Run]) -> String {
 }
 
 fn footnotes(results: &Results, runs: &[Run]) -> Vec<String> {
-    let mut notes = Vec::new();
+    let mut notes = certain_wrong(runs);
     match &results.adapter.gpu_unavailable {
         Some(reason) => notes.push(format!("No GPU times: {reason}")),
         None => notes.extend(runs.iter().filter_map(times_missing)),

@@ -1,0 +1,113 @@
+//! What stands between the light and the pixels that a method is certain and wrong of.
+//!
+//! A method that culls front faces knows a caster by its back faces. A closed part has one behind
+//! each front face; an open part, such as a leaf or a curtain, may have none, and what it shadows
+//! then looks lit to the map, with certainty.
+
+use crate::{
+    error::Error,
+    oracle::{Oracle, OracleMode},
+    ray::Ray,
+    receiver::Receiver,
+};
+use glam::DVec3;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use skiagraph_scene::{Camera, DirectionalLight, Parts};
+use std::ops::ControlFlow;
+
+/// Certain wrong pixels by the parts of the mesh that block them ([`Parts`] says which are open).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BlockerCounts {
+    /// In shadow of open parts alone.
+    pub open_part: u64,
+    /// In shadow of a closed part, whatever else stands in the way.
+    pub closed_part: u64,
+    /// With nothing in the way: wrongly in shadow, or facing away from the light.
+    pub none: u64,
+}
+
+/// Of one pixel.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Blocker {
+    OpenPart,
+    ClosedPart,
+    None,
+}
+
+impl FromIterator<Blocker> for BlockerCounts {
+    fn from_iter<I: IntoIterator<Item = Blocker>>(blockers: I) -> Self {
+        let mut counts = Self::default();
+        for blocker in blockers {
+            *match blocker {
+                Blocker::OpenPart => &mut counts.open_part,
+                Blocker::ClosedPart => &mut counts.closed_part,
+                Blocker::None => &mut counts.none,
+            } += 1;
+        }
+        counts
+    }
+}
+
+impl Oracle<'_> {
+    /// What blocks each of `pixels`, places in the buffer `primitives`; the other arguments are
+    /// those of [`shade`](Self::shade).
+    ///
+    /// # Errors
+    /// [`Error::UnknownPrimitive`].
+    ///
+    /// # Panics
+    /// If a place lies outside the viewport.
+    pub fn blockers(
+        &self,
+        camera: &Camera,
+        light: &DirectionalLight,
+        primitives: &[u32],
+        mode: OracleMode,
+        pixels: &[usize],
+    ) -> Result<BlockerCounts, Error> {
+        let parts = self.parts.get_or_init(|| Parts::new(self.mesh));
+        let to_light = light.to_light();
+        let width = camera.viewport[0] as usize;
+        let blockers = pixels.par_iter().map_init(Vec::new, |stack, &pixel| {
+            let pixel = [(pixel % width) as u32, (pixel / width) as u32];
+            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, pixel, to_light)?;
+            Ok(match receiver {
+                Some(receiver) if receiver.n_dot_l > 0.0 => {
+                    let (origin, passed) = mode.ray(&receiver, to_light);
+                    self.blocker(origin, to_light, passed, parts, stack)
+                }
+                _ => Blocker::None,
+            })
+        });
+        Ok(blockers
+            .collect::<Result<Vec<_>, Error>>()?
+            .into_iter()
+            .collect())
+    }
+
+    fn blocker(
+        &self,
+        origin: DVec3,
+        to_light: DVec3,
+        passed: u32,
+        parts: &Parts,
+        stack: &mut Vec<u32>,
+    ) -> Blocker {
+        let ray = Ray::new(origin, to_light, self.tree.max_distance(origin), 0.0);
+        let mut found = Blocker::None;
+        self.tree.walk(&ray, stack, |caster, _| {
+            let hit = ray.hit(&caster.corners);
+            if caster.primitive == passed || hit.is_none_or(|hit| hit.t <= ray.nearest) {
+                return ControlFlow::Continue(());
+            }
+            if parts.is_open(caster.primitive) {
+                found = Blocker::OpenPart;
+                return ControlFlow::Continue(());
+            }
+            found = Blocker::ClosedPart;
+            ControlFlow::Break(())
+        });
+        found
+    }
+}

@@ -1,0 +1,175 @@
+//! Which triangles hang together, and whether they close.
+
+use crate::mesh::Mesh;
+
+/// The parts of a mesh: triangles that share edges over its welded positions.
+///
+/// A part is *closed* if its triangles pass each edge as often in one direction as in the other:
+/// between two points outside the part a ray then meets as many of its back faces as of its front
+/// faces. It is *open* at an edge of one triangle, at one whose two triangles are wound against
+/// each other, and at one of more triangles that do not pair off. Four that do, as of two boxes
+/// that touch along an edge, leave it closed.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Parts {
+    /// The part of each triangle, numbered from 0 in the order of their first triangles.
+    pub of: Vec<u32>,
+    /// Whether each part is open.
+    pub open: Vec<bool>,
+}
+
+/// A triangle's side: its edge, the lower position first, whether it is passed in that direction,
+/// and the triangle.
+type Side = ([u32; 2], bool, u32);
+
+impl Parts {
+    /// Of a mesh. A triangle that names a position twice has no area: it closes nothing, and is an
+    /// open part of its own.
+    pub fn new(mesh: &Mesh) -> Self {
+        let mut sides = sides(mesh);
+        sides.sort_unstable();
+        let mut parents: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
+        let mut open: Vec<bool> = mesh.triangles.iter().map(names_one_twice).collect();
+        for edge in sides.chunk_by(|one, other| one.0 == other.0) {
+            let first = edge[0].2;
+            for &(.., triangle) in edge {
+                join(&mut parents, first, triangle);
+            }
+            let forward = edge.iter().filter(|side| side.1).count();
+            open[first as usize] |= 2 * forward != edge.len();
+        }
+        let mut parts = Self::default();
+        // A root is the lowest triangle of its part.
+        for triangle in 0..parents.len() as u32 {
+            let root = root(&mut parents, triangle);
+            let part = if root == triangle {
+                parts.open.push(false);
+                parts.open.len() as u32 - 1
+            } else {
+                parts.of[root as usize]
+            };
+            parts.of.push(part);
+            parts.open[part as usize] |= open[triangle as usize];
+        }
+        parts
+    }
+
+    /// Whether a triangle belongs to an open part.
+    ///
+    /// # Panics
+    /// If the mesh has no triangle of that id.
+    pub fn is_open(&self, primitive: u32) -> bool {
+        self.open[self.of[primitive as usize] as usize]
+    }
+}
+
+fn names_one_twice([a, b, c]: &[u32; 3]) -> bool {
+    a == b || b == c || c == a
+}
+
+fn sides(mesh: &Mesh) -> Vec<Side> {
+    let mut sides = Vec::with_capacity(3 * mesh.triangles.len());
+    for (primitive, triangle) in mesh.triangles.iter().enumerate() {
+        if names_one_twice(triangle) {
+            continue;
+        }
+        let &[a, b, c] = triangle;
+        sides.extend(
+            [(a, b), (b, c), (c, a)]
+                .map(|(from, to)| ([from.min(to), from.max(to)], from < to, primitive as u32)),
+        );
+    }
+    sides
+}
+
+fn root(parents: &mut [u32], mut of: u32) -> u32 {
+    while parents[of as usize] != of {
+        let parent = parents[of as usize];
+        parents[of as usize] = parents[parent as usize];
+        of = parent;
+    }
+    of
+}
+
+fn join(parents: &mut [u32], one: u32, other: u32) {
+    let (one, other) = (root(parents, one), root(parents, other));
+    parents[one.max(other) as usize] = one.min(other);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+
+    fn parts(triangles: &[[u32; 3]]) -> Parts {
+        Parts::new(&Mesh {
+            triangles: triangles.to_vec(),
+            ..Mesh::default()
+        })
+    }
+
+    fn open(triangles: &[[u32; 3]]) -> Vec<bool> {
+        parts(triangles).open
+    }
+
+    #[test]
+    fn a_solid_is_closed_and_open_without_one_of_its_faces() {
+        assert_eq!(open(&TETRAHEDRON), [false]);
+        for face in 0..4 {
+            let mut rest = TETRAHEDRON.to_vec();
+            rest.remove(face);
+            assert_eq!(open(&rest), [true]);
+        }
+    }
+
+    #[test]
+    fn a_face_wound_against_the_others_opens() {
+        for face in 0..4 {
+            let mut turned = TETRAHEDRON;
+            turned[face].swap(0, 1);
+            assert_eq!(open(&turned), [true]);
+        }
+        // Inside out is closed, too.
+        let inside_out = TETRAHEDRON.map(|[a, b, c]| [a, c, b]);
+        assert_eq!(open(&inside_out), [false]);
+    }
+
+    #[test]
+    fn more_than_two_triangles_at_an_edge_close_if_they_pair_off() {
+        let beside = TETRAHEDRON.map(|face| face.map(|corner| [0, 1, 4, 5][corner as usize]));
+        let two = [&TETRAHEDRON[..], &beside].concat();
+        assert_eq!(parts(&two).of, [0; 8]);
+        assert_eq!(open(&two), [false]);
+        // A sheet on the edge of a solid.
+        let with_sheet = [&TETRAHEDRON[..], &[[0, 1, 4]]].concat();
+        assert_eq!(open(&with_sheet), [true]);
+        // A sheet with a back of its own is closed, one with the same face twice is not.
+        assert_eq!(open(&[[0, 1, 2], [0, 2, 1]]), [false]);
+        assert_eq!(open(&[[0, 1, 2], [0, 1, 2]]), [true]);
+    }
+
+    #[test]
+    fn parts_are_numbered_by_their_first_triangles_and_joined_by_edges_only() {
+        // The second sheet touches the first one in a corner, the last triangle joins both.
+        let apart = [[0, 1, 2], [2, 3, 4], [5, 5, 6], [4, 3, 7]];
+        assert_eq!(
+            parts(&apart),
+            Parts {
+                of: vec![0, 1, 2, 1],
+                open: vec![true; 3],
+            }
+        );
+        let joined = [&apart[..], &[[1, 2, 3]], &[[2, 1, 3]]].concat();
+        assert_eq!(parts(&joined).of, [0, 0, 1, 0, 0, 0]);
+        assert_eq!(parts(&[]), Parts::default());
+    }
+
+    #[test]
+    fn a_solid_beside_a_sheet_stays_closed() {
+        let sheet = [[4, 5, 6], [4, 6, 7]];
+        let parts = parts(&[&sheet[..1], &TETRAHEDRON, &sheet[1..]].concat());
+        assert_eq!(parts.of, [0, 1, 1, 1, 1, 0]);
+        let open: Vec<bool> = (0..6).map(|primitive| parts.is_open(primitive)).collect();
+        assert_eq!(open, [true, false, false, false, false, true]);
+    }
+}

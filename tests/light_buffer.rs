@@ -9,11 +9,12 @@ use skiagraph_graph::{Capture, ParamValue};
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::statistics::status;
 use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
-use skiagraph_tests::cpu_reference::{LightSpace, SLACK, TexelTriangle, exact};
+use skiagraph_tests::cpu_reference::{SLACK, TexelTriangle, exact};
 use std::{collections::BTreeSet, sync::Arc};
 use support::{
     graphs::{frame, open, plan, provider, run_on, values},
-    meshes::{mesh, potato, soup},
+    map_fit::MapFit,
+    meshes::{joined, mesh, potato, soup},
     random::Random,
 };
 
@@ -36,21 +37,6 @@ fn scene(mesh: Mesh, eye: DVec3, light: DVec3) -> Arc<Scene> {
         views: vec![view],
         light: DirectionalLight { direction: light },
     })
-}
-
-/// Two meshes as one.
-fn joined(mut first: Mesh, second: &Mesh) -> Mesh {
-    let (corners, normals) = (first.positions.len() as u32, first.normals.len() as u32);
-    first.positions.extend(&second.positions);
-    first.normals.extend(&second.normals);
-    let moved = |by: u32| move |triangle: &[u32; 3]| triangle.map(|index| index + by);
-    first
-        .triangles
-        .extend(second.triangles.iter().map(moved(corners)));
-    first
-        .normal_indices
-        .extend(second.normal_indices.iter().map(moved(normals)));
-    first
 }
 
 /// A horizontal square that faces up.
@@ -191,40 +177,6 @@ fn lists_hold_each_caster_that_shades_a_receiver_and_no_stranger() {
             shading += check_lists(&scene, &fit, &report);
         }
         assert!(shading > 10_000, "{fit}: {shading}");
-    }
-}
-
-/// As shaders/shared/map_fit.wgsl has it.
-struct MapFit {
-    /// A map of one texel over all of the scene.
-    scene: LightSpace,
-    /// From clip space to texels.
-    rows: [DVec3; 2],
-    size: u32,
-}
-
-impl MapFit {
-    fn of(report: &FrameReport, scene: &Scene) -> Self {
-        let words = values(report, "map_fit");
-        let number = |at: usize| f64::from(f32::from_bits(words[at]));
-        let row = |at: usize| DVec3::new(number(at), number(at + 1), number(at + 2));
-        Self {
-            scene: LightSpace::new(&scene.mesh, &scene.light, 1),
-            rows: [row(0), row(4)],
-            size: number(8) as u32,
-        }
-    }
-
-    /// A point in texels and depth.
-    fn texel(&self, position: DVec3) -> DVec3 {
-        let share = self.scene.texel(position);
-        let clip = DVec3::new(2.0 * share.x - 1.0, 1.0 - 2.0 * share.y, 1.0);
-        DVec3::new(self.rows[0].dot(clip), self.rows[1].dot(clip), share.z)
-    }
-
-    /// Texels along the scene's edges, if the map is upright.
-    fn scene_size(&self) -> DVec2 {
-        2.0 * DVec2::new(self.rows[0].x, -self.rows[1].y)
     }
 }
 

@@ -21,6 +21,21 @@ pub fn mesh(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Mesh {
     }
 }
 
+/// Two meshes as one.
+pub fn joined(mut first: Mesh, second: &Mesh) -> Mesh {
+    let (corners, normals) = (first.positions.len() as u32, first.normals.len() as u32);
+    first.positions.extend(&second.positions);
+    first.normals.extend(&second.normals);
+    let moved = |by: u32| move |triangle: &[u32; 3]| triangle.map(|index| index + by);
+    first
+        .triangles
+        .extend(second.triangles.iter().map(moved(corners)));
+    first
+        .normal_indices
+        .extend(second.normal_indices.iter().map(moved(normals)));
+    first
+}
+
 /// Triangles of about `size` at random places in a cube of half edge 1.
 pub fn soup(count: usize, size: f32, seed: u64) -> Mesh {
     let mut random = Random(seed);

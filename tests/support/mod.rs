@@ -4,6 +4,7 @@
 pub mod bench;
 pub mod brute;
 pub mod graphs;
+pub mod map_fit;
 pub mod meshes;
 pub mod random;
 pub mod scenes;

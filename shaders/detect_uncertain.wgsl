@@ -1,6 +1,6 @@
 // Stage to compare each pixel's depth in light space with the outer and the inner depth of the map;
-// one thread per pixel. Both say light, or both shadow, in each texel asked: certain. Otherwise, and
-// outside the map: uncertain. Hertel, Hormann, Westermann 2009.
+// one thread per pixel. Both say light, or both shadow, in each texel asked: certain. Otherwise,
+// and outside the map: uncertain. Hertel, Hormann, Westermann 2009.
 
 #import "shared/light_triangle.wgsl"
 #import "shared/footprint.wgsl"

@@ -39,8 +39,8 @@ fn over_receivers() {
         store_scene();
         return;
     }
-    // Edges of the map if it went over the scene. Room for a box that begins within a texel, and for
-    // rounding.
+    // Edges of the map if it went over the scene. Room for a box that begins within a texel, and
+    // for rounding.
     let room = f32(params.map_size) - 4.0;
     let size = floor(min(room / max(high - low, vec2(1e-6)), vec2(2.0 * greatest_scale(0.0))));
     let first = max(floor(low * size) - 1.0, vec2(0.0));

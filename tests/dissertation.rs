@@ -66,7 +66,14 @@ fn uncertain(
     let count = |is: &dyn Fn(u32) -> bool| status.iter().filter(|&&s| is(s)).count() as f64;
     [
         count(&|s| s == status::UNCERTAIN),
-        count(&|s| [status::UNCERTAIN, status::LIGHT, status::SHADOW].contains(&s)),
+        count(&|s| {
+            [
+                status::UNCERTAIN,
+                status::CERTAIN_LIGHT,
+                status::CERTAIN_SHADOW,
+            ]
+            .contains(&s)
+        }),
     ]
 }
 

@@ -127,6 +127,13 @@ mod tests {
     }
 
     #[test]
+    fn the_dissertations_figures_can_be_read() {
+        let text = include_str!("../../../../docs/data/dissertation.csv");
+        let (rows, faults) = parse("D", &SourceFile::new("dissertation.csv", text));
+        assert_eq!((rows.len(), faults.len()), (text.lines().count() - 1, 0));
+    }
+
+    #[test]
     fn every_mistake_is_shown_with_its_place() {
         let (rows, faults) = parsed(
             "park,main,512x256,,,lit,60001,table 6,\n\
@@ -136,6 +143,8 @@ mod tests {
              \n\
              park,main,512x256,512,nsm,wrong_percnt,5.3,table 12,\n\
              park,main,512x256,512,nsm,lit,5.5,table 12,\n\
+             park,main,512x256,512,nsm,wrong_lit,5.5,table 12,\n\
+             park,main,512x256,512,nsm,fps,-5.5,table 26,\n\
              park,main,512x256,512,,rays,5,,\n\
              park,main,512x256,512,nsm,rays,5,table 12,a note, with a comma\n",
         );

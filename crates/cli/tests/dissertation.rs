@@ -131,8 +131,8 @@ fn every_pixel_is_lit_or_in_shadow_or_faces_away() {
     }
 }
 
-/// Rows of the tables of `nsm` follow the map's picture, those of the hybrids the final one: in both
-/// "light" is what the method lights.
+/// Rows of the tables of `nsm` follow the map's picture, those of the hybrids the final one: in
+/// both "light" is what the method lights.
 #[test]
 fn wrong_pixels_make_the_methods_picture_out_of_the_references() {
     let figures = Figures::read();

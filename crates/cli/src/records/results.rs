@@ -235,9 +235,11 @@ const GBUFFER: &str = "gbuffer";
 
 impl Measured {
     /// The sum of the medians of a step's passes, or of several steps' in `one+another`; `None` if
-    /// there are none, or one without a GPU time.
+    /// a step has none, or one without a GPU time.
     pub fn step_ms(&self, name: &str) -> Option<f64> {
-        self.sum_ms(|pass| name.split('+').any(|name| step(pass) == name))
+        let steps = name.split('+');
+        let each = steps.map(|name| self.sum_ms(|pass| step(pass) == name));
+        each.sum()
     }
 
     /// The sum of the medians of all passes, to stand beside figures that are sums. Where passes

@@ -48,6 +48,15 @@ pub fn attach(rows: &[Row], results: &Results, run: &mut Run) {
     run.published = figures.map(|row| row.figure.clone()).collect();
 }
 
+/// Puts the figures beside all runs of some results, instead of those that are there.
+pub fn attach_all(rows: &[Row], results: &mut Results) {
+    let mut runs = std::mem::take(&mut results.runs);
+    for run in &mut runs {
+        attach(rows, results, run);
+    }
+    results.runs = runs;
+}
+
 /// The rows of a file, and what is wrong with the others.
 fn parse(label: &str, file: &SourceFile) -> (Vec<Row>, Vec<Diagnostic>) {
     let mut reader = ReaderBuilder::new()

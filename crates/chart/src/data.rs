@@ -9,6 +9,9 @@ pub struct Figure {
     pub notes: Vec<String>,
     /// What the sizes of marks stand for, smallest first; none if they are all alike.
     pub sizes: Vec<String>,
+    /// Names of series that look the same in all figures with this list, whichever of them are
+    /// drawn.
+    pub looks: Vec<String>,
     /// What is drawn, row by row. Panels in which a series has the same name give it the same
     /// colour and shape.
     pub panels: Vec<Panel>,
@@ -24,6 +27,7 @@ impl Default for Figure {
             title: String::new(),
             notes: Vec::new(),
             sizes: Vec::new(),
+            looks: Vec::new(),
             panels: Vec::new(),
             columns: 1,
             shared_axes: false,

@@ -27,8 +27,7 @@ impl Figure {
             panel.check(self.sizes.len())?;
         }
         let names = self.names();
-        let look = |name: &str| names.iter().position(|known| *known == name);
-        let look = |name: &str| look(name).map_or(Look::neutral(), Look::of);
+        let look = |name: &str| self.look(&names, name);
         let notes: Vec<String> = self
             .notes
             .iter()
@@ -79,6 +78,15 @@ impl Figure {
         Ok(svg)
     }
 
+    /// Of a series: by its place in the list of looks, the others' behind these.
+    fn look(&self, names: &[&str], name: &str) -> Look {
+        let is_listed = |name: &str| self.looks.iter().any(|known| known == name);
+        let others = names.iter().copied().filter(|name| !is_listed(name));
+        let mut all = self.looks.iter().map(String::as_str).chain(others);
+        let place = all.position(|known| known == name);
+        place.map_or(Look::neutral(), Look::of)
+    }
+
     /// The panels of a row that the axes of one of them are fitted to.
     fn fitted<'a>(&self, row: &'a [Panel], column: usize) -> &'a [Panel] {
         if self.shared_axes {
@@ -107,8 +115,7 @@ impl Figure {
         };
         let mut entries: Vec<Entry> = names
             .iter()
-            .enumerate()
-            .map(|(index, name)| entry(Sign::Series(Look::of(index)), name, false))
+            .map(|name| entry(Sign::Series(self.look(names, name)), name, false))
             .collect();
         for (size, name) in self.sizes.iter().enumerate() {
             entries.push(entry(Sign::Size(size), name, size == 0));

@@ -55,7 +55,7 @@ fn time_against_error() -> Figure {
             panel("park, mean of nine views", 0.3),
         ],
         columns: 2,
-        shared_axes: false,
+        ..Figure::default()
     }
 }
 
@@ -297,6 +297,38 @@ fn bars_stand_side_by_side_on_axes_that_a_row_shares() {
         height(boxes[15]),
         "each panel has its own axes"
     );
+}
+
+#[test]
+fn a_series_looks_the_same_whatever_else_is_drawn() {
+    let looks = ["nsm", "hybrid_pcf", "crsm"].map(str::to_owned).to_vec();
+    // Colours of the series, one after the other, panel by panel.
+    let colours = |figure: &Figure| {
+        let svg = svg(figure);
+        let svg = Document::parse(&svg).unwrap();
+        let bars = svg
+            .descendants()
+            .filter(|node| node.attribute("opacity") == Some("0.45"));
+        let mut colours: Vec<String> = bars
+            .filter_map(|node| Some(node.attribute("fill")?.to_owned()))
+            .collect();
+        colours.dedup();
+        colours
+    };
+    let all = colours(&Figure { looks, ..bars() });
+    let unlisted = colours(&bars());
+    assert_eq!(all.len(), 6, "three series in two panels");
+    assert_eq!(
+        unlisted[1..3],
+        all[..2],
+        "one place on, since nsm is not drawn"
+    );
+    let mut fewer = bars();
+    fewer.looks = ["nsm", "hybrid_pcf", "crsm"].map(str::to_owned).to_vec();
+    for panel in &mut fewer.panels {
+        panel.series.remove(0);
+    }
+    assert_eq!(colours(&fewer)[..2], all[1..3]);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::reporting::published_panels::{
     Bar, Cell, Groups, PanelRow, TRACER, cells, published, rows,
 };
 use crate::reporting::published_row::Row;
-use skiagraph_chart::{Figure, Panel};
+use skiagraph_chart::{Figure, Panel, Series};
 
 /// What could be drawn, and what could not.
 pub struct Charts {
@@ -142,6 +142,13 @@ pub fn draw(
         .collect();
     let theirs = published_rows.iter().filter(|row| is_in(row.key().2));
     let mut left_out = without_counterpart(&cells, theirs, label);
+    let mut methods: Vec<String> = Vec::new();
+    for Cell { run, .. } in &cells {
+        if !methods.contains(&run.preset) {
+            methods.push(run.preset.clone());
+        }
+    }
+    let is_method = |series: &Series| methods.contains(&series.name);
     let mut charts = Vec::new();
     let mut add = |name, [title, note]: [&str; 2], drawn: &[PanelRow], panels: Vec<Panel>| {
         let mut notes = vec![note.to_owned()];
@@ -153,6 +160,10 @@ pub fn draw(
         let figure = Figure {
             title: title.into(),
             notes,
+            looks: match panels.iter().flat_map(|panel| &panel.series).any(is_method) {
+                true => methods.clone(),
+                false => Vec::new(),
+            },
             panels,
             columns: 2,
             shared_axes: true,

@@ -26,7 +26,9 @@ impl Figures {
                 return None;
             }
             let mut next = || cells.next();
-            let key = [next()?, next()?, next()?, next()?, next()?];
+            let mut key = [next()?, next()?, next()?, next()?, next()?];
+            // Ours first, then the one with the dissertation's conventions.
+            key[3] = key[3].split(' ').next()?.to_owned();
             Some((key, next()?.parse().ok()?))
         });
         Self(rows.collect())

@@ -9,11 +9,16 @@ pub struct Figure {
     pub notes: Vec<String>,
     /// What the sizes of marks stand for, smallest first; none if they are all alike.
     pub sizes: Vec<String>,
+    /// Names of series that look the same in all figures with this list, whichever of them are
+    /// drawn.
+    pub looks: Vec<String>,
     /// What is drawn, row by row. Panels in which a series has the same name give it the same
     /// colour and shape.
     pub panels: Vec<Panel>,
     /// Panels beside each other, at least 1.
     pub columns: usize,
+    /// Whether panels beside each other have the same axes, so that heights can be compared.
+    pub shared_axes: bool,
 }
 
 impl Default for Figure {
@@ -22,13 +27,15 @@ impl Default for Figure {
             title: String::new(),
             notes: Vec::new(),
             sizes: Vec::new(),
+            looks: Vec::new(),
             panels: Vec::new(),
             columns: 1,
+            shared_axes: false,
         }
     }
 }
 
-/// One pair of logarithmic axes.
+/// One pair of axes: logarithmic, or those of [`Kind::Bars`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// What stands above it.
@@ -51,6 +58,8 @@ pub enum Kind {
     Front,
     /// How something grows: the marks of a series are joined, and a dashed line has slope 1.
     Growth,
+    /// A bar for each mark, in groups of these names, upwards from 0 on a linear axis.
+    Bars(Vec<String>),
 }
 
 /// Marks of one colour and shape.
@@ -65,9 +74,9 @@ pub struct Series {
 /// A measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mark {
-    /// To the right: finite and above 0.
+    /// To the right: finite and above 0; in [`Kind::Bars`] the index of the group.
     pub x: f64,
-    /// Upwards: finite and above 0; in a [`Kind::Front`] also 0.
+    /// Upwards: finite and above 0; in a [`Kind::Front`] and in [`Kind::Bars`] also 0.
     pub y: f64,
     /// Index into [`Figure::sizes`]; 0 where these are empty.
     pub size: usize,

@@ -27,6 +27,23 @@ pub enum Error {
         /// The mark's place upwards.
         y: f64,
     },
+    /// A bar that belongs to no group or has no height.
+    #[error(
+        "panel {panel:?}, series {series:?}: ({x}, {y}) is no bar; expected the index of one of \
+         {groups} groups, and a finite height of at least 0"
+    )]
+    Bar {
+        /// The panel's title.
+        panel: String,
+        /// The series' name.
+        series: String,
+        /// The bar's group.
+        x: f64,
+        /// Its height.
+        y: f64,
+        /// How many groups there are.
+        groups: usize,
+    },
     /// A mark whose size has no meaning.
     #[error("panel {panel:?}, series {series:?}: size {size} of a mark, of {sizes} that there are")]
     Size {

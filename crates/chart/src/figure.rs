@@ -1,6 +1,7 @@
 //! A figure's layout: title, notes, legend, then the panels in rows.
 
 use crate::{
+    bars,
     canvas::{WIDTH, failed, words},
     data::{Figure, Kind, Panel},
     error::Error,
@@ -26,8 +27,7 @@ impl Figure {
             panel.check(self.sizes.len())?;
         }
         let names = self.names();
-        let look = |name: &str| names.iter().position(|known| *known == name);
-        let look = |name: &str| look(name).map_or(Look::neutral(), Look::of);
+        let look = |name: &str| self.look(&names, name);
         let notes: Vec<String> = self
             .notes
             .iter()
@@ -39,7 +39,10 @@ impl Figure {
         let rows: Vec<i32> = self
             .panels
             .chunks(columns)
-            .map(|row| row.iter().map(panel::height).max().unwrap_or(0))
+            .map(|row| {
+                let heights = (0..row.len()).map(|column| panel::height(self.fitted(row, column)));
+                heights.max().unwrap_or(0)
+            })
             .collect();
         let height = head + rows.iter().sum::<i32>();
         let mut svg = String::new();
@@ -59,13 +62,38 @@ impl Figure {
             for (row, tall) in self.panels.chunks(columns).zip(&rows) {
                 for (column, panel) in row.iter().enumerate() {
                     let corner = (column as i32 * wide, top);
-                    panel::draw(panel, &root, corner, (wide, *tall), look)?;
+                    let fitted = self.fitted(row, column);
+                    let place = (corner, (wide, *tall));
+                    match &panel.kind {
+                        Kind::Bars(groups) => {
+                            bars::draw(panel, groups, fitted, &root, place, look)?;
+                        }
+                        _ => panel::draw(panel, fitted, &root, place, look)?,
+                    }
                 }
                 top += tall;
             }
             root.present().map_err(failed)?;
         }
         Ok(svg)
+    }
+
+    /// Of a series: by its place in the list of looks, the others' behind these.
+    fn look(&self, names: &[&str], name: &str) -> Look {
+        let is_listed = |name: &str| self.looks.iter().any(|known| known == name);
+        let others = names.iter().copied().filter(|name| !is_listed(name));
+        let mut all = self.looks.iter().map(String::as_str).chain(others);
+        let place = all.position(|known| known == name);
+        place.map_or(Look::neutral(), Look::of)
+    }
+
+    /// The panels of a row that the axes of one of them are fitted to.
+    fn fitted<'a>(&self, row: &'a [Panel], column: usize) -> &'a [Panel] {
+        if self.shared_axes {
+            row
+        } else {
+            &row[column..=column]
+        }
     }
 
     /// Of all series, in the order in which they first appear.
@@ -87,8 +115,7 @@ impl Figure {
         };
         let mut entries: Vec<Entry> = names
             .iter()
-            .enumerate()
-            .map(|(index, name)| entry(Sign::Series(Look::of(index)), name, false))
+            .map(|name| entry(Sign::Series(self.look(names, name)), name, false))
             .collect();
         for (size, name) in self.sizes.iter().enumerate() {
             entries.push(entry(Sign::Size(size), name, size == 0));
@@ -113,9 +140,23 @@ impl Panel {
             .iter()
             .flat_map(|series| series.marks.iter().map(move |mark| (series, mark)));
         for (series, mark) in marks.clone() {
+            if let Kind::Bars(groups) = &self.kind {
+                let is_group =
+                    mark.x.fract() == 0.0 && (0.0..groups.len() as f64).contains(&mark.x);
+                if !is_group || !mark.y.is_finite() || mark.y < 0.0 {
+                    return Err(Error::Bar {
+                        panel: self.title.clone(),
+                        series: series.name.clone(),
+                        x: mark.x,
+                        y: mark.y,
+                        groups: groups.len(),
+                    });
+                }
+            }
             let zero = self.kind == Kind::Front && mark.y == 0.0;
             let is_in = |value: f64| value.is_finite() && value > 0.0;
-            if !is_in(mark.x) || !(zero || is_in(mark.y)) {
+            let is_bar = matches!(self.kind, Kind::Bars(_));
+            if !is_bar && (!is_in(mark.x) || !(zero || is_in(mark.y))) {
                 return Err(Error::Value {
                     panel: self.title.clone(),
                     series: series.name.clone(),

@@ -12,17 +12,18 @@ use crate::{
 use plotters::{coord::cartesian::Cartesian2d, element::DashedPathElement, prelude::*};
 
 const STRIP: RGBColor = RGBColor(238, 238, 238);
-const GRID: [RGBColor; 2] = [RGBColor(205, 205, 205), RGBColor(234, 234, 234)];
+pub(crate) const GRID: [RGBColor; 2] = [RGBColor(205, 205, 205), RGBColor(234, 234, 234)];
 
-/// Height of the axes without strip, pixels.
+/// Height of the axes without strip, and of those of bars, pixels.
 const AXES: i32 = 300;
+const BARS: i32 = 240;
 /// Above the axes: the title. Right of them: half a label.
-const ABOVE: i32 = 30;
-const RIGHT: i32 = 22;
+pub(crate) const ABOVE: i32 = 30;
+pub(crate) const RIGHT: i32 = 22;
 /// Left of and below the axes: labels and what they count.
-const LABELS: (i32, i32) = (58, 50);
+pub(crate) const LABELS: (i32, i32) = (58, 50);
 /// Left of the labels.
-const BESIDE: i32 = 8;
+pub(crate) const BESIDE: i32 = 8;
 
 /// Series that have a lane in the strip for zero.
 fn lanes(panel: &Panel) -> Vec<usize> {
@@ -34,29 +35,35 @@ fn lanes(panel: &Panel) -> Vec<usize> {
         .collect()
 }
 
-fn scales(panel: &Panel) -> (Scale, Scale) {
-    let marks = || panel.series.iter().flat_map(|series| &series.marks);
+/// Axes with room for all these panels.
+fn scales(fitted: &[Panel]) -> (Scale, Scale) {
+    let series = || fitted.iter().flat_map(|panel| &panel.series);
+    let marks = || series().flat_map(|series| &series.marks);
+    let lanes = fitted.iter().map(|panel| lanes(panel).len()).max();
     let x = Scale::around(marks().map(|mark| mark.x), 0);
-    let y = Scale::around(marks().map(|mark| mark.y), lanes(panel).len());
+    let y = Scale::around(marks().map(|mark| mark.y), lanes.unwrap_or(0));
     (x, y)
 }
 
-/// Height that a panel needs, pixels.
-pub(crate) fn height(panel: &Panel) -> i32 {
-    ABOVE + AXES + scales(panel).1.strip().ceil() as i32 + LABELS.1
+/// Height of a panel whose axes are fitted to these, pixels.
+pub(crate) fn height(fitted: &[Panel]) -> i32 {
+    match fitted.first().map(|panel| &panel.kind) {
+        Some(Kind::Bars(_)) => ABOVE + BARS + LABELS.1,
+        _ => ABOVE + AXES + scales(fitted).1.strip().ceil() as i32 + LABELS.1,
+    }
 }
 
 type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Scale, Scale>>;
 
-/// Draws a panel into a rectangle of `root`.
+/// Draws a panel, its axes fitted to several, into a rectangle of `root`: corner and size.
 pub(crate) fn draw(
     panel: &Panel,
+    fitted: &[Panel],
     root: &Root,
-    corner: (i32, i32),
-    size: (i32, i32),
+    (corner, size): ((i32, i32), (i32, i32)),
     look: impl Fn(&str) -> Look,
 ) -> Result<(), Error> {
-    let (x, y) = scales(panel);
+    let (x, y) = scales(fitted);
     let axes = axes(panel, root, &root.clone().shrink(corner, size), (&x, &y))?;
     let (across, down) = axes.plotting_area().get_pixel_range();
     let title = (across.start, corner.1 + ABOVE / 2);

@@ -449,6 +449,81 @@ fn chart_draws_kept_results_without_a_gpu() {
 }
 
 #[test]
+fn published_charts_say_what_is_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    kept(&folder.join("good"), |_| {});
+    let header = "scene,view,viewport,map_size,preset,quantity,value,source,note";
+    let figure = "park,main,512x256,1024,nsm,wrong_lit_percent,6.47,table 8,";
+    fs::write(folder.join("d.csv"), format!("{header}\n{figure}\n")).unwrap();
+    let faulty = format!(
+        "{header}\n{figure}\n{}\n",
+        figure.replace("wrong_lit", "wrong_light")
+    );
+    fs::write(folder.join("faulty.csv"), faulty).unwrap();
+    fs::write(folder.join("file"), "").unwrap();
+    for (arguments, code, message) in [
+        // One map is no chart.
+        (
+            "good --beside D:d.csv --out charts",
+            1,
+            "there is nothing to draw: D has no figures of two maps or viewports of these runs",
+        ),
+        (
+            "good --beside D:faulty.csv --out charts",
+            1,
+            "no quantity is called `wrong_light_percent`",
+        ),
+        (
+            "good --beside D:none.csv --out charts",
+            1,
+            "--beside none.csv",
+        ),
+        (
+            "nowhere --beside D:d.csv --out charts",
+            1,
+            "there is no folder nowhere",
+        ),
+        ("good --beside D:d.csv", 2, "--out <FILE.svg|DIR>"),
+        (
+            "good --beside D:d.csv --out charts --kind front",
+            2,
+            "cannot be used with",
+        ),
+    ] {
+        let arguments: Vec<&str> = ["chart"].into_iter().chain(arguments.split(' ')).collect();
+        let output = skiagraph(folder, &arguments);
+        assert_exit(&output, code);
+        let told = stderr(&output);
+        assert!(told.contains(message), "{arguments:?}: {told}");
+        assert!(!folder.join("charts").exists(), "{arguments:?}");
+    }
+    // A file is no folder; nothing is drawn before that is known.
+    let twice = format!(
+        "{header}\n{figure}\n{}\n",
+        figure.replace("1024,nsm", "512,nsm")
+    );
+    fs::write(folder.join("twice.csv"), twice).unwrap();
+    kept(&folder.join("two"), |results| {
+        let runs = results["runs"].as_array_mut().unwrap();
+        let mut small = runs[0].clone();
+        small["map_size"] = 512.into();
+        runs.push(small);
+    });
+    let into_file = ["chart", "two", "--beside", "D:twice.csv", "--out", "file"];
+    let output = skiagraph(folder, &into_file);
+    assert_exit(&output, 1);
+    assert!(stderr(&output).contains("file"), "{}", stderr(&output));
+    let into_folder = ["chart", "two", "--beside", "D:twice.csv", "--out", "charts"];
+    assert_exit(&skiagraph(folder, &into_folder), 0);
+    let svg = fs::read_to_string(folder.join("charts/wrong-by-map.svg")).unwrap();
+    assert!(
+        svg.contains("D: park, main, 512x256") && svg.contains("512²"),
+        "{svg}"
+    );
+}
+
+#[test]
 fn chart_says_what_is_missing() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

@@ -593,6 +593,98 @@ park,bench_side,16x16,16,nsm,wrong_percent,6.3,table 12,
     assert_eq!(counts, [2, 1]);
 }
 
+/// The dissertation's figures as if they were of `park` in viewports that are soon drawn; its views
+/// are called like those of `bench`.
+fn dissertation_of_park() -> String {
+    let text = include_str!("../../../docs/data/dissertation.csv");
+    let sizes = [
+        ("512x512,", "16x16,"),
+        ("1024x1024,", "24x24,"),
+        ("1920x1080,", "32x18,"),
+    ];
+    let text = text.replace("\nbench,", "\npark,");
+    sizes
+        .iter()
+        .fold(text, |text, (size, small)| text.replace(size, small))
+}
+
+#[test]
+fn the_dissertations_charts_stand_beside_ours() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("d.csv"), dissertation_of_park()).unwrap();
+    let common = "--map-size 512,1024 --frames 1 --warmup 0 --cached-frames 0 --images none";
+    for what in [
+        "rt nsm hybrid_pcf crsm crsm_depth --view bench_with --size 16x16,24x24 --out with",
+        "nsm hybrid_pcf --view bench_side --size 24x24 --out side",
+    ] {
+        skiagraph(folder.path(), &format!("compare {what} {common}"));
+    }
+    let output = skiagraph(
+        folder.path(),
+        "chart with side --beside D:d.csv --out charts",
+    );
+    let told = String::from_utf8_lossy(&output.stderr);
+    for line in [
+        "not drawn, of our park: preset crsm_depth: D has no figures",
+        "not drawn: D's sponza: no results of it",
+        "not in trace-rays: park bench_side: no two map sizes of which there are figures on both",
+        "10 charts in charts",
+    ] {
+        assert!(told.contains(line), "no {line:?} in\n{told}");
+    }
+    let lacking = "view bench_against, flowers_against, flowers_side, flowers_with, trees_against, \
+        trees_side, trees_with; viewport 32x18; map 2048², 4096²; preset crsma: no results";
+    assert!(told.contains(lacking), "{told}");
+    let files = fs::read_dir(folder.path().join("charts")).unwrap();
+    let mut names: Vec<String> = files
+        .map(|file| file.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    let expected = [
+        "certain-wrong",
+        "create-shadow-map",
+        "fill-rays",
+        "frames-per-second",
+        "rt-by-viewport",
+        "sum-of-steps",
+        "trace-rays",
+        "uncertain",
+        "wrong-by-map",
+        "wrong-by-viewport",
+    ];
+    assert_eq!(names, expected.map(|name| format!("{name}.svg")));
+    // Its pairs of panels, the bars of one of them, and the series.
+    for (name, pairs, bars, series) in [
+        // Both views in the viewport of which D has several maps; two shares of nsm.
+        ("wrong-by-map", 2, 8, "wrongly in shadow"),
+        // bench_with in two viewports, at the map of which D has several.
+        ("wrong-by-viewport", 1, 4, "wrongly lit"),
+        // Two methods and one.
+        ("uncertain", 2, 6, "hybrid_pcf"),
+        // bench_with in two viewports.
+        ("trace-rays", 2, 8, "crsm"),
+        ("sum-of-steps", 2, 12, "nsm"),
+        ("frames-per-second", 2, 8, "crsm"),
+    ] {
+        let file = folder.path().join("charts").join(format!("{name}.svg"));
+        let svg = fs::read_to_string(file).unwrap();
+        assert_eq!(svg.matches("\nD: park, ").count(), pairs, "{name}");
+        assert_eq!(svg.matches("\nours: park, ").count(), pairs, "{name}");
+        let drawn = svg.matches("opacity=\"0.45\"").count();
+        assert_eq!(drawn, 2 * bars, "{name}");
+        assert!(svg.contains(&format!("\n{series}\n")), "{name}: {series}");
+        assert!(!svg.contains("\ncrsm_depth\n"), "{name}");
+    }
+    // D has its shares of one map there.
+    let one = "chart with --beside D:d.csv --size 16x16 --out one";
+    let output = skiagraph(folder.path(), one);
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        told.contains("not drawn: uncertain: no two map sizes"),
+        "{told}"
+    );
+}
+
 #[test]
 fn results_of_other_conditions_are_not_resumed() {
     let folder = tempfile::tempdir().unwrap();

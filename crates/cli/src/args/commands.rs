@@ -105,8 +105,17 @@ pub struct ChartArgs {
     /// Only runs of this viewport size. Without it: all, each in a panel of its own.
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
-    /// File to write. Without it: standard output.
-    #[arg(long, value_name = "FILE.svg")]
+    /// Draws published figures beside ours instead, theirs left and ours right on the same axes: a
+    /// chart for each quantity that both have, times as shares of rt's. --out is a folder for them.
+    #[arg(
+        long,
+        value_name = "LABEL:FILE.csv",
+        conflicts_with = "kind",
+        requires = "out"
+    )]
+    pub beside: Option<PublishedFile>,
+    /// File to write, or with --beside the folder. Without it: standard output.
+    #[arg(long, value_name = "FILE.svg|DIR")]
     pub out: Option<PathBuf>,
 }
 

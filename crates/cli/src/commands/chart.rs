@@ -1,12 +1,15 @@
 //! `skiagraph chart`: what `compare` kept, as a picture.
 
 use crate::args::commands::{ChartArgs, ChartKind};
-use crate::args::values::Size;
+use crate::args::values::{PublishedFile, Size};
 use crate::error::CliError;
-use crate::files::write::{check_writable, write_whole};
+use crate::files::write::{check_folder, check_writable, write_whole};
 use crate::records::read_back;
 use crate::reporting::charts::{self, Kept};
+use crate::reporting::{published, published_charts};
 use crate::terminal::console::{note, print};
+use crate::wording::plural;
+use std::path::Path;
 
 /// Reads the results, draws them, and says what could not be drawn.
 ///
@@ -14,16 +17,13 @@ use crate::terminal::console::{note, print};
 /// A folder without results, results that cannot be read or have nothing to draw, a file that
 /// cannot be written.
 pub fn chart(args: &ChartArgs) -> Result<(), CliError> {
+    if let (Some(published), Some(folder)) = (&args.beside, &args.out) {
+        return beside(args, published, folder);
+    }
     if let Some(file) = &args.out {
         check_writable(&[("--out".to_owned(), file)])?;
     }
-    let mut kept = Vec::new();
-    for folder in &args.folders {
-        kept.push(Kept {
-            folder: folder.clone(),
-            results: read_back::kept(folder)?,
-        });
-    }
+    let kept = kept(args)?;
     let viewport = args.size.map(|Size(size)| size);
     let figure = match args.kind {
         ChartKind::Front => charts::front(&kept, viewport)?,
@@ -47,4 +47,46 @@ pub fn chart(args: &ChartArgs) -> Result<(), CliError> {
         Some(file) => write_whole(file, svg.as_bytes()),
         None => print(&svg),
     }
+}
+
+fn kept(args: &ChartArgs) -> Result<Vec<Kept>, CliError> {
+    let folders = args.folders.iter();
+    folders
+        .map(|folder| {
+            Ok(Kept {
+                folder: folder.clone(),
+                results: read_back::kept(folder)?,
+            })
+        })
+        .collect()
+}
+
+/// Writes the charts of published figures and ours.
+fn beside(args: &ChartArgs, file: &PublishedFile, folder: &Path) -> Result<(), CliError> {
+    let rows = published::read(std::slice::from_ref(file))?;
+    let mut kept = kept(args)?;
+    for Kept { results, .. } in &mut kept {
+        published::attach_all(&rows, results);
+    }
+    let viewport = args.size.map(|Size(size)| size);
+    let drawn = published_charts::draw(&kept, &rows, &file.label, viewport);
+    for line in charts::unavailable(&kept).iter().chain(&drawn.left_out) {
+        note(line);
+    }
+    if drawn.charts.is_empty() {
+        return Err(CliError::Input(format!(
+            "there is nothing to draw: {} has no figures of two maps or viewports of these runs",
+            file.label
+        )));
+    }
+    check_folder(folder)?;
+    for (name, figure) in &drawn.charts {
+        let svg = figure
+            .to_svg()
+            .map_err(|error| CliError::Input(error.to_string()))?;
+        write_whole(&folder.join(format!("{name}.svg")), svg.as_bytes())?;
+    }
+    let count = plural(drawn.charts.len(), "chart");
+    note(&format!("{count} in {}", folder.display()));
+    Ok(())
 }

@@ -135,11 +135,40 @@ impl Run {
         )
     }
 
+    /// The pixels that the method lights wrongly, of all that it lights.
+    pub fn wrong_lit(&self) -> Option<Part> {
+        let wrong = self.measured.as_ref()?.wrong;
+        let of = (self.pixels.lit + wrong.lit).saturating_sub(wrong.shadow);
+        Some(Part {
+            count: wrong.lit,
+            of,
+        })
+    }
+
+    /// The pixels that the method has wrongly in shadow, of all that it has there.
+    pub fn wrong_shadow(&self) -> Option<Part> {
+        let wrong = self.measured.as_ref()?.wrong;
+        let of = (self.pixels.shadow + wrong.shadow).saturating_sub(wrong.lit);
+        Some(Part {
+            count: wrong.shadow,
+            of,
+        })
+    }
+
     /// Preset and map size, as a row's name.
     pub fn method_label(&self) -> String {
         let with_size = |size| format!("{} {size}", self.preset);
         self.map_size.map_or(self.preset.clone(), with_size)
     }
+}
+
+/// Some of those pixels that the method gives the same answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// How many.
+    pub count: u64,
+    /// Of how many.
+    pub of: u64,
 }
 
 /// A figure that somebody else published about such a run or about its view and viewport.
@@ -209,14 +238,32 @@ pub fn step(pass: &str) -> &str {
 const GBUFFER: &str = "gbuffer";
 
 impl Measured {
-    /// The sum of the medians of a step's passes; `None` if it has none, or one without a GPU time.
+    /// The sum of the medians of a step's passes, or of several steps' in `one+another`; `None` if
+    /// a step has none, or one without a GPU time.
     pub fn step_ms(&self, name: &str) -> Option<f64> {
+        let steps = name.split('+');
+        let each = steps.map(|name| self.sum_ms(|pass| step(pass) == name));
+        each.sum()
+    }
+
+    /// The sum of the medians of all passes, to stand beside figures that are sums. Where passes
+    /// overlap it is more than the frame; `None` without GPU times.
+    pub fn steps_ms(&self) -> Option<f64> {
+        self.sum_ms(|_| true)
+    }
+
+    fn sum_ms(&self, counts: impl Fn(&str) -> bool) -> Option<f64> {
         let passes = self.passes.iter();
         let medians: Vec<f64> = passes
-            .filter(|pass| step(&pass.name) == name)
+            .filter(|pass| counts(&pass.name))
             .map(|pass| Some(pass.gpu_ms?.median))
             .collect::<Option<_>>()?;
         (!medians.is_empty()).then(|| medians.iter().sum())
+    }
+
+    /// Frames per second: what the median frame allows. `None` without GPU times.
+    pub fn fps(&self) -> Option<f64> {
+        Some(1000.0 / self.frame.gpu_ms?.median)
     }
 
     /// The sum of the medians of the G-buffer's passes, those of the step `gbuffer`.

@@ -49,6 +49,7 @@ pub fn front(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CliErr
         sizes: maps.iter().map(|map| format!("map {map}²")).collect(),
         columns: panels.len().clamp(1, 2),
         panels,
+        ..Figure::default()
     })
 }
 
@@ -174,7 +175,8 @@ pub fn unavailable(kept: &[Kept]) -> BTreeSet<String> {
     .collect()
 }
 
-fn push(series: &mut Vec<Series>, name: &str, mark: Mark) {
+/// Adds a mark to the series of that name.
+pub fn push(series: &mut Vec<Series>, name: &str, mark: Mark) {
     match series.iter_mut().find(|series| series.name == name) {
         Some(series) => series.marks.push(mark),
         None => series.push(Series {
@@ -219,7 +221,7 @@ fn time(kept: &Kept, measured: &Measured) -> Result<f64, CliError> {
 }
 
 /// Lines that say under which conditions everything was measured.
-fn conditions(kept: &[Kept]) -> Vec<String> {
+pub fn conditions(kept: &[Kept]) -> Vec<String> {
     let adapters: BTreeSet<String> = kept
         .iter()
         .map(|kept| kept.results.adapter.to_string())

@@ -1,11 +1,11 @@
 //! The columns of a comparison: for the terminal, for documents and for results.csv. Each figure
 //! is defined once; a table says in which order it shows which figures, and under which heads.
 
-use crate::records::results::{Measured, Results, Run};
+use crate::records::results::{Measured, Part, Results, Run};
 use crate::records::statistics::Spread;
 use crate::wording::{ms, thousands};
 use Source::{Always, Measure};
-use Value::{Count, Share, Text, Time, Unknown};
+use Value::{Count, OfPicture, Share, Text, Time, Unknown};
 use skiagraph_reference::BlockerCounts;
 
 /// A name, and where the figure of that name comes from.
@@ -25,6 +25,8 @@ enum Value {
     Count(u64),
     /// A count of pixels; tables show it as a share of those that face the light.
     Share(u64),
+    /// A count of pixels; tables show it as a share of those that the method gives that answer.
+    OfPicture(Part),
     /// Milliseconds.
     Time(f64),
 }
@@ -87,9 +89,10 @@ const CSV: &[Figure] = &[
 const IN_TABLES: &[Figure] = &[
     ("certain_right", Measure(|of| Share(of.split.certain_right()))),
     ("certain_wrong", Measure(|of| Share(of.split.certain_wrong()))),
-    ("wrong_lit_shadow", Measure(|of| {
-        Text(format!("{} / {}", thousands(of.wrong.lit), thousands(of.wrong.shadow)))
-    })),
+    ("wrong_lit_percent", Always(|_, run| run.wrong_lit().map_or(Unknown, OfPicture))),
+    ("wrong_shadow_percent", Always(|_, run| run.wrong_shadow().map_or(Unknown, OfPicture))),
+    ("steps_ms", Measure(|of| of.steps_ms().map_or(Unknown, Time))),
+    ("fps", Measure(|of| of.fps().map_or(Unknown, |rate| text(&format!("{rate:.2}"))))),
 ];
 
 /// A column: its figure, its head, and what published figures of it are called, if there are any.
@@ -113,17 +116,42 @@ const TERMINAL: [Entry; 11] = [
 /// The column that only stands in the terminal's table if there are maps.
 const MAP_SIZE: &str = "map_size";
 
-/// A document's table, but for the times of steps, which stand before the last column.
-const DOCUMENT: [Entry; 9] = [
+/// A document's table, but for the times of steps, which stand behind the rays.
+const DOCUMENT: [Entry; 18] = [
     ("preset", "method", ""),
     (MAP_SIZE, "map", ""),
     ("certain_right", "certain right %", "certain_right_percent"),
     ("uncertain", "uncertain %", "uncertain_percent"),
     ("certain_wrong", "certain wrong %", "certain_wrong_percent"),
     ("wrong_total", "wrong %", "wrong_percent"),
-    ("wrong_lit_shadow", "wrong lit / shadow", ""),
+    ("wrong_lit", "wrong lit", "wrong_lit"),
+    ("wrong_shadow", "wrong shadow", "wrong_shadow"),
+    ("wrong_lit_percent", "wrong lit %", "wrong_lit_percent"),
+    (
+        "wrong_shadow_percent",
+        "wrong shadow %",
+        "wrong_shadow_percent",
+    ),
+    ("certain_lit", "certain lit", "certain_lit"),
+    ("certain_shadow", "certain shadow", "certain_shadow"),
+    ("lit_uncertain", "uncertain lit", "lit_uncertain"),
+    ("shadow_uncertain", "uncertain shadow", "shadow_uncertain"),
     ("rays", "rays", "rays"),
+    ("steps_ms", "sum of steps ms", "ms.steps"),
+    ("fps", "fps", "fps"),
     ("gpu_ms", "frame ms", "ms.frame"),
+];
+
+/// Columns of a document that only stand where somebody published figures of them.
+const IF_PUBLISHED: [&str; 8] = [
+    "wrong_lit_percent",
+    "wrong_shadow_percent",
+    "certain_lit",
+    "certain_shadow",
+    "lit_uncertain",
+    "shadow_uncertain",
+    "steps_ms",
+    "fps",
 ];
 
 /// The presets' steps and their heads; other steps stand under their own names.
@@ -134,6 +162,18 @@ pub const STEPS: [(&str, &str); 5] = [
     ("trace_rays", "trace"),
     ("fix_pixels", "fix"),
 ];
+
+/// Two steps that are one with others, who detect while they draw the view.
+const DRAW_AND_DETECT: &str = "gbuffer+detect_uncertain";
+
+/// The head of a step's column, or of a sum of steps: `gbuffer+detect_uncertain`.
+pub fn step_head(step: &str) -> String {
+    let heads = step.split('+').map(|step| {
+        let short = STEPS.iter().find(|(name, _)| *name == step);
+        short.map_or(step, |(_, head)| head)
+    });
+    format!("{} ms", heads.collect::<Vec<_>>().join(" + "))
+}
 
 fn text(text: &str) -> Value {
     Text(text.to_owned())
@@ -191,6 +231,7 @@ impl Column {
             Text(text) => text,
             Count(count) => thousands(count),
             Share(count) => share(count, run.pixels.facing_light),
+            OfPicture(Part { count, of }) => share(count, of),
             Time(time) => ms(time),
         }
     }
@@ -200,7 +241,7 @@ impl Column {
         match self.value(results, run) {
             Unknown => String::new(),
             Text(text) => text,
-            Count(count) | Share(count) => count.to_string(),
+            Count(count) | Share(count) | OfPicture(Part { count, .. }) => count.to_string(),
             Time(time) => format!("{time:.6}"),
         }
     }
@@ -219,15 +260,25 @@ pub fn terminal(has_maps: bool) -> Vec<Column> {
     entries.filter_map(Column::of).collect()
 }
 
-/// The columns of a document's table but for the times of steps, which stand before the last.
-pub fn document() -> Vec<Column> {
-    DOCUMENT.into_iter().filter_map(Column::of).collect()
+/// The columns of a document's table but for the times of steps, of which two parts stand before
+/// and behind them. `published` says of which quantities there are published figures in it.
+pub fn document(published: impl Fn(&str) -> bool) -> [Vec<Column>; 2] {
+    let shown = |(name, _, quantity): &Entry| !IF_PUBLISHED.contains(name) || published(quantity);
+    let rays = DOCUMENT.iter().position(|(name, ..)| *name == "rays");
+    let (front, back) = DOCUMENT.split_at(rays.map_or(DOCUMENT.len(), |rays| rays + 1));
+    [front, back].map(|part| {
+        let entries = part.iter().copied().filter(shown);
+        entries.filter_map(Column::of).collect()
+    })
 }
 
 /// What can be published about a run and stand beside its figures.
 pub fn quantities() -> Vec<String> {
     let of_columns = DOCUMENT.iter().map(|(.., quantity)| quantity.to_string());
-    let of_steps = STEPS.iter().map(|(step, _)| format!("ms.{step}"));
+    let steps = STEPS.iter().map(|(step, _)| *step);
+    let of_steps = steps
+        .chain([DRAW_AND_DETECT])
+        .map(|step| format!("ms.{step}"));
     let all = of_columns.chain(of_steps);
     all.filter(|quantity| !quantity.is_empty()).collect()
 }
@@ -241,7 +292,14 @@ mod tests {
         assert_eq!(csv().len(), CSV.len());
         assert_eq!(terminal(true).len(), TERMINAL.len());
         assert_eq!(terminal(false).len(), TERMINAL.len() - 1);
-        assert_eq!(document().len(), DOCUMENT.len());
+        let parts = |published| document(|_| published).map(|part| part.len());
+        assert_eq!(parts(true).iter().sum::<usize>(), DOCUMENT.len());
+        let fewer = DOCUMENT.len() - IF_PUBLISHED.len();
+        assert_eq!(
+            parts(false),
+            [fewer - 1, 1],
+            "only the frame is behind the steps"
+        );
         let mut names: Vec<_> = CSV.iter().chain(IN_TABLES).map(|(name, _)| name).collect();
         names.sort();
         assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");

@@ -37,6 +37,13 @@ pub fn header(results: &Results, today: Option<&str>, published: &[PublishedFile
          the final picture"
             .into(),
     ];
+    if !published.is_empty() {
+        lines.push(
+            "where published: *wrong lit %* is of what the method lights, *wrong shadow %* of what \
+             it has in shadow; *sum of steps* is of all passes, *fps* is 1000 / *frame*"
+                .into(),
+        );
+    }
     lines.extend(published.iter().map(|PublishedFile { label, file }| {
         let file = file.display().to_string().replace('\\', "/");
         format!("in parentheses: {label}, published figures of `{file}`")
@@ -69,11 +76,18 @@ pub fn viewport(results: &Results, runs: &[Run]) -> String {
         .filter_map(|run| Some((run, run.measured.as_ref()?)))
         .collect();
     if !measured.is_empty() {
-        let (columns, steps) = (columns::document(), steps(&measured));
+        let is_published = |quantity: &str| {
+            let mut figures = measured.iter().flat_map(|(run, _)| &run.published);
+            figures.any(|figure| figure.quantity == quantity)
+        };
+        let table = Table {
+            columns: columns::document(is_published),
+            steps: steps(&measured),
+        };
         text.push('\n');
-        text.push_str(&header_row(&columns, &steps));
+        text.push_str(&table.header_row());
         for of in &measured {
-            let cells = cells(results, *of, &columns, &steps, &mut footnotes);
+            let cells = table.cells(results, *of, &mut footnotes);
             text.push_str(&line(&cells));
         }
     }
@@ -114,50 +128,55 @@ fn steps<'a>(runs: &[(&'a Run, &'a Measured)]) -> Vec<&'a str> {
     let published = published.filter_map(|figure| figure.quantity.strip_prefix("ms."));
     let mut steps = Vec::new();
     for step in passes.map(|pass| step(&pass.name)).chain(published) {
-        if !steps.contains(&step) && step != "frame" {
+        if !steps.contains(&step) && !["frame", "steps"].contains(&step) {
             steps.push(step);
         }
     }
     steps
 }
 
-fn header_row(columns: &[Column], steps: &[&str]) -> String {
-    let head = |step: &&str| {
-        let short = STEPS.iter().find(|(name, _)| name == step);
-        format!("{} ms", short.map_or(*step, |(_, head)| head))
-    };
-    let heads = columns.iter().map(|column| column.head.to_owned());
-    let row = with_steps(heads, steps.iter().map(head));
-    format!("{}|---{}|\n", line(&row), "|---:".repeat(row.len() - 1))
+/// The columns of a table.
+struct Table<'a> {
+    /// Before and behind the steps.
+    columns: [Vec<Column>; 2],
+    steps: Vec<&'a str>,
 }
 
-/// A row with what belongs to the steps before its last cell.
-fn with_steps<T>(row: impl Iterator<Item = T>, steps: impl Iterator<Item = T>) -> Vec<T> {
-    let mut row: Vec<T> = row.collect();
-    let at = row.len().saturating_sub(1);
-    row.splice(at..at, steps);
-    row
-}
+impl Table<'_> {
+    /// A row of what belongs to columns and to steps.
+    fn row<T>(&self, of_column: impl Fn(&Column) -> T, of_step: impl Fn(&str) -> T) -> Vec<T> {
+        let [front, back] = self
+            .columns
+            .each_ref()
+            .map(|part| part.iter().map(&of_column));
+        let steps = self.steps.iter().map(|step| of_step(step));
+        front.chain(steps).chain(back).collect()
+    }
 
-fn cells<'a>(
-    results: &Results,
-    (run, measured): (&'a Run, &Measured),
-    columns: &[Column],
-    steps: &[&str],
-    footnotes: &mut Footnotes<'a>,
-) -> Vec<String> {
-    let figures = columns.iter().map(|column| {
-        let ours = column.cell(results, run, share);
-        (ours, column.quantity.to_owned())
-    });
-    let times = steps.iter().map(|step| {
-        let ours = measured.step_ms(step).map_or_else(|| "–".to_owned(), ms);
-        (ours, format!("ms.{step}"))
-    });
-    let cells = with_steps(figures, times).into_iter();
-    cells
-        .map(|(ours, quantity)| footnotes.with_published(ours, run, &quantity))
-        .collect()
+    fn header_row(&self) -> String {
+        let row = self.row(|column| column.head.to_owned(), columns::step_head);
+        format!("{}|---{}|\n", line(&row), "|---:".repeat(row.len() - 1))
+    }
+
+    fn cells<'a>(
+        &self,
+        results: &Results,
+        (run, measured): (&'a Run, &Measured),
+        footnotes: &mut Footnotes<'a>,
+    ) -> Vec<String> {
+        let figure = |column: &Column| {
+            let ours = column.cell(results, run, share);
+            (ours, column.quantity.to_owned())
+        };
+        let time = |step: &str| {
+            let ours = measured.step_ms(step).map_or_else(|| "–".to_owned(), ms);
+            (ours, format!("ms.{step}"))
+        };
+        let cells = self.row(figure, time).into_iter();
+        cells
+            .map(|(ours, quantity)| footnotes.with_published(ours, run, &quantity))
+            .collect()
+    }
 }
 
 /// Footnotes of published figures, each once per table.
@@ -201,7 +220,9 @@ fn published(value: f64, quantity: &str) -> String {
         .map_or(0, |(_, decimals)| decimals.len());
     match quantity {
         _ if quantity.starts_with("ms.") => text,
-        _ if quantity.ends_with("_percent") => format!("{value:.*}", decimals.max(2)),
+        _ if quantity.ends_with("_percent") || quantity == "fps" => {
+            format!("{value:.*}", decimals.max(2))
+        }
         _ => thousands(value as u64),
     }
 }
@@ -264,6 +285,45 @@ mod tests {
         let command = command_line(env::args_os());
         let text = [header, view("main"), viewport(&results, &results.runs)].concat();
         insta::assert_snapshot!(text.replace(&command, "COMMAND"));
+    }
+
+    #[test]
+    fn like_stands_beside_like_where_it_is_published() {
+        let mut results = sample();
+        results.runs.truncate(1);
+        let figures = &mut results.runs[0].published;
+        let first = figures[0].clone();
+        for (quantity, value) in [
+            ("wrong_lit_percent", 0.4),
+            ("ms.gbuffer+create_shadow_map", 0.5),
+            ("ms.steps", 0.9),
+            ("fps", 44.9),
+        ] {
+            let mut figure = first.clone();
+            (figure.quantity, figure.value) = (quantity.into(), value);
+            figures.push(figure);
+        }
+        let text = viewport(&results, &results.runs);
+        let table: Vec<Vec<&str>> = text
+            .lines()
+            .filter(|line| line.starts_with('|'))
+            .map(|line| line.split('|').map(str::trim).collect())
+            .collect();
+        let cell = |head: &str| {
+            let column = table[0].iter().position(|cell| *cell == head);
+            column.map(|column| table[2][column])
+        };
+        // 102 of 60,000 + 102 - 401 are lit wrongly; two passes of 0.375 ms in a frame of 1.5 ms.
+        assert_eq!(cell("wrong lit %"), Some("0.171 (D 0.40)"));
+        assert_eq!(cell("wrong shadow %"), None);
+        assert_eq!(cell("gbuffer + map ms"), Some("0.750 (D 0.5)"));
+        assert_eq!(cell("sum of steps ms"), Some("0.750 (D 0.9)"));
+        assert_eq!(cell("fps"), Some("666.67 (D 44.90)"));
+        assert_eq!(cell("frame ms"), Some("1.50"));
+        assert!(
+            text.contains("0.750 (D 0.9) | 666.67 (D 44.90) | 1.50 |"),
+            "{text}"
+        );
     }
 
     #[test]

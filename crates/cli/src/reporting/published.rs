@@ -48,6 +48,15 @@ pub fn attach(rows: &[Row], results: &Results, run: &mut Run) {
     run.published = figures.map(|row| row.figure.clone()).collect();
 }
 
+/// Puts the figures beside all runs of some results, instead of those that are there.
+pub fn attach_all(rows: &[Row], results: &mut Results) {
+    let mut runs = std::mem::take(&mut results.runs);
+    for run in &mut runs {
+        attach(rows, results, run);
+    }
+    results.runs = runs;
+}
+
 /// The rows of a file, and what is wrong with the others.
 fn parse(label: &str, file: &SourceFile) -> (Vec<Row>, Vec<Diagnostic>) {
     let mut reader = ReaderBuilder::new()
@@ -68,13 +77,16 @@ fn parse(label: &str, file: &SourceFile) -> (Vec<Row>, Vec<Diagnostic>) {
             continue;
         };
         match Row::read(label, &line, columns) {
-            Ok(row) => match rows.iter().find(|other| other.key() == row.key()) {
-                None => rows.push(row),
-                Some(other) => {
+            Ok(row) => {
+                for row in row.of_each_preset() {
+                    let Some(other) = rows.iter().find(|other| other.key() == row.key()) else {
+                        rows.push(row);
+                        continue;
+                    };
                     let what = format!("this figure was given on line {}", other.line);
                     faults.push(line.fault(Code::DuplicateName, columns.at("quantity"), what));
                 }
-            },
+            }
             Err(mut found) => faults.append(&mut found),
         }
     }
@@ -105,11 +117,15 @@ mod tests {
             "park,main,512x256,,,lit,60001,table 6,\n\
              park,main,512x256,1024,nsm,wrong_percent,5.30,table 12,\"misprint: 3.50, by its \
                  counts\"\n\
-             park,main,512x256,2048,nsm,wrong_percent,3.82,table 12,\n\
+             park,main,512x256,2048,nsm nsm_d,wrong_percent,3.82,table 12,\n\
              park,main,512x256,,rt,ms.frame,1.5,table 19,\n\
              sponza,main,512x256,,rt,ms.frame,2.5,table 19,\n",
         );
-        assert_eq!((rows.len(), faults.as_str()), (5, ""));
+        assert_eq!(
+            (rows.len(), faults.as_str()),
+            (6, ""),
+            "one is of two presets"
+        );
         let mut results = sample();
         let mut runs = std::mem::take(&mut results.runs);
         let mut beside = |run: usize| {
@@ -122,8 +138,21 @@ mod tests {
         assert_eq!(beside(0), [lit(), ("wrong_percent".into(), 5.3)]);
         assert_eq!(beside(1), [lit(), ("ms.frame".into(), 1.5)]);
         assert_eq!(beside(2), [lit()]);
+        (runs[2].preset, runs[2].map_size) = ("nsm_d".into(), Some(2048));
+        attach(&rows, &results, &mut runs[2]);
+        let figure = &runs[2].published[1];
+        assert_eq!((figure.value, figure.source.as_str()), (3.82, "table 12"));
         let note = runs[0].published[1].note.as_deref();
         assert_eq!(note, Some("misprint: 3.50, by its counts"));
+    }
+
+    #[test]
+    fn the_dissertations_figures_can_be_read() {
+        let text = include_str!("../../../../docs/data/dissertation.csv");
+        let (rows, faults) = parse("D", &SourceFile::new("dissertation.csv", text));
+        let of_two = text.lines().filter(|line| line.contains("_d,")).count();
+        let lines = text.lines().count() - 1;
+        assert_eq!((rows.len(), faults.len()), (lines + of_two, 0));
     }
 
     #[test]
@@ -136,6 +165,8 @@ mod tests {
              \n\
              park,main,512x256,512,nsm,wrong_percnt,5.3,table 12,\n\
              park,main,512x256,512,nsm,lit,5.5,table 12,\n\
+             park,main,512x256,512,nsm,wrong_lit,5.5,table 12,\n\
+             park,main,512x256,512,nsm,fps,-5.5,table 26,\n\
              park,main,512x256,512,,rays,5,,\n\
              park,main,512x256,512,nsm,rays,5,table 12,a note, with a comma\n",
         );

@@ -21,7 +21,7 @@ pub struct Row {
     view: String,
     viewport: [u32; 2],
     map_size: Option<u32>,
-    /// Empty: of the reference.
+    /// One or, as read, several; empty: of the reference.
     pub preset: String,
     /// The figure.
     pub figure: Published,
@@ -36,6 +36,18 @@ impl Row {
         let quantity = &self.figure.quantity;
         let (viewport, map_size) = (self.viewport, self.map_size);
         (scene, view, viewport, map_size, &self.preset, quantity)
+    }
+
+    /// The same figure for each of the presets that the column names, words apart.
+    pub fn of_each_preset(self) -> Vec<Self> {
+        if self.preset.is_empty() {
+            return vec![self];
+        }
+        let of = |preset: &str| Self {
+            preset: preset.to_owned(),
+            ..self.clone()
+        };
+        self.preset.split_whitespace().map(of).collect()
     }
 
     /// Whether it is of this run, or of its reference.
@@ -145,11 +157,14 @@ impl<'a> Fields<'a> {
             return 0.0;
         };
         let is_share = quantity.ends_with("_percent");
-        let is_count = quantity == "rays" || OF_REFERENCE.contains(&quantity);
+        let is_time = quantity.starts_with("ms.");
+        let is_rate = quantity == "fps";
+        let is_count = is_known(quantity) && !(is_share || is_time || is_rate);
         if number < 0.0 || (is_share && number > 100.0) || (is_count && number.fract() != 0.0) {
             let expected = match (is_share, is_count) {
                 (true, _) => "expected a share in percent, 0 to 100",
                 (_, true) => "expected a count of pixels",
+                _ if is_rate => "expected frames per second",
                 _ => "expected a time in milliseconds",
             };
             let what = format!("`{quantity}` cannot be {text}");
@@ -160,25 +175,31 @@ impl<'a> Fields<'a> {
 
     fn check_quantity(&mut self, has_map: bool) {
         let (quantity, preset) = (self.text("quantity"), self.text("preset"));
-        let of_run = quantities();
-        let is_of_run = of_run.iter().any(|known| known == quantity);
         if OF_REFERENCE.contains(&quantity) && (!preset.is_empty() || has_map) {
             let what = format!("`{quantity}` is of the reference, whatever the preset and the map");
             let help = "leave preset and map_size empty";
             self.fault("quantity", Code::Syntax, what, help);
-        } else if is_of_run && preset.is_empty() {
+        } else if is_of_run(quantity) && preset.is_empty() {
             let what = format!("`{quantity}` is of a preset, and there is none");
             self.fault("preset", Code::MissingField, what, "");
-        } else if !is_of_run && !OF_REFERENCE.contains(&quantity) {
+        } else if !is_known(quantity) {
             let what = format!("no quantity is called `{quantity}`");
             let (line, place) = (self.line, self.columns.at("quantity"));
             let fault = line.fault(Code::UnknownVariant, place, what);
-            let known = OF_REFERENCE
-                .into_iter()
-                .chain(of_run.iter().map(String::as_str));
+            let of_run = quantities();
+            let of_run = of_run.iter().map(String::as_str);
+            let known = OF_REFERENCE.into_iter().chain(of_run);
             self.faults.push(fault.suggest(quantity, known));
         }
     }
+}
+
+fn is_of_run(quantity: &str) -> bool {
+    quantities().iter().any(|known| known == quantity)
+}
+
+fn is_known(quantity: &str) -> bool {
+    OF_REFERENCE.contains(&quantity) || is_of_run(quantity)
 }
 
 /// Where each of [`HEADER`] stands.

@@ -1,0 +1,125 @@
+//! A panel of bars: linear from 0, grouped, each under the mark of its series.
+
+use crate::{
+    canvas::{Root, failed, style, words},
+    data::{Panel, Series},
+    error::Error,
+    marker::Look,
+    panel::{ABOVE, BESIDE, GRID, LABELS, RIGHT},
+    text::{BODY, HEAD, clean, width},
+};
+use plotters::prelude::*;
+
+/// Of a group's width, what its bars take.
+const FILL: f64 = 0.84;
+/// Above the highest bar, as a share of it: a mark stands on it.
+const MARGIN: f64 = 0.06;
+
+/// Draws a panel, its axes fitted to several, into a rectangle of `root`: corner and size.
+pub(crate) fn draw(
+    panel: &Panel,
+    groups: &[String],
+    fitted: &[Panel],
+    root: &Root,
+    (corner, size): ((i32, i32), (i32, i32)),
+    look: impl Fn(&str) -> Look,
+) -> Result<(), Error> {
+    let last = groups.len().saturating_sub(1);
+    let mut axes = ChartBuilder::on(&root.clone().shrink(corner, size))
+        .margin_top(ABOVE)
+        .margin_right(RIGHT)
+        .margin_left(BESIDE)
+        .x_label_area_size(LABELS.1)
+        .y_label_area_size(LABELS.0)
+        // The last segment's own index: the library's range holds its end.
+        .build_cartesian_2d((0..last).into_segmented(), 0.0..top(fitted))
+        .map_err(failed)?;
+    let (across, _) = axes.plotting_area().get_pixel_range();
+    let wide = f64::from(across.end - across.start) / groups.len().max(1) as f64;
+    let title = (across.start, corner.1 + ABOVE / 2);
+    words(root, title, HEAD, &panel.title)?;
+    let step = label_step(groups, wide);
+    let name = |place: &SegmentValue<usize>| match place {
+        SegmentValue::CenterOf(group) if group % step == 0 => groups
+            .get(*group)
+            .map_or_else(String::new, |name| clean(name)),
+        _ => String::new(),
+    };
+    axes.configure_mesh()
+        .disable_x_mesh()
+        .x_labels(groups.len())
+        .y_labels(7)
+        .max_light_lines(2)
+        .x_label_formatter(&name)
+        .y_label_formatter(&tick)
+        .bold_line_style(GRID[0])
+        .light_line_style(GRID[1])
+        .axis_style(RGBColor(90, 90, 90))
+        .label_style(style(BODY))
+        .axis_desc_style(style(HEAD))
+        .x_desc(clean(&panel.x))
+        .y_desc(clean(&panel.y))
+        .draw()
+        .map_err(failed)?;
+    let bar = FILL * wide / panel.series.len().max(1) as f64;
+    for (index, series) in panel.series.iter().enumerate() {
+        let look = look(&series.name);
+        for mark in &series.marks {
+            let group = mark.x as usize;
+            let (_, foot) = axes.backend_coord(&(SegmentValue::Exact(group), 0.0));
+            let (_, head) = axes.backend_coord(&(SegmentValue::Exact(group), mark.y));
+            let left =
+                f64::from(across.start) + (mark.x + (1.0 - FILL) / 2.0) * wide + index as f64 * bar;
+            let [left, middle, right] = [0.0, 0.5, 0.94].map(|at| (left + at * bar).round() as i32);
+            let fill = look.colour.mix(0.45).filled();
+            root.draw(&Rectangle::new([(left, head), (right, foot)], fill))
+                .map_err(failed)?;
+            look.draw(root, (middle, head), 0, true)?;
+        }
+    }
+    Ok(())
+}
+
+/// The upper end of the axis.
+fn top(fitted: &[Panel]) -> f64 {
+    let marks = |series: &Series| series.marks.iter().map(|mark| mark.y).fold(0.0, f64::max);
+    let series = fitted.iter().flat_map(|panel| &panel.series);
+    let highest = series.map(marks).fold(0.0, f64::max);
+    // Nothing but zeros still needs an axis.
+    if highest > 0.0 {
+        highest * (1.0 + MARGIN)
+    } else {
+        1.0
+    }
+}
+
+/// Every how many groups there is room for a label.
+fn label_step(groups: &[String], wide: f64) -> usize {
+    let widest = groups.iter().map(|name| width(name, BODY)).max();
+    (f64::from(widest.unwrap_or(0)) / wide).ceil().max(1.0) as usize
+}
+
+/// A tick's number without what f64 adds to it.
+fn tick(value: &f64) -> String {
+    let rounded: f64 = format!("{value:.9e}").parse().unwrap_or(*value);
+    rounded.to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_what_they_are_meant_to_be() {
+        let ticks = [0.1 + 0.2, 20.0, 0.000_1 * 3.0, 0.0].map(|value| tick(&value));
+        assert_eq!(ticks, ["0.3", "20", "0.0003", "0"]);
+    }
+
+    #[test]
+    fn labels_that_have_no_room_are_left_out() {
+        let groups = ["512x512", "1024x1024"].map(str::to_owned);
+        assert_eq!(label_step(&groups, 100.0), 1);
+        assert_eq!(label_step(&groups, 30.0), 3);
+        assert_eq!(label_step(&[], 30.0), 1);
+    }
+}

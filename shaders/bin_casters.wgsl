@@ -24,7 +24,7 @@ struct Large {
 }
 
 var<uniform> params: Params;
-// As mark_receivers.wgsl has it.
+// As mark_receivers.wgsl and mark_tiles.wgsl have it.
 var<storage, read> farthest: array<u32>;
 // Of each texel.
 var<storage, read_write> lists: array<List>;
@@ -136,7 +136,7 @@ fn tiles_of(caster: Caster) -> vec2<u32> {
 
 // Appends the caster to the lists of the texels in those tiles under its box whose numbers are
 // `first`, `first + step`, … below `end`. Threads run in step, and some adapters run what any of
-// them could need: so each looks for its next tile, then for its next texel, in a short loop.
+// them could need: so each looks for its next tile, then for the texels in it, in short loops.
 fn bin(caster: Caster, first: u32, end: u32, step: u32) {
     let columns = tiles_of(caster).x;
     let corner = caster.first / TILE;
@@ -157,30 +157,46 @@ fn bin(caster: Caster, first: u32, end: u32, step: u32) {
         if all(texels == vec2(0u)) {
             return;
         }
+        // All texels of the tile first, as threads differ in which of them they are in.
+        var overlapped = vec2(0u);
         loop {
-            var found = false;
-            var texel = vec2(0u);
-            var inward = vec3(0.0);
-            var depth = 0.0;
-            while !found && any(texels != vec2(0u)) {
-                let half = select(0u, 1u, texels.x == 0u);
-                let bit = countTrailingZeros(texels[half]);
-                texels[half] &= texels[half] - 1u;
-                texel = at * TILE + vec2(bit % TILE, 4u * half + bit / TILE);
-                let centre = vec2<f32>(texel) + 0.5;
-                inward = inward_of(caster.triangle, centre);
-                // Of -0, too.
-                depth = abs(depth_bound(caster.plane, centre, 0.5, NEAREST));
-                found = all(inward >= -caster.reach)
-                    && depth_bits(depth) <= farthest[texel_number(texel)];
-            }
-            if !found {
+            let texel = at * TILE + first_of(texels);
+            let bit = first_bit(texels);
+            let centre = vec2<f32>(texel) + 0.5;
+            let is_overlapped = all(inward_of(caster.triangle, centre) >= -caster.reach)
+                && depth_bits(least_depth(caster, centre)) <= farthest[texel_number(texel)];
+            overlapped |= select(vec2(0u), bit, is_overlapped);
+            texels &= ~bit;
+            if all(texels == vec2(0u)) {
                 break;
             }
-            let key = key_of(caster, depth, inward);
+        }
+        while any(overlapped != vec2(0u)) {
+            let texel = at * TILE + first_of(overlapped);
+            overlapped &= ~first_bit(overlapped);
+            let centre = vec2<f32>(texel) + 0.5;
+            let inward = inward_of(caster.triangle, centre);
+            let key = key_of(caster, least_depth(caster, centre), inward);
             append(texel_number(texel), caster.primitive, key);
         }
     }
+}
+
+// Of the texels of a tile that have a bit: the first one's place in the tile, and its bit.
+fn first_of(texels: vec2<u32>) -> vec2<u32> {
+    let bit = countTrailingZeros(select(texels.x, texels.y, texels.x == 0u));
+    return vec2(bit % TILE, bit / TILE + select(0u, 4u, texels.x == 0u));
+}
+
+fn first_bit(texels: vec2<u32>) -> vec2<u32> {
+    let lowest = texels & (~texels + 1u);
+    return vec2(lowest.x, select(0u, lowest.y, texels.x == 0u));
+}
+
+// In a texel.
+fn least_depth(caster: Caster, centre: vec2<f32>) -> f32 {
+    // Of -0, too.
+    return abs(depth_bound(caster.plane, centre, 0.5, NEAREST));
 }
 
 // A bit for each texel of the tile that is under the triangle's box and has a receiver in it; none

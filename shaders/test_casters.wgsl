@@ -27,6 +27,8 @@ var<storage, read> farthest: array<u32>;
 var<storage, read> large: Large;
 var<storage, read> lists: array<List>;
 var<storage, read> entries: array<Entry>;
+// Workgroups of fill_rays in x, y, z.
+var<storage, read_write> fill_groups: array<atomic<u32>, 3>;
 var visibility: texture_storage_2d<r32uint, write>;
 var status: texture_storage_2d<r32uint, write>;
 
@@ -47,8 +49,23 @@ fn main(
     if pixel_status == STATUS_UNCERTAIN {
         pixel_status = test_casters(receiver.xyz, textureLoad(primitive, pixel, 0).x);
     }
+    if pixel_status == STATUS_UNCERTAIN {
+        ask_rays();
+    }
     textureStore(status, pixel, vec4(pixel_status));
     textureStore(visibility, pixel, vec4(initial_visibility(pixel_status)));
+}
+
+// Has the rays filled in: by one workgroup for 32 by 32 pixels.
+fn ask_rays() {
+    // Asked first: many need not queue.
+    if atomicLoad(&fill_groups[2]) == 1u {
+        return;
+    }
+    let groups = (textureDimensions(status) + 31u) / 32u;
+    atomicStore(&fill_groups[0], groups.x);
+    atomicStore(&fill_groups[1], groups.y);
+    atomicStore(&fill_groups[2], 1u);
 }
 
 fn test_casters(receiver: vec3<f32>, own: u32) -> u32 {
@@ -65,20 +82,19 @@ fn test_casters(receiver: vec3<f32>, own: u32) -> u32 {
     if list.length == 0u {
         return STATUS_LIGHT;
     }
-    if list.length > params.longest_list {
+    if list.length > params.longest_list || list.head == LIST_FULL {
         return STATUS_UNCERTAIN;
     }
     var walk = Walk(list.head, coarse_depth(bitcast<f32>(place.depth)), place.offset, own);
     let t_min = receiver_error_bound(receiver, camera.eye);
     let ray = sheared(Ray(receiver, t_min, light.to_light, light.max_distance));
     var hit = Hit(light.max_distance, NO_PRIMITIVE, 0.0, 0.0);
-    var candidate = next_candidate(&walk);
     var is_hit = false;
     // Testing costs the most: threads that run in step do it together.
     loop {
+        let candidate = next_candidate(&walk);
         is_hit = candidate != NO_PRIMITIVE && intersect(ray, candidate, t_min, &hit);
-        candidate = next_candidate(&walk);
-        if is_hit || candidate == NO_PRIMITIVE {
+        if is_hit || !is_entry(walk.number) {
             break;
         }
     }
@@ -98,16 +114,24 @@ struct Walk {
     own: u32,
 }
 
-// The next caster that could be hit; NO_PRIMITIVE if there is none.
+// The next caster that could be hit; NO_PRIMITIVE if there is none. Only while there are entries.
 fn next_candidate(walk: ptr<function, Walk>) -> u32 {
     var candidate = NO_PRIMITIVE;
-    while candidate == NO_PRIMITIVE && (*walk).number != LIST_END && (*walk).number != LIST_FULL {
+    loop {
         let at = (*walk).number - 1u;
         let key = entries[at].key;
         let primitive = entries[at].primitive;
-        let may_hit = key_depth(key) <= (*walk).depth && !cuts_off(key, (*walk).offset);
-        candidate = select(NO_PRIMITIVE, primitive, may_hit && primitive != (*walk).own);
+        let may_hit = primitive != (*walk).own && key_depth(key) <= (*walk).depth
+            && !cuts_off(key, (*walk).offset);
+        candidate = select(NO_PRIMITIVE, primitive, may_hit);
         (*walk).number = entries[at].next;
+        if may_hit || !is_entry((*walk).number) {
+            break;
+        }
     }
     return candidate;
+}
+
+fn is_entry(number: u32) -> bool {
+    return number != LIST_END && number != LIST_FULL;
 }

@@ -31,10 +31,6 @@ const TILE: u32 = 8u;
 struct Place {
     // Number of its texel; NO_TEXEL if it is outside the map, or rounding may move it too far.
     texel: u32,
-    // Of its tile, the number of the first word.
-    tile: u32,
-    // Of its texel in the tile.
-    bit: u32,
     // Bits of its depth, an f32 above 0. What is farther from the light does not shade it.
     depth: u32,
     // Relative to the texel's centre.
@@ -59,18 +55,12 @@ fn place_of(receiver: vec3<f32>) -> Place {
     // Half of the slack is for rounding, half for the tracer, to whom a point so near an edge may
     // be on it. NaN is outside.
     if is_outside(at.xy) || !(error.x <= 0.5 * SLACK && abs(at.z) <= 2.0) {
-        return Place(NO_TEXEL, 0u, 0u, 0u, vec2(0.0));
+        return Place(NO_TEXEL, 0u, vec2(0.0));
     }
     let texel = vec2<u32>(at.xy);
     // 0 says that nobody is there.
     let depth = max(depth_bits(at.z + error.y), 1u);
-    return Place(
-        texel_number(texel),
-        tile_number(texel / TILE),
-        texel.y % TILE * TILE + texel.x % TILE,
-        depth,
-        fract(at.xy) - 0.5,
-    );
+    return Place(texel_number(texel), depth, fract(at.xy) - 0.5);
 }
 
 // In the order of the depths; of -0, too.

@@ -1,0 +1,35 @@
+// Stage to find, for each tile of the grid, the farthest receiver of its texels and which of them
+// somebody is in; one thread per tile.
+
+#import "shared/light_buffer.wgsl"
+
+// Of each texel, as mark_receivers.wgsl has it, then three words for each tile.
+var<storage, read_write> farthest: array<u32>;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
+    let size = u32(map_fit.size);
+    let columns = (size + TILE - 1u) / TILE;
+    let tile = vec2(thread.x % columns, thread.x / columns);
+    if tile.y >= columns {
+        return;
+    }
+    var depth = 0u;
+    var taken = vec2(0u);
+    for (var row = 0u; row < TILE; row++) {
+        var taken_in_row = 0u;
+        for (var column = 0u; column < TILE; column++) {
+            let texel = tile * TILE + vec2(column, row);
+            if all(texel < vec2(size)) {
+                let texel_depth = farthest[texel_number(texel)];
+                depth = max(depth, texel_depth);
+                taken_in_row |= select(0u, 1u << column, texel_depth != 0u);
+            }
+        }
+        taken[row / 4u] |= taken_in_row << (8u * (row % 4u));
+    }
+    let words = tile_number(tile);
+    farthest[words] = depth;
+    farthest[words + 1u] = taken.x;
+    farthest[words + 2u] = taken.y;
+}

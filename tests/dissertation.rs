@@ -9,7 +9,7 @@ use std::{collections::BTreeMap, fs, sync::Arc};
 use support::{
     bench::Bench,
     graphs::{plan, provider, run, values},
-    scenes::{bench, sponza},
+    scenes::{bench, load, sponza},
 };
 
 /// The dissertation's figures of one scene: by view, viewport, map size, preset and quantity.
@@ -121,6 +121,39 @@ fn benchs_uncertain_pixels_are_the_dissertations() {
             assert!(off.abs() < 0.005, "{view} {own}: {ours}, D {theirs}");
         }
     }
+}
+
+/// Each of its rules by itself asks more of a texel, or less, and what is proven stays right where
+/// its claim stands.
+#[test]
+fn each_rule_leaves_more_or_less_to_rays() {
+    let scene = load("park");
+    let mut bench = Bench::new(&scene, [128, 128]);
+    let word = |word: &str| ParamValue::Choice(word.to_owned());
+    let mut uncertain = |preset: &str, given: &[(&str, &str)], is_proven: bool| {
+        let mut params = vec![("map_size", ParamValue::U32(256))];
+        params.extend(given.iter().map(|(name, value)| (*name, word(value))));
+        let counts = bench.judge(preset, &params);
+        let outside = counts.wrong.total - counts.wrong.in_band;
+        assert!(!is_proven || outside == 0, "{preset} {given:?}: {counts:?}");
+        counts.uncertain
+    };
+    let of_footprint = ["texel", "bilinear", "nine", "corners"];
+    for (preset, is_proven) in [("crsm", true), ("crsma_full", true), ("hybrid_pcf", false)] {
+        let [texel, bilinear, nine, corners] = of_footprint.map(|kind| {
+            let is_proven = is_proven && kind != "corners";
+            uncertain(preset, &[("footprint", kind)], is_proven)
+        });
+        assert!(texel < bilinear && bilinear < nine, "{preset}");
+        assert!(bilinear < corners && corners < nine, "{preset}");
+    }
+    assert_eq!(uncertain("hybrid_pcf", &[("footprint", "texel")], false), 0);
+    let crsm = uncertain("crsm", &[], true);
+    for more in [("box", "by_n"), ("small", "leave_out")] {
+        assert!(uncertain("crsm", &[more], true) > crsm, "{more:?}");
+    }
+    let by_n = uncertain("crsma", &[("corners", "by_n")], false);
+    assert!(by_n < uncertain("crsma", &[], false));
 }
 
 /// By table 12, in points of PFL.

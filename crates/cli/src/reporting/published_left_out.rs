@@ -46,7 +46,16 @@ pub fn without_counterpart<'a>(
     }
     for row in rows {
         let (scene, view, viewport, map, preset, _) = row.key();
-        if !preset.is_empty() {
+        let is_ours = |name: &String| {
+            let mut own = cells.iter().filter(|cell| cell.scene == scene);
+            own.any(|cell| cell.run.preset == *name)
+        };
+        // Of several presets, one is enough.
+        let known = match row.named.iter().any(is_ours) {
+            true => is_ours(&row.preset),
+            false => row.named.first() == Some(&row.preset),
+        };
+        if !preset.is_empty() && known {
             of_scene(&mut theirs, scene).add(view, viewport, map, preset);
         }
     }

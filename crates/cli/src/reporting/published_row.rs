@@ -21,8 +21,10 @@ pub struct Row {
     view: String,
     viewport: [u32; 2],
     map_size: Option<u32>,
-    /// One or, as read, several; empty: of the reference.
+    /// Empty: of the reference.
     pub preset: String,
+    /// All presets that its line names.
+    pub named: Vec<String>,
     /// The figure.
     pub figure: Published,
     /// Its line in the file.
@@ -43,11 +45,11 @@ impl Row {
         if self.preset.is_empty() {
             return vec![self];
         }
-        let of = |preset: &str| Self {
-            preset: preset.to_owned(),
+        let of = |preset: &String| Self {
+            preset: preset.clone(),
             ..self.clone()
         };
-        self.preset.split_whitespace().map(of).collect()
+        self.named.iter().map(of).collect()
     }
 
     /// Whether it is of this run, or of its reference.
@@ -94,6 +96,10 @@ impl Row {
             viewport,
             map_size,
             preset: text("preset"),
+            named: text("preset")
+                .split_whitespace()
+                .map(str::to_owned)
+                .collect(),
             figure: Published {
                 by: label.into(),
                 quantity: text("quantity"),

@@ -151,9 +151,11 @@ fn each_rule_leaves_more_or_less_to_rays() {
     let crsm = uncertain("crsm", &[], true);
     assert!(uncertain("crsm", &[("box", "by_n")], true) > crsm);
     assert!(uncertain("crsm", &[("small", "leave_out")], true) >= crsm);
-    let crsma = uncertain("crsma", &[], false);
-    assert!(uncertain("crsma", &[("small", "leave_out")], false) > crsma);
-    assert!(uncertain("crsma", &[("corners", "by_n")], false) < crsma);
+    let by_n = uncertain("crsma", &[("corners", "by_n")], false);
+    assert!(by_n < uncertain("crsma", &[], false));
+    // Corners of a whole diagonal leave nothing of small ones.
+    let without = [("corners", "by_n"), ("small", "leave_out")];
+    assert!(uncertain("crsma", &without, false) > by_n);
 }
 
 /// By table 12, in points of PFL.

@@ -37,6 +37,7 @@ pub mod oracle;
 pub mod pixels;
 mod ray;
 pub mod receiver;
+pub mod shimmer;
 pub mod statistics;
 mod tree;
 
@@ -46,4 +47,5 @@ pub use image::Image;
 pub use oracle::{Class, Occlusion, Oracle, OracleMode, Reference};
 pub use pixels::{BACKGROUND, Progress};
 pub use receiver::Receiver;
+pub use shimmer::Shimmer;
 pub use statistics::{CertainCounts, ClassSplit, PixelCounts, Split, Statistics, WrongCounts};

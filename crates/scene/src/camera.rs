@@ -129,6 +129,21 @@ impl Camera {
         self.forward + self.right * (ndc_x * self.half_width) + self.up * (ndc_y * self.half_height)
     }
 
+    /// The pixel into which a point falls, `None` for one outside the image or not before the eye.
+    pub fn pixel_of(&self, point: DVec3) -> Option<[u32; 2]> {
+        let relative = point - self.eye;
+        let distance = self.forward.dot(relative);
+        let across = self.right.dot(relative) / (distance * self.half_width);
+        let up = self.up.dot(relative) / (distance * self.half_height);
+        let [width, height] = self.viewport;
+        let x = ((across + 1.0) * 0.5 * f64::from(width)).floor();
+        let y = ((1.0 - up) * 0.5 * f64::from(height)).floor();
+        let inside = distance > 0.0
+            && (0.0..f64::from(width)).contains(&x)
+            && (0.0..f64::from(height)).contains(&y);
+        inside.then_some([x as u32, y as u32])
+    }
+
     /// World to wgpu clip space (x right, y up, z in 0..1 from near to far).
     pub fn view_projection(&self) -> DMat4 {
         let rotation = DMat4::from_cols(
@@ -177,6 +192,20 @@ mod tests {
             light: None,
         };
         view.camera([40, 20])
+    }
+
+    #[test]
+    fn a_point_falls_into_the_pixel_that_sees_it() {
+        let camera = camera();
+        for (x, y) in [(0, 0), (39, 19), (0, 19), (13, 7)] {
+            let point = camera.eye + camera.pixel_direction(x, y) * 50.0;
+            assert_eq!(camera.pixel_of(point), Some([x, y]));
+            let behind = camera.eye - camera.pixel_direction(x, y) * 50.0;
+            assert_eq!(camera.pixel_of(behind), None);
+        }
+        let beside = camera.eye + camera.forward + camera.right * (camera.half_width * 1.01);
+        assert_eq!(camera.pixel_of(beside), None);
+        assert_eq!(camera.pixel_of(camera.eye), None);
     }
 
     #[test]

@@ -9,6 +9,7 @@ use crate::{
         options::{ObjOptions, QuadDiagonal},
         read::load_obj,
     },
+    path::CameraPath,
     report::ImportReport,
     scene::Scene,
     scene_file::{MeshSource, SceneFile},
@@ -66,6 +67,8 @@ pub struct SceneListing {
     pub description: String,
     /// Names of its views; none if the scene file cannot be read.
     pub views: Vec<String>,
+    /// Names of its camera paths.
+    pub paths: Vec<String>,
     /// Whether its mesh is at hand: generated, or found on disk.
     pub mesh_found: bool,
     /// The scene file, or `None` for a built-in scene.
@@ -115,12 +118,7 @@ impl SceneLibrary {
             });
         }
         let (argument, size) = sized(&request.argument);
-        let (file, text) = self.locate(argument)?;
-        let name = file.as_ref().map_or_else(
-            || built_in_file(argument),
-            |file| file.display().to_string(),
-        );
-        let mut scene = SceneFile::parse(&text, &name)?;
+        let (file, mut scene) = self.parse(argument)?;
         if let Some(size) = size {
             resize(&mut scene, size).map_err(|reason| SceneError::Size {
                 argument: request.argument.clone(),
@@ -128,6 +126,27 @@ impl SceneLibrary {
             })?;
         }
         self.assemble(scene, file.as_deref())
+    }
+
+    /// The camera paths of a scene's file, without loading its mesh; a bare mesh has none.
+    ///
+    /// # Errors
+    /// [`SceneError`]: no such scene, a broken scene file.
+    pub fn paths(&self, argument: &str) -> Result<Vec<CameraPath>, SceneError> {
+        if has_extension(Path::new(argument), "obj") {
+            return Ok(Vec::new());
+        }
+        let (_, scene) = self.parse(sized(argument).0)?;
+        Ok(scene.paths)
+    }
+
+    fn parse(&self, argument: &str) -> Result<(Option<PathBuf>, SceneFile), SceneError> {
+        let (file, text) = self.locate(argument)?;
+        let name = file.as_ref().map_or_else(
+            || built_in_file(argument),
+            |file| file.display().to_string(),
+        );
+        Ok((file, SceneFile::parse(&text, &name)?))
     }
 
     /// Every scene that can be named: files of the scenes folder and built-in ones, by name.
@@ -161,6 +180,11 @@ impl SceneLibrary {
             Ok(scene) => SceneListing {
                 name,
                 views: scene.views.iter().map(|view| view.name.clone()).collect(),
+                paths: scene
+                    .paths
+                    .iter()
+                    .map(|path| path.view.name.clone())
+                    .collect(),
                 mesh_found: match &scene.mesh {
                     MeshSource::Generated(_) => true,
                     MeshSource::Obj { file: mesh, .. } => self
@@ -175,6 +199,7 @@ impl SceneLibrary {
                 name,
                 description: error.to_string(),
                 views: Vec::new(),
+                paths: Vec::new(),
                 mesh_found: false,
                 file,
             },

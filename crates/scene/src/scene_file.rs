@@ -19,9 +19,14 @@
 //! ```
 
 use crate::{
-    camera::View, error::SceneError, generate::Generator, light::DirectionalLight,
+    camera::View,
+    error::SceneError,
+    generate::Generator,
+    light::DirectionalLight,
     obj::options::QuadDiagonal,
+    path::{CameraKey, CameraPath},
 };
+use glam::DVec3;
 use serde::{Deserialize, Deserializer, de::Error};
 use std::collections::HashSet;
 
@@ -45,6 +50,9 @@ pub struct SceneFile {
     /// At least one view, no two of the same name.
     #[serde(deserialize_with = "views")]
     pub views: Vec<View>,
+    /// Ways that a camera takes, no two of the same name.
+    #[serde(default, deserialize_with = "paths")]
+    pub paths: Vec<CameraPath>,
 }
 
 /// Where a scene's triangles come from.
@@ -133,6 +141,63 @@ impl<'de> Deserialize<'de> for View {
     }
 }
 
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename = "Path")]
+struct PathText {
+    name: String,
+    #[serde(default = "y_axis")]
+    up: (f64, f64, f64),
+    fov_y_degrees: f64,
+    near: f64,
+    far: f64,
+    #[serde(default, deserialize_with = "own_light")]
+    light: Option<DirectionalLight>,
+    #[serde(default = "thirty")]
+    frames_per_second: f64,
+    keys: Vec<KeyText>,
+}
+
+fn thirty() -> f64 {
+    30.0
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename = "Key")]
+struct KeyText {
+    at: f64,
+    eye: (f64, f64, f64),
+    direction: (f64, f64, f64),
+}
+
+impl<'de> Deserialize<'de> for CameraPath {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = PathText::deserialize(deserializer)?;
+        let keys = text.keys.iter().map(|key| CameraKey {
+            at: key.at,
+            eye: key.eye.into(),
+            direction: key.direction.into(),
+        });
+        let keys: Vec<CameraKey> = keys.collect();
+        let first = keys.first();
+        let path = Self {
+            view: View {
+                name: text.name,
+                eye: first.map_or(DVec3::ZERO, |key| key.eye),
+                direction: first.map_or(DVec3::ZERO, |key| key.direction),
+                up: text.up.into(),
+                fov_y_degrees: text.fov_y_degrees,
+                near: text.near,
+                far: text.far,
+                light: text.light,
+            },
+            frames_per_second: text.frames_per_second,
+            keys,
+        };
+        path.check().map_err(D::Error::custom)?;
+        Ok(path)
+    }
+}
+
 /// A string where `None` is said by leaving it out: RON would ask for `Some("…")`.
 fn given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<String>, D::Error> {
     String::deserialize(deserializer).map(Some)
@@ -175,10 +240,22 @@ fn views<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<View>, D::Err
     if views.is_empty() {
         return Err(D::Error::custom("a scene needs at least one view"));
     }
-    let mut names = HashSet::new();
-    if let Some(view) = views.iter().find(|view| !names.insert(&view.name)) {
-        let name = &view.name;
-        return Err(D::Error::custom(format!("two views are called {name:?}")));
-    }
+    no_two(views.iter().map(|view| &view.name), "views")?;
     Ok(views)
+}
+
+fn paths<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<CameraPath>, D::Error> {
+    let paths = Vec::<CameraPath>::deserialize(deserializer)?;
+    no_two(paths.iter().map(|path| &path.view.name), "paths")?;
+    Ok(paths)
+}
+
+fn no_two<'a, E: Error>(names: impl Iterator<Item = &'a String>, what: &str) -> Result<(), E> {
+    let mut known = HashSet::new();
+    for name in names {
+        if !known.insert(name) {
+            return Err(E::custom(format!("two {what} are called {name:?}")));
+        }
+    }
+    Ok(())
 }

@@ -5,7 +5,7 @@ use crate::reporting::table::table;
 use crate::terminal::console::print;
 use skiagraph_scene::{SceneLibrary, SceneListing};
 
-/// Lists the scenes with their views and whether their meshes are at hand.
+/// Lists the scenes with their views, camera paths and whether their meshes are at hand.
 ///
 /// # Errors
 /// Standard output.
@@ -15,10 +15,11 @@ pub fn scenes() -> Result<(), CliError> {
     let row = |scene: SceneListing| {
         let mesh = if scene.mesh_found { "found" } else { "missing" };
         let views = scene.views.join("\n");
-        vec![scene.name, mesh.into(), views, scene.description]
+        let paths = scene.paths.join("\n");
+        vec![scene.name, mesh.into(), views, paths, scene.description]
     };
-    let heads = ["scene", "mesh", "views", "description"];
-    let table = table(heads, 4, listings.into_iter().map(row));
+    let heads = ["scene", "mesh", "views", "paths", "description"];
+    let table = table(heads, 5, listings.into_iter().map(row));
     let hint = if missing {
         "\n`skiagraph doctor` says where missing meshes are searched.\n"
     } else {

@@ -1,0 +1,123 @@
+//! Shimmer: answers that change from a frame to the next though the right ones do not.
+
+use crate::{
+    error::Error,
+    oracle::Reference,
+    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel},
+};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use skiagraph_scene::{Camera, Mesh};
+
+/// A change of visibility that is one: what a picture of 4 bits could show.
+const CHANGE: f64 = 1.0 / 16.0;
+
+/// Counts of receivers that are seen in two frames one after the other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Shimmer {
+    /// Pixels whose receiver faces the light and had the same answer by the reference a frame
+    /// before, both outside the band.
+    pub compared: u64,
+    /// Of these, the ones whose visibility the method changed by more than 1/16.
+    pub changed: u64,
+}
+
+impl Shimmer {
+    /// The counts of two pairs of frames together.
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            compared: self.compared + other.compared,
+            changed: self.changed + other.changed,
+        }
+    }
+}
+
+/// A frame as shimmer sees it.
+#[derive(Clone, Copy)]
+pub struct Seen<'a> {
+    /// Where it is seen from.
+    pub camera: &'a Camera,
+    /// The primitive that each pixel shows, as for [`Oracle::shade`](crate::Oracle::shade).
+    pub primitives: &'a [u32],
+}
+
+/// For each pixel of `now`, the pixel of the frame before that shows the same receiver: the one
+/// into which its place on its primitive falls, if that shows the same primitive. [`BACKGROUND`]
+/// where none does.
+///
+/// # Errors
+/// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Interrupted`].
+pub fn same_receivers(
+    mesh: &Mesh,
+    before: Seen,
+    now: Seen,
+    progress: Progress,
+) -> Result<Vec<u32>, Error> {
+    for seen in [before, now] {
+        check_pixel_count("primitives", seen.camera.viewport, seen.primitives.len())?;
+    }
+    let [width, _] = now.camera.viewport;
+    let [width_before, _] = before.camera.viewport;
+    let count = mesh.triangles.len() as u64;
+    per_pixel(now.camera.viewport, progress, |x, y, _| {
+        let primitive = now.primitives[(x + y * width) as usize];
+        if primitive == BACKGROUND {
+            return Ok(BACKGROUND);
+        }
+        if u64::from(primitive) >= count {
+            return Err(Error::UnknownPrimitive {
+                x,
+                y,
+                primitive,
+                count,
+            });
+        }
+        let place = hit(mesh, primitive, now.camera, [x, y])
+            .and_then(|receiver| before.camera.pixel_of(receiver))
+            .map(|[x, y]| x + y * width_before);
+        let same = |&place: &u32| before.primitives[place as usize] == primitive;
+        Ok(place.filter(same).unwrap_or(BACKGROUND))
+    })
+}
+
+/// Where the ray through a pixel's centre meets the plane of its primitive; `None` for one that is
+/// edge-on.
+fn hit(mesh: &Mesh, primitive: u32, camera: &Camera, [x, y]: [u32; 2]) -> Option<DVec3> {
+    let [a, b, c] = mesh.corners(primitive);
+    let normal = (b - a).cross(c - a);
+    let direction = camera.pixel_direction(x, y);
+    let t = normal.dot(a - camera.eye) / normal.dot(direction);
+    t.is_finite().then(|| camera.eye + direction * t)
+}
+
+/// Counts the answers that changed: `same` is of [`same_receivers`], and of each frame there are
+/// the method's visibility per pixel and the reference.
+///
+/// # Errors
+/// [`Error::PixelCount`] for buffers that are not as large as their frame.
+pub fn shimmer(
+    same: &[u32],
+    [before, now]: [&[impl Copy + Into<f64>]; 2],
+    [right_before, right_now]: [&Reference; 2],
+) -> Result<Shimmer, Error> {
+    check_pixel_count("same receivers", right_now.viewport, same.len())?;
+    check_pixel_count("visibility", right_now.viewport, now.len())?;
+    check_pixel_count("visibility", right_before.viewport, before.len())?;
+    let mut counts = Shimmer::default();
+    for (pixel, &earlier) in same.iter().enumerate() {
+        let earlier = earlier as usize;
+        if earlier == BACKGROUND as usize
+            || !right_now.classes[pixel].faces_light()
+            || right_now.classes[pixel] != right_before.classes[earlier]
+            || right_now.indeterminate[pixel]
+            || right_before.indeterminate[earlier]
+        {
+            continue;
+        }
+        counts.compared += 1;
+        let change = now[pixel].into() - before[earlier].into();
+        // Not a number is a change, too.
+        counts.changed += u64::from(!(change.abs() <= CHANGE));
+    }
+    Ok(counts)
+}

@@ -1,0 +1,215 @@
+//! Camera paths: a view whose eye and direction move from keyframe to keyframe.
+
+use crate::camera::View;
+use glam::DVec3;
+
+/// The most frames that a path may have: five and a half minutes at thirty per second.
+const MOST_FRAMES: f64 = 10_000.0;
+
+/// A camera that moves. Between keyframes eye and direction follow Catmull-Rom splines (Catmull,
+/// Rom 1974, over uneven times); two keyframes make a straight line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraPath {
+    /// What stays on the way, and the name; eye and direction are those of the first keyframe.
+    pub view: View,
+    /// Frames per second of the path's own time.
+    pub frames_per_second: f64,
+    /// At least two, in the order of their times.
+    pub keys: Vec<CameraKey>,
+}
+
+/// Where the camera is at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraKey {
+    /// Seconds.
+    pub at: f64,
+    /// Eye position, world space.
+    pub eye: DVec3,
+    /// Viewing direction, any length but zero.
+    pub direction: DVec3,
+}
+
+impl CameraPath {
+    /// How many frames it has: the first at the first keyframe, the last at the last one or just
+    /// before.
+    pub fn frames(&self) -> u32 {
+        // A time that is a whole number of frames but for its rounding has its last frame.
+        (self.seconds() * self.frames_per_second + 1e-6) as u32 + 1
+    }
+
+    fn seconds(&self) -> f64 {
+        match &self.keys[..] {
+            [first, .., last] => last.at - first.at,
+            _ => 0.0,
+        }
+    }
+
+    /// The view of a frame, with the path's own name.
+    pub fn view(&self, frame: u32) -> View {
+        let at =
+            self.keys.first().map_or(0.0, |key| key.at) + f64::from(frame) / self.frames_per_second;
+        let place = |of: fn(&CameraKey) -> DVec3| self.place(at, of);
+        View {
+            eye: place(|key| key.eye),
+            direction: place(|key| key.direction.normalize()),
+            ..self.view.clone()
+        }
+    }
+
+    /// The views of all frames.
+    pub fn views(&self) -> impl Iterator<Item = View> + '_ {
+        (0..self.frames()).map(|frame| self.view(frame))
+    }
+
+    fn place(&self, at: f64, of: fn(&CameraKey) -> DVec3) -> DVec3 {
+        let keys = &self.keys[..];
+        // The last key that has passed, but one that has another behind it.
+        let passed = keys.partition_point(|key| key.at <= at).max(1) - 1;
+        let from = passed.min(keys.len().saturating_sub(2));
+        let [a, b] = match keys.get(from..from + 2) {
+            Some([a, b]) => [a, b],
+            _ => return keys.first().map_or(DVec3::ZERO, of),
+        };
+        // The slope at a key is that between its neighbours.
+        let slope = |key: usize| {
+            let (before, after) = (
+                &keys[key.saturating_sub(1)],
+                &keys[(key + 1).min(keys.len() - 1)],
+            );
+            (of(after) - of(before)) / (after.at - before.at)
+        };
+        let span = b.at - a.at;
+        let t = ((at - a.at) / span).clamp(0.0, 1.0);
+        let (square, cube) = (t * t, t * t * t);
+        of(a) * (2.0 * cube - 3.0 * square + 1.0)
+            + slope(from) * (span * (cube - 2.0 * square + t))
+            + of(b) * (3.0 * square - 2.0 * cube)
+            + slope(from + 1) * (span * (cube - square))
+    }
+
+    /// Whether every frame makes a camera.
+    ///
+    /// # Errors
+    /// What is wrong with it, naming the path.
+    pub fn check(&self) -> Result<(), String> {
+        let name = &self.view.name;
+        let keys = &self.keys;
+        if keys.len() < 2 {
+            return Err(format!(
+                "path {name:?} has {} of the two keys that it needs at least",
+                keys.len()
+            ));
+        }
+        let rate = self.frames_per_second;
+        if !(rate > 0.0 && rate.is_finite()) {
+            return Err(format!(
+                "path {name:?}: frames_per_second is {rate}, expected more than 0"
+            ));
+        }
+        let later = |pair: &[CameraKey]| pair[0].at < pair[1].at && pair[1].at.is_finite();
+        if let Some(pair) = keys.windows(2).find(|pair| !later(pair)) {
+            return Err(format!(
+                "path {name:?}: a key at {} s follows one at {} s, expected a later time",
+                pair[1].at, pair[0].at
+            ));
+        }
+        let frames = self.seconds() * rate;
+        if frames.is_nan() || frames >= MOST_FRAMES {
+            return Err(format!(
+                "path {name:?}: {} s of {rate} frames are more than {MOST_FRAMES} frames",
+                self.seconds()
+            ));
+        }
+        for (frame, view) in self.views().enumerate() {
+            view.check()
+                .map_err(|reason| match reason.strip_prefix("view") {
+                    Some(reason) => format!("path{reason} (frame {frame})"),
+                    None => reason,
+                })?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn path(keys: &[(f64, DVec3, DVec3)]) -> CameraPath {
+        let keys = keys
+            .iter()
+            .map(|&(at, eye, direction)| CameraKey { at, eye, direction });
+        CameraPath {
+            view: View {
+                name: "walk".into(),
+                eye: DVec3::ZERO,
+                direction: DVec3::X,
+                up: DVec3::Y,
+                fov_y_degrees: 60.0,
+                near: 1.0,
+                far: 100.0,
+                light: None,
+            },
+            frames_per_second: 10.0,
+            keys: keys.collect(),
+        }
+    }
+
+    #[test]
+    fn two_keys_are_a_line_and_the_ends_are_the_keys() {
+        let walk = path(&[
+            (1.0, DVec3::ZERO, DVec3::X),
+            (1.3, DVec3::X * 3.0, DVec3::X * 9.0),
+        ]);
+        walk.check().unwrap();
+        assert_eq!(walk.frames(), 4);
+        for (frame, view) in walk.views().enumerate() {
+            assert!(
+                (view.eye - DVec3::X * frame as f64).length() < 1e-12,
+                "{view:?}"
+            );
+            assert!((view.direction - DVec3::X).length() < 1e-12, "{view:?}");
+            assert_eq!(view.name, "walk");
+        }
+    }
+
+    #[test]
+    fn it_passes_through_its_keys_without_a_corner() {
+        let keys = [
+            (0.0, DVec3::ZERO, DVec3::X),
+            (0.5, DVec3::new(1.0, 2.0, 0.0), DVec3::Z),
+            (0.7, DVec3::new(4.0, 2.0, 1.0), DVec3::Z),
+            (1.6, DVec3::new(4.0, 0.0, 1.0), DVec3::X),
+        ];
+        let mut walk = path(&keys);
+        walk.frames_per_second = 1000.0;
+        walk.check().unwrap();
+        for (at, eye, _) in keys {
+            let frame = (at * 1000.0).round() as u32;
+            assert!((walk.view(frame).eye - eye).length() < 1e-9);
+        }
+        let speed = |frame: u32| (walk.view(frame + 1).eye - walk.view(frame).eye) * 1000.0;
+        for frame in [500, 700] {
+            assert!(
+                (speed(frame) - speed(frame - 1)).length() < 0.2,
+                "frame {frame}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_makes_no_path_is_named() {
+        let error = |change: fn(&mut CameraPath)| {
+            let mut walk = path(&[(0.0, DVec3::ZERO, DVec3::X), (1.0, DVec3::X, DVec3::X)]);
+            change(&mut walk);
+            walk.check().unwrap_err()
+        };
+        insta::assert_snapshot!(error(|walk| walk.keys.truncate(1)), @r#"path "walk" has 1 of the two keys that it needs at least"#);
+        insta::assert_snapshot!(error(|walk| walk.frames_per_second = 0.0), @r#"path "walk": frames_per_second is 0, expected more than 0"#);
+        insta::assert_snapshot!(error(|walk| walk.frames_per_second = 1e9), @r#"path "walk": 1 s of 1000000000 frames are more than 10000 frames"#);
+        insta::assert_snapshot!(error(|walk| walk.keys[1].at = 0.0), @r#"path "walk": a key at 0 s follows one at 0 s, expected a later time"#);
+        insta::assert_snapshot!(error(|walk| walk.keys[1].at = f64::NAN), @r#"path "walk": a key at NaN s follows one at 0 s, expected a later time"#);
+        insta::assert_snapshot!(error(|walk| walk.keys[1].direction = -DVec3::X), @r#"path "walk": direction [0, 0, 0] and up [0, 1, 0] must be finite and longer than 0 (frame 5)"#);
+        insta::assert_snapshot!(error(|walk| walk.keys[1].direction = DVec3::Y), @r#"path "walk": up [0, 1, 0] is parallel to the direction [0, 1, 0] (frame 10)"#);
+    }
+}

@@ -39,6 +39,7 @@ mod ray;
 pub mod receiver;
 pub mod shimmer;
 pub mod statistics;
+mod sums;
 mod tree;
 
 pub use blockers::BlockerCounts;

@@ -22,16 +22,6 @@ pub struct Shimmer {
     pub changed: u64,
 }
 
-impl Shimmer {
-    /// The counts of two pairs of frames together.
-    pub fn plus(self, other: Self) -> Self {
-        Self {
-            compared: self.compared + other.compared,
-            changed: self.changed + other.changed,
-        }
-    }
-}
-
 /// A frame as shimmer sees it.
 #[derive(Clone, Copy)]
 pub struct Seen<'a> {

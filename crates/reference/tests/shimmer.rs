@@ -88,8 +88,22 @@ fn receivers_that_were_not_seen_before_are_not_compared() {
         };
         assert_eq!(earlier, expected, "pixel {pixel}");
     }
-    assert!(same_receivers(&mesh, seen[0], Seen { primitives: &[], ..seen[1] }, Progress::default()).is_err());
+    assert!(
+        same_receivers(
+            &mesh,
+            seen[0],
+            Seen {
+                primitives: &[],
+                ..seen[1]
+            },
+            Progress::default()
+        )
+        .is_err()
+    );
     let unknown = vec![7; 10_000];
-    let unknown = Seen { primitives: &unknown, ..seen[1] };
+    let unknown = Seen {
+        primitives: &unknown,
+        ..seen[1]
+    };
     assert!(same_receivers(&mesh, seen[0], unknown, Progress::default()).is_err());
 }

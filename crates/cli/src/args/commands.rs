@@ -18,6 +18,10 @@ pub struct CompareArgs {
     /// What is drawn.
     #[command(flatten)]
     pub scene: SceneArgs,
+    /// A camera path of the scene, or `all`: every frame is judged, and shimmer is counted, with
+    /// what a method keeps from frame to frame. --frames and --cached-frames are of still views.
+    #[arg(long, value_name = "NAME", conflicts_with = "view")]
+    pub path: Option<String>,
     /// Viewport sizes in pixels, separated by commas.
     #[arg(
         long,

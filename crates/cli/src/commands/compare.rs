@@ -12,6 +12,7 @@ use crate::graphs::{contract, preset};
 use crate::measuring::comparison::{Comparison, ComparisonSetup};
 use crate::measuring::reference::PrimaryVisibility;
 use crate::measuring::scene_selection::SceneSelection;
+use crate::measuring::subject::Subject;
 use crate::measuring::{date, device};
 use crate::pictures::run_pictures::{check_stems, reference_stem, stem};
 use crate::records::results::{PROGRAM, Results};
@@ -20,7 +21,7 @@ use crate::reporting::{markdown, published, results_table};
 use crate::terminal::console::{note, print};
 use crate::terminal::interrupt;
 use skiagraph_passes::SceneProvider;
-use skiagraph_scene::View;
+use skiagraph_scene::SceneLibrary;
 use std::sync::Arc;
 
 /// Checks everything, then runs the comparison.
@@ -50,9 +51,18 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         .map(|method| method.settled(features))
         .collect();
     let SceneSelection { scene, views } = SceneSelection::load(&args.scene)?;
+    let subjects = match &args.path {
+        None => views.into_iter().map(Subject::Still).collect(),
+        Some(name) => {
+            let library = SceneLibrary::from_environment();
+            let paths = library.paths(&args.scene.scene);
+            let paths = paths.map_err(|error| CliError::Input(error.to_string()))?;
+            Subject::paths(&scene.name, paths, name)?
+        }
+    };
     let viewports: Vec<[u32; 2]> = unique(&args.size).iter().map(|Size(size)| *size).collect();
     if args.images == Images::All {
-        check_pictures(&methods, &views, &viewports)?;
+        check_pictures(&methods, &subjects, &viewports)?;
     }
     let scene = Arc::new(scene);
     let provider = SceneProvider::new(scene.clone());
@@ -78,7 +88,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let setup = ComparisonSetup {
         gpu: &gpu,
         scene: &scene,
-        views: &views,
+        subjects: &subjects,
         viewports: &viewports,
         methods: &methods,
         primary: &primary,
@@ -86,18 +96,19 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     };
     let mut comparison = Comparison::new(args, setup, provider, published, results)?;
     interrupt::install()?;
-    let outcome = run(args, &mut comparison, &views, viewports.len());
+    let outcome = run(args, &mut comparison, &subjects, viewports.len());
     finish(args, comparison, outcome)
 }
 
 /// Refuses runs that would overwrite each other's pictures, before anything runs.
 fn check_pictures(
     methods: &[Method],
-    views: &[View],
+    subjects: &[Subject],
     viewports: &[[u32; 2]],
 ) -> Result<(), CliError> {
     let mut stems = Vec::new();
-    for View { name: view, .. } in views {
+    for subject in subjects {
+        let view = subject.name();
         for &viewport in viewports {
             stems.extend(methods.iter().map(|method| {
                 let owner = format!("`{}` on view `{view}`", method.preset.name);
@@ -114,7 +125,7 @@ fn check_pictures(
 fn run(
     args: &CompareArgs,
     comparison: &mut Comparison,
-    views: &[View],
+    subjects: &[Subject],
     viewports: usize,
 ) -> Result<(), CliError> {
     if args.format == Format::Markdown {
@@ -123,9 +134,9 @@ fn run(
         let header = markdown::header(&comparison.results, today.as_deref(), &args.published);
         print(&header)?;
     }
-    for (index, view) in views.iter().enumerate() {
+    for (index, subject) in subjects.iter().enumerate() {
         if args.format == Format::Markdown {
-            print(&markdown::view(&view.name))?;
+            print(&markdown::view(subject.name()))?;
         }
         for viewport in 0..viewports {
             let outcome = comparison.measure(index, viewport);

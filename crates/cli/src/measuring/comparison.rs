@@ -9,6 +9,8 @@ use crate::graphs::planning::Capabilities;
 use crate::measuring::reference::{Judge, PrimaryVisibility};
 use crate::measuring::resume::{RunKey, resume};
 use crate::measuring::run::MeasureContext;
+use crate::measuring::sequence;
+use crate::measuring::subject::Subject;
 use crate::pictures::run_pictures::save_reference;
 use crate::records::results::{Results, Run};
 use crate::reporting::published::attach;
@@ -29,7 +31,7 @@ pub struct ComparisonSetup<'a> {
     /// What is drawn.
     pub scene: &'a Scene,
     /// From where.
-    pub views: &'a [View],
+    pub subjects: &'a [Subject],
     /// In how many pixels.
     pub viewports: &'a [[u32; 2]],
     /// By which means.
@@ -44,13 +46,13 @@ impl ComparisonSetup<'_> {
     /// Every run, in the order of the results.
     fn planned(&self) -> Vec<RunKey> {
         let mut planned = Vec::new();
-        for view in self.views {
-            let fingerprint = self.fingerprint.with_view(view);
+        for subject in self.subjects {
+            let fingerprint = subject.fingerprint(self.fingerprint);
             for &viewport in self.viewports {
                 let methods = self.methods.iter().map(|method| method.at(viewport));
                 planned.extend(methods.map(|method| RunKey {
                     preset: method.preset.name.clone(),
-                    view: view.name.clone(),
+                    view: subject.name().to_owned(),
                     viewport,
                     map_size: method.map_size,
                     params: method.all_params(),
@@ -128,15 +130,15 @@ impl<'a> Comparison<'a> {
     }
 
     /// The runs that are done of a view and viewport, both by their index.
-    pub fn runs(&self, view: usize, viewport: usize) -> &[Run] {
-        let places = self.places(view, viewport);
+    pub fn runs(&self, subject: usize, viewport: usize) -> &[Run] {
+        let places = self.places(subject, viewport);
         &self.results.runs[self.done_before(places.start)..self.done_before(places.end)]
     }
 
     /// Where the runs of a view and viewport stand among the planned ones.
-    fn places(&self, view: usize, viewport: usize) -> Range<usize> {
+    fn places(&self, subject: usize, viewport: usize) -> Range<usize> {
         let methods = self.setup.methods.len();
-        let first = (view * self.setup.viewports.len() + viewport) * methods;
+        let first = (subject * self.setup.viewports.len() + viewport) * methods;
         first..first + methods
     }
 
@@ -144,10 +146,15 @@ impl<'a> Comparison<'a> {
     ///
     /// # Errors
     /// Ctrl-C, a lost device, files that cannot be written, a reference that cannot be had.
-    pub fn measure(&mut self, view: usize, viewport: usize) -> Result<(), CliError> {
-        let places = self.places(view, viewport);
-        let (view, viewport) = (&self.setup.views[view], self.setup.viewports[viewport]);
-        self.provider.set_view(view, viewport);
+    pub fn measure(&mut self, subject: usize, viewport: usize) -> Result<(), CliError> {
+        let places = self.places(subject, viewport);
+        let subjects = self.setup.subjects;
+        let (subject, viewport) = (&subjects[subject], self.setup.viewports[viewport]);
+        let views = subject.views();
+        let Some(first) = views.first() else {
+            return Ok(());
+        };
+        self.provider.set_view(first, viewport);
         let methods = self.setup.methods.iter();
         let methods: Vec<Method> = methods.map(|method| method.at(viewport)).collect();
         for (place, method) in places.clone().zip(&methods) {
@@ -157,13 +164,18 @@ impl<'a> Comparison<'a> {
         if self.states[places.clone()].iter().all(is_done) {
             return Ok(());
         }
-        let judge = self.judge(view, viewport)?;
+        let judges = self.judges(subject, &views, viewport)?;
+        let frames = sequence::Path::new(&self.setup.scene.mesh, views, judges)?;
+        let Some(judge) = frames.judges.first() else {
+            return Ok(());
+        };
         let context = MeasureContext {
             gpu: self.setup.gpu,
             timestamps: self.results.adapter.gpu_unavailable.is_none(),
-            view: &view.name,
-            fingerprint: self.setup.fingerprint.with_view(view),
-            judge: &judge,
+            view: subject.name(),
+            fingerprint: subject.fingerprint(self.setup.fingerprint),
+            judge,
+            path: matches!(subject, Subject::Path(_)).then_some(&frames),
             frames: self.args.frames,
             warmup: self.args.warmup,
             cached_frames: self.results.cached_frames,
@@ -211,8 +223,36 @@ impl<'a> Comparison<'a> {
         Ok(())
     }
 
-    /// The right answer, with its picture.
-    fn judge(&mut self, view: &View, viewport: [u32; 2]) -> Result<Judge<'a>, CliError> {
+    /// The right answers, with the picture of a still one.
+    fn judges(
+        &mut self,
+        subject: &Subject,
+        views: &[View],
+        viewport: [u32; 2],
+    ) -> Result<Vec<Judge<'a>>, CliError> {
+        if let [view] = views {
+            let judge = self.judge(view, viewport, &view.name)?;
+            if let Some(folder) = self.pictures() {
+                save_reference(folder, subject.name(), &judge.reference)?;
+            }
+            return Ok(vec![judge]);
+        }
+        let frames = views.len();
+        let named = |(index, view): (usize, &View)| {
+            let what = format!("{} {} of {frames}", view.name, index + 1);
+            self.provider.set_view(view, viewport);
+            self.judge(view, viewport, &what)
+        };
+        views.iter().enumerate().map(named).collect()
+    }
+
+    /// The right answer.
+    fn judge(
+        &mut self,
+        view: &View,
+        viewport: [u32; 2],
+        name: &str,
+    ) -> Result<Judge<'a>, CliError> {
         let (scene, primary) = (self.setup.scene, self.setup.primary);
         let oracle = self.oracle.get_or_init(|| {
             let step = Step::begin(format!("hierarchy of {}", scene.name), 1, "steps");
@@ -220,17 +260,13 @@ impl<'a> Comparison<'a> {
             step.end();
             Rc::new(oracle)
         });
-        let what = format!("{} {}", view.name, size(viewport));
+        let what = format!("{name} {}", size(viewport));
         let step = Step::begin(format!("visible triangles, {what}"), 1, "frames");
         let ids = primary.ids(self.setup.gpu, viewport, &mut self.provider)?;
         step.end();
         let (camera, mode) = (view.camera(viewport), self.args.oracle);
         let light = scene.light_of(view);
-        let judge = Judge::new(oracle.clone(), camera, light, ids, mode, &what)?;
-        if let Some(folder) = self.pictures() {
-            save_reference(folder, &view.name, &judge.reference)?;
-        }
-        Ok(judge)
+        Judge::new(oracle.clone(), camera, light, ids, mode, &what)
     }
 
     /// Where pictures go, if there are to be any.

@@ -2,7 +2,9 @@
 
 use crate::error::CliError;
 use crate::terminal::interrupt;
-use skiagraph_gpu::{Content, ExecuteError, Executor, Frame, FrameReport, Provider, device::Gpu};
+use skiagraph_gpu::{
+    Content, ExecuteError, Executor, Frame, FrameReport, Provider, Readback, device::Gpu,
+};
 use skiagraph_graph::Plan;
 use std::{
     collections::BTreeMap,
@@ -130,10 +132,15 @@ pub fn read(gpu: &Gpu, executor: &mut Executor, names: &[&str]) -> Result<Conten
         ..Frame::default()
     };
     let (report, _) = run(gpu, executor, &frame)?;
-    let readbacks = report.readbacks.into_iter();
-    Ok(readbacks
+    Ok(contents(report.readbacks))
+}
+
+/// Readbacks by their names.
+pub fn contents(readbacks: Vec<Readback>) -> Contents {
+    let readbacks = readbacks.into_iter();
+    readbacks
         .map(|readback| (readback.name, readback.content))
-        .collect())
+        .collect()
 }
 
 #[cfg(test)]

@@ -13,4 +13,6 @@ pub mod reference;
 pub mod resume;
 pub mod run;
 pub mod scene_selection;
+pub mod sequence;
+pub mod subject;
 pub mod timing;

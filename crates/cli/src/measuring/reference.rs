@@ -12,7 +12,7 @@ use skiagraph_gpu::{Content, Provider, device::Gpu};
 use skiagraph_graph::{Graph, Plan, Sources};
 use skiagraph_passes::registry;
 use skiagraph_reference::{
-    BlockerCounts, Error, Oracle, OracleMode, Progress, Reference, Statistics,
+    BlockerCounts, Error, Oracle, OracleMode, Progress, Reference, Statistics, shimmer::Seen,
 };
 use skiagraph_scene::{Camera, DirectionalLight};
 use std::rc::Rc;
@@ -137,6 +137,14 @@ impl<'a> Judge<'a> {
             mode,
             reference,
         })
+    }
+
+    /// What it looks at.
+    pub fn seen(&self) -> Seen<'_> {
+        Seen {
+            camera: &self.camera,
+            primitives: &self.primitives,
+        }
     }
 
     /// What blocks the pixels that a method is certain and wrong of.

@@ -8,12 +8,13 @@ use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::reference::{Judge, own_counts};
 use crate::measuring::timing::{self, FrameMode, Times};
-use crate::measuring::{date, frame};
+use crate::measuring::{date, frame, sequence};
 use crate::pictures::run_pictures::{conditions, save_pictures, stem};
 use crate::records::results::{Cached, Measured, Run};
 use crate::terminal::progress::Step;
 use skiagraph_gpu::{ExecuteError, Provider, device::Gpu};
 use skiagraph_graph::Plan;
+use skiagraph_passes::SceneProvider;
 use std::path::Path;
 
 /// What all methods on one view and viewport share.
@@ -26,8 +27,10 @@ pub struct MeasureContext<'a> {
     pub view: &'a str,
     /// Of mesh, light and view.
     pub fingerprint: Fingerprint,
-    /// The right answer, and where it is from.
+    /// The right answer, and where it is from; of a path's first frame.
     pub judge: &'a Judge<'a>,
+    /// All frames of a path.
+    pub path: Option<&'a sequence::Path<'a>>,
     /// Timed frames.
     pub frames: u32,
     /// Frames before them.
@@ -53,7 +56,7 @@ impl MeasureContext<'_> {
     /// # Errors
     /// Ctrl-C, a lost device, outputs that break the contract ([`CliError::Contract`]), a picture
     /// that cannot be written.
-    pub fn measure(&self, method: &Method, provider: &mut dyn Provider) -> Result<Run, CliError> {
+    pub fn measure(&self, method: &Method, provider: &mut SceneProvider) -> Result<Run, CliError> {
         let viewport = self.judge.reference.viewport;
         let plan = match method.plan(viewport, Capabilities::of(self.gpu), provider) {
             Ok(plan) => plan,
@@ -63,9 +66,20 @@ impl MeasureContext<'_> {
         let name = &method.preset.name;
         let step = Step::begin(
             format!("{name}, {}", conditions(method, self.view, viewport)),
-            u64::from(self.warmup) + u64::from(self.frames),
+            u64::from(self.warmup) + self.timed_frames(),
             "frames",
         );
+        if let Some(path) = self.path {
+            let run = match self.follow(method, plan, path, provider, &step)? {
+                Ok(measured) => Run {
+                    measured: Some(measured),
+                    ..self.empty(method)
+                },
+                Err(reason) => self.unavailable(method, reason),
+            };
+            step.end();
+            return Ok(run);
+        }
         let run = match self.execute(method, plan, provider, &step) {
             Ok(Some(executed)) => Run {
                 measured: Some(self.judge(method, executed)?),
@@ -77,6 +91,11 @@ impl MeasureContext<'_> {
         };
         step.end();
         Ok(run)
+    }
+
+    fn timed_frames(&self) -> u64 {
+        let of_path = self.path.map(|path| path.views.len() as u64);
+        of_path.unwrap_or(self.frames.into())
     }
 
     /// A run that says why there are no measurements.
@@ -126,7 +145,11 @@ impl MeasureContext<'_> {
     }
 
     /// Bytes of what the scene gives to the plan.
-    fn scene_bytes(&self, plan: &Plan, provider: &mut dyn Provider) -> Result<u64, ExecuteError> {
+    pub fn scene_bytes(
+        &self,
+        plan: &Plan,
+        provider: &mut dyn Provider,
+    ) -> Result<u64, ExecuteError> {
         let mut bytes = 0;
         let provided = plan.provided().into_iter();
         // Last frame's camera is a copy of the executor's own.
@@ -183,6 +206,7 @@ impl MeasureContext<'_> {
             memory_bytes,
             saved_bytes,
             scene_bytes,
+            sequence: None,
             images: images.transpose()?,
         })
     }
@@ -190,7 +214,10 @@ impl MeasureContext<'_> {
     /// The run with nothing measured.
     fn empty(&self, method: &Method) -> Run {
         let reference = &self.judge.reference;
-        let counts = own_counts(reference);
+        let counts = match self.path {
+            Some(path) => path.own_counts(),
+            None => own_counts(reference),
+        };
         Run {
             preset: method.preset.name.clone(),
             view: self.view.into(),

@@ -81,9 +81,6 @@ pub struct Times {
 
 /// [`sample`] in short; `None` if Ctrl-C came first.
 ///
-/// # Panics
-/// If `frames` is 0, which the arguments forbid.
-///
 /// # Errors
 /// Those of the executor.
 pub fn times(
@@ -97,23 +94,25 @@ pub fn times(
     if timed.len() < frames as usize {
         return Ok(None);
     }
+    Ok(of(timed))
+}
+
+/// The times of some frames in short; `None` of none.
+pub fn of(timed: Vec<TimedFrame>) -> Option<Times> {
     let samples = Samples::of(&timed);
     let pass = |PassSamples { name, gpu, cpu }| Pass {
         name,
         gpu_ms: Spread::of_all(&gpu),
         cpu_ms: Spread::of(&cpu).expect("a pass is named by its first sample"),
     };
-    Ok(Some(Times {
-        passes: samples.passes.into_iter().map(pass).collect(),
+    Some(Times {
         frame: FrameTimes {
             gpu_ms: Spread::of_all(&samples.gpu),
-            wall_ms: Spread::of(&samples.wall).expect("at least one frame is timed"),
+            wall_ms: Spread::of(&samples.wall)?,
         },
-        skipped: timed
-            .into_iter()
-            .next()
-            .map_or(Vec::new(), |frame| frame.skipped),
-    }))
+        passes: samples.passes.into_iter().map(pass).collect(),
+        skipped: timed.into_iter().next()?.skipped,
+    })
 }
 
 /// The times of frames in which only the camera moves: `None` if Ctrl-C came first, `Some(None)` if

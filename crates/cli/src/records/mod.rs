@@ -7,5 +7,6 @@ pub mod profile;
 pub mod read_back;
 pub mod results;
 pub mod samples;
+pub mod sequence;
 pub mod statistics;
 pub mod stress;

@@ -1,6 +1,7 @@
 //! The schema of `results.json` and `results.csv`, version 1. Scripts rely on it: extend it, rename
 //! nothing.
 
+use crate::records::sequence::Sequence;
 use crate::records::statistics::Spread;
 use crate::wording::{size, thousands};
 use serde::{Deserialize, Serialize};
@@ -221,7 +222,11 @@ pub struct Measured {
     /// Bytes of what the scene gave: positions, indices, hierarchy … 0 in files of older programs.
     #[serde(default)]
     pub scene_bytes: u64,
-    /// The run's pictures, file names in the results' folder; absent with `--images none`.
+    /// The frames of a camera path, of which all else are the sums and the spread; absent of a still
+    /// view.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sequence: Option<Sequence>,
+    /// The run's pictures, those of a path's worst frame, file names in the results' folder; absent with `--images none`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub images: Option<Images>,
 }
@@ -429,6 +434,7 @@ pub(crate) mod tests {
             memory_bytes: 12_582_912,
             saved_bytes: 1_048_576,
             scene_bytes: 2_000_000,
+            sequence: None,
             images: gpu.then(|| Images {
                 shaded: format!("{name}-shaded.png"),
                 visibility: format!("{name}-visibility.png"),

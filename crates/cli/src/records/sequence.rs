@@ -1,0 +1,49 @@
+//! The frames of a camera path, in `results.json`.
+
+use serde::{Deserialize, Serialize};
+use skiagraph_reference::Shimmer;
+
+/// What a method did in each frame of a path. The run's own counts are the sums over all frames,
+/// its times the spread over them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sequence {
+    /// In their order.
+    pub frames: Vec<SequenceFrame>,
+    /// Answers that changed though the right ones did not, all frames together.
+    pub shimmer: Shimmer,
+}
+
+/// One frame of a path.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SequenceFrame {
+    /// Pixels facing the light (PFL).
+    pub facing_light: u64,
+    /// Of these: wrong, in-band pixels included.
+    pub wrong: u64,
+    /// Of these: wrong outside the band.
+    pub wrong_outside_band: u64,
+    /// Rays traced; null where the graph does not count them.
+    pub rays: Option<u64>,
+    /// From the first pass's begin to the last one's end; null where it cannot be had or trusted.
+    pub gpu_ms: Option<f64>,
+    /// From the start of encoding until the outputs were read back.
+    pub wall_ms: f64,
+    /// Beside the frame before; absent in the first.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shimmer: Option<Shimmer>,
+    /// Passes that did not run, as nothing that they read had changed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub skipped: Vec<String>,
+}
+
+impl Sequence {
+    /// The frame with the largest share of wrong pixels, the first of equal ones, with its index.
+    pub fn worst(&self) -> Option<(usize, &SequenceFrame)> {
+        let share = |frame: &SequenceFrame| frame.wrong as f64 / frame.facing_light.max(1) as f64;
+        let frames = self.frames.iter().enumerate();
+        frames.reduce(|worst, other| match share(other.1) > share(worst.1) {
+            true => other,
+            false => worst,
+        })
+    }
+}

@@ -106,8 +106,7 @@ pub fn shimmer(
         }
         counts.compared += 1;
         let change = now[pixel].into() - before[earlier].into();
-        // Not a number is a change, too.
-        counts.changed += u64::from(!(change.abs() <= CHANGE));
+        counts.changed += u64::from(change.is_nan() || change.abs() > CHANGE);
     }
     Ok(counts)
 }

@@ -25,7 +25,7 @@ fn frame(mesh: &Mesh, pixels: f64) -> Frame {
     camera.eye += DVec3::X * (0.2 * pixels);
     let oracle = Oracle::new(mesh);
     let primitives = oracle.primary(&camera, Progress::default()).unwrap();
-    let sun = light(0.0, -1.0, 1e-3);
+    let sun = light(0.8, -1.0, 0.0);
     let shaded = oracle.shade(
         &camera,
         &sun,

@@ -199,17 +199,41 @@ mod tests {
 
     #[test]
     fn what_makes_no_path_is_named() {
-        let error = |change: fn(&mut CameraPath)| {
+        let says = |change: fn(&mut CameraPath), expected: &str| {
             let mut walk = path(&[(0.0, DVec3::ZERO, DVec3::X), (1.0, DVec3::X, DVec3::X)]);
             change(&mut walk);
-            walk.check().unwrap_err()
+            assert_eq!(
+                walk.check().unwrap_err(),
+                format!("path \"walk\"{expected}")
+            );
         };
-        insta::assert_snapshot!(error(|walk| walk.keys.truncate(1)), @r#"path "walk" has 1 of the two keys that it needs at least"#);
-        insta::assert_snapshot!(error(|walk| walk.frames_per_second = 0.0), @r#"path "walk": frames_per_second is 0, expected more than 0"#);
-        insta::assert_snapshot!(error(|walk| walk.frames_per_second = 1e9), @r#"path "walk": 1 s of 1000000000 frames are more than 10000 frames"#);
-        insta::assert_snapshot!(error(|walk| walk.keys[1].at = 0.0), @r#"path "walk": a key at 0 s follows one at 0 s, expected a later time"#);
-        insta::assert_snapshot!(error(|walk| walk.keys[1].at = f64::NAN), @r#"path "walk": a key at NaN s follows one at 0 s, expected a later time"#);
-        insta::assert_snapshot!(error(|walk| walk.keys[1].direction = -DVec3::X), @r#"path "walk": direction [0, 0, 0] and up [0, 1, 0] must be finite and longer than 0 (frame 5)"#);
-        insta::assert_snapshot!(error(|walk| walk.keys[1].direction = DVec3::Y), @r#"path "walk": up [0, 1, 0] is parallel to the direction [0, 1, 0] (frame 10)"#);
+        says(
+            |walk| walk.keys.truncate(1),
+            " has 1 of the two keys that it needs at least",
+        );
+        says(
+            |walk| walk.frames_per_second = 0.0,
+            ": frames_per_second is 0, expected more than 0",
+        );
+        says(
+            |walk| walk.frames_per_second = 1e9,
+            ": 1 s of 1000000000 frames are more than 10000 frames",
+        );
+        says(
+            |walk| walk.keys[1].at = 0.0,
+            ": a key at 0 s follows one at 0 s, expected a later time",
+        );
+        says(
+            |walk| walk.keys[1].at = f64::NAN,
+            ": a key at NaN s follows one at 0 s, expected a later time",
+        );
+        says(
+            |walk| walk.keys[1].direction = -DVec3::X,
+            ": direction [0, 0, 0] and up [0, 1, 0] must be finite and longer than 0 (frame 5)",
+        );
+        says(
+            |walk| walk.keys[1].direction = DVec3::Y,
+            ": up [0, 1, 0] is parallel to the direction [0, 1, 0] (frame 10)",
+        );
     }
 }

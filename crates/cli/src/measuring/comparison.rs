@@ -175,8 +175,11 @@ impl<'a> Comparison<'a> {
             view: subject.name(),
             fingerprint: subject.fingerprint(self.setup.fingerprint),
             judge,
-            path: matches!(subject, Subject::Path(_)).then_some(&frames),
-            frames: self.args.frames,
+            own: frames.own_counts(),
+            frames: match subject {
+                Subject::Still(_) => self.args.frames.into(),
+                Subject::Path(_) => frames.views.len() as u64,
+            },
             warmup: self.args.warmup,
             cached_frames: self.results.cached_frames,
             pictures: self.pictures(),
@@ -185,7 +188,20 @@ impl<'a> Comparison<'a> {
             if is_done(&self.states[place]) {
                 continue;
             }
-            let run = match context.measure(method, &mut self.provider) {
+            let provider = &mut self.provider;
+            let run = match subject {
+                Subject::Still(_) => {
+                    context.measure(method, provider, |method, plan, provider, step| {
+                        context.still(method, plan, provider, step)
+                    })
+                }
+                Subject::Path(_) => {
+                    context.measure(method, provider, |method, plan, provider, step| {
+                        context.follow(method, plan, &frames, provider, step)
+                    })
+                }
+            };
+            let run = match run {
                 // The others are worth measuring all the same.
                 Err(CliError::Contract(reason)) => {
                     let run = context.unavailable(method, reason.clone());

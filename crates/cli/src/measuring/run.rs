@@ -6,15 +6,16 @@ use crate::graphs::contract::{Outputs, judged};
 use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
-use crate::measuring::reference::{Judge, own_counts};
+use crate::measuring::reference::Judge;
 use crate::measuring::timing::{self, FrameMode, Times};
-use crate::measuring::{date, frame, sequence};
+use crate::measuring::{date, frame};
 use crate::pictures::run_pictures::{conditions, save_pictures, stem};
 use crate::records::results::{Cached, Measured, Run};
 use crate::terminal::progress::Step;
 use skiagraph_gpu::{ExecuteError, Provider, device::Gpu};
 use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
+use skiagraph_reference::Statistics;
 use std::path::Path;
 
 /// What all methods on one view and viewport share.
@@ -29,10 +30,10 @@ pub struct MeasureContext<'a> {
     pub fingerprint: Fingerprint,
     /// The right answer, and where it is from; of a path's first frame.
     pub judge: &'a Judge<'a>,
-    /// All frames of a path.
-    pub path: Option<&'a sequence::Path<'a>>,
+    /// The reference's own pixels, of all frames of a path.
+    pub own: Statistics,
     /// Timed frames.
-    pub frames: u32,
+    pub frames: u64,
     /// Frames before them.
     pub warmup: u32,
     /// Timed frames in which only the camera moves.
@@ -50,52 +51,76 @@ struct Executed {
     scene_bytes: u64,
 }
 
+/// What came of running a method: measurements, or why the device refuses.
+pub type Attempt = Result<Result<Measured, String>, CliError>;
+
+/// A method that the device refuses; an error where the device itself is of no more use.
+///
+/// # Errors
+/// Ctrl-C, a lost device.
+pub fn refused(method: &Method, error: ExecuteError) -> Attempt {
+    match is_fatal(&error) {
+        true => Err(frame::failed(&method.preset.name, error)),
+        false => Ok(Err(explain(&error))),
+    }
+}
+
 impl MeasureContext<'_> {
-    /// Runs a method. One that this adapter cannot run yields a [`Run`] that says why.
+    /// Plans and runs a method by `run`: [`still`](Self::still), or
+    /// [`follow`](crate::measuring::sequence). One that this adapter cannot run yields a [`Run`]
+    /// that says why.
     ///
     /// # Errors
     /// Ctrl-C, a lost device, outputs that break the contract ([`CliError::Contract`]), a picture
     /// that cannot be written.
-    pub fn measure(&self, method: &Method, provider: &mut SceneProvider) -> Result<Run, CliError> {
+    pub fn measure(
+        &self,
+        method: &Method,
+        provider: &mut SceneProvider,
+        run: impl FnOnce(&Method, Plan, &mut SceneProvider, &Step) -> Attempt,
+    ) -> Result<Run, CliError> {
         let viewport = self.judge.reference.viewport;
         let plan = match method.plan(viewport, Capabilities::of(self.gpu), provider) {
             Ok(plan) => plan,
             // The graph itself is sound: that was checked before anything ran.
             Err(diagnostics) => return Ok(self.unavailable(method, reasons(&diagnostics))),
         };
-        let name = &method.preset.name;
         let step = Step::begin(
-            format!("{name}, {}", conditions(method, self.view, viewport)),
-            u64::from(self.warmup) + self.timed_frames(),
+            format!(
+                "{}, {}",
+                method.preset.name,
+                conditions(method, self.view, viewport)
+            ),
+            u64::from(self.warmup) + self.frames,
             "frames",
         );
-        if let Some(path) = self.path {
-            let run = match self.follow(method, plan, path, provider, &step)? {
-                Ok(measured) => Run {
-                    measured: Some(measured),
-                    ..self.empty(method)
-                },
-                Err(reason) => self.unavailable(method, reason),
-            };
-            step.end();
-            return Ok(run);
-        }
-        let run = match self.execute(method, plan, provider, &step) {
-            Ok(Some(executed)) => Run {
-                measured: Some(self.judge(method, executed)?),
+        let run = match run(method, plan, provider, &step)? {
+            Ok(measured) => Run {
+                measured: Some(measured),
                 ..self.empty(method)
             },
-            Ok(None) => return Err(CliError::interrupted()),
-            Err(error) if is_fatal(&error) => return Err(frame::failed(name, error)),
-            Err(error) => self.unavailable(method, explain(&error)),
+            Err(reason) => self.unavailable(method, reason),
         };
         step.end();
         Ok(run)
     }
 
-    fn timed_frames(&self) -> u64 {
-        let of_path = self.path.map(|path| path.views.len() as u64);
-        of_path.unwrap_or(self.frames.into())
+    /// Runs, times and judges a method on one view.
+    ///
+    /// # Errors
+    /// Those of [`measure`](Self::measure).
+    pub fn still(
+        &self,
+        method: &Method,
+        plan: Plan,
+        provider: &mut dyn Provider,
+        step: &Step,
+    ) -> Attempt {
+        match self.execute(method, plan, provider, step) {
+            Ok(Some(executed)) => self.judge(method, executed).map(Ok),
+            Ok(None) => Err(CliError::interrupted()),
+            Err(error) => refused(method, error),
+        }
     }
 
     /// A run that says why there are no measurements.
@@ -119,7 +144,7 @@ impl MeasureContext<'_> {
         let plan = executor.plan();
         let memory = (plan.memory_bytes(), plan.saved_bytes());
         let scene_bytes = self.scene_bytes(plan, provider)?;
-        let count = [self.warmup, self.frames];
+        let count = [self.warmup, self.frames as u32];
         let set_done = |frames| step.set_done(frames);
         let times = timing::times(
             self.gpu,
@@ -214,10 +239,7 @@ impl MeasureContext<'_> {
     /// The run with nothing measured.
     fn empty(&self, method: &Method) -> Run {
         let reference = &self.judge.reference;
-        let counts = match self.path {
-            Some(path) => path.own_counts(),
-            None => own_counts(reference),
-        };
+        let counts = self.own;
         Run {
             preset: method.preset.name.clone(),
             view: self.view.into(),

@@ -1,11 +1,11 @@
 //! A method over the frames of a camera path, each judged.
 
-use crate::error::{CliError, explain, is_fatal};
+use crate::error::CliError;
 use crate::graphs::contract::{Outputs, judged};
 use crate::graphs::method::Method;
 use crate::measuring::frame;
 use crate::measuring::reference::{Judge, own_counts};
-use crate::measuring::run::MeasureContext;
+use crate::measuring::run::{Attempt, MeasureContext, refused};
 use crate::measuring::timing;
 use crate::pictures::run_pictures::{save_pictures, stem};
 use crate::records::results::Measured;
@@ -83,8 +83,7 @@ struct Account {
 }
 
 impl MeasureContext<'_> {
-    /// Runs a method over a path, with what it keeps from frame to frame. `Ok(Err(reason))` if the
-    /// device refuses.
+    /// Runs a method over a path, with what it keeps from frame to frame.
     ///
     /// # Errors
     /// Ctrl-C, a lost device, outputs that break the contract, a picture that cannot be written.
@@ -95,15 +94,10 @@ impl MeasureContext<'_> {
         path: &Path,
         provider: &mut SceneProvider,
         step: &Step,
-    ) -> Result<Result<Measured, String>, CliError> {
-        let name = &method.preset.name;
-        let refused = |error: ExecuteError| match is_fatal(&error) {
-            true => Err(frame::failed(name, error)),
-            false => Ok(Err(explain(&error))),
-        };
+    ) -> Attempt {
         let (memory, scene_bytes, mut executor) = match self.begin(plan, path, provider) {
             Ok(begun) => begun,
-            Err(error) => return refused(error),
+            Err(error) => return refused(method, error),
         };
         let mut account = Account::default();
         for (index, view) in path.views.iter().enumerate() {
@@ -113,7 +107,7 @@ impl MeasureContext<'_> {
             let names = Outputs::names(method.preset);
             let (report, wall) = match self.frame(&mut executor, view, &names, provider) {
                 Ok(done) => done,
-                Err(error) => return refused(error),
+                Err(error) => return refused(method, error),
             };
             self.account(method, path, index, (report, wall), &mut account)?;
             step.set_done(u64::from(self.warmup) + index as u64 + 1);

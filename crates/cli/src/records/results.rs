@@ -222,11 +222,12 @@ pub struct Measured {
     /// Bytes of what the scene gave: positions, indices, hierarchy … 0 in files of older programs.
     #[serde(default)]
     pub scene_bytes: u64,
-    /// The frames of a camera path, of which all else are the sums and the spread; absent of a still
-    /// view.
+    /// The frames of a camera path, of which all else are the sums and the spread; absent of a
+    /// still view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sequence: Option<Sequence>,
-    /// The run's pictures, those of a path's worst frame, file names in the results' folder; absent with `--images none`.
+    /// The run's pictures, those of a path's worst frame, file names in the results' folder; absent
+    /// with `--images none`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub images: Option<Images>,
 }

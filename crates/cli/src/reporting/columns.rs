@@ -82,6 +82,10 @@ const CSV: &[Figure] = &[
     ("wrong_certain_open_part", Measure(|of| blocked(of, |by| by.open_part))),
     ("wrong_certain_closed_part", Measure(|of| blocked(of, |by| by.closed_part))),
     ("wrong_certain_no_blocker", Measure(|of| blocked(of, |by| by.none))),
+    ("shimmer", Measure(|of| shimmer(of).map_or(Unknown, OfPicture))),
+    ("shimmer_compared", Measure(|of| shimmer(of).map_or(Unknown, |part| Count(part.of)))),
+    ("worst_frame", Measure(|of| worst(of).map_or(Unknown, |(index, _)| Count(index)))),
+    ("worst_frame_wrong", Measure(|of| worst(of).map_or(Unknown, |(_, part)| OfPicture(part)))),
 ];
 
 /// Figures that only tables show.
@@ -99,7 +103,7 @@ const IN_TABLES: &[Figure] = &[
 type Entry = (&'static str, &'static str, &'static str);
 
 /// The terminal's table.
-const TERMINAL: [Entry; 11] = [
+const TERMINAL: [Entry; 13] = [
     ("preset", "method", ""),
     (MAP_SIZE, "map", ""),
     ("gpu_ms", "GPU ms", ""),
@@ -111,13 +115,18 @@ const TERMINAL: [Entry; 11] = [
     ("uncertain", "uncertain", ""),
     ("certain_wrong", "certain wrong", ""),
     ("rays", "rays", ""),
+    ("worst_frame_wrong", "worst frame", ""),
+    ("shimmer", "shimmer", ""),
 ];
 
 /// The column that only stands in the terminal's table if there are maps.
 const MAP_SIZE: &str = "map_size";
 
+/// Columns that only stand in a table of camera paths.
+const OF_PATHS: [&str; 2] = ["worst_frame_wrong", "shimmer"];
+
 /// A document's table, but for the times of steps, which stand behind the rays.
-const DOCUMENT: [Entry; 18] = [
+const DOCUMENT: [Entry; 20] = [
     ("preset", "method", ""),
     (MAP_SIZE, "map", ""),
     ("certain_right", "certain right %", "certain_right_percent"),
@@ -136,6 +145,8 @@ const DOCUMENT: [Entry; 18] = [
     ("certain_shadow", "certain shadow", "certain_shadow"),
     ("lit_uncertain", "uncertain lit", "lit_uncertain"),
     ("shadow_uncertain", "uncertain shadow", "shadow_uncertain"),
+    ("worst_frame_wrong", "worst frame wrong %", ""),
+    ("shimmer", "shimmer %", ""),
     ("rays", "rays", "rays"),
     ("steps_ms", "sum of steps ms", "ms.steps"),
     ("fps", "fps", "fps"),
@@ -190,6 +201,25 @@ fn blocked(measured: &Measured, count: fn(BlockerCounts) -> u64) -> Value {
         None if measured.wrong.certain == 0 => Count(0),
         None => Unknown,
     }
+}
+
+/// Of a camera path: answers that changed though the right ones did not, of those compared.
+fn shimmer(measured: &Measured) -> Option<Part> {
+    let shimmer = measured.sequence.as_ref()?.shimmer;
+    Some(Part {
+        count: shimmer.changed,
+        of: shimmer.compared,
+    })
+}
+
+/// Of a camera path: the frame with the largest share of wrong pixels, and that share.
+fn worst(measured: &Measured) -> Option<(u64, Part)> {
+    let (index, frame) = measured.sequence.as_ref()?.worst()?;
+    let part = Part {
+        count: frame.wrong,
+        of: frame.facing_light,
+    };
+    Some((index as u64, part))
 }
 
 /// A column of a table.
@@ -253,17 +283,30 @@ pub fn csv() -> Vec<Column> {
     entries.filter_map(Column::of).collect()
 }
 
-/// The columns of the terminal's table; that of map sizes only if there are any.
-pub fn terminal(has_maps: bool) -> Vec<Column> {
-    let shown = |(name, ..): &Entry| has_maps || *name != MAP_SIZE;
+/// The columns of the terminal's table for some runs: what none of them has is left out.
+pub fn terminal(runs: &[Run]) -> Vec<Column> {
+    let has_maps = runs.iter().any(|run| run.map_size.is_some());
+    let are_paths = are_paths(runs.iter());
+    let shown = |(name, ..): &Entry| {
+        (has_maps || *name != MAP_SIZE) && (are_paths || !OF_PATHS.contains(name))
+    };
     let entries = TERMINAL.into_iter().filter(shown);
     entries.filter_map(Column::of).collect()
 }
 
+/// Whether any run is of a camera path.
+pub fn are_paths<'a>(runs: impl IntoIterator<Item = &'a Run>) -> bool {
+    let mut measured = runs.into_iter().filter_map(|run| run.measured.as_ref());
+    measured.any(|of| of.sequence.is_some())
+}
+
 /// The columns of a document's table but for the times of steps, of which two parts stand before
 /// and behind them. `published` says of which quantities there are published figures in it.
-pub fn document(published: impl Fn(&str) -> bool) -> [Vec<Column>; 2] {
-    let shown = |(name, _, quantity): &Entry| !IF_PUBLISHED.contains(name) || published(quantity);
+pub fn document(are_paths: bool, published: impl Fn(&str) -> bool) -> [Vec<Column>; 2] {
+    let shown = |(name, _, quantity): &Entry| {
+        (!IF_PUBLISHED.contains(name) || published(quantity))
+            && (are_paths || !OF_PATHS.contains(name))
+    };
     let rays = DOCUMENT.iter().position(|(name, ..)| *name == "rays");
     let (front, back) = DOCUMENT.split_at(rays.map_or(DOCUMENT.len(), |rays| rays + 1));
     [front, back].map(|part| {
@@ -286,20 +329,28 @@ pub fn quantities() -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::records::results::tests::sample;
 
     #[test]
     fn every_column_of_a_table_has_its_figure() {
         assert_eq!(csv().len(), CSV.len());
-        assert_eq!(terminal(true).len(), TERMINAL.len());
-        assert_eq!(terminal(false).len(), TERMINAL.len() - 1);
-        let parts = |published| document(|_| published).map(|part| part.len());
-        assert_eq!(parts(true).iter().sum::<usize>(), DOCUMENT.len());
+        let runs = sample().runs;
+        let with_maps = TERMINAL.len() - OF_PATHS.len();
+        assert_eq!(terminal(&runs).len(), with_maps);
+        let without: Vec<Run> = runs
+            .into_iter()
+            .filter(|run| run.map_size.is_none())
+            .collect();
+        assert_eq!(terminal(&without).len(), with_maps - 1);
+        let parts = |paths, published| document(paths, |_| published).map(|part| part.len());
+        assert_eq!(parts(true, true).iter().sum::<usize>(), DOCUMENT.len());
         let fewer = DOCUMENT.len() - IF_PUBLISHED.len();
         assert_eq!(
-            parts(false),
+            parts(true, false),
             [fewer - 1, 1],
             "only the frame is behind the steps"
         );
+        assert_eq!(parts(false, false), [fewer - 1 - OF_PATHS.len(), 1]);
         let mut names: Vec<_> = CSV.iter().chain(IN_TABLES).map(|(name, _)| name).collect();
         names.sort();
         assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");

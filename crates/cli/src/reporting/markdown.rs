@@ -80,8 +80,9 @@ pub fn viewport(results: &Results, runs: &[Run]) -> String {
             let mut figures = measured.iter().flat_map(|(run, _)| &run.published);
             figures.any(|figure| figure.quantity == quantity)
         };
+        let are_paths = columns::are_paths(runs);
         let table = Table {
-            columns: columns::document(is_published),
+            columns: columns::document(are_paths, is_published),
             steps: steps(&measured),
         };
         text.push('\n');

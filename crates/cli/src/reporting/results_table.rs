@@ -2,7 +2,7 @@
 
 use crate::records::results::{Results, Run};
 use crate::records::statistics::Spread;
-use crate::reporting::columns::{self, Column};
+use crate::reporting::columns::{self, Column, are_paths};
 use crate::reporting::notes::{band_warning, certain_wrong, times_missing};
 use crate::reporting::table::table;
 use crate::wording::{frames, ms, percent, size, thousands};
@@ -13,13 +13,13 @@ pub fn group(results: &Results, runs: &[Run]) -> String {
     let Some(first) = runs.first() else {
         return String::new();
     };
-    let mut text = heading(results, first);
+    let mut text = heading(results, first, runs);
     text.push_str(&comparison(results, runs));
     text.push('\n');
     if runs.iter().any(|run| run.measured.is_some()) {
         text += &format!(
             "\nEach pass, ms: least, median and 95th percentile of {}\n",
-            frames(results.frames)
+            frames(timed_frames(results, runs))
         );
         text.push_str(&passes(runs));
         text.push('\n');
@@ -32,7 +32,7 @@ pub fn group(results: &Results, runs: &[Run]) -> String {
     text
 }
 
-fn heading(results: &Results, run: &Run) -> String {
+fn heading(results: &Results, run: &Run, runs: &[Run]) -> String {
     let Run {
         view,
         viewport,
@@ -40,12 +40,16 @@ fn heading(results: &Results, run: &Run) -> String {
         band,
         ..
     } = run;
-    let title = format!("{} · view {view} · {}", results.scene, size(*viewport));
+    let what = match are_paths(runs) {
+        true => format!("path {view}, counts of all its frames together"),
+        false => format!("view {view}"),
+    };
+    let title = format!("{} · {what} · {}", results.scene, size(*viewport));
     let mut lines = vec![
         results.adapter.to_string(),
         format!(
             "medians of {} after {} to warm up · oracle {}",
-            frames(results.frames),
+            frames(timed_frames(results, runs)),
             results.warmup,
             results.oracle
         ),
@@ -67,8 +71,16 @@ fn heading(results: &Results, run: &Run) -> String {
     format!("{title}\n{}\n", lines.join("\n"))
 }
 
+/// How many frames were timed of each run.
+fn timed_frames(results: &Results, runs: &[Run]) -> u32 {
+    let measured = runs.iter().filter_map(|run| run.measured.as_ref());
+    let mut paths = measured.filter_map(|of| of.sequence.as_ref());
+    let of_path = paths.next().map(|path| path.frames.len() as u32);
+    of_path.unwrap_or(results.frames)
+}
+
 fn comparison(results: &Results, runs: &[Run]) -> String {
-    let columns = columns::terminal(runs.iter().any(|run| run.map_size.is_some()));
+    let columns = columns::terminal(runs);
     let first = columns.iter().position(Column::is_measured);
     let row = |run: &Run| {
         let cells = columns

@@ -1,0 +1,114 @@
+//! `compare --path`: every frame of a camera path, judged. Needs an adapter.
+
+use serde_json::Value;
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+fn skiagraph(folder: &Path, line: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+        .args(line.split_whitespace())
+        .current_dir(folder)
+        .env("NO_COLOR", "1")
+        .output()
+        .expect("the program was built for this test")
+}
+
+fn results(folder: &Path, line: &str) -> (Vec<Value>, String) {
+    let output = skiagraph(folder, line);
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{line}: {told}");
+    let text = fs::read_to_string(folder.join("out/results.json")).unwrap();
+    let results: Value = serde_json::from_str(&text).unwrap();
+    let table = String::from_utf8_lossy(&output.stdout).into_owned();
+    (results["runs"].as_array().unwrap().clone(), table)
+}
+
+fn count(value: &Value) -> u64 {
+    value
+        .as_u64()
+        .unwrap_or_else(|| panic!("{value} is no count"))
+}
+
+#[test]
+fn every_frame_is_judged_and_exact_methods_do_not_shimmer() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "compare rt nsm light_buffer --path walk --size 64x64 --map-size 128 --warmup 1 \
+                --out out";
+    let (runs, table) = results(folder.path(), line);
+    assert_eq!(runs.len(), 3);
+    for heading in ["path walk", "25 frames", "shimmer", "worst frame"] {
+        assert!(table.contains(heading), "{heading}: {table}");
+    }
+    for run in &runs {
+        let sequence = &run["sequence"];
+        let frames = sequence["frames"].as_array().unwrap();
+        assert_eq!(frames.len(), 25);
+        let sum = |name: &str| -> u64 { frames.iter().map(|frame| count(&frame[name])).sum() };
+        assert_eq!(sum("facing_light"), count(&run["pixels"]["facing_light"]));
+        assert_eq!(sum("wrong"), count(&run["wrong"]["total"]));
+        assert!(frames[0]["shimmer"].is_null());
+        let changed: u64 = frames[1..]
+            .iter()
+            .map(|frame| count(&frame["shimmer"]["changed"]))
+            .sum();
+        let shimmer = &sequence["shimmer"];
+        assert_eq!(changed, count(&shimmer["changed"]));
+        let seen_twice = count(&shimmer["compared"]) as f64 / sum("facing_light") as f64;
+        assert!((0.4..0.96).contains(&seen_twice), "{shimmer}");
+        if run["preset"] == "nsm" {
+            assert!(
+                changed > 200 && sum("wrong_outside_band") > 2_000,
+                "{shimmer}"
+            );
+            let skipped = frames[5]["skipped"].to_string();
+            assert!(skipped.contains("create_shadow_map.draw"), "{skipped}");
+        } else {
+            assert_eq!(
+                (changed, sum("wrong_outside_band")),
+                (0, 0),
+                "{}",
+                run["preset"]
+            );
+        }
+        for picture in run["images"].as_object().unwrap().values() {
+            let picture = folder.path().join("out").join(picture.as_str().unwrap());
+            assert!(picture.is_file(), "{}", picture.display());
+        }
+    }
+    let csv = fs::read_to_string(folder.path().join("out/results.csv")).unwrap();
+    assert!(
+        csv.lines()
+            .next()
+            .unwrap()
+            .ends_with("worst_frame,worst_frame_wrong"),
+        "{csv}"
+    );
+
+    let kept = skiagraph(folder.path(), &format!("{line} --resume"));
+    let told = String::from_utf8_lossy(&kept.stderr);
+    assert!(told.contains("3 of 3 runs are kept"), "{told}");
+}
+
+#[test]
+fn a_path_that_is_not_there_is_refused_with_those_that_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |line: &str| {
+        let output = skiagraph(folder.path(), line);
+        assert_eq!(output.status.code(), Some(1), "{line}");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let unknown = refused("compare nsm --path wlak");
+    assert!(
+        unknown.contains("`park` has no path `wlak`; did you mean `walk`?")
+            && unknown.contains("paths: walk, or all of them: all"),
+        "{unknown}"
+    );
+    let none = refused("compare nsm --scene city:20000 --path walk");
+    assert!(
+        none.contains("`city` has no camera paths") && none.contains("keys:"),
+        "{none}"
+    );
+}

@@ -247,6 +247,7 @@ impl Describe for SmallScene {
             items: Some(items),
             stride,
             binding,
+            kind: None,
         })
     }
 }

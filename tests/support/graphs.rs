@@ -51,6 +51,7 @@ impl Describe for Extended {
             items: Some(content.len() as u64 / stride),
             stride: *stride,
             binding: ProvidedBinding::Storage,
+            kind: None,
         })
     }
 }

@@ -3,7 +3,7 @@
 use crate::{
     camera::View,
     error::SceneError,
-    light::DirectionalLight,
+    light_kind::Light,
     limit::Limit,
     obj::{
         options::{ObjOptions, QuadDiagonal},
@@ -52,7 +52,7 @@ pub struct ObjSetup {
     /// The only view.
     pub view: View,
     /// The light.
-    pub light: DirectionalLight,
+    pub light: Light,
     /// How polygons are split.
     pub quads: QuadDiagonal,
 }
@@ -269,7 +269,7 @@ impl SceneLibrary {
                 name: scene.name,
                 mesh,
                 views: scene.views,
-                light: scene.light,
+                lights: scene.lights,
             },
             report,
         ))
@@ -330,7 +330,7 @@ fn load_bare_obj(
             name,
             mesh,
             views: vec![setup.view.clone()],
-            light: setup.light,
+            lights: vec![setup.light.clone()],
         },
         report,
     ))

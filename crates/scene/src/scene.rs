@@ -1,6 +1,6 @@
 //! What is drawn.
 
-use crate::{camera::View, light::DirectionalLight, mesh::Mesh};
+use crate::{camera::View, light_kind::Light, mesh::Mesh};
 
 /// A mesh with the views and the light under which it is drawn.
 #[derive(Clone, Debug)]
@@ -11,8 +11,8 @@ pub struct Scene {
     pub mesh: Mesh,
     /// At least one view; the first is the default.
     pub views: Vec<View>,
-    /// The light of all views that have none of their own.
-    pub light: DirectionalLight,
+    /// The lights of all views that have none of their own: at least one; the first is the default.
+    pub lights: Vec<Light>,
 }
 
 impl Scene {
@@ -21,8 +21,11 @@ impl Scene {
         self.views.iter().find(|view| view.name == name)
     }
 
-    /// The light under which a view is drawn.
-    pub fn light_of(&self, view: &View) -> DirectionalLight {
-        view.light.unwrap_or(self.light)
+    /// The lights under which a view is drawn: its own, or all of the scene's.
+    pub fn lights_of(&self, view: &View) -> Vec<Light> {
+        match view.light {
+            Some(own) => vec![own.into()],
+            None => self.lights.clone(),
+        }
     }
 }

@@ -217,9 +217,7 @@ fn hard() -> Arc<Scene> {
         name: "hard".into(),
         mesh: meshes::mesh(positions, triangles),
         views: vec![view],
-        light: DirectionalLight {
-            direction: DVec3::new(-0.3, -1.0, 0.2),
-        },
+        light: DirectionalLight::new(DVec3::new(-0.3, -1.0, 0.2)),
     })
 }
 

@@ -19,9 +19,7 @@ fn plan(path: &str, outputs: Option<&[&str]>) -> Plan {
         normal_indices: vec![[0; 3]],
         groups: vec![],
     };
-    let light = DirectionalLight {
-        direction: DVec3::NEG_Z,
-    };
+    let light = DirectionalLight::new(DVec3::NEG_Z);
     let provider = SceneProvider::new(Arc::new(Scene {
         name: "one".into(),
         mesh,
@@ -168,9 +166,7 @@ fn empty() -> Scene {
         name: "none".into(),
         mesh: Mesh::default(),
         views: vec![],
-        light: DirectionalLight {
-            direction: DVec3::NEG_Z,
-        },
+        light: DirectionalLight::new(DVec3::NEG_Z),
     }
 }
 

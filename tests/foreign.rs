@@ -240,9 +240,7 @@ fn the_two_lights_are_each_asked_by_itself() {
     assert_eq!(both, expected);
     assert!(both != sun && both != sky);
     // The light that a pass has aimed is one as good as the scene's.
-    let light = DirectionalLight {
-        direction: DVec3::NEG_Y,
-    };
+    let light = DirectionalLight::new(DVec3::NEG_Y);
     let counts = Statistics::judged(&sky, &status, &reference(&scene, &light))
         .unwrap_or_else(|error| panic!("{error}"));
     println!("straight from above: {:.2} %", 100.0 * counts.wrong_share());
@@ -288,9 +286,7 @@ fn one() -> Arc<Scene> {
         name: "one".into(),
         mesh: meshes::mesh(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]]),
         views: vec![view],
-        light: DirectionalLight {
-            direction: DVec3::NEG_Z,
-        },
+        light: DirectionalLight::new(DVec3::NEG_Z),
     })
 }
 

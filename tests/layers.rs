@@ -36,7 +36,7 @@ fn scene(mesh: Mesh, direction: DVec3) -> Arc<Scene> {
             far: 100.0,
             light: None,
         }],
-        light: DirectionalLight { direction },
+        light: DirectionalLight::new(direction),
     })
 }
 

@@ -53,9 +53,7 @@ fn scene() -> Arc<Scene> {
         name: "box".into(),
         mesh: support::meshes::mesh(positions, triangles),
         views: vec![view],
-        light: DirectionalLight {
-            direction: DVec3::new(-0.4, -1.0, 0.3),
-        },
+        light: DirectionalLight::new(DVec3::new(-0.4, -1.0, 0.3)),
     })
 }
 

@@ -155,7 +155,7 @@ pub fn trace_by(
         name: "test".into(),
         mesh: mesh.clone(),
         views: vec![],
-        light: DirectionalLight { direction: light },
+        light: DirectionalLight::new(light),
     };
     let mut provider = Extended::new(SceneProvider::new(Arc::new(scene)));
     provider.add("test.rays", rays);

@@ -121,10 +121,41 @@ pub struct Occlusion {
 }
 
 #[derive(Clone, Copy)]
-struct Answer {
-    class: Class,
+pub(crate) struct Answer {
+    pub(crate) class: Class,
     indeterminate: bool,
     n_dot_l: f32,
+}
+
+impl Answer {
+    pub(crate) const BACKGROUND: Self = Self {
+        class: Class::Background,
+        indeterminate: false,
+        n_dot_l: 0.0,
+    };
+
+    /// Facing away, or lit as long as nobody has looked for blockers.
+    pub(crate) fn facing(receiver: &Receiver) -> Self {
+        Self {
+            class: match receiver.n_dot_l <= 0.0 {
+                true => Class::FacingAway,
+                false => Class::Lit,
+            },
+            indeterminate: receiver.n_dot_l.abs() <= receiver.n_dot_l_error,
+            n_dot_l: receiver.n_dot_l as f32,
+        }
+    }
+}
+
+impl Reference {
+    pub(crate) fn of(viewport: [u32; 2], answers: &[Answer]) -> Self {
+        Self {
+            viewport,
+            classes: answers.iter().map(|answer| answer.class).collect(),
+            indeterminate: answers.iter().map(|answer| answer.indeterminate).collect(),
+            n_dot_l: answers.iter().map(|answer| answer.n_dot_l).collect(),
+        }
+    }
 }
 
 impl<'a> Oracle<'a> {
@@ -199,6 +230,19 @@ impl<'a> Oracle<'a> {
     ) -> Result<Reference, Error> {
         let viewport = camera.viewport;
         check_pixel_count("primitives", viewport, primitives.len())?;
+        let to_light = self.check(light, mode)?;
+        let answers = per_pixel(viewport, progress, |x, y, stack| {
+            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, [x, y], to_light)?;
+            Ok(match receiver {
+                Some(receiver) => self.answer(&receiver, to_light, mode, stack),
+                None => Answer::BACKGROUND,
+            })
+        })?;
+        Ok(Reference::of(viewport, &answers))
+    }
+
+    /// Unit vector towards a light that can be traced.
+    pub(crate) fn check(&self, light: &DirectionalLight, mode: OracleMode) -> Result<DVec3, Error> {
         let to_light = light.to_light();
         if !to_light.is_finite() {
             let [x, y, z] = light.direction.to_array();
@@ -213,23 +257,7 @@ impl<'a> Oracle<'a> {
                 return Err(Error::OffsetTooLong { length, most });
             }
         }
-        let answers = per_pixel(viewport, progress, |x, y, stack| {
-            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, [x, y], to_light)?;
-            Ok(match receiver {
-                Some(receiver) => self.answer(&receiver, to_light, mode, stack),
-                None => Answer {
-                    class: Class::Background,
-                    indeterminate: false,
-                    n_dot_l: 0.0,
-                },
-            })
-        })?;
-        Ok(Reference {
-            viewport,
-            classes: answers.iter().map(|answer| answer.class).collect(),
-            indeterminate: answers.iter().map(|answer| answer.indeterminate).collect(),
-            n_dot_l: answers.iter().map(|answer| answer.n_dot_l).collect(),
-        })
+        Ok(to_light)
     }
 
     /// Traces rays given by origin and direction (any length but zero), for tracers of f32 to be
@@ -259,14 +287,9 @@ impl<'a> Oracle<'a> {
         mode: OracleMode,
         stack: &mut Vec<u32>,
     ) -> Answer {
-        let facing_indeterminate = receiver.n_dot_l.abs() <= receiver.n_dot_l_error;
-        let n_dot_l = receiver.n_dot_l as f32;
-        if receiver.n_dot_l <= 0.0 {
-            return Answer {
-                class: Class::FacingAway,
-                indeterminate: facing_indeterminate,
-                n_dot_l,
-            };
+        let facing = Answer::facing(receiver);
+        if facing.class == Class::FacingAway {
+            return facing;
         }
         let (origin, excluded) = mode.ray(receiver, to_light);
         let (shadow, indeterminate) = match &receiver.uncertainty {
@@ -279,13 +302,13 @@ impl<'a> Oracle<'a> {
             let origin = border + (origin - receiver.position);
             self.occluded(origin, to_light, excluded, stack) != shadow
         };
-        let indeterminate =
-            indeterminate || facing_indeterminate || receiver.on_border.is_some_and(snapped);
         let class = if shadow { Class::Shadow } else { Class::Lit };
         Answer {
             class,
-            indeterminate,
-            n_dot_l,
+            indeterminate: indeterminate
+                || facing.indeterminate
+                || receiver.on_border.is_some_and(snapped),
+            ..facing
         }
     }
 
@@ -346,7 +369,7 @@ impl<'a> Oracle<'a> {
     }
 
     /// Whether any triangle but `excluded` stands between `origin` and the light.
-    fn occluded(
+    pub(crate) fn occluded(
         &self,
         origin: DVec3,
         to_light: DVec3,

@@ -113,6 +113,8 @@ fn y_axis() -> (f64, f64, f64) {
 #[serde(deny_unknown_fields, rename = "Light")]
 struct LightText {
     direction: (f64, f64, f64),
+    #[serde(default)]
+    angle_degrees: f64,
 }
 
 impl<'de> Deserialize<'de> for View {
@@ -166,8 +168,11 @@ fn own_light<'de, D: Deserializer<'de>>(
 }
 
 fn any_light<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DirectionalLight, D::Error> {
-    let direction = LightText::deserialize(deserializer)?.direction.into();
-    Ok(DirectionalLight { direction })
+    let text = LightText::deserialize(deserializer)?;
+    Ok(DirectionalLight {
+        direction: text.direction.into(),
+        angle_degrees: text.angle_degrees,
+    })
 }
 
 fn views<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<View>, D::Error> {

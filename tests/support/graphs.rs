@@ -156,7 +156,7 @@ pub fn trace_by(
         name: "test".into(),
         mesh: mesh.clone(),
         views: vec![],
-        light: DirectionalLight { direction: light },
+        lights: vec![DirectionalLight::new(light).into()],
     };
     let mut provider = Extended::new(SceneProvider::new(Arc::new(scene)));
     provider.add("test.rays", rays);

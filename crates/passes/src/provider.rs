@@ -7,10 +7,8 @@ use crate::{
 };
 use skiagraph_gpu::{Provider, ProviderError};
 use skiagraph_graph::{Describe, Provided, ProvidedBinding, ProvidedKind};
-use glam::DVec3;
 use skiagraph_scene::{
-    DirectionalLight,
-    Adjacency, Bvh, BvhNode, Light, LightKind, LightSpace, LightSpaceNode, Scene, View,
+    Adjacency, Bvh, BvhNode, LightKind, LightSpace, LightSpaceNode, Scene, View,
 };
 use std::{collections::BTreeMap, sync::Arc};
 use wgpu::util::DeviceExt;
@@ -90,7 +88,7 @@ impl SceneProvider {
     /// zeros, and the light is the scene's.
     pub fn new(scene: Arc<Scene>) -> Self {
         Self {
-            light: default_light(&scene.lights),
+            light: scene.light(),
             light_version: 0,
             scene,
             camera: CameraUniform::default(),
@@ -112,7 +110,12 @@ impl SceneProvider {
     pub fn set_view(&mut self, view: &View, viewport: [u32; 2]) {
         self.camera = CameraUniform::from(&view.camera(viewport));
         self.camera_version += 1;
-        self.set_light(default_light(&self.scene.lights_of(view)));
+        self.set_light(self.scene.light_of(view));
+    }
+
+    /// The light.
+    pub fn light(&self) -> LightKind {
+        self.light
     }
 
     /// Another light. A plan depends on the light's kind: what was planned under a light of another
@@ -217,7 +220,9 @@ impl SceneProvider {
     }
 
     fn light_kind(&self) -> ProvidedKind {
-        let number = LIGHT_KINDS.iter().position(|word| *word == self.light.word());
+        let number = LIGHT_KINDS
+            .iter()
+            .position(|word| *word == self.light.word());
         ProvidedKind {
             words: &LIGHT_KINDS,
             number: number.unwrap_or_default() as u32,
@@ -283,14 +288,6 @@ fn binding_limit(device: &wgpu::Device) -> u64 {
     limits
         .max_buffer_size
         .min(limits.max_storage_buffer_binding_size)
-}
-
-/// The first of the lights of a scene.
-fn default_light(lights: &[Light]) -> LightKind {
-    let down = DirectionalLight {
-        direction: DVec3::NEG_Y,
-    };
-    lights.first().map_or(down.into(), |light| light.kind)
 }
 
 fn unknown(name: &str) -> Error {

@@ -130,10 +130,49 @@ pub struct Occlusion {
 }
 
 #[derive(Clone, Copy)]
-struct Answer {
-    class: Class,
+pub(crate) struct Answer {
+    pub(crate) class: Class,
     indeterminate: bool,
     n_dot_l: f32,
+}
+
+impl Answer {
+    pub(crate) const BACKGROUND: Self = Self {
+        class: Class::Background,
+        indeterminate: false,
+        n_dot_l: 0.0,
+    };
+
+    /// Facing away, or lit as long as nobody has looked for blockers.
+    pub(crate) fn facing(receiver: &Receiver) -> Self {
+        let faces_away = receiver.n_dot_l <= 0.0;
+        let could_turn = receiver.n_dot_l.abs() <= receiver.n_dot_l_error;
+        // What faces away does so within the cone and outside of it.
+        let could_leave = receiver.on_cone_edge && (!faces_away || could_turn);
+        let beyond_cone = receiver.outside_cone && !receiver.on_cone_edge;
+        Self {
+            class: match faces_away || receiver.outside_cone {
+                true => Class::FacingAway,
+                false => Class::Lit,
+            },
+            indeterminate: !beyond_cone && (could_turn || could_leave),
+            n_dot_l: match receiver.outside_cone {
+                true => receiver.n_dot_l.min(0.0) as f32,
+                false => receiver.n_dot_l as f32,
+            },
+        }
+    }
+}
+
+impl Reference {
+    pub(crate) fn of(viewport: [u32; 2], answers: &[Answer]) -> Self {
+        Self {
+            viewport,
+            classes: answers.iter().map(|answer| answer.class).collect(),
+            indeterminate: answers.iter().map(|answer| answer.indeterminate).collect(),
+            n_dot_l: answers.iter().map(|answer| answer.n_dot_l).collect(),
+        }
+    }
 }
 
 impl<'a> Oracle<'a> {
@@ -209,6 +248,19 @@ impl<'a> Oracle<'a> {
         let viewport = camera.viewport;
         check_pixel_count("primitives", viewport, primitives.len())?;
         let light = light.into();
+        self.check(&light, mode)?;
+        let answers = per_pixel(viewport, progress, |x, y, stack| {
+            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, [x, y], &light)?;
+            Ok(match receiver {
+                Some(receiver) => self.answer(&receiver, mode, stack),
+                None => Answer::BACKGROUND,
+            })
+        })?;
+        Ok(Reference::of(viewport, &answers))
+    }
+
+    /// Whether a light can be traced.
+    pub(crate) fn check(&self, light: &LightKind, mode: OracleMode) -> Result<(), Error> {
         light.check().map_err(Error::Light)?;
         if let OracleMode::Offset(length) = mode {
             if !(length.is_finite() && length >= 0.0) {
@@ -219,23 +271,7 @@ impl<'a> Oracle<'a> {
                 return Err(Error::OffsetTooLong { length, most });
             }
         }
-        let answers = per_pixel(viewport, progress, |x, y, stack| {
-            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, [x, y], &light)?;
-            Ok(match receiver {
-                Some(receiver) => self.answer(&receiver, mode, stack),
-                None => Answer {
-                    class: Class::Background,
-                    indeterminate: false,
-                    n_dot_l: 0.0,
-                },
-            })
-        })?;
-        Ok(Reference {
-            viewport,
-            classes: answers.iter().map(|answer| answer.class).collect(),
-            indeterminate: answers.iter().map(|answer| answer.indeterminate).collect(),
-            n_dot_l: answers.iter().map(|answer| answer.n_dot_l).collect(),
-        })
+        Ok(())
     }
 
     /// Traces rays given by origin and direction (any length but zero), for tracers of f32 to be
@@ -262,20 +298,9 @@ impl<'a> Oracle<'a> {
     }
 
     fn answer(&self, receiver: &Receiver, mode: OracleMode, stack: &mut Vec<u32>) -> Answer {
-        let facing_indeterminate = receiver.n_dot_l.abs() <= receiver.n_dot_l_error;
-        let away = |indeterminate| Answer {
-            class: Class::FacingAway,
-            indeterminate,
-            n_dot_l: receiver.n_dot_l.min(0.0) as f32,
-        };
-        let faces_away = receiver.n_dot_l <= 0.0;
-        match (receiver.outside_cone, receiver.on_cone_edge) {
-            (true, false) => return away(false),
-            // Neither rounding makes it face the light.
-            (_, true) if faces_away => return away(facing_indeterminate),
-            (true, true) => return away(true),
-            (false, _) if faces_away => return away(facing_indeterminate),
-            (false, _) => {}
+        let facing = Answer::facing(receiver);
+        if facing.class == Class::FacingAway {
+            return facing;
         }
         let (origin, way, excluded) = mode.ray(receiver);
         let (shadow, indeterminate) = match &receiver.uncertainty {
@@ -288,15 +313,13 @@ impl<'a> Oracle<'a> {
             let origin = border + (origin - receiver.position);
             self.occluded(origin, way, excluded, stack) != shadow
         };
-        let indeterminate = indeterminate
-            || facing_indeterminate
-            || receiver.on_cone_edge
-            || receiver.on_border.is_some_and(snapped);
         let class = if shadow { Class::Shadow } else { Class::Lit };
         Answer {
             class,
-            indeterminate,
-            n_dot_l: receiver.n_dot_l as f32,
+            indeterminate: indeterminate
+                || facing.indeterminate
+                || receiver.on_border.is_some_and(snapped),
+            ..facing
         }
     }
 
@@ -358,7 +381,7 @@ impl<'a> Oracle<'a> {
     }
 
     /// Whether any triangle but `excluded` stands between `origin` and the light.
-    fn occluded(
+    pub(crate) fn occluded(
         &self,
         origin: DVec3,
         way: Towards,

@@ -26,11 +26,12 @@ const SCENE_FILE: Limit = Limit {
 };
 
 /// Scene files that are part of the program: name and text.
-const BUILT_IN: [(&str, &str); 5] = [
+const BUILT_IN: [(&str, &str); 6] = [
     ("bench", include_str!("../../../scenes/bench.ron")),
     ("city", include_str!("../../../scenes/city.ron")),
     ("forest", include_str!("../../../scenes/forest.ron")),
     ("park", include_str!("../../../scenes/park.ron")),
+    ("park_soft", include_str!("../../../scenes/park_soft.ron")),
     ("sponza", include_str!("../../../scenes/sponza.ron")),
 ];
 

@@ -160,7 +160,7 @@ impl LightKind {
             Self::Directional(light) => light.check(),
             Self::Spot(spot) => {
                 let direction = spot.direction;
-                DirectionalLight { direction }.check()?;
+                DirectionalLight::new(direction).check()?;
                 if !(spot.cone_degrees > 0.0 && spot.cone_degrees < 180.0) {
                     return Err(format!(
                         "cone_degrees is {}, expected more than 0 and less than 180, the whole \
@@ -178,7 +178,9 @@ impl LightKind {
 fn check_radius(radius: f64) -> Result<(), String> {
     match radius.is_finite() && radius >= 0.0 {
         true => Ok(()),
-        false => Err(format!("radius is {radius}, expected a length of at least 0")),
+        false => Err(format!(
+            "radius is {radius}, expected a length of at least 0"
+        )),
     }
 }
 

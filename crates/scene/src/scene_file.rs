@@ -132,6 +132,8 @@ fn y_axis() -> (f64, f64, f64) {
 #[serde(deny_unknown_fields, rename = "Light")]
 struct LightText {
     direction: (f64, f64, f64),
+    #[serde(default)]
+    angle_degrees: f64,
 }
 
 #[derive(Deserialize)]
@@ -140,6 +142,8 @@ enum NamedLightText {
     Directional {
         name: String,
         direction: (f64, f64, f64),
+        #[serde(default)]
+        angle_degrees: f64,
     },
     Spot {
         name: String,
@@ -160,9 +164,16 @@ enum NamedLightText {
 impl From<NamedLightText> for Light {
     fn from(text: NamedLightText) -> Self {
         let (name, kind): (_, LightKind) = match text {
-            NamedLightText::Directional { name, direction } => {
-                let direction = direction.into();
-                (name, DirectionalLight { direction }.into())
+            NamedLightText::Directional {
+                name,
+                direction,
+                angle_degrees,
+            } => {
+                let light = DirectionalLight {
+                    direction: direction.into(),
+                    angle_degrees,
+                };
+                (name, light.into())
             }
             NamedLightText::Spot {
                 name,
@@ -243,8 +254,11 @@ fn own_light<'de, D: Deserializer<'de>>(
 }
 
 fn any_light<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DirectionalLight, D::Error> {
-    let direction = LightText::deserialize(deserializer)?.direction.into();
-    Ok(DirectionalLight { direction })
+    let text = LightText::deserialize(deserializer)?;
+    Ok(DirectionalLight {
+        direction: text.direction.into(),
+        angle_degrees: text.angle_degrees,
+    })
 }
 
 fn lights<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Light>, D::Error> {

@@ -101,3 +101,29 @@ impl LightUniform {
         }
     }
 }
+
+/// WGSL's `LightArea`: how far the light reaches around its centre, 32 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct LightAreaUniform {
+    /// From the light's centre, at distance 1, to its rim.
+    pub right: Vec3,
+    /// Length of `right` and of `up`; 0 for a light without extent.
+    pub radius: f32,
+    /// The same at a right angle.
+    pub up: Vec3,
+    /// Unused.
+    pub padding: f32,
+}
+
+impl From<&DirectionalLight> for LightAreaUniform {
+    fn from(light: &DirectionalLight) -> Self {
+        let [right, up] = light.across().map(|axis| axis.as_vec3());
+        Self {
+            right,
+            radius: right.length(),
+            up,
+            padding: 0.0,
+        }
+    }
+}

@@ -11,7 +11,7 @@ use crate::{
 };
 use glam::DVec3;
 use skiagraph_scene::{Camera, DirectionalLight};
-use std::ops::ControlFlow;
+use std::{borrow::Cow, ops::ControlFlow};
 
 /// Casters among which a receiver's rays search one by one; where there are more, each walks the
 /// hierarchy.
@@ -42,6 +42,26 @@ impl AreaVisibility {
             (squares / (errors.len().max(1)) as f64).sqrt(),
             errors.iter().copied().fold(0.0, f64::max),
         ]
+    }
+}
+
+/// What is right for one view: of a light without extent which pixels are lit, of one with extent
+/// what share of it each sees, too.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RightAnswer {
+    /// What each pixel shows.
+    pub reference: Reference,
+    /// The shares, of a light with extent.
+    pub area: Option<AreaVisibility>,
+}
+
+impl RightAnswer {
+    /// What share of the light each pixel sees.
+    pub fn shares(&self) -> Cow<'_, [f32]> {
+        match &self.area {
+            Some(area) => Cow::Borrowed(&area.shares),
+            None => Cow::Owned(self.reference.shares()),
+        }
     }
 }
 
@@ -77,6 +97,29 @@ impl Emitter {
 }
 
 impl Oracle<'_> {
+    /// The right answer under this light: [`shade`](Self::shade) of one without extent,
+    /// [`shade_area`](Self::shade_area) of one that has an extent.
+    ///
+    /// # Errors
+    /// Those of [`shade`](Self::shade).
+    pub fn right_answer(
+        &self,
+        camera: &Camera,
+        light: &DirectionalLight,
+        primitives: &[u32],
+        (mode, samples): (OracleMode, u32),
+        progress: Progress,
+    ) -> Result<RightAnswer, Error> {
+        if light.has_extent() {
+            let answer = self.shade_area(camera, light, primitives, (mode, samples), progress)?;
+            let (reference, area) = (answer.0, Some(answer.1));
+            return Ok(RightAnswer { reference, area });
+        }
+        let reference = self.shade(camera, light, primitives, mode, progress)?;
+        let area = None;
+        Ok(RightAnswer { reference, area })
+    }
+
     /// As [`shade`](Self::shade), of a light that is an area: the share of it that each pixel sees,
     /// of at least `samples` shadow rays (an even number; four at least). The rays of the exact
     /// mode pass the pixel's own primitive, whichever way they go; those of the mode with an offset

@@ -44,7 +44,7 @@ pub mod statistics;
 mod strata;
 mod tree;
 
-pub use area::AreaVisibility;
+pub use area::{AreaVisibility, RightAnswer};
 pub use blockers::BlockerCounts;
 pub use error::Error;
 pub use graded::{Graded, Invalid, OffBy};

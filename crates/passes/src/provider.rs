@@ -3,7 +3,7 @@
 use crate::{
     error::Error,
     ray_query,
-    uniforms::{CameraUniform, LIGHT_KINDS, LightUniform},
+    uniforms::{CameraUniform, LIGHT_KINDS, LightAreaUniform, LightUniform},
 };
 use skiagraph_gpu::{Provider, ProviderError};
 use skiagraph_graph::{Describe, Provided, ProvidedBinding, ProvidedKind};
@@ -27,8 +27,10 @@ const TLAS: &str = "scene.tlas";
 pub const CAMERA: &str = "camera";
 /// The uniform of `shared/light.wgsl`.
 pub const LIGHT: &str = "light";
+/// The uniform of `shared/light_area.wgsl`.
+pub const LIGHT_AREA: &str = "light_area";
 
-const NAMES: [&str; 12] = [
+const NAMES: [&str; 13] = [
     POSITIONS,
     INDICES,
     NORMALS,
@@ -41,10 +43,11 @@ const NAMES: [&str; 12] = [
     TLAS,
     CAMERA,
     LIGHT,
+    LIGHT_AREA,
 ];
 
 /// What is built anew for another light.
-const OF_LIGHT: [&str; 3] = [LIGHT, LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES];
+const OF_LIGHT: [&str; 4] = [LIGHT, LIGHT_AREA, LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES];
 
 /// Provides one scene under one view, on one device.
 ///
@@ -62,6 +65,7 @@ const OF_LIGHT: [&str; 3] = [LIGHT, LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES];
 /// | `scene.tlas` | `acceleration_structure`, one instance; primitives have their ids |
 /// | `camera` | [`CameraUniform`] |
 /// | `light` | [`LightUniform`] |
+/// | `light_area` | [`LightAreaUniform`] |
 ///
 /// What was built stays and is shared by all graphs that are executed with the same provider, which
 /// therefore belongs to the device that it was first used with;
@@ -163,7 +167,7 @@ impl SceneProvider {
                 limit,
             });
         }
-        let uniform = matches!(name, CAMERA | LIGHT);
+        let uniform = matches!(name, CAMERA | LIGHT | LIGHT_AREA);
         let usage = if uniform {
             wgpu::BufferUsages::UNIFORM
         } else {
@@ -275,6 +279,7 @@ impl SceneProvider {
             ADJACENCY => self.upload_items(name, &Adjacency::new(mesh).opposite, device),
             CAMERA => self.upload_items(name, &[self.camera], device),
             LIGHT => self.upload_items(name, &[self.light_uniform()], device),
+            LIGHT_AREA => self.upload_items(name, &[LightAreaUniform::from(&self.light)], device),
             BVH_NODES | BVH_PRIMITIVES => self.upload_hierarchy(device),
             LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.upload_light_space(device),
             _ => Ok(()),
@@ -351,6 +356,7 @@ impl Describe for SceneProvider {
                 kind: Some(self.light_kind()),
                 ..light
             }),
+            LIGHT_AREA => uniform(size_of::<LightAreaUniform>()),
             _ => None,
         }
     }

@@ -178,3 +178,37 @@ fn across(forward: DVec3) -> (DVec3, DVec3) {
     let right = forward.cross(helper).normalize();
     (right, right.cross(forward))
 }
+
+/// WGSL's `LightArea`: how far the light reaches around its centre, 32 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct LightAreaUniform {
+    /// From the light's centre to its rim, of a directional light at distance 1; 0 of a point
+    /// light, whose disk faces each receiver.
+    pub right: Vec3,
+    /// Radius of the disk that `right` and `up` span; 0 for a light without extent.
+    pub radius: f32,
+    /// As `right`, at a right angle to it.
+    pub up: Vec3,
+    /// Unused.
+    pub padding: f32,
+}
+
+impl From<&LightKind> for LightAreaUniform {
+    fn from(light: &LightKind) -> Self {
+        let ([right, up], radius) = match light {
+            LightKind::Directional(light) => (light.across(), light.across()[0].length()),
+            LightKind::Spot(spot) => {
+                let (right, up) = spot.direction.normalize().any_orthonormal_pair();
+                ([right, up].map(|axis| axis * spot.radius), spot.radius)
+            }
+            LightKind::Point(point) => ([DVec3::ZERO; 2], point.radius),
+        };
+        Self {
+            right: right.as_vec3(),
+            radius: radius as f32,
+            up: up.as_vec3(),
+            padding: 0.0,
+        }
+    }
+}

@@ -11,7 +11,7 @@ use crate::{
 };
 use glam::DVec3;
 use skiagraph_scene::{Camera, LIGHT_GAP, LightKind, Towards};
-use std::ops::ControlFlow;
+use std::{borrow::Cow, ops::ControlFlow};
 
 /// Casters among which a receiver's rays search one by one; where there are more, each walks the
 /// hierarchy.
@@ -42,6 +42,26 @@ impl AreaVisibility {
             (squares / (errors.len().max(1)) as f64).sqrt(),
             errors.iter().copied().fold(0.0, f64::max),
         ]
+    }
+}
+
+/// What is right for one view: of a light without extent which pixels are lit, of one with extent
+/// what share of it each sees, too.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RightAnswer {
+    /// What each pixel shows.
+    pub reference: Reference,
+    /// The shares, of a light with extent.
+    pub area: Option<AreaVisibility>,
+}
+
+impl RightAnswer {
+    /// What share of the light each pixel sees.
+    pub fn shares(&self) -> Cow<'_, [f32]> {
+        match &self.area {
+            Some(area) => Cow::Borrowed(&area.shares),
+            None => Cow::Owned(self.reference.shares()),
+        }
     }
 }
 
@@ -112,6 +132,30 @@ impl Emitter {
 }
 
 impl Oracle<'_> {
+    /// The right answer under this light: [`shade`](Self::shade) of one without extent,
+    /// [`shade_area`](Self::shade_area) of one that has an extent.
+    ///
+    /// # Errors
+    /// Those of [`shade`](Self::shade).
+    pub fn right_answer(
+        &self,
+        camera: &Camera,
+        light: impl Into<LightKind>,
+        primitives: &[u32],
+        (mode, samples): (OracleMode, u32),
+        progress: Progress,
+    ) -> Result<RightAnswer, Error> {
+        let light = light.into();
+        if light.has_extent() {
+            let answer = self.shade_area(camera, light, primitives, (mode, samples), progress)?;
+            let (reference, area) = (answer.0, Some(answer.1));
+            return Ok(RightAnswer { reference, area });
+        }
+        let reference = self.shade(camera, light, primitives, mode, progress)?;
+        let area = None;
+        Ok(RightAnswer { reference, area })
+    }
+
     /// As [`shade`](Self::shade), of a light that is an area: the share of it that each pixel sees,
     /// of at least `samples` shadow rays (an even number; four at least). The rays of the exact
     /// mode pass the pixel's own primitive, whichever way they go; those of the mode with an offset
@@ -160,6 +204,31 @@ impl Oracle<'_> {
         Ok((Reference::of(camera.viewport, &answers), area))
     }
 
+    /// Those that could stand in the light's cone; `None` if they are many, or the receiver is within
+    /// the light's own ball.
+    fn casters(
+        &self,
+        origin: DVec3,
+        cone: &Cone,
+        excluded: u32,
+        stack: &mut Vec<u32>,
+    ) -> Option<Vec<Caster>> {
+        if cone.sin >= 1.0 {
+            return None;
+        }
+        let mut casters = Vec::new();
+        self.tree.within(origin, cone, stack, |caster| {
+            if caster.primitive != excluded {
+                casters.push(*caster);
+            }
+            match casters.len() > MOST_CASTERS {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        });
+        (casters.len() <= MOST_CASTERS).then_some(casters)
+    }
+
     /// The share that a receiver sees, and its standard error.
     fn share(
         &self,
@@ -171,24 +240,15 @@ impl Oracle<'_> {
         stack: &mut Vec<u32>,
     ) -> [f64; 2] {
         let (origin, _, excluded) = mode.ray(receiver);
-        let mut casters: Vec<Caster> = Vec::new();
-        self.tree.within(origin, &emitter.cone, stack, |caster| {
-            if caster.primitive != excluded {
-                casters.push(*caster);
-            }
-            match casters.len() > MOST_CASTERS {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
-            }
-        });
-        if casters.is_empty() {
+        let mut casters = self.casters(origin, &emitter.cone, excluded, stack);
+        if casters.as_ref().is_some_and(Vec::is_empty) {
             return [1.0, 0.0];
         }
         let max_distance = self.tree.max_distance(origin);
         let mut is_seen = |way: Towards| {
-            if casters.len() > MOST_CASTERS {
+            let Some(casters) = &mut casters else {
                 return !self.occluded(origin, way, excluded, stack);
-            }
+            };
             let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
             let blocks = |caster: &Caster| {
                 ray.hit(&caster.corners)

@@ -101,6 +101,28 @@ impl Graded {
     }
 }
 
+impl Graded {
+    /// Of several pictures together, each with its PFL pixels. FLIP is the mean of theirs.
+    pub fn together(pictures: impl IntoIterator<Item = (Self, u64)>) -> Self {
+        let mut all = Self::default();
+        let (mut facing, mut count, mut squares) = (0.0, 0.0, 0.0);
+        for (of, pixels) in pictures {
+            let pixels = pixels as f64;
+            count += 1.0;
+            facing += pixels;
+            squares += of.rmse * of.rmse * pixels;
+            all.mean_absolute_error += of.mean_absolute_error * pixels;
+            all.off += of.off;
+            all.flip += of.flip;
+            all.invalid += of.invalid;
+        }
+        all.rmse = (squares / f64::max(facing, 1.0)).sqrt();
+        all.mean_absolute_error /= f64::max(facing, 1.0);
+        all.flip /= f64::max(count, 1.0);
+        all
+    }
+}
+
 impl Reference {
     /// The reference's own shares of a light without extent: 1 where lit, 0 elsewhere.
     pub fn shares(&self) -> Vec<f32> {
@@ -144,6 +166,24 @@ mod tests {
         let right = Graded::judged(&shares, &shares, &reference).unwrap();
         assert_eq!(right, Graded::default());
         assert!(Graded::judged(&shares[1..], &shares, &reference).is_err());
+    }
+
+    #[test]
+    fn pictures_together_are_as_one_of_all_their_pixels() {
+        let of = |shown: &[f32]| {
+            let reference = reference(&vec![Class::Lit; shown.len()]);
+            let right = vec![1.0; shown.len()];
+            let graded = Graded::judged(shown, &right, &reference).unwrap();
+            (graded, shown.len() as u64)
+        };
+        let (parts, whole) = (
+            [of(&[0.5, 1.0, 0.9]), of(&[0.0])],
+            of(&[0.5, 1.0, 0.9, 0.0]).0,
+        );
+        let together = Graded::together(parts);
+        assert!((together.rmse - whole.rmse).abs() < 1e-9);
+        assert!((together.mean_absolute_error - whole.mean_absolute_error).abs() < 1e-9);
+        assert_eq!((together.off, together.invalid), (whole.off, whole.invalid));
     }
 
     #[test]

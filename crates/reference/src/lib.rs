@@ -46,7 +46,7 @@ mod strata;
 mod sums;
 mod tree;
 
-pub use area::AreaVisibility;
+pub use area::{AreaVisibility, RightAnswer};
 pub use blockers::BlockerCounts;
 pub use error::Error;
 pub use graded::{Graded, Invalid, OffBy};

@@ -1,8 +1,8 @@
 //! Shimmer: answers that change from a frame to the next though the right ones do not.
 
 use crate::{
+    area::RightAnswer,
     error::Error,
-    oracle::Reference,
     pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel},
 };
 use glam::DVec3;
@@ -10,13 +10,16 @@ use serde::{Deserialize, Serialize};
 use skiagraph_scene::{Camera, Mesh};
 
 /// A change of visibility that is one: what a picture of 4 bits could show.
-const CHANGE: f64 = 1.0 / 16.0;
+const CHANGE: f32 = 1.0 / 16.0;
+
+/// A change of the right share of light that is none: what 8 bits cannot show.
+const SAME: f32 = 1.0 / 255.0;
 
 /// Counts of receivers that are seen in two frames one after the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shimmer {
-    /// Pixels whose receiver faces the light and had the same answer by the reference a frame
-    /// before, both outside the band.
+    /// Pixels whose receiver faces the light and had the same right answer a frame before (to 1/255
+    /// of an area light), both outside the band.
     pub compared: u64,
     /// Of these, the ones whose visibility the method changed by more than 1/16.
     pub changed: u64,
@@ -81,31 +84,34 @@ fn hit(mesh: &Mesh, primitive: u32, camera: &Camera, [x, y]: [u32; 2]) -> Option
 }
 
 /// Counts the answers that changed: `same` is of [`same_receivers`], and of each frame there are
-/// the method's visibility per pixel and the reference.
+/// what share of the light the method shows per pixel, and the right answer.
 ///
 /// # Errors
 /// [`Error::PixelCount`] for buffers that are not as large as their frame.
 pub fn shimmer(
     same: &[u32],
-    [before, now]: [&[impl Copy + Into<f64>]; 2],
-    [right_before, right_now]: [&Reference; 2],
+    [before, now]: [&[f32]; 2],
+    [right_before, right_now]: [&RightAnswer; 2],
 ) -> Result<Shimmer, Error> {
-    check_pixel_count("same receivers", right_now.viewport, same.len())?;
-    check_pixel_count("visibility", right_now.viewport, now.len())?;
-    check_pixel_count("visibility", right_before.viewport, before.len())?;
+    let (reference_before, reference_now) = (&right_before.reference, &right_now.reference);
+    check_pixel_count("same receivers", reference_now.viewport, same.len())?;
+    check_pixel_count("visibility", reference_now.viewport, now.len())?;
+    check_pixel_count("visibility", reference_before.viewport, before.len())?;
+    let (shares_before, shares_now) = (right_before.shares(), right_now.shares());
     let mut counts = Shimmer::default();
     for (pixel, &earlier) in same.iter().enumerate() {
         let earlier = earlier as usize;
         if earlier == BACKGROUND as usize
-            || !right_now.classes[pixel].faces_light()
-            || right_now.classes[pixel] != right_before.classes[earlier]
-            || right_now.indeterminate[pixel]
-            || right_before.indeterminate[earlier]
+            || !reference_now.classes[pixel].faces_light()
+            || !reference_before.classes[earlier].faces_light()
+            || reference_now.indeterminate[pixel]
+            || reference_before.indeterminate[earlier]
+            || (shares_now[pixel] - shares_before[earlier]).abs() > SAME
         {
             continue;
         }
         counts.compared += 1;
-        let change = now[pixel].into() - before[earlier].into();
+        let change = now[pixel] - before[earlier];
         counts.changed += u64::from(change.is_nan() || change.abs() > CHANGE);
     }
     Ok(counts)

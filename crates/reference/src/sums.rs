@@ -2,6 +2,7 @@
 
 use crate::{
     blockers::BlockerCounts,
+    graded::{Invalid, OffBy},
     shimmer::Shimmer,
     statistics::{CertainCounts, ClassSplit, PixelCounts, Split, Statistics, WrongCounts},
 };
@@ -28,6 +29,8 @@ added! {
     }
     Split { lit, shadow }
     Statistics { pixels, certain, uncertain, split, wrong, band, facing_mismatch }
+    OffBy { over_1_255, over_1_16, over_1_4 }
+    Invalid { nan, infinite, outside }
     BlockerCounts { open_part, closed_part, none }
     Shimmer { compared, changed }
 }

@@ -5,7 +5,7 @@ mod common;
 use common::scenes::{add_rectangle, floor, from_above, light};
 use glam::DVec3;
 use skiagraph_reference::{
-    BACKGROUND, Oracle, OracleMode, Progress, Reference, Shimmer,
+    BACKGROUND, Oracle, OracleMode, Progress, RightAnswer, Shimmer,
     shimmer::{Seen, same_receivers, shimmer},
 };
 use skiagraph_scene::{Camera, Mesh};
@@ -15,7 +15,7 @@ const VIEWPORT: [u32; 2] = [100, 100];
 struct Frame {
     camera: Camera,
     primitives: Vec<u32>,
-    reference: Reference,
+    right: RightAnswer,
 }
 
 /// A sheet over the floor, seen from above by an eye moved by `pixels` to the right.
@@ -36,11 +36,14 @@ fn frame(mesh: &Mesh, pixels: f64) -> Frame {
     Frame {
         camera,
         primitives,
-        reference: shaded.unwrap(),
+        right: RightAnswer {
+            reference: shaded.unwrap(),
+            area: None,
+        },
     }
 }
 
-fn compared(mesh: &Mesh, [before, now]: [&Frame; 2], answers: [&[u32]; 2]) -> Shimmer {
+fn compared(mesh: &Mesh, [before, now]: [&Frame; 2], answers: [&[f32]; 2]) -> Shimmer {
     let seen = |frame: &'_ Frame| (frame.camera, frame.primitives.clone());
     let [(camera_before, ids_before), (camera, ids)] = [seen(before), seen(now)];
     let before_seen = Seen {
@@ -52,7 +55,7 @@ fn compared(mesh: &Mesh, [before, now]: [&Frame; 2], answers: [&[u32]; 2]) -> Sh
         primitives: &ids,
     };
     let same = same_receivers(mesh, before_seen, now_seen, Progress::default()).unwrap();
-    shimmer(&same, answers, [&before.reference, &now.reference]).unwrap()
+    shimmer(&same, answers, [&before.right, &now.right]).unwrap()
 }
 
 #[test]
@@ -60,8 +63,7 @@ fn an_exact_method_does_not_shimmer_and_a_picture_that_sticks_to_the_screen_does
     let mut mesh = floor();
     add_rectangle(&mut mesh, [-1.01, 1.03], 5.0, [-1.02, 1.04]);
     let (before, now) = (frame(&mesh, 0.0), frame(&mesh, 3.0));
-    let right = [before.reference.visibility(), now.reference.visibility()]
-        .map(|answers| answers.into_iter().map(u32::from).collect::<Vec<u32>>());
+    let right = [before.right.shares(), now.right.shares()];
     let exact = compared(&mesh, [&before, &now], [&right[0], &right[1]]);
     assert_eq!(exact.changed, 0);
     // All of the floor that both see but the shadow's and the sheet's borders.

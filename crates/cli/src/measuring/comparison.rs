@@ -6,7 +6,7 @@ use crate::files::fingerprint::Fingerprint;
 use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
-use crate::measuring::reference::{Judge, PrimaryVisibility};
+use crate::measuring::reference::{Judge, PrimaryVisibility, Tracing};
 use crate::measuring::resume::{RunKey, resume};
 use crate::measuring::run::MeasureContext;
 use crate::measuring::sequence;
@@ -249,7 +249,7 @@ impl<'a> Comparison<'a> {
         if let [view] = views {
             let judge = self.judge(view, viewport, &view.name)?;
             if let Some(folder) = self.pictures() {
-                save_reference(folder, subject.name(), &judge.reference)?;
+                save_reference(folder, subject.name(), &judge.right)?;
             }
             return Ok(vec![judge]);
         }
@@ -280,9 +280,12 @@ impl<'a> Comparison<'a> {
         let step = Step::begin(format!("visible triangles, {what}"), 1, "frames");
         let ids = primary.ids(self.setup.gpu, viewport, &mut self.provider)?;
         step.end();
-        let (camera, mode) = (view.camera(viewport), self.args.oracle);
-        let light = self.provider.light();
-        Judge::new(oracle.clone(), camera, light, ids, mode, &what)
+        let tracing = Tracing {
+            mode: self.args.oracle,
+            samples: self.args.reference_samples,
+        };
+        let (camera, light) = (view.camera(viewport), self.provider.light());
+        Judge::new(oracle.clone(), camera, light, ids, tracing, &what)
     }
 
     /// Where pictures go, if there are to be any.

@@ -2,7 +2,7 @@
 
 use crate::error::{CliError, explain, is_fatal};
 use crate::files::fingerprint::Fingerprint;
-use crate::graphs::contract::{Outputs, judged};
+use crate::graphs::contract::{Judgement, Outputs, judged};
 use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
@@ -10,7 +10,7 @@ use crate::measuring::reference::Judge;
 use crate::measuring::timing::{self, FrameMode, Times};
 use crate::measuring::{date, frame};
 use crate::pictures::run_pictures::{conditions, save_pictures, stem};
-use crate::records::results::{Cached, Measured, Run};
+use crate::records::results::{Answer, AreaReference, Cached, Measured, Run};
 use crate::terminal::progress::Step;
 use skiagraph_gpu::{ExecuteError, Provider, device::Gpu};
 use skiagraph_graph::Plan;
@@ -79,7 +79,7 @@ impl MeasureContext<'_> {
         provider: &mut SceneProvider,
         run: impl FnOnce(&Method, Plan, &mut SceneProvider, &Step) -> Attempt,
     ) -> Result<Run, CliError> {
-        let viewport = self.judge.reference.viewport;
+        let viewport = self.judge.right.reference.viewport;
         let plan = match method.plan(viewport, Capabilities::of(self.gpu), provider) {
             Ok(plan) => plan,
             // The graph itself is sound: that was checked before anything ran.
@@ -163,7 +163,7 @@ impl MeasureContext<'_> {
         Ok(Some(Executed {
             times,
             cached,
-            outputs: Outputs::decode(&contents),
+            outputs: Outputs::decode(&contents, &self.judge.right.reference),
             memory,
             scene_bytes,
         }))
@@ -200,10 +200,13 @@ impl MeasureContext<'_> {
             memory: (memory_bytes, saved_bytes),
             scene_bytes,
         } = executed;
-        let reference = &self.judge.reference;
-        let (outputs, counts) = judged(method.preset, outputs, reference)?;
+        let right = &self.judge.right;
+        let (outputs, judgement) = judged(method.preset, outputs, right)?;
+        let Judgement { counts, graded } = &judgement;
         let blockers = match counts.wrong.certain {
             0 => None,
+            // Which pixels are wrong is a question of grades.
+            _ if graded.is_some() => None,
             _ => Some(self.judge.blockers(&outputs)?),
         };
         if !self.timestamps {
@@ -214,8 +217,8 @@ impl MeasureContext<'_> {
             times.passes.iter_mut().for_each(|pass| pass.gpu_ms = None);
         }
         let images = self.pictures.map(|folder| {
-            let stem = stem(method, self.view, reference.viewport);
-            save_pictures(folder, &stem, reference, &outputs, &counts)
+            let stem = stem(method, self.view, right.reference.viewport);
+            save_pictures(folder, &stem, right, &outputs, &judgement)
         });
         Ok(Measured {
             certain: counts.certain,
@@ -225,6 +228,11 @@ impl MeasureContext<'_> {
             wrong: counts.wrong,
             certain_wrong_blockers: blockers,
             facing_mismatch: counts.facing_mismatch,
+            answer: match outputs.shares {
+                Some(_) => Answer::Graded,
+                None => Answer::Hard,
+            },
+            graded: *graded,
             passes: times.passes,
             frame: times.frame,
             cached,
@@ -238,7 +246,8 @@ impl MeasureContext<'_> {
 
     /// The run with nothing measured.
     fn empty(&self, method: &Method) -> Run {
-        let reference = &self.judge.reference;
+        let right = &self.judge.right;
+        let (reference, area) = (&right.reference, right.area.as_ref());
         let counts = self.own;
         Run {
             preset: method.preset.name.clone(),
@@ -250,6 +259,7 @@ impl MeasureContext<'_> {
             date: date::today(),
             pixels: counts.pixels,
             band: counts.band,
+            area: area.map(|area| AreaReference::of(area, reference)),
             measured: None,
             unavailable: None,
             published: Vec::new(),

@@ -1,14 +1,14 @@
 //! A method over the frames of a camera path, each judged.
 
 use crate::error::CliError;
-use crate::graphs::contract::{Outputs, judged};
+use crate::graphs::contract::{Judgement, Outputs, judged};
 use crate::graphs::method::Method;
 use crate::measuring::frame;
 use crate::measuring::reference::{Judge, own_counts};
 use crate::measuring::run::{Attempt, MeasureContext, refused};
 use crate::measuring::timing;
 use crate::pictures::run_pictures::{save_pictures, stem};
-use crate::records::results::Measured;
+use crate::records::results::{Answer, Measured};
 use crate::records::samples::TimedFrame;
 use crate::records::sequence::{Sequence, SequenceFrame};
 use crate::terminal::interrupt;
@@ -17,7 +17,7 @@ use skiagraph_gpu::{ExecuteError, Executor, Frame, FrameReport};
 use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{
-    BlockerCounts, Progress, Shimmer, Statistics,
+    BlockerCounts, Graded, Progress, Shimmer, Statistics,
     shimmer::{same_receivers, shimmer},
 };
 use skiagraph_scene::{Mesh, View};
@@ -62,7 +62,7 @@ impl<'a> Path<'a> {
     pub fn own_counts(&self) -> Statistics {
         let mut all = Statistics::default();
         for judge in &self.judges {
-            all += own_counts(&judge.reference);
+            all += own_counts(&judge.right.reference);
         }
         all
     }
@@ -76,10 +76,14 @@ struct Account {
     blockers: Option<BlockerCounts>,
     frames: Vec<SequenceFrame>,
     timed: Vec<TimedFrame>,
-    /// Visibility of the frame before.
-    before: Option<Vec<u32>>,
-    /// The frame with the most wrong pixels that was seen yet, for its pictures.
-    worst: Option<(usize, Outputs, Statistics)>,
+    /// What the frame before showed.
+    before: Option<Vec<f32>>,
+    /// Where answers or the light are graded: of each frame.
+    graded: Vec<(Graded, u64)>,
+    /// Whether the method answers in shares.
+    shares: bool,
+    /// The worst frame that was seen yet, for its pictures.
+    worst: Option<(usize, Outputs, Judgement)>,
 }
 
 impl MeasureContext<'_> {
@@ -123,10 +127,10 @@ impl MeasureContext<'_> {
                 .for_each(|frame| frame.gpu_ms = None);
         }
         let images = match (self.pictures, &account.worst) {
-            (Some(folder), Some((index, outputs, counts))) => {
-                let reference = &path.judges[*index].reference;
-                let stem = stem(method, self.view, reference.viewport);
-                Some(save_pictures(folder, &stem, reference, outputs, counts)?)
+            (Some(folder), Some((index, outputs, judgement))) => {
+                let right = &path.judges[*index].right;
+                let stem = stem(method, self.view, right.reference.viewport);
+                Some(save_pictures(folder, &stem, right, outputs, judgement)?)
             }
             _ => None,
         };
@@ -143,6 +147,11 @@ impl MeasureContext<'_> {
             wrong: counts.wrong,
             certain_wrong_blockers: account.blockers,
             facing_mismatch: counts.facing_mismatch,
+            answer: match account.shares {
+                true => Answer::Graded,
+                false => Answer::Hard,
+            },
+            graded: (!account.graded.is_empty()).then(|| Graded::together(account.graded)),
             passes: times.passes,
             frame: times.frame,
             cached: None,
@@ -165,7 +174,7 @@ impl MeasureContext<'_> {
         provider: &mut SceneProvider,
     ) -> Result<((u64, u64), u64, Executor), ExecuteError> {
         if let Some(view) = path.views.first() {
-            provider.set_view(view, self.judge.reference.viewport);
+            provider.set_view(view, self.judge.right.reference.viewport);
         }
         let mut executor = frame::executor(self.gpu, plan, provider)?;
         frame::grow(self.gpu, &mut executor, provider)?;
@@ -185,7 +194,7 @@ impl MeasureContext<'_> {
         read: &[&str],
         provider: &mut SceneProvider,
     ) -> Result<(FrameReport, Duration), ExecuteError> {
-        provider.set_view(view, self.judge.reference.viewport);
+        provider.set_view(view, self.judge.right.reference.viewport);
         executor.refresh(provider)?;
         let request = Frame {
             timing: true,
@@ -208,17 +217,18 @@ impl MeasureContext<'_> {
     ) -> Result<(), CliError> {
         let judge = &path.judges[index];
         let contents = frame::contents(report.readbacks);
-        let outputs = Outputs::decode(&contents);
-        let (outputs, counts) = judged(method.preset, outputs, &judge.reference)?;
-        if counts.wrong.certain > 0 {
+        let outputs = Outputs::decode(&contents, &judge.right.reference);
+        let (outputs, judgement) = judged(method.preset, outputs, &judge.right)?;
+        let counts = judgement.counts;
+        if counts.wrong.certain > 0 && judgement.graded.is_none() {
             *account.blockers.get_or_insert_default() += judge.blockers(&outputs)?;
         }
+        let shown = outputs.shown().into_owned();
         let changed = match &account.before {
             None => None,
             Some(before) => {
-                let right = [&path.judges[index - 1].reference, &judge.reference];
-                let answers = [before.as_slice(), outputs.visibility.as_slice()];
-                let counts = shimmer(&path.same[index - 1], answers, right);
+                let right = [&path.judges[index - 1].right, &judge.right];
+                let counts = shimmer(&path.same[index - 1], [before, &shown], right);
                 Some(counts.map_err(|error| CliError::Input(format!("no shimmer: {error}")))?)
             }
         };
@@ -231,6 +241,7 @@ impl MeasureContext<'_> {
             facing_light: counts.pixels.facing_light,
             wrong: counts.wrong.total,
             wrong_outside_band: counts.wrong.total - counts.wrong.in_band,
+            graded: judgement.graded,
             rays: outputs.rays,
             gpu_ms: timing.gpu().map(ms),
             wall_ms: ms(wall),
@@ -247,11 +258,15 @@ impl MeasureContext<'_> {
         if let Some(rays) = outputs.rays {
             account.rays = Some(account.rays.unwrap_or(0) + rays);
         }
-        account.before = Some(outputs.visibility.clone());
-        let wrong = |counts: &Statistics| counts.wrong.total;
+        account.before = Some(shown);
+        account.shares |= outputs.shares.is_some();
+        let graded = judgement
+            .graded
+            .map(|graded| (graded, counts.pixels.facing_light));
+        account.graded.extend(graded);
         let worst = account.worst.as_ref();
-        if worst.is_none_or(|(.., worst)| wrong(&counts) > wrong(worst)) {
-            account.worst = Some((index, outputs, counts));
+        if worst.is_none_or(|(.., worst)| judgement.is_worse_than(worst)) {
+            account.worst = Some((index, outputs, judgement));
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 use crate::error::CliError;
 use crate::files::fingerprint::Fingerprint;
 use crate::wording::did_you_mean;
-use skiagraph_scene::{CameraPath, View};
+use skiagraph_scene::{CameraPath, Scene, View};
 
 /// One place of a comparison.
 #[derive(Clone, Debug)]
@@ -29,6 +29,12 @@ impl Subject {
             Self::Still(view) => vec![view.clone()],
             Self::Path(path) => path.views().collect(),
         }
+    }
+
+    /// Whether its light is one with extent.
+    pub fn has_extent(&self, scene: &Scene) -> bool {
+        let (Self::Still(view) | Self::Path(CameraPath { view, .. })) = self;
+        scene.light_of(view).has_extent()
     }
 
     /// With what it depends on.

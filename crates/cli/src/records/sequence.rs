@@ -1,7 +1,7 @@
 //! The frames of a camera path, in `results.json`.
 
 use serde::{Deserialize, Serialize};
-use skiagraph_reference::Shimmer;
+use skiagraph_reference::{Graded, Shimmer};
 
 /// What a method did in each frame of a path. The run's own counts are the sums over all frames,
 /// its times the spread over them.
@@ -22,6 +22,9 @@ pub struct SequenceFrame {
     pub wrong: u64,
     /// Of these: wrong outside the band.
     pub wrong_outside_band: u64,
+    /// How far the shown shares of light are off, where the answer or the light is graded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub graded: Option<Graded>,
     /// Rays traced; null where the graph does not count them.
     pub rays: Option<u64>,
     /// From the first pass's begin to the last one's end; null where it cannot be had or trusted.

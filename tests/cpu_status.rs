@@ -118,7 +118,7 @@ fn wrong_input_is_an_error() {
     let dark = DirectionalLight::new(DVec3::ZERO);
     assert!(matches!(
         cpu.maps(&mesh, &adjacency, &dark).err(),
-        Some(Error::Light { .. })
+        Some(Error::Light(_))
     ));
     let maps = cpu.maps(&mesh, &adjacency, &light(0.0, -1.0, 0.0)).unwrap();
     let classify = |primitives: &[u32]| {

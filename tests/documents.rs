@@ -24,7 +24,7 @@ fn plan(path: &str, outputs: Option<&[&str]>) -> Plan {
         name: "one".into(),
         mesh,
         views: vec![],
-        light,
+        lights: vec![light.into()],
     }));
     let mut request = PlanRequest::new([640, 480], &provider);
     request.features = wgpu::Features::all();
@@ -166,7 +166,7 @@ fn empty() -> Scene {
         name: "none".into(),
         mesh: Mesh::default(),
         views: vec![],
-        light: DirectionalLight::new(DVec3::NEG_Z),
+        lights: vec![DirectionalLight::new(DVec3::NEG_Z).into()],
     }
 }
 

@@ -21,7 +21,7 @@ fn provider(mesh: Mesh) -> SceneProvider {
         name: "test".into(),
         mesh,
         views: vec![],
-        light,
+        lights: vec![light.into()],
     }))
 }
 

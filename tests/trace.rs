@@ -333,7 +333,7 @@ fn the_dispatch_is_folded_to_two_dimensions() {
             name: "test".into(),
             mesh: Mesh::default(),
             views: vec![],
-            light,
+            lights: vec![light.into()],
         };
         let mut provider = Extended::new(SceneProvider::new(Arc::new(scene)));
         provider.add("test.number", &[count]);

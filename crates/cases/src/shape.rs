@@ -195,7 +195,7 @@ impl Shape {
                 far: 100.0 * direction.length(),
                 light: None,
             }],
-            light: DirectionalLight::new(light),
+            lights: vec![DirectionalLight::new(light).into()],
         }
     }
 }

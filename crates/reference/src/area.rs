@@ -10,7 +10,7 @@ use crate::{
     tree::{Caster, Cone},
 };
 use glam::DVec3;
-use skiagraph_scene::{Camera, DirectionalLight};
+use skiagraph_scene::{Camera, LIGHT_GAP, LightKind, Towards};
 use std::{borrow::Cow, ops::ControlFlow};
 
 /// Casters among which a receiver's rays search one by one; where there are more, each walks the
@@ -71,28 +71,63 @@ struct Emitter {
     centre: DVec3,
     /// From there to its rim, along two axes.
     across: [DVec3; 2],
+    /// Whether its points are places, or directions alone.
+    is_place: bool,
     /// What contains all of it.
     cone: Cone,
 }
 
 impl Emitter {
-    fn directional(light: &DirectionalLight) -> Self {
-        let (centre, across) = (light.to_light(), light.across());
-        let angle = light.angle_degrees.to_radians() * 0.5;
+    /// As a receiver sees it. A point light's disk faces the receiver, a spot light's is across its
+    /// axis.
+    fn seen_from(light: &LightKind, receiver: &Receiver) -> Self {
+        let (across, radius) = match light {
+            LightKind::Directional(light) => {
+                let angle = light.angle_degrees.to_radians() * 0.5;
+                let centre = light.to_light();
+                return Self {
+                    centre,
+                    across: light.across(),
+                    is_place: false,
+                    cone: Cone {
+                        axis: centre,
+                        sin: angle.sin(),
+                        cos: angle.cos(),
+                    },
+                };
+            }
+            LightKind::Spot(spot) => (spot.direction.normalize(), spot.radius),
+            LightKind::Point(point) => (receiver.towards.direction, point.radius),
+        };
+        let Towards {
+            direction,
+            distance,
+        } = receiver.towards;
+        // All of the ball around the centre.
+        let sin = (radius / distance).min(1.0);
+        let (right, up) = across.any_orthonormal_pair();
         Self {
-            centre,
-            across,
+            centre: direction * distance,
+            across: [right * radius, up * radius],
+            is_place: true,
             cone: Cone {
-                axis: centre,
-                sin: angle.sin(),
-                cos: angle.cos(),
+                axis: direction,
+                sin,
+                cos: (1.0 - sin * sin).sqrt(),
             },
         }
     }
 
-    /// Unit vector to a point of the unit disk.
-    fn towards(&self, [x, y]: [f64; 2]) -> DVec3 {
-        (self.centre + self.across[0] * x + self.across[1] * y).normalize()
+    /// The way to a point of the unit disk.
+    fn towards(&self, [x, y]: [f64; 2]) -> Towards {
+        let way = self.centre + self.across[0] * x + self.across[1] * y;
+        Towards {
+            direction: way.normalize(),
+            distance: match self.is_place {
+                true => way.length() * (1.0 - LIGHT_GAP),
+                false => f64::INFINITY,
+            },
+        }
     }
 }
 
@@ -105,11 +140,12 @@ impl Oracle<'_> {
     pub fn right_answer(
         &self,
         camera: &Camera,
-        light: &DirectionalLight,
+        light: impl Into<LightKind>,
         primitives: &[u32],
         (mode, samples): (OracleMode, u32),
         progress: Progress,
     ) -> Result<RightAnswer, Error> {
+        let light = light.into();
         if light.has_extent() {
             let answer = self.shade_area(camera, light, primitives, (mode, samples), progress)?;
             let (reference, area) = (answer.0, Some(answer.1));
@@ -134,18 +170,17 @@ impl Oracle<'_> {
     pub fn shade_area(
         &self,
         camera: &Camera,
-        light: &DirectionalLight,
+        light: impl Into<LightKind>,
         primitives: &[u32],
         (mode, samples): (OracleMode, u32),
         progress: Progress,
     ) -> Result<(Reference, AreaVisibility), Error> {
         check_pixel_count("primitives", camera.viewport, primitives.len())?;
-        self.check(light, mode)?;
-        let emitter = Emitter::directional(light);
+        let light = light.into();
+        self.check(&light, mode)?;
         let strata = Strata::new(samples.div_ceil(2).max(2));
         let pixels = per_pixel(camera.viewport, progress, |x, y, stack| {
-            let receiver =
-                Receiver::of_pixel(self.mesh, primitives, camera, [x, y], emitter.centre)?;
+            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, [x, y], &light)?;
             let Some(receiver) = receiver else {
                 return Ok((Answer::BACKGROUND, [0.0; 2]));
             };
@@ -153,6 +188,7 @@ impl Oracle<'_> {
             if answer.class == Class::FacingAway {
                 return Ok((answer, [0.0; 2]));
             }
+            let emitter = Emitter::seen_from(&light, &receiver);
             let of = self.share(&emitter, &strata, &receiver, mode, [x, y], stack);
             if of[0] < 0.5 {
                 answer.class = Class::Shadow;
@@ -178,7 +214,7 @@ impl Oracle<'_> {
         pixel: [u32; 2],
         stack: &mut Vec<u32>,
     ) -> [f64; 2] {
-        let (origin, excluded) = mode.ray(receiver, emitter.centre);
+        let (origin, _, excluded) = mode.ray(receiver);
         let mut casters: Vec<Caster> = Vec::new();
         self.tree.within(origin, &emitter.cone, stack, |caster| {
             if caster.primitive != excluded {
@@ -193,14 +229,14 @@ impl Oracle<'_> {
             return [1.0, 0.0];
         }
         let max_distance = self.tree.max_distance(origin);
-        let mut is_seen = |direction: DVec3| {
+        let mut is_seen = |way: Towards| {
             if casters.len() > MOST_CASTERS {
-                return !self.occluded(origin, direction, excluded, stack);
+                return !self.occluded(origin, way, excluded, stack);
             }
-            let ray = Ray::new(origin, direction, max_distance, 0.0);
+            let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
             let blocks = |caster: &Caster| {
                 ray.hit(&caster.corners)
-                    .is_some_and(|hit| hit.t > ray.nearest)
+                    .is_some_and(|hit| ray.reaches(hit.t))
             };
             let blocker = casters.iter().position(blocks);
             // What blocks one ray is likely to block the next.

@@ -161,7 +161,7 @@ impl<'a> Tree<'a> {
         mut visit: impl FnMut(&Caster, &mut f64) -> ControlFlow<()>,
     ) {
         let nodes = &self.bvh.nodes;
-        let mut t_max = f64::INFINITY;
+        let mut t_max = ray.far_side();
         stack.clear();
         if nodes
             .first()

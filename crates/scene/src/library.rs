@@ -3,7 +3,7 @@
 use crate::{
     camera::View,
     error::SceneError,
-    light::DirectionalLight,
+    light_kind::Light,
     limit::Limit,
     obj::{
         options::{ObjOptions, QuadDiagonal},
@@ -53,7 +53,7 @@ pub struct ObjSetup {
     /// The only view.
     pub view: View,
     /// The light.
-    pub light: DirectionalLight,
+    pub light: Light,
     /// How polygons are split.
     pub quads: QuadDiagonal,
 }
@@ -270,7 +270,7 @@ impl SceneLibrary {
                 name: scene.name,
                 mesh,
                 views: scene.views,
-                light: scene.light,
+                lights: scene.lights,
             },
             report,
         ))
@@ -331,7 +331,7 @@ fn load_bare_obj(
             name,
             mesh,
             views: vec![setup.view.clone()],
-            light: setup.light,
+            lights: vec![setup.light.clone()],
         },
         report,
     ))

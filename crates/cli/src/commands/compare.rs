@@ -75,7 +75,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         cached_frames: args.cached_frames.unwrap_or(args.frames),
         runs: Vec::new(),
     };
-    let mut fingerprint = primary.fingerprint.with_scene(&scene.mesh, &scene.light);
+    let mut fingerprint = primary.fingerprint.with_scene(&scene.mesh, &scene.lights);
     if views.iter().any(|view| scene.light_of(view).has_extent()) {
         fingerprint = fingerprint.with_text(&args.reference_samples.to_string());
     }

@@ -101,7 +101,7 @@ pub fn placeholder(viewport: [u32; 2]) -> SceneProvider {
         name: "check".into(),
         mesh,
         views: vec![view.clone()],
-        light,
+        lights: vec![light.into()],
     };
     let mut provider = SceneProvider::new(Arc::new(scene));
     provider.set_view(&view, viewport);

@@ -229,7 +229,7 @@ impl<'a> Comparison<'a> {
             mode: self.args.oracle,
             samples: self.args.reference_samples,
         };
-        let light = scene.light_of(view);
+        let light = self.provider.light();
         let judge = Judge::new(oracle.clone(), camera, light, ids, tracing, &what)?;
         if let Some(folder) = self.pictures() {
             save_reference(folder, &view.name, &judge.right)?;

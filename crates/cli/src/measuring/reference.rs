@@ -14,7 +14,7 @@ use skiagraph_passes::registry;
 use skiagraph_reference::{
     BlockerCounts, Error, Oracle, OracleMode, Progress, Reference, RightAnswer, Statistics,
 };
-use skiagraph_scene::{Camera, DirectionalLight};
+use skiagraph_scene::{Camera, LightKind};
 use std::rc::Rc;
 
 /// The graph that every comparison draws first, as far as its output `primitive` needs: which one
@@ -102,7 +102,7 @@ pub struct Tracing {
 pub struct Judge<'a> {
     oracle: Rc<Oracle<'a>>,
     camera: Camera,
-    light: DirectionalLight,
+    light: LightKind,
     primitives: Vec<u32>,
     mode: OracleMode,
     /// The right answer.
@@ -117,7 +117,7 @@ impl<'a> Judge<'a> {
     pub fn new(
         oracle: Rc<Oracle<'a>>,
         camera: Camera,
-        light: DirectionalLight,
+        light: LightKind,
         primitives: Vec<u32>,
         tracing: Tracing,
         what: &str,
@@ -171,7 +171,7 @@ impl<'a> Judge<'a> {
 pub fn right_answer(
     oracle: &Oracle,
     camera: &Camera,
-    light: &DirectionalLight,
+    light: &LightKind,
     primitives: &[u32],
     Tracing { mode, samples }: Tracing,
     rows_done: &(dyn Fn(u64) + Sync),

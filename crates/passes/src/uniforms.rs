@@ -183,8 +183,8 @@ fn across(forward: DVec3) -> (DVec3, DVec3) {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LightAreaUniform {
-    /// From the light's centre to its rim, of a directional light at distance 1; 0 of a point light,
-    /// whose disk faces each receiver.
+    /// From the light's centre to its rim, of a directional light at distance 1; 0 of a point
+    /// light, whose disk faces each receiver.
     pub right: Vec3,
     /// Radius of the disk that `right` and `up` span; 0 for a light without extent.
     pub radius: f32,

@@ -80,8 +80,8 @@ fn broken_files_are_explained_with_line_and_column() {
         light's angle_degrees is 180; expected at least 0 and less than 180, the angle that it \
         takes up in the sky");
     assert_snapshot!(own_light("direction: (0, 1, 0), angle_degrees: -1"), @"garden.ron:7:145: \
-        view \"a\": the light's angle_degrees is -1; expected at least 0 and less than 180, the angle \
-        that it takes up in the sky");
+        view \"a\": the light's angle_degrees is -1; expected at least 0 and less than 180, the \
+        angle that it takes up in the sky");
     assert_snapshot!(error("direction: (0, 0, 1)", "direction: (0, NaN, 1)"), @"garden.ron:7:97: \
         view \"a\": direction [0, NaN, 1] and up [0, 1, 0] must be finite and longer than 0");
     assert_snapshot!(error("direction: (0, 0, 1)", "direction: (0, -2, 0)"), @"garden.ron:7:96: \

@@ -204,6 +204,31 @@ impl Oracle<'_> {
         Ok((Reference::of(camera.viewport, &answers), area))
     }
 
+    /// Those that could stand in the light's cone; `None` if they are many, or the receiver is within
+    /// the light's own ball.
+    fn casters(
+        &self,
+        origin: DVec3,
+        cone: &Cone,
+        excluded: u32,
+        stack: &mut Vec<u32>,
+    ) -> Option<Vec<Caster>> {
+        if cone.sin >= 1.0 {
+            return None;
+        }
+        let mut casters = Vec::new();
+        self.tree.within(origin, cone, stack, |caster| {
+            if caster.primitive != excluded {
+                casters.push(*caster);
+            }
+            match casters.len() > MOST_CASTERS {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        });
+        (casters.len() <= MOST_CASTERS).then_some(casters)
+    }
+
     /// The share that a receiver sees, and its standard error.
     fn share(
         &self,
@@ -215,24 +240,15 @@ impl Oracle<'_> {
         stack: &mut Vec<u32>,
     ) -> [f64; 2] {
         let (origin, _, excluded) = mode.ray(receiver);
-        let mut casters: Vec<Caster> = Vec::new();
-        self.tree.within(origin, &emitter.cone, stack, |caster| {
-            if caster.primitive != excluded {
-                casters.push(*caster);
-            }
-            match casters.len() > MOST_CASTERS {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
-            }
-        });
-        if casters.is_empty() {
+        let mut casters = self.casters(origin, &emitter.cone, excluded, stack);
+        if casters.as_ref().is_some_and(Vec::is_empty) {
             return [1.0, 0.0];
         }
         let max_distance = self.tree.max_distance(origin);
         let mut is_seen = |way: Towards| {
-            if casters.len() > MOST_CASTERS {
+            let Some(casters) = &mut casters else {
                 return !self.occluded(origin, way, excluded, stack);
-            }
+            };
             let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
             let blocks = |caster: &Caster| {
                 ray.hit(&caster.corners)

@@ -11,7 +11,7 @@ var<storage, read_write> area_lights: array<LightSlot>;
 fn main(@builtin(local_invocation_index) point: u32) {
     const SEVENTH: f32 = 0.8975979;
     let angle = f32(point) * SEVENTH;
-    let rim = across_light(vec2(cos(angle), sin(angle)));
+    let rim = across_light(vec2(cos(angle), sin(angle)), light.to_light);
     area_lights[point].light = light_towards(select(rim, vec3(0.0), point == 0u));
 }
 
@@ -26,11 +26,10 @@ fn light_towards(offset: vec3<f32>) -> Light {
     let x = (rows[0] + shear.x * depth) / growth.x;
     let y = (rows[1] + shear.y * depth) / growth.y;
     let summed = (vec2(light.centre.w) + abs(shear) * (light.extent.w + 0.5)) / growth;
-    return Light(
-        transpose(mat4x4(x, y, rows[2], rows[3])),
-        normalize(light.to_light + offset),
-        light.max_distance,
-        vec4(light.centre.xyz, max(summed.x, summed.y)),
-        vec4(light.extent.xy * growth, light.extent.zw),
-    );
+    var seen = light;
+    seen.clip_from_relative = transpose(mat4x4(x, y, rows[2], rows[3]));
+    seen.to_light = normalize(light.to_light + offset);
+    seen.centre.w = max(summed.x, summed.y);
+    seen.extent = vec4(light.extent.xy * growth, light.extent.zw);
+    return seen;
 }

@@ -101,8 +101,8 @@ impl Image {
         })
     }
 
-    /// Where shares of light are off: blue = too light, red = too dark, the stronger the farther, at
-    /// [`FULL_COLOUR`] in full, over the reference's shares in dark grey; magenta = no number.
+    /// Where shares of light are off: blue = too light, red = too dark, the stronger the farther,
+    /// at [`FULL_COLOUR`] in full, over the reference's shares in dark grey; magenta = no number.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if a buffer does not fit the reference.

@@ -130,6 +130,31 @@ fn many_casters_are_searched_by_the_hierarchy_with_the_same_answer() {
     assert!(left(&whole).iter().any(|share| *share < 0.9));
 }
 
+/// A bulb so large that the floor is within its ball.
+#[test]
+fn a_receiver_within_the_lights_ball_asks_the_hierarchy() {
+    let mesh = half_plane();
+    let bulb = skiagraph_scene::PointLight {
+        position: DVec3::new(0.0, 2.0, 0.0),
+        radius: 3.0,
+    };
+    let camera = from_above(4.0, [40, 40]);
+    let oracle = Oracle::new(&mesh);
+    let primitives = oracle.primary(&camera, Progress::default()).unwrap();
+    let how = (OracleMode::Exact, 64);
+    let light = skiagraph_scene::LightKind::Point(bulb);
+    let answer = oracle.shade_area(&camera, light, &primitives, how, Progress::default());
+    let (reference, area) = answer.unwrap();
+    // From (-0.7, 0) the disk across (0.7, 2) is hidden from a fifth of its radius on.
+    let near = 20 * 40 + 16;
+    assert_eq!(reference.classes[near], Class::Lit);
+    assert!(
+        (left_of(0.2) - f64::from(area.shares[near])).abs() < 0.05,
+        "{}",
+        area.shares[near]
+    );
+}
+
 #[test]
 fn what_faces_away_from_the_lights_centre_sees_none_of_it() {
     let (reference, area) = area(&half_plane(), (DVec3::Y, 170.0), 16, OracleMode::Exact);

@@ -116,6 +116,16 @@ impl LightKind {
         }
     }
 
+    /// Whether it is an area, whose shadows have a penumbra.
+    pub fn has_extent(&self) -> bool {
+        match self {
+            Self::Directional(light) => light.has_extent(),
+            Self::Spot(SpotLight { radius, .. }) | Self::Point(PointLight { radius, .. }) => {
+                *radius > 0.0
+            }
+        }
+    }
+
     /// Where it is, unless it is infinitely far away.
     pub fn position(&self) -> Option<DVec3> {
         match self {

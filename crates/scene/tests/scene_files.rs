@@ -62,7 +62,8 @@ fn broken_files_are_explained_with_line_and_column() {
     assert_snapshot!(own_light("direction: (0, 0, 0)"), @"garden.ron:7:126: view \"a\": the \
         light's direction [0, 0, 0] must be finite and longer than 0");
     assert_snapshot!(own_light("towards: (0, 1, 0)"), @"garden.ron:7:105: Unexpected field named \
-        `towards` in `Light`, expected either `direction` or `angle_degrees` instead");
+        `towards` in `Light`, expected either `direction` or `angle_degrees` \
+        instead");
     assert_snapshot!(error("name: \"garden\",", ""), @"garden.ron:9:1: Unexpected missing field \
         named `name` in `SceneFile`");
     assert_snapshot!(error("format: 1", "format: 2"), @"garden.ron:2:13: format 2 is unknown; \
@@ -78,9 +79,9 @@ fn broken_files_are_explained_with_line_and_column() {
     assert_snapshot!(error("(0, -1, 0)", "(0, -1, 0), angle_degrees: 180"), @"garden.ron:5:54: the \
         light's angle_degrees is 180; expected at least 0 and less than 180, the angle that it \
         takes up in the sky");
-    assert_snapshot!(own_light("direction: (0, 1, 0), angle_degrees: -1"), @"garden.ron:7:145: view \
-        \"a\": the light's angle_degrees is -1; expected at least 0 and less than 180, the angle \
-        that it takes up in the sky");
+    assert_snapshot!(own_light("direction: (0, 1, 0), angle_degrees: -1"), @"garden.ron:7:145: \
+        view \"a\": the light's angle_degrees is -1; expected at least 0 and less than 180, the \
+        angle that it takes up in the sky");
     assert_snapshot!(error("direction: (0, 0, 1)", "direction: (0, NaN, 1)"), @"garden.ron:7:97: \
         view \"a\": direction [0, NaN, 1] and up [0, 1, 0] must be finite and longer than 0");
     assert_snapshot!(error("direction: (0, 0, 1)", "direction: (0, -2, 0)"), @"garden.ron:7:96: \

@@ -14,8 +14,8 @@ pub const REFERENCE_SAMPLES: u32 = 512;
 /// `skiagraph compare`.
 #[derive(Args, Debug)]
 pub struct CompareArgs {
-    /// Presets by name, or graphs (.ron) with the output `visibility`, and perhaps `status`. Without
-    /// any: all presets, those in ./pipelines and the built-in ones.
+    /// Presets by name, or graphs (.ron) with the output `visibility`, and perhaps `status`.
+    /// Without any: all presets, those in ./pipelines and the built-in ones.
     #[arg(value_name = "PRESET|FILE.ron")]
     pub presets: Vec<String>,
     /// What is drawn.
@@ -206,8 +206,8 @@ pub struct ProfileArgs {
 /// `skiagraph stress`.
 #[derive(Args, Debug)]
 pub struct StressArgs {
-    /// Presets by name, or graphs (.ron) with the output `visibility`, and perhaps `status`. Without
-    /// any: all presets, those in ./pipelines and the built-in ones.
+    /// Presets by name, or graphs (.ron) with the output `visibility`, and perhaps `status`.
+    /// Without any: all presets, those in ./pipelines and the built-in ones.
     #[arg(value_name = "PRESET|FILE.ron")]
     pub presets: Vec<String>,
     /// List the cases instead: names, casters, reasons. Needs no GPU.

@@ -18,7 +18,8 @@ use std::{
 
 /// The output from 0 in shadow to 1 in light.
 pub const VISIBILITY: &str = "visibility";
-/// The optional output with 0 background, 1 facing away, 2 certain light, 3 certain shadow, 4 uncertain.
+/// The optional output with 0 background, 1 facing away, 2 certain light, 3 certain shadow, 4
+/// uncertain.
 pub const STATUS: &str = "status";
 /// The optional output with the number of rays traced in the frame.
 pub const RAY_COUNT: &str = "ray_count";

@@ -1,7 +1,7 @@
 // Stage to compare each pixel's depth in light space with the nearest texel of the shadow map; a
 // full-screen triangle. Williams, "Casting Curved Shadows on Curved Surfaces", SIGGRAPH 1978.
 
-#import "shared/map_fit.wgsl"
+#import "shared/depth_bias.wgsl"
 #import "shared/receiver.wgsl"
 
 struct Params {
@@ -39,15 +39,5 @@ fn is_lit(receiver: vec3<f32>, n_dot_l: f32) -> bool {
     }
     let stored = textureLoad(shadow_map, vec2<u32>(place.xy), 0);
     // 1 is what the map was cleared to: no caster, however far.
-    return stored >= 1.0 || place.z <= stored + depth_bias(n_dot_l);
-}
-
-// The plane of the receiver rises by tan(angle to the light) per unit across; slope_bias counts in
-// texels of that rise.
-fn depth_bias(n_dot_l: f32) -> f32 {
-    // Units of the scene.
-    let extent = light.extent.xy;
-    let texel = 1.0 / vec2(length(map_fit.x.xy / extent), length(map_fit.y.xy / extent));
-    let slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0)) / n_dot_l;
-    return params.bias + params.slope_bias * slope * max(texel.x, texel.y) / light.extent.z;
+    return stored >= 1.0 || place.z <= stored + depth_bias(n_dot_l, params.bias, params.slope_bias);
 }

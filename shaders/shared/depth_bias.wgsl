@@ -1,0 +1,13 @@
+// What is added to a stored depth before a receiver is compared with it.
+
+#import "shared/map_fit.wgsl"
+
+// The plane of the receiver rises by tan(angle to the light) per unit across; `slope_bias` counts
+// in texels of that rise.
+fn depth_bias(n_dot_l: f32, bias: f32, slope_bias: f32) -> f32 {
+    // Units of the scene.
+    let extent = light.extent.xy;
+    let texel = 1.0 / vec2(length(map_fit.x.xy / extent), length(map_fit.y.xy / extent));
+    let slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0)) / n_dot_l;
+    return bias + slope_bias * slope * max(texel.x, texel.y) / light.extent.z;
+}

@@ -26,7 +26,7 @@ struct Large {
 var<uniform> params: Params;
 // As mark_receivers.wgsl and mark_tiles.wgsl have it.
 var<storage, read> farthest: array<u32>;
-// Of each texel.
+// Of each texel; the last one's head is LIST_FULL if a part of a large triangle had no room.
 var<storage, read_write> lists: array<List>;
 // Those included for which there is no room.
 var<storage, read_write> entry_count: atomic<u32>;
@@ -98,6 +98,7 @@ fn parts(thread: Thread) {
 fn append_part(part: Part) {
     let slot = atomicAdd(&large.count, 1u);
     if slot >= arrayLength(&large.parts) {
+        atomicStore(&lists[arrayLength(&lists) - 1u].head, LIST_FULL);
         return;
     }
     large.parts[slot] = part;
@@ -164,7 +165,7 @@ fn bin(caster: Caster, first: u32, end: u32, step: u32) {
             let bit = first_bit(texels);
             let centre = vec2<f32>(texel) + 0.5;
             let is_overlapped = all(inward_of(caster.triangle, centre) >= -caster.reach)
-                && depth_bits(least_depth(caster, centre)) <= farthest[texel_number(texel)];
+                && depth_bits(least_depth(caster, centre)) <= farthest[texel_number(binned_layer, texel)];
             overlapped |= select(vec2(0u), bit, is_overlapped);
             texels &= ~bit;
             if all(texels == vec2(0u)) {
@@ -177,7 +178,7 @@ fn bin(caster: Caster, first: u32, end: u32, step: u32) {
             let centre = vec2<f32>(texel) + 0.5;
             let inward = inward_of(caster.triangle, centre);
             let key = key_of(caster, least_depth(caster, centre), inward);
-            append(texel_number(texel), caster.primitive, key);
+            append(texel_number(binned_layer, texel), caster.primitive, key);
         }
     }
 }
@@ -202,7 +203,7 @@ fn least_depth(caster: Caster, centre: vec2<f32>) -> f32 {
 // A bit for each texel of the tile that is under the triangle's box and has a receiver in it; none
 // if the triangle is not in the tile, or farther from the light than all its receivers.
 fn texels_in(caster: Caster, tile: vec2<u32>) -> vec2<u32> {
-    let words = tile_number(tile);
+    let words = tile_number(binned_layer, tile);
     let middle = (vec2<f32>(tile) + 0.5) * f32(TILE);
     let depth = depth_bound(caster.plane, middle, 0.5 * f32(TILE), NEAREST);
     let may_shade = depth_bits(depth) <= farthest[words]

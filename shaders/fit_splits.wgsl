@@ -31,14 +31,15 @@ fn over_splits(@builtin(global_invocation_id) thread: vec3<u32>) {
         return;
     }
     let end = fit_end(params.fit_distance);
-    let axes = upright();
+    // Along the sides of light space, as the paper crops the light's own frustum.
+    let half = light.extent.xy;
+    let axes = Axes(vec2(half.x, 0.0), vec2(0.0, half.y));
     var around = around_frustum(
         axes,
         split_plane(split, splits, end),
         split_plane(split + 1u, splits, end),
     );
     // Of what is beside the scene nobody asks.
-    let half = vec2(abs(axes.u.x) + abs(axes.u.y), abs(axes.v.x) + abs(axes.v.y));
     let cut = Rectangle(max(around.low, -half), min(around.high, half));
     if all(cut.low < cut.high) {
         around = cut;

@@ -64,14 +64,14 @@ fn frustum_corner(corner: u32, begin: f32, end: f32) -> vec3<f32> {
     return camera.eye + distance * way;
 }
 
-// World units along the sides of upright rectangles, as seen from the light, per unit of clip x
-// and y.
-struct Upright {
+// World units along the sides of rectangles per unit of clip x and y.
+struct Axes {
     u: vec2<f32>,
     v: vec2<f32>,
 }
 
-fn upright() -> Upright {
+// Of upright rectangles, as seen from the light.
+fn upright() -> Axes {
     // Clip x and y to world units along the rectangle's sides.
     let matrix = transpose(light.clip_from_relative);
     let forward = -light.to_light;
@@ -82,7 +82,7 @@ fn upright() -> Upright {
     let clip_up = matrix[1].xyz * light.extent.y;
     let u = vec2(dot(right, clip_right), dot(right, clip_up)) * light.extent.xy;
     let v = vec2(dot(up, clip_right), dot(up, clip_up)) * light.extent.xy;
-    return Upright(u, v);
+    return Axes(u, v);
 }
 
 // A rectangle in those units.
@@ -92,7 +92,7 @@ struct Rectangle {
 }
 
 // Around the eye's frustum between two distances.
-fn around_frustum(axes: Upright, begin: f32, end: f32) -> Rectangle {
+fn around_frustum(axes: Axes, begin: f32, end: f32) -> Rectangle {
     var low = vec2(3e38);
     var high = vec2(-3e38);
     for (var corner = 0u; corner < 8u; corner++) {
@@ -104,7 +104,7 @@ fn around_frustum(axes: Upright, begin: f32, end: f32) -> Rectangle {
     return Rectangle(low, high);
 }
 
-fn fit_over_rectangle(axes: Upright, over: Rectangle, size: f32, rounding: f32) -> MapFit {
+fn fit_over_rectangle(axes: Axes, over: Rectangle, size: f32, rounding: f32) -> MapFit {
     let across = size / max(over.high - over.low, vec2(1e-30));
     let rows = mat2x2(axes.u * across.x, -axes.v * across.y);
     let scale = max(abs(rows[0].x) + abs(rows[0].y), abs(rows[1].x) + abs(rows[1].y));

@@ -57,7 +57,9 @@ fn presets_are_listed_by_name() {
             "light_buffer",
             "nsm",
             "nsm_d",
-            "rt"
+            "pssm",
+            "rt",
+            "tsm"
         ]
     );
 }

@@ -19,14 +19,12 @@ fn plan(path: &str, outputs: Option<&[&str]>) -> Plan {
         normal_indices: vec![[0; 3]],
         groups: vec![],
     };
-    let light = DirectionalLight {
-        direction: DVec3::NEG_Z,
-    };
+    let light = DirectionalLight::new(DVec3::NEG_Z);
     let provider = SceneProvider::new(Arc::new(Scene {
         name: "one".into(),
         mesh,
         views: vec![],
-        light,
+        lights: vec![light.into()],
     }));
     let mut request = PlanRequest::new([640, 480], &provider);
     request.features = wgpu::Features::all();
@@ -170,9 +168,7 @@ fn empty() -> Scene {
         name: "none".into(),
         mesh: Mesh::default(),
         views: vec![],
-        light: DirectionalLight {
-            direction: DVec3::NEG_Z,
-        },
+        lights: vec![DirectionalLight::new(DVec3::NEG_Z).into()],
     }
 }
 

@@ -53,9 +53,7 @@ fn scene() -> Arc<Scene> {
         name: "box".into(),
         mesh: support::meshes::mesh(positions, triangles),
         views: vec![view],
-        light: DirectionalLight {
-            direction: DVec3::new(-0.4, -1.0, 0.3),
-        },
+        lights: vec![DirectionalLight::new(DVec3::new(-0.4, -1.0, 0.3)).into()],
     })
 }
 
@@ -79,7 +77,7 @@ impl Truth {
 /// How near a border a ray must pass, as a share of the triangle, to count as unsure.
 fn truth(scene: &Scene, border: f64) -> Vec<Truth> {
     let camera = scene.views[0].camera(VIEWPORT);
-    let to_light = scene.light.to_light();
+    let to_light = scene.light().towards(glam::DVec3::ZERO).direction;
     let answer = |ray: &Ray, skip| {
         let outer = brute::hits(&scene.mesh, ray, skip, -border);
         let inner = brute::hits(&scene.mesh, ray, skip, border);

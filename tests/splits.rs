@@ -30,7 +30,7 @@ fn avenue(view: &str) -> Arc<Scene> {
     };
     let (mut scene, _) = SceneLibrary::default().load(&request).unwrap();
     let view = scene.view(view).unwrap().clone();
-    scene.light = view.light.unwrap_or(scene.light);
+    scene.lights = scene.lights_of(&view);
     scene.views = vec![view];
     Arc::new(scene)
 }
@@ -132,9 +132,7 @@ fn the_shaders_trapezoid_is_the_papers() {
         name: "none".into(),
         mesh: Mesh::default(),
         views: vec![],
-        light: DirectionalLight {
-            direction: DVec3::NEG_Y,
-        },
+        lights: vec![DirectionalLight::new(DVec3::NEG_Y).into()],
     };
     for focus in [0.05, 0.3, 0.95] {
         let mut provider = Extended::new(SceneProvider::new(Arc::new(scene.clone())));

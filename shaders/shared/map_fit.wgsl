@@ -61,6 +61,17 @@ fn is_outside_of(fit: MapFit, texel: vec2<f32>) -> bool {
     return !(all(texel >= vec2(0.0)) && all(texel < vec2(fit.size)));
 }
 
+// Of a spot light's map: all that is summed up, sizes alone, for x, y or w of a point in its cone,
+// per unit of w. A point light's faces take one coordinate each.
+fn light_spread() -> f32 {
+    if light_kind == LIGHT_POINT {
+        return 1.0;
+    }
+    let matrix = transpose(light.clip_from_relative);
+    let most = max(abs(matrix[0].xyz), max(abs(matrix[1].xyz), abs(matrix[3].xyz)));
+    return (most.x + most.y + most.z) / max(light.edge_cosine, 1e-3);
+}
+
 // What rounding may move a receiver and the corners of its casters by, together, in texels and in
 // depth: on the way to clip space, and from there on, 4 half ulps of all that is summed up. The map
 // may have been rounded itself; it is one for all. Of affine maps.
@@ -69,6 +80,11 @@ fn light_texel_error_bound(receiver: vec3<f32>) -> vec2<f32> {
 }
 
 fn texel_error_bound_of(fit: MapFit, receiver: vec3<f32>) -> vec2<f32> {
+    if light_kind != LIGHT_DIRECTIONAL {
+        // Of the receiver alone, where |x| and |y| are at most w: its casters differ in theirs.
+        let across = fit.scale * (2.0 + 4.0 * light_spread()) + fit.reach;
+        return CLIP_ROUNDING * vec2(across, 2.0 + 2.0 * light.max_distance / light.range);
+    }
     let summed = light_clip_summands(receiver);
     let across = fit.scale * summed.x + fit.reach;
     return CLIP_ROUNDING * vec2(across, summed.y + 2.0);

@@ -3,7 +3,7 @@
 use crate::{
     camera::View,
     error::SceneError,
-    light::DirectionalLight,
+    light_kind::Light,
     limit::Limit,
     obj::{
         options::{ObjOptions, QuadDiagonal},
@@ -32,6 +32,7 @@ const BUILT_IN: [(&str, &str); 6] = [
     ("city", include_str!("../../../scenes/city.ron")),
     ("forest", include_str!("../../../scenes/forest.ron")),
     ("park", include_str!("../../../scenes/park.ron")),
+    ("park_soft", include_str!("../../../scenes/park_soft.ron")),
     ("sponza", include_str!("../../../scenes/sponza.ron")),
 ];
 
@@ -53,7 +54,7 @@ pub struct ObjSetup {
     /// The only view.
     pub view: View,
     /// The light.
-    pub light: DirectionalLight,
+    pub light: Light,
     /// How polygons are split.
     pub quads: QuadDiagonal,
 }
@@ -270,7 +271,7 @@ impl SceneLibrary {
                 name: scene.name,
                 mesh,
                 views: scene.views,
-                light: scene.light,
+                lights: scene.lights,
             },
             report,
         ))
@@ -331,7 +332,7 @@ fn load_bare_obj(
             name,
             mesh,
             views: vec![setup.view.clone()],
-            light: setup.light,
+            lights: vec![setup.light.clone()],
         },
         report,
     ))

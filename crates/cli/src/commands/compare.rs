@@ -82,7 +82,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         viewports: &viewports,
         methods: &methods,
         primary: &primary,
-        fingerprint: primary.fingerprint.with_scene(&scene.mesh, &scene.light),
+        fingerprint: primary.fingerprint.with_scene(&scene.mesh, &scene.lights),
     };
     let mut comparison = Comparison::new(args, setup, provider, published, results)?;
     interrupt::install()?;

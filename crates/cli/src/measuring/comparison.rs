@@ -225,7 +225,7 @@ impl<'a> Comparison<'a> {
         let ids = primary.ids(self.setup.gpu, viewport, &mut self.provider)?;
         step.end();
         let (camera, mode) = (view.camera(viewport), self.args.oracle);
-        let light = scene.light_of(view);
+        let light = self.provider.light();
         let judge = Judge::new(oracle.clone(), camera, light, ids, mode, &what)?;
         if let Some(folder) = self.pictures() {
             save_reference(folder, &view.name, &judge.reference)?;

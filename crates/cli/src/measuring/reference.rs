@@ -14,7 +14,7 @@ use skiagraph_passes::registry;
 use skiagraph_reference::{
     BlockerCounts, Error, Oracle, OracleMode, Progress, Reference, Statistics,
 };
-use skiagraph_scene::{Camera, DirectionalLight};
+use skiagraph_scene::{Camera, LightKind};
 use std::rc::Rc;
 
 /// The graph that every comparison draws first, as far as its output `primitive` needs: which one
@@ -93,7 +93,7 @@ pub fn own_counts(reference: &Reference) -> Statistics {
 pub struct Judge<'a> {
     oracle: Rc<Oracle<'a>>,
     camera: Camera,
-    light: DirectionalLight,
+    light: LightKind,
     primitives: Vec<u32>,
     mode: OracleMode,
     /// The right answer.
@@ -108,7 +108,7 @@ impl<'a> Judge<'a> {
     pub fn new(
         oracle: Rc<Oracle<'a>>,
         camera: Camera,
-        light: DirectionalLight,
+        light: LightKind,
         primitives: Vec<u32>,
         mode: OracleMode,
         what: &str,
@@ -162,7 +162,7 @@ impl<'a> Judge<'a> {
 pub fn shade(
     oracle: &Oracle,
     camera: &Camera,
-    light: &DirectionalLight,
+    light: &LightKind,
     primitives: &[u32],
     mode: OracleMode,
     rows_done: &(dyn Fn(u64) + Sync),

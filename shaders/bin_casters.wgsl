@@ -26,7 +26,7 @@ struct Large {
 var<uniform> params: Params;
 // As mark_receivers.wgsl and mark_tiles.wgsl have it.
 var<storage, read> farthest: array<u32>;
-// Of each texel.
+// Of each texel; the last one's head is LIST_FULL if a part of a large triangle had no room.
 var<storage, read_write> lists: array<List>;
 // Those included for which there is no room.
 var<storage, read_write> entry_count: atomic<u32>;
@@ -53,6 +53,8 @@ struct Caster {
     // How far the centre of a texel that the triangle overlaps may be beyond the lines of ab, bc
     // and ca, times their lengths.
     reach: vec3<f32>,
+    // What a texel is taken larger by on each side: SLACK, and more near a light.
+    slack: f32,
 }
 
 struct Thread {
@@ -98,6 +100,7 @@ fn parts(thread: Thread) {
 fn append_part(part: Part) {
     let slot = atomicAdd(&large.count, 1u);
     if slot >= arrayLength(&large.parts) {
+        atomicStore(&lists[arrayLength(&lists) - 1u].head, LIST_FULL);
         return;
     }
     large.parts[slot] = part;
@@ -107,26 +110,101 @@ fn append_part(part: Part) {
 }
 
 fn caster_of(primitive: u32) -> Caster {
-    var triangle = light_triangle(primitive);
+    if light_kind != LIGHT_DIRECTIONAL {
+        return caster_of_face(primitive);
+    }
+    let triangle = light_triangle(primitive);
+    return caster_over(primitive, triangle, depth_plane(triangle), SLACK);
+}
+
+fn caster_over(
+    primitive: u32,
+    projected: LightTriangle,
+    plane: DepthPlane,
+    slack: f32,
+) -> Caster {
+    var triangle = projected;
     if triangle.area < 0.0 {
         triangle = LightTriangle(triangle.a, triangle.c, triangle.b, -triangle.area);
     }
     let a = triangle.a;
     let b = triangle.b;
     let c = triangle.c;
-    let low = floor(min(a.xy, min(b.xy, c.xy)) - SLACK);
-    let high = floor(max(a.xy, max(b.xy, c.xy)) + SLACK);
+    let low = floor(min(a.xy, min(b.xy, c.xy)) - slack);
+    let high = floor(max(a.xy, max(b.xy, c.xy)) + slack);
     let end = map_fit.size - 1.0;
     let is_beside = any(high < vec2(0.0)) || any(low > vec2(end));
     let first = select(vec2<u32>(max(low, vec2(0.0))), vec2(1u), is_beside);
     let last = select(vec2<u32>(min(high, vec2(end))), vec2(0u), is_beside);
-    let plane = depth_plane(triangle);
-    let reach = vec3(reach_of(b.xy - a.xy), reach_of(c.xy - b.xy), reach_of(a.xy - c.xy));
-    return Caster(primitive, triangle, plane, first, last, depth_bits(plane.least), reach);
+    let reach = vec3(
+        reach_of(b.xy - a.xy, slack),
+        reach_of(c.xy - b.xy, slack),
+        reach_of(a.xy - c.xy, slack),
+    );
+    return Caster(primitive, triangle, plane, first, last, depth_bits(plane.least), reach, slack);
 }
 
-fn reach_of(edge: vec2<f32>) -> f32 {
-    return (0.5 + SLACK) * (abs(edge.x) + abs(edge.y));
+// In a face of a spot or point light's map: where the corners are projected to, if all are before
+// the light; depths are those of the corners, since a plane's are not linear there.
+fn caster_of_face(primitive: u32) -> Caster {
+    let a = light_homogeneous(corner_position(3u * primitive), binned_layer);
+    let b = light_homogeneous(corner_position(3u * primitive + 1u), binned_layer);
+    let c = light_homogeneous(corner_position(3u * primitive + 2u), binned_layer);
+    let least = saturate(min(a.z, min(b.z, c.z)));
+    let greatest = saturate(max(a.z, max(b.z, c.z)));
+    let nearest = min(a.w, min(b.w, c.w));
+    // What projection makes of rounding, and of what the tracer takes to be on an edge: 8 half ulps
+    // of the longest way there is, seen from the nearest corner.
+    let aside = max(farthest_aside(a), max(farthest_aside(b), farthest_aside(c)));
+    let rounding = 8.0 * HALF_ULP * light.max_distance / nearest
+        + CLIP_ROUNDING * (2.0 + 4.0 * light_spread()) * (1.0 + aside) * (1.0 + aside);
+    let slack = SLACK + map_fit.scale * rounding;
+    if !(nearest > 0.0 && slack < 0.125 * map_fit.size) {
+        let plane = DepthPlane(vec3(0.0), vec2(0.0), -1.0, least, greatest);
+        return caster_of_whole_face(primitive, a, b, c, plane);
+    }
+    let p = face_texel(a);
+    let q = face_texel(b);
+    let r = face_texel(c);
+    let triangle = LightTriangle(p, q, r, cross_2d(q.xy - p.xy, r.xy - p.xy));
+    return caster_over(primitive, triangle, DepthPlane(p, vec2(0.0), -1.0, least, greatest), slack);
+}
+
+fn face_texel(seen: vec4<f32>) -> vec3<f32> {
+    let across = vec3(seen.xy / seen.w, 1.0);
+    return vec3(dot(map_fit.x.xyz, across), dot(map_fit.y.xyz, across), seen.z);
+}
+
+fn farthest_aside(seen: vec4<f32>) -> f32 {
+    return max(abs(seen.x), abs(seen.y)) / seen.w;
+}
+
+// A triangle that reaches behind the light, or nearly to it, has no corners to speak of: it may be
+// anywhere in the face, unless it is beside it as a whole.
+fn caster_of_whole_face(
+    primitive: u32,
+    a: vec4<f32>,
+    b: vec4<f32>,
+    c: vec4<f32>,
+    plane: DepthPlane,
+) -> Caster {
+    // Beyond one of the planes x = w, x = -w, y = w, y = -w, by more than rounding.
+    let room = 2.0 * CLIP_ROUNDING * (1.0 + light_spread()) * light.range
+        + 8.0 * HALF_ULP * light.max_distance;
+    let wide = (1.0 + 2.0 / map_fit.size) * vec3(a.w, b.w, c.w) + room;
+    let x = vec3(a.x, b.x, c.x);
+    let y = vec3(a.y, b.y, c.y);
+    let is_beside = all(x > wide) || all(-x > wide) || all(y > wide) || all(-y > wide)
+        || all(vec3(a.w, b.w, c.w) < vec3(-room));
+    let first = select(vec2(0u), vec2(1u), is_beside);
+    let last = select(vec2(u32(map_fit.size) - 1u), vec2(0u), is_beside);
+    let nowhere = LightTriangle(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
+    let least = depth_bits(plane.least);
+    return Caster(primitive, nowhere, plane, first, last, least, vec3(3e38), SLACK);
+}
+
+fn reach_of(edge: vec2<f32>, slack: f32) -> f32 {
+    return (0.5 + slack) * (abs(edge.x) + abs(edge.y));
 }
 
 // Columns and rows of tiles under its box.
@@ -164,7 +242,7 @@ fn bin(caster: Caster, first: u32, end: u32, step: u32) {
             let bit = first_bit(texels);
             let centre = vec2<f32>(texel) + 0.5;
             let is_overlapped = all(inward_of(caster.triangle, centre) >= -caster.reach)
-                && depth_bits(least_depth(caster, centre)) <= farthest[texel_number(texel)];
+                && depth_bits(least_depth(caster, centre)) <= farthest[texel_number(binned_layer, texel)];
             overlapped |= select(vec2(0u), bit, is_overlapped);
             texels &= ~bit;
             if all(texels == vec2(0u)) {
@@ -177,7 +255,7 @@ fn bin(caster: Caster, first: u32, end: u32, step: u32) {
             let centre = vec2<f32>(texel) + 0.5;
             let inward = inward_of(caster.triangle, centre);
             let key = key_of(caster, least_depth(caster, centre), inward);
-            append(texel_number(texel), caster.primitive, key);
+            append(texel_number(binned_layer, texel), caster.primitive, key);
         }
     }
 }
@@ -202,7 +280,7 @@ fn least_depth(caster: Caster, centre: vec2<f32>) -> f32 {
 // A bit for each texel of the tile that is under the triangle's box and has a receiver in it; none
 // if the triangle is not in the tile, or farther from the light than all its receivers.
 fn texels_in(caster: Caster, tile: vec2<u32>) -> vec2<u32> {
-    let words = tile_number(tile);
+    let words = tile_number(binned_layer, tile);
     let middle = (vec2<f32>(tile) + 0.5) * f32(TILE);
     let depth = depth_bound(caster.plane, middle, 0.5 * f32(TILE), NEAREST);
     let may_shade = depth_bits(depth) <= farthest[words]
@@ -247,7 +325,8 @@ fn key_of(caster: Caster, depth: f32, inward: vec3<f32>) -> u32 {
     if longest == 0.0 {
         return entry_key(depth, vec2(1.0, 0.0), 1.0);
     }
-    return entry_key(depth, vec2(-edge.y, edge.x) / longest, distance / longest);
+    let room = 2.0 * (caster.slack - SLACK);
+    return entry_key(depth, vec2(-edge.y, edge.x) / longest, distance / longest + room);
 }
 
 fn append(texel: u32, primitive: u32, key: u32) {

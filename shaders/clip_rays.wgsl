@@ -2,11 +2,12 @@
 // to hit between there and the light. One thread per ray. Hertel, Hormann, Westermann 2009 start
 // their traversal at that depth.
 
-#import "shared/light_triangle.wgsl"
+#import "shared/map_layers.wgsl"
+#import "shared/predicates.wgsl"
 #import "shared/groups.wgsl"
 #import "shared/ray.wgsl"
 
-var nearest: texture_depth_2d;
+var nearest: texture_depth_2d_array;
 var<storage, read> ray_count: u32;
 var<storage, read_write> rays: array<Ray>;
 
@@ -16,13 +17,15 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     if slot >= ray_count {
         return;
     }
-    let place = light_texel(rays[slot].origin);
-    let error = light_texel_error_bound(rays[slot].origin);
+    let layer = layer_of(rays[slot].origin);
+    let fit = fit_of(layer);
+    let place = texel_of(fit, rays[slot].origin);
+    let error = texel_error_bound_of(fit, rays[slot].origin);
     // A ray whose origin may lie in another texel than it seems is not clipped.
-    if is_outside(place.xy) || error.x > SLACK {
+    if is_outside_of(fit, place.xy) || error.x > SLACK {
         return;
     }
-    let stored = textureLoad(nearest, vec2<u32>(place.xy), 0);
+    let stored = textureLoad(nearest, vec2<u32>(place.xy), layer, 0);
     // 0 may stand for something before the near plane, however near to the light.
     if stored <= 0.0 {
         return;

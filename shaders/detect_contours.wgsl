@@ -3,6 +3,7 @@
 // Ernst, Stamminger, "A Hybrid GPU-CPU Renderer", 2005.
 
 #import "shared/footprint.wgsl"
+#import "shared/map_layers.wgsl"
 #import "shared/receiver.wgsl"
 
 struct Params {
@@ -11,7 +12,7 @@ struct Params {
 }
 
 var<uniform> params: Params;
-var shadow_map: texture_depth_2d;
+var shadow_maps: texture_depth_2d_array;
 var visibility: texture_storage_2d<r32uint, write>;
 var status: texture_storage_2d<r32uint, write>;
 
@@ -31,16 +32,18 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
 }
 
 fn compare(receiver: vec3<f32>) -> u32 {
-    let place = light_texel(receiver);
-    if is_outside(place.xy) {
+    let layer = layer_of(receiver);
+    let fit = fit_of(layer);
+    let place = texel_of(fit, receiver);
+    if is_outside_of(fit, place.xy) {
         return STATUS_UNCERTAIN;
     }
-    let asked = footprint(place.xy, params.footprint);
+    let asked = footprint(fit, place.xy, params.footprint);
     var lit = true;
     var shadowed = true;
     for (var y = asked.first.y; y <= asked.last.y; y += asked.step) {
         for (var x = asked.first.x; x <= asked.last.x; x += asked.step) {
-            let stored = textureLoad(shadow_map, vec2(x, y), 0);
+            let stored = textureLoad(shadow_maps, vec2(x, y), layer, 0);
             // 1 is what the map was cleared to: no caster, however far.
             let is_lit = stored >= 1.0 || place.z <= stored + params.bias;
             lit &= is_lit;

@@ -38,7 +38,10 @@ fn compare(receiver: vec3<f32>) -> u32 {
     var shadowed = true;
     for (var point = 0u; point < arrayLength(&area_lights); point++) {
         let relative = vec4(receiver - light.centre.xyz, 1.0);
-        let place = texel_of_clip((area_lights[point].light.clip_from_relative * relative).xyz);
+        let place = texel_of_clip(
+            map_fit,
+            (area_lights[point].light.clip_from_relative * relative).xyz,
+        );
         if is_outside(place.xy) {
             return STATUS_UNCERTAIN;
         }

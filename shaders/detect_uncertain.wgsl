@@ -2,8 +2,9 @@
 // one thread per pixel. Both say light, or both shadow, in each texel asked: certain. Otherwise,
 // and outside the map: uncertain. Hertel, Hormann, Westermann 2009.
 
-#import "shared/light_triangle.wgsl"
+#import "shared/predicates.wgsl"
 #import "shared/footprint.wgsl"
+#import "shared/map_layers.wgsl"
 #import "shared/receiver.wgsl"
 
 struct Params {
@@ -11,8 +12,8 @@ struct Params {
 }
 
 var<uniform> params: Params;
-var outer: texture_depth_2d;
-var inner: texture_depth_2d;
+var outer: texture_depth_2d_array;
+var inner: texture_depth_2d_array;
 var visibility: texture_storage_2d<r32uint, write>;
 var status: texture_storage_2d<r32uint, write>;
 
@@ -32,21 +33,23 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
 }
 
 fn compare(receiver: vec3<f32>) -> u32 {
-    let place = light_texel(receiver);
-    let error = light_texel_error_bound(receiver);
+    let layer = layer_of(receiver);
+    let fit = fit_of(layer);
+    let place = texel_of(fit, receiver);
+    let error = texel_error_bound_of(fit, receiver);
     // What may lie in another texel than it seems, even one grown by the slack, is not compared.
-    if is_outside(place.xy) || error.x > SLACK {
+    if is_outside_of(fit, place.xy) || error.x > SLACK {
         return STATUS_UNCERTAIN;
     }
     let far = place.z + error.y;
     let near = place.z - error.y;
-    let asked = footprint(place.xy, params.footprint);
+    let asked = footprint(fit, place.xy, params.footprint);
     var lit = true;
     var shadowed = true;
     for (var y = asked.first.y; y <= asked.last.y; y += asked.step) {
         for (var x = asked.first.x; x <= asked.last.x; x += asked.step) {
-            let in_outer = textureLoad(outer, vec2(x, y), 0);
-            let in_inner = textureLoad(inner, vec2(x, y), 0);
+            let in_outer = textureLoad(outer, vec2(x, y), layer, 0);
+            let in_inner = textureLoad(inner, vec2(x, y), layer, 0);
             // 1 is what both were cleared to: no caster, however far.
             lit &= (in_outer >= 1.0 || far <= in_outer) && (in_inner >= 1.0 || far <= in_inner);
             shadowed &= in_outer < 1.0 && near > in_outer && in_inner < 1.0 && near > in_inner;
@@ -54,7 +57,7 @@ fn compare(receiver: vec3<f32>) -> u32 {
     }
     if params.footprint == FOOTPRINT_CORNERS {
         // The dissertation's fifth tap of both layers reads the outer one, at the place itself.
-        let in_outer = textureLoad(outer, vec2<u32>(place.xy), 0);
+        let in_outer = textureLoad(outer, vec2<u32>(place.xy), layer, 0);
         lit &= in_outer >= 1.0 || far <= in_outer;
         shadowed &= in_outer < 1.0 && near > in_outer;
     }

@@ -10,8 +10,9 @@ var<storage, read_write> farthest: array<u32>;
 fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
     let size = u32(map_fit.size);
     let columns = (size + TILE - 1u) / TILE;
-    let tile = vec2(thread.x % columns, thread.x / columns);
-    if tile.y >= columns {
+    let layer = thread.x / (columns * columns);
+    let tile = vec2(thread.x % columns, thread.x / columns % columns);
+    if layer >= map_layers {
         return;
     }
     var depth = 0u;
@@ -21,14 +22,14 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
         for (var column = 0u; column < TILE; column++) {
             let texel = tile * TILE + vec2(column, row);
             if all(texel < vec2(size)) {
-                let texel_depth = farthest[texel_number(texel)];
+                let texel_depth = farthest[texel_number(layer, texel)];
                 depth = max(depth, texel_depth);
                 taken_in_row |= select(0u, 1u << column, texel_depth != 0u);
             }
         }
         taken[row / 4u] |= taken_in_row << (8u * (row % 4u));
     }
-    let words = tile_number(tile);
+    let words = tile_number(layer, tile);
     farthest[words] = depth;
     farthest[words + 1u] = taken.x;
     farthest[words + 2u] = taken.y;

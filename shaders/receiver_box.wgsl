@@ -1,35 +1,54 @@
-// Stage to find the box, across light space, around the receivers that face the light; one thread
-// per pixel.
+// Stage to find the box, across light space, around the receivers that face the light, of each
+// layer of the map; one thread per pixel.
 
 #import "shared/receiver.wgsl"
-#import "shared/light.wgsl"
+#import "shared/map_layers.wgsl"
 
-// Bits of f32 from 0 to 1, which are in the order of the numbers: the greatest x, y, 1 - x and
-// 1 - y in shares of the scene's edge. All 0 if there is no receiver.
+// Of each layer bits of f32 from 0 to 1, which are in the order of the numbers: the greatest x, y,
+// 1 - x and 1 - y in shares of the scene's edge. All 0 if there is no receiver.
 var<storage, read_write> receiver_box: array<atomic<u32>, 4>;
+var<storage, read_write> receiver_boxes: array<array<atomic<u32>, 4>>;
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
-    let pixel = thread.xy;
-    if any(pixel >= textureDimensions(position)) {
-        return;
-    }
-    let receiver = textureLoad(position, pixel, 0);
+    let receiver = receiver_of(thread.xy);
     if !faces_light(receiver) {
         return;
     }
-    let clip = light_clip(receiver.xyz);
-    let at = vec2(clip.x, -clip.y) * 0.5 + 0.5;
-    raise(0u, at.x);
-    raise(1u, at.y);
-    raise(2u, 1.0 - at.x);
-    raise(3u, 1.0 - at.y);
+    let shares = shares_of(receiver.xyz);
+    for (var side = 0u; side < 4u; side++) {
+        // Asked first: hardly any of many receivers needs to queue.
+        if atomicLoad(&receiver_box[side]) < shares[side] {
+            atomicMax(&receiver_box[side], shares[side]);
+        }
+    }
 }
 
-fn raise(side: u32, share: f32) {
-    let bits = bitcast<u32>(abs(saturate(share)));
-    // Asked first: hardly any of many receivers needs to queue.
-    if atomicLoad(&receiver_box[side]) < bits {
-        atomicMax(&receiver_box[side], bits);
+@compute @workgroup_size(8, 8)
+fn of_layers(@builtin(global_invocation_id) thread: vec3<u32>) {
+    let receiver = receiver_of(thread.xy);
+    if !faces_light(receiver) {
+        return;
     }
+    let layer = layer_of(receiver.xyz);
+    let shares = shares_of(receiver.xyz);
+    for (var side = 0u; side < 4u; side++) {
+        if atomicLoad(&receiver_boxes[layer][side]) < shares[side] {
+            atomicMax(&receiver_boxes[layer][side], shares[side]);
+        }
+    }
+}
+
+// Nobody's beyond the image.
+fn receiver_of(pixel: vec2<u32>) -> vec4<f32> {
+    if any(pixel >= textureDimensions(position)) {
+        return vec4(0.0);
+    }
+    return textureLoad(position, pixel, 0);
+}
+
+fn shares_of(receiver: vec3<f32>) -> vec4<u32> {
+    let clip = light_clip(receiver);
+    let at = vec2(clip.x, -clip.y) * 0.5 + 0.5;
+    return bitcast<vec4<u32>>(abs(saturate(vec4(at, 1.0 - at))));
 }

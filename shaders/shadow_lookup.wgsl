@@ -1,7 +1,8 @@
 // Stage to compare each pixel's depth in light space with the nearest texel of the shadow map; a
 // full-screen triangle. Williams, "Casting Curved Shadows on Curved Surfaces", SIGGRAPH 1978.
 
-#import "shared/map_fit.wgsl"
+#import "shared/depth_bias.wgsl"
+#import "shared/map_layers.wgsl"
 #import "shared/receiver.wgsl"
 
 struct Params {
@@ -10,7 +11,7 @@ struct Params {
 }
 
 var<uniform> params: Params;
-var shadow_map: texture_depth_2d;
+var shadow_maps: texture_depth_2d_array;
 
 struct Answer {
     @location(0) visibility: u32,
@@ -33,21 +34,30 @@ fn compare(pixel: vec2<u32>) -> u32 {
 }
 
 fn is_lit(receiver: vec3<f32>, n_dot_l: f32) -> bool {
-    let place = light_texel(receiver);
-    if is_outside(place.xy) {
+    let layer = layer_of(receiver);
+    let fit = fit_of(layer);
+    let place = texel_of(fit, receiver);
+    if is_outside_of(fit, place.xy) {
         return true;
     }
-    let stored = textureLoad(shadow_map, vec2<u32>(place.xy), 0);
+    let stored = textureLoad(shadow_maps, vec2<u32>(place.xy), layer, 0);
     // 1 is what the map was cleared to: no caster, however far.
-    return stored >= 1.0 || place.z <= stored + depth_bias(n_dot_l);
+    return stored >= 1.0 || place.z <= stored + bias_at(fit, receiver, place, n_dot_l);
 }
 
-// The plane of the receiver rises by tan(angle to the light) per unit across; slope_bias counts in
-// texels of that rise.
-fn depth_bias(n_dot_l: f32) -> f32 {
-    // Units of the scene.
-    let extent = light.extent.xy;
-    let texel = 1.0 / vec2(length(map_fit.x.xy / extent), length(map_fit.y.xy / extent));
-    let slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0)) / n_dot_l;
-    return params.bias + params.slope_bias * slope * max(texel.x, texel.y) / light.extent.z;
+fn bias_at(fit: MapFit, receiver: vec3<f32>, place: vec3<f32>, n_dot_l: f32) -> f32 {
+    var x = fit.x.xy;
+    var y = fit.y.xy;
+    if map_is_projective {
+        // Texels differ in size: by the derivative of the quotients here.
+        let w = dot(fit.w.xyz, vec3(light_clip(receiver).xy, 1.0));
+        x = (x - place.x * fit.w.xy) / w;
+        y = (y - place.y * fit.w.xy) / w;
+    }
+    if light_kind != LIGHT_DIRECTIONAL {
+        // The nearer the light, the smaller.
+        x /= max(place.z, 1e-6);
+        y /= max(place.z, 1e-6);
+    }
+    return depth_bias_of(x, y, n_dot_l, params.bias, params.slope_bias);
 }

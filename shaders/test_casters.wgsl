@@ -15,16 +15,10 @@ struct List {
     length: u32,
 }
 
-struct Large {
-    count: u32,
-    parts: array<Part>,
-}
-
 var<uniform> params: Params;
 // As mark_receivers.wgsl has it.
 var<storage, read> farthest: array<u32>;
 // As bin_casters.wgsl has them.
-var<storage, read> large: Large;
 var<storage, read> lists: array<List>;
 var<storage, read> entries: array<Entry>;
 // Workgroups of fill_rays in x, y, z.
@@ -71,7 +65,7 @@ fn ask_rays() {
 fn test_casters(receiver: vec3<f32>, own: u32) -> u32 {
     let place = place_of(receiver);
     // A part of a large triangle that had no room is in no list.
-    if place.texel == NO_TEXEL || large.count > arrayLength(&large.parts) {
+    if place.texel == NO_TEXEL || lists[arrayLength(&lists) - 1u].head == LIST_FULL {
         return STATUS_UNCERTAIN;
     }
     // Two shaders may round a receiver to different texels: then nobody has marked this one.

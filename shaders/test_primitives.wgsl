@@ -2,12 +2,12 @@
 // texel: a miss is taken for light. One thread per ray. What Hertel, Hormann, Westermann 2009 do
 // first; the dissertation's section 5.4.1 leaves it out because of its errors.
 
-#import "shared/light_triangle.wgsl"
+#import "shared/map_layers.wgsl"
 #import "shared/groups.wgsl"
 #import "shared/ray_triangle.wgsl"
 #import "shared/ids.wgsl"
 
-var outer_primitive: texture_2d<u32>;
+var outer_primitive: texture_2d_array<u32>;
 var<storage, read> ray_count: u32;
 var<storage, read> rays: array<Ray>;
 var<storage, read> ray_primitives: array<u32>;
@@ -20,10 +20,12 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         return;
     }
     let ray = rays[slot];
-    let place = light_texel(ray.origin);
+    let layer = layer_of(ray.origin);
+    let fit = fit_of(layer);
+    let place = texel_of(fit, ray.origin);
     var candidate = NO_PRIMITIVE;
-    if !is_outside(place.xy) {
-        candidate = textureLoad(outer_primitive, vec2<u32>(place.xy), 0).x;
+    if !is_outside_of(fit, place.xy) {
+        candidate = textureLoad(outer_primitive, vec2<u32>(place.xy), layer, 0).x;
     }
     var hit = Hit(ray.t_max, NO_PRIMITIVE, 0.0, 0.0);
     if candidate != NO_PRIMITIVE && candidate != ray_primitives[slot] {

@@ -57,7 +57,9 @@ fn presets_are_listed_by_name() {
             "light_buffer",
             "nsm",
             "nsm_d",
-            "rt"
+            "pssm",
+            "rt",
+            "tsm"
         ]
     );
 }
@@ -123,10 +125,10 @@ fn the_steps_of_a_frame_are_passes() {
         "gbuffer.primitive",
         "gbuffer.surface",
         "fit_map.over_scene",
-        "create_shadow_map.reset",
-        "create_shadow_map.select",
-        "create_shadow_map.outer",
-        "create_shadow_map.inner",
+        "create_shadow_map.layer[0].reset",
+        "create_shadow_map.layer[0].select",
+        "create_shadow_map.layer[0].outer",
+        "create_shadow_map.layer[0].inner",
         "detect_uncertain",
         "fill_rays.clear",
         "fill_rays.compact",

@@ -146,11 +146,15 @@ fn what_is_proven_does_not_depend_on_where_the_map_lies() {
                 ("eye", 0.0),
                 ("eye", 5.0),
                 ("receivers", 0.0),
+                ("pssm", 0.0),
+                ("pssm", 5.0),
             ] {
                 let params = [
                     ("fit", word(fit)),
                     ("fit_distance", ParamValue::F32(distance)),
                     ("map_size", ParamValue::U32(64)),
+                    ("splits", ParamValue::U32(3)),
+                    ("tighten", ParamValue::Bool(seed % 2 == 1)),
                 ];
                 let counts = bench.judge(preset, &params);
                 assert_eq!(
@@ -164,7 +168,7 @@ fn what_is_proven_does_not_depend_on_where_the_map_lies() {
                 uncertain.push(counts.uncertain);
             }
             if preset == "light_buffer" {
-                assert_eq!([uncertain[0], uncertain[1], uncertain[3]], [0; 3]);
+                assert_eq!([0, 1, 3, 4].map(|fit| uncertain[fit]), [0; 4]);
                 assert!(uncertain[2] > 100, "what is outside asks rays");
             } else {
                 assert!(uncertain[3] < uncertain[0], "{preset}: {uncertain:?}");
@@ -183,7 +187,7 @@ fn far_from_the_origin_texels_are_larger() {
     far_off.views[0].eye += by.as_dvec3();
     let far_off = Arc::new(far_off);
     let mut bench = Bench::new(&far_off, VIEWPORT);
-    for fit in ["scene", "eye", "receivers"] {
+    for fit in ["scene", "eye", "receivers", "pssm"] {
         let params = [("fit", word(fit)), ("map_size", ParamValue::U32(8192))];
         let counts = bench.judge("crsm", &params);
         assert_eq!(

@@ -17,10 +17,10 @@ struct Footprint {
 
 // Around a place in the map: the texel that it is in; the four that a bilinear lookup blends; the
 // texel and the eight around it; or, of these nine, those at the corners.
-fn footprint(place: vec2<f32>, kind: u32) -> Footprint {
+fn footprint(fit: MapFit, place: vec2<f32>, kind: u32) -> Footprint {
     let edge = min(kind, FOOTPRINT_NINE);
     let first = vec2<i32>(floor(place - 0.5 * f32(edge)));
-    let end = i32(map_fit.size) - 1;
+    let end = i32(fit.size) - 1;
     return Footprint(
         clamp(first, vec2(0), vec2(end)),
         clamp(first + i32(edge), vec2(0), vec2(end)),

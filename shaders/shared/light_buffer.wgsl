@@ -3,6 +3,7 @@
 // Why it is exact: docs/light_buffer.md.
 
 #import "shared/light_triangle.wgsl"
+#import "shared/map_layers.wgsl"
 
 // One caster in the list of a texel.
 struct Entry {
@@ -23,9 +24,13 @@ struct Part {
     first_tile: u32,
 }
 
-// Edge of a tile, texels. Behind the texels' depths in `farthest`, a tile has three words: the
-// farthest depth of its texels, and a bit for each of them, row by row, that somebody is in.
+// Edge of a tile, texels. Behind the texels' depths in `farthest`, those of all layers, a tile has
+// three words: the farthest depth of its texels, and a bit for each of them, row by row, that
+// somebody is in.
 const TILE: u32 = 8u;
+
+// The layer of the grid whose lists a pass makes; `map_fit` is its.
+override binned_layer: u32 = 0u;
 
 // Where a receiver is in the grid.
 struct Place {
@@ -40,27 +45,31 @@ struct Place {
 const NO_TEXEL: u32 = 0xffffffffu;
 
 // In `farthest`: of a texel, and of the first word of a tile.
-fn texel_number(texel: vec2<u32>) -> u32 {
-    return texel.y * u32(map_fit.size) + texel.x;
+fn texel_number(layer: u32, texel: vec2<u32>) -> u32 {
+    let size = u32(map_fit.size);
+    return (layer * size + texel.y) * size + texel.x;
 }
 
-fn tile_number(tile: vec2<u32>) -> u32 {
+fn tile_number(layer: u32, tile: vec2<u32>) -> u32 {
     let size = u32(map_fit.size);
-    return size * size + 3u * (tile.y * ((size + TILE - 1u) / TILE) + tile.x);
+    let tiles = (size + TILE - 1u) / TILE;
+    return map_layers * size * size + 3u * ((layer * tiles + tile.y) * tiles + tile.x);
 }
 
 fn place_of(receiver: vec3<f32>) -> Place {
-    let at = light_texel(receiver);
-    let error = light_texel_error_bound(receiver);
+    let layer = layer_of(receiver);
+    let fit = fit_of(layer);
+    let at = texel_of(fit, receiver);
+    let error = texel_error_bound_of(fit, receiver);
     // Half of the slack is for rounding, half for the tracer, to whom a point so near an edge may
     // be on it. NaN is outside.
-    if is_outside(at.xy) || !(error.x <= 0.5 * SLACK && abs(at.z) <= 2.0) {
+    if is_outside_of(fit, at.xy) || !(error.x <= 0.5 * SLACK && abs(at.z) <= 2.0) {
         return Place(NO_TEXEL, 0u, vec2(0.0));
     }
     let texel = vec2<u32>(at.xy);
     // 0 says that nobody is there.
     let depth = max(depth_bits(at.z + error.y), 1u);
-    return Place(texel_number(texel), depth, fract(at.xy) - 0.5);
+    return Place(texel_number(layer, texel), depth, fract(at.xy) - 0.5);
 }
 
 // In the order of the depths; of -0, too.

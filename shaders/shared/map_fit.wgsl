@@ -1,5 +1,6 @@
 // Where a square shadow map lies across light space: any affine map of it will do, the same for
-// receivers and casters. Made by shared/fit_map.ron.
+// receivers and casters; where nothing is proven of the map, a projective one, too. Made by
+// shared/fitted/fit_map.ron.
 
 #import "shared/light.wgsl"
 
@@ -13,18 +14,40 @@ struct MapFit {
     scale: f32,
     // The same with |x.z| and |y.z|.
     reach: f32,
+    // Of a layer: the farthest distance from the eye, along its direction, of those who ask it.
+    end: f32,
+    // What x and y are divided by in a projective map; 0, 0, 1 in an affine one.
+    w: vec4<f32>,
+}
+
+// Maps in layers lie in one buffer, each where a device can bind it alone.
+struct MapFitSlot {
+    @size(256) fit: MapFit,
 }
 
 var<uniform> map_fit: MapFit;
 
+// Nothing divides unless the graph says so.
+override map_is_projective: bool = false;
+
 // x and y in texels; z is the map's depth, which grows away from the light.
 fn light_texel(position: vec3<f32>) -> vec3<f32> {
-    return texel_of_clip(light_clip(position));
+    return texel_of(map_fit, position);
 }
 
-fn texel_of_clip(clip: vec3<f32>) -> vec3<f32> {
+fn texel_of(fit: MapFit, position: vec3<f32>) -> vec3<f32> {
+    return texel_of_clip(fit, light_clip(position));
+}
+
+fn texel_of_clip(fit: MapFit, clip: vec3<f32>) -> vec3<f32> {
     let across = vec3(clip.xy, 1.0);
-    return vec3(dot(map_fit.x.xyz, across), dot(map_fit.y.xyz, across), clip.z);
+    let texel = vec2(dot(fit.x.xyz, across), dot(fit.y.xyz, across));
+    if map_is_projective {
+        let w = dot(fit.w.xyz, across);
+        // What is behind the map's centre of projection is nowhere in it.
+        return vec3(select(vec2(-1.0), texel / w, w > 0.0), clip.z);
+    }
+    return vec3(texel, clip.z);
 }
 
 // The way back, for drawing.
@@ -34,14 +57,38 @@ fn texel_clip(texel: vec2<f32>, depth: f32) -> vec4<f32> {
 }
 
 fn is_outside(texel: vec2<f32>) -> bool {
-    return !(all(texel >= vec2(0.0)) && all(texel < vec2(map_fit.size)));
+    return is_outside_of(map_fit, texel);
+}
+
+fn is_outside_of(fit: MapFit, texel: vec2<f32>) -> bool {
+    return !(all(texel >= vec2(0.0)) && all(texel < vec2(fit.size)));
+}
+
+// Of a spot light's map: all that is summed up, sizes alone, for x, y or w of a point in its cone,
+// per unit of w. A point light's faces take one coordinate each.
+fn light_spread() -> f32 {
+    if light_kind == LIGHT_POINT {
+        return 1.0;
+    }
+    let matrix = transpose(light.clip_from_relative);
+    let most = max(abs(matrix[0].xyz), max(abs(matrix[1].xyz), abs(matrix[3].xyz)));
+    return (most.x + most.y + most.z) / max(light.edge_cosine, 1e-3);
 }
 
 // What rounding may move a receiver and the corners of its casters by, together, in texels and in
 // depth: on the way to clip space, and from there on, 4 half ulps of all that is summed up. The map
-// may have been rounded itself; it is one for all.
+// may have been rounded itself; it is one for all. Of affine maps.
 fn light_texel_error_bound(receiver: vec3<f32>) -> vec2<f32> {
+    return texel_error_bound_of(map_fit, receiver);
+}
+
+fn texel_error_bound_of(fit: MapFit, receiver: vec3<f32>) -> vec2<f32> {
+    if light_kind != LIGHT_DIRECTIONAL {
+        // Of the receiver alone, where |x| and |y| are at most w: its casters differ in theirs.
+        let across = fit.scale * (2.0 + 4.0 * light_spread()) + fit.reach;
+        return CLIP_ROUNDING * vec2(across, 2.0 + 2.0 * light.max_distance / light.range);
+    }
     let summed = light_clip_summands(receiver);
-    let across = map_fit.scale * summed.x + map_fit.reach;
+    let across = fit.scale * summed.x + fit.reach;
     return CLIP_ROUNDING * vec2(across, summed.y + 2.0);
 }

@@ -21,6 +21,7 @@ mod one_ring;
 pub mod predicates;
 mod preset;
 mod status;
+pub mod trapezoid;
 mod triangle;
 
 pub use bounds::{Bound, CLEAR_OF_EDGE, LOWEST, SLACK};

@@ -12,7 +12,11 @@ use crate::{
     source::span::Located,
 };
 use serde::{Deserialize, Serialize};
-use std::{collections::HashSet, fmt, sync::Arc};
+use std::{
+    collections::{BTreeMap, HashSet},
+    fmt,
+    sync::Arc,
+};
 
 /// Type of a param.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -96,6 +100,8 @@ pub struct Param {
     pub max: Option<f64>,
     /// What it does.
     pub description: String,
+    /// Words that a [`ParamType::Choice`] has elsewhere but not here, each with the reason.
+    pub refused: BTreeMap<String, String>,
 }
 
 /// Why a param, or a value of one, cannot be.
@@ -123,6 +129,8 @@ struct Fields {
     max: Option<f64>,
     #[serde(default)]
     description: String,
+    #[serde(default)]
+    refused: BTreeMap<String, String>,
 }
 
 impl Param {
@@ -157,6 +165,14 @@ impl Param {
             };
             return Err(wrong(why).diagnostic());
         }
+        let taken = fields
+            .words
+            .iter()
+            .any(|word| fields.refused.contains_key(word.as_str()));
+        if taken || !is_choice && !fields.refused.is_empty() {
+            let why = "`refused` has words that a Choice has not, each with the reason";
+            return Err(wrong(why).diagnostic());
+        }
         if let (Some(min), Some(max)) = (fields.min, fields.max)
             && min.partial_cmp(&max).is_none_or(std::cmp::Ordering::is_gt)
         {
@@ -173,6 +189,7 @@ impl Param {
             min: fields.min,
             max: fields.max,
             description: fields.description,
+            refused: fields.refused,
         })
     }
 
@@ -335,11 +352,12 @@ impl Param {
             }
             (ParamType::Choice(words), ParamValue::Choice(word)) => {
                 let words: Vec<&str> = words.iter().map(Name::as_str).collect();
-                return match words.contains(&word.as_str()) {
-                    true => Ok(()),
-                    false => Err(ParamFault::Value(format!(
-                        "must be one of {}",
-                        words.join(", ")
+                let known = words.join(", ");
+                return match (words.contains(&word.as_str()), self.refused.get(word)) {
+                    (true, _) => Ok(()),
+                    (_, None) => Err(ParamFault::Value(format!("must be one of {known}"))),
+                    (_, Some(why)) => Err(ParamFault::Value(format!(
+                        "`{word}` is refused: {why}; must be one of {known}"
                     ))),
                 };
             }
@@ -406,6 +424,7 @@ mod tests {
             min: Some(0.51),
             max: Some(0.7),
             description: String::new(),
+            refused: BTreeMap::new(),
         };
         for (text, inside) in [
             ("0.51", true),

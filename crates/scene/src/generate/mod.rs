@@ -3,6 +3,7 @@
 //! Only operations that IEEE 754 rounds correctly are used (`+ − × ÷ √`): angles go through a
 //! series of our own, not through the platform's `sin`.
 
+mod avenue;
 mod city;
 mod forest;
 mod generator;

@@ -1,0 +1,31 @@
+// Stage to draw the scene's depth as the light sees it into a projective map: over a trapezoid, or
+// of a spot light, or a face of a point light's. Depths are those of light space all the same, as
+// each fragment has them, because a plane's are not linear across such a map. Three vertices per
+// primitive, pulled. Martin, Tan 2004, section 4; Williams 1978.
+
+#import "shared/map_fit.wgsl"
+#import "shared/geometry.wgsl"
+
+// Of a point light's map.
+override face: u32 = 0u;
+
+struct Vertex {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) depth: f32,
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) corner: u32) -> Vertex {
+    let seen = light_homogeneous(corner_position(corner), face);
+    let across = vec3(seen.xy, seen.w);
+    let w = dot(map_fit.w.xyz, across);
+    let texel = vec2(dot(map_fit.x.xyz, across), dot(map_fit.y.xyz, across));
+    let place = texel / map_fit.size * 2.0 - w;
+    // Clipped where w is 0, so that what is on both sides of the light keeps its part before it.
+    return Vertex(vec4(place.x, -place.y, 0.5 * w, w), seen.z);
+}
+
+@fragment
+fn fragment(vertex: Vertex) -> @builtin(frag_depth) f32 {
+    return saturate(vertex.depth);
+}

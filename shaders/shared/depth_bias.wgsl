@@ -1,0 +1,24 @@
+// What is added to a stored depth before a receiver is compared with it.
+
+#import "shared/map_fit.wgsl"
+
+// The plane of the receiver rises by tan(angle to the light) per unit across; `slope_bias` counts
+// in texels of that rise.
+fn depth_bias(n_dot_l: f32, bias: f32, slope_bias: f32) -> f32 {
+    return depth_bias_of(map_fit.x.xy, map_fit.y.xy, n_dot_l, bias, slope_bias);
+}
+
+// `x` and `y`: what the map's x and y grow by per unit of clip x and y.
+fn depth_bias_of(
+    x: vec2<f32>,
+    y: vec2<f32>,
+    n_dot_l: f32,
+    bias: f32,
+    slope_bias: f32,
+) -> f32 {
+    // Units of the scene.
+    let extent = light.extent.xy;
+    let texel = 1.0 / vec2(length(x / extent), length(y / extent));
+    let slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0)) / n_dot_l;
+    return bias + slope_bias * slope * max(texel.x, texel.y) / light.extent.z;
+}

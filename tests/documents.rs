@@ -54,12 +54,15 @@ fn presets_are_listed_by_name() {
             "crsma",
             "crsma_d",
             "crsma_full",
+            "esm",
             "hybrid_pcf",
             "hybrid_pcf_d",
             "light_buffer",
             "nsm",
             "nsm_d",
-            "rt"
+            "pcf",
+            "rt",
+            "vsm"
         ]
     );
 }

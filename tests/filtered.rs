@@ -8,7 +8,7 @@ use skiagraph_graph::{Capture, ParamValue};
 use skiagraph_reference::{Class, Oracle, OracleMode, Progress};
 use skiagraph_scene::Scene;
 use std::sync::Arc;
-use support::graphs::{open, plan, provider, run_on, values};
+use support::graphs::{open, plan, provider, run_on, shares, values};
 
 const VIEWPORT: [u32; 2] = [128, 128];
 
@@ -45,11 +45,7 @@ fn see(scene: &Arc<Scene>, preset: &str, params: Params) -> Seen {
     });
     let names = ["visibility", "primitive", "position"];
     let report = run_on(&gpu, plan, &mut provider, &names);
-    let floats = |name: &str| {
-        let mut found = report.readbacks.iter().filter(|r| r.name == name);
-        found.next().unwrap().content.as_f32().unwrap()
-    };
-    let visibility = floats("visibility");
+    let visibility = shares(&report, "visibility");
     let inside = |share: &f32| (0.0..=1.0).contains(share);
     assert!(visibility.iter().all(inside), "{preset} {params:?}");
     let oracle = Oracle::new(&scene.mesh);
@@ -59,7 +55,7 @@ fn see(scene: &Arc<Scene>, preset: &str, params: Params) -> Seen {
     let shaded = oracle.shade(&camera, light, &primitives, mode, Progress::default());
     Seen {
         visibility,
-        position: floats("position")
+        position: shares(&report, "position")
             .chunks_exact(4)
             .map(Vec3::from_slice)
             .collect(),

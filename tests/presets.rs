@@ -11,7 +11,7 @@ use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
 use std::sync::Arc;
 use support::{
     brute::{self, MISS, Ray},
-    graphs::{open, plan, plan_files, provider, run, values},
+    graphs::{open, plan, plan_files, provider, run, shares, values},
 };
 
 const VIEWPORT: [u32; 2] = [96, 64];
@@ -340,9 +340,9 @@ fn an_empty_scene_is_all_background() {
         let plan = plan(&preset.path, &provider, VIEWPORT, |_| ());
         let report = run(plan, &mut provider, &["visibility", "status"]);
         assert!(
-            values(&report, "visibility")
+            shares(&report, "visibility")
                 .iter()
-                .all(|&visibility| visibility == 1),
+                .all(|&visibility| visibility == 1.0),
             "{}",
             preset.name
         );

@@ -19,22 +19,23 @@ var visibility: texture_storage_2d<r32float, write>;
 @compute @workgroup_size(8, 8)
 fn sampled(@builtin(global_invocation_id) thread: vec3<u32>) {
     let look = look(thread.xy, params.radius);
+    var light = look.visibility;
     if look.at_map {
-        let texel = textureSampleLevel(depths, trilinear, look.place, look.mip).x;
-        textureStore(visibility, thread.xy, vec4(share(texel, look.depth)));
-    } else {
-        textureStore(visibility, thread.xy, vec4(look.visibility));
+        let stored = textureSampleLevel(depths, trilinear, look.place, look.mip).x;
+        light = share(stored, look.depth);
     }
+    textureStore(visibility, thread.xy, vec4(light));
 }
 
 @compute @workgroup_size(8, 8)
 fn by_hand(@builtin(global_invocation_id) thread: vec3<u32>) {
     let look = look(thread.xy, params.radius);
+    var light = look.visibility;
     if look.at_map {
-        textureStore(visibility, thread.xy, vec4(share(filtered(depths, nearest, look).x, look.depth)));
-    } else {
-        textureStore(visibility, thread.xy, vec4(look.visibility));
+        let stored = filtered(depths, nearest, look).x;
+        light = share(stored, look.depth);
     }
+    textureStore(visibility, thread.xy, vec4(light));
 }
 
 fn share(stored: f32, depth: f32) -> f32 {

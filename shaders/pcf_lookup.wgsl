@@ -63,7 +63,8 @@ fn by_hand(place: vec2<f32>, depth: f32) -> f32 {
     for (var y = 0; y <= last; y++) {
         for (var x = 0; x <= last; x++) {
             let step = vec2(x, y);
-            let cover = select(select(vec2(1.0), part, step == vec2(last)), 1.0 - part, step == vec2(0));
+            let begun = select(vec2(1.0), 1.0 - part, step == vec2(0));
+            let cover = select(begun, part, step == vec2(last));
             let stored = textureLoad(shadow_map, clamp(first + step, vec2(0), end), 0);
             lit += cover.x * cover.y * select(0.0, 1.0, depth <= stored);
         }

@@ -19,31 +19,32 @@ var visibility: texture_storage_2d<r32float, write>;
 @compute @workgroup_size(8, 8)
 fn sampled(@builtin(global_invocation_id) thread: vec3<u32>) {
     let look = look(thread.xy, params.radius);
+    var light = look.visibility;
     if look.at_map {
-        let texel = textureSampleLevel(moments, trilinear, look.place, look.mip).xy;
-        textureStore(visibility, thread.xy, vec4(upper_bound(texel, look.depth)));
-    } else {
-        textureStore(visibility, thread.xy, vec4(look.visibility));
+        let mean = textureSampleLevel(moments, trilinear, look.place, look.mip).xy;
+        light = upper_bound(mean, look.depth);
     }
+    textureStore(visibility, thread.xy, vec4(light));
 }
 
 @compute @workgroup_size(8, 8)
 fn by_hand(@builtin(global_invocation_id) thread: vec3<u32>) {
     let look = look(thread.xy, params.radius);
+    var light = look.visibility;
     if look.at_map {
-        textureStore(visibility, thread.xy, vec4(upper_bound(filtered(moments, nearest, look), look.depth)));
-    } else {
-        textureStore(visibility, thread.xy, vec4(look.visibility));
+        let mean = filtered(moments, nearest, look);
+        light = upper_bound(mean, look.depth);
     }
+    textureStore(visibility, thread.xy, vec4(light));
 }
 
 // Chebyshev's inequality: no more than this share of the depths is as great as the receiver's.
-fn upper_bound(moments: vec2<f32>, depth: f32) -> f32 {
-    let behind = depth - moments.x;
+fn upper_bound(mean: vec2<f32>, depth: f32) -> f32 {
+    let behind = depth - mean.x;
     if behind <= 0.0 {
         return 1.0;
     }
-    let variance = max(moments.y - moments.x * moments.x, params.min_variance);
+    let variance = max(mean.y - mean.x * mean.x, params.min_variance);
     let share = variance / (variance + behind * behind);
     return saturate((share - params.bleed_reduction) / (1.0 - params.bleed_reduction));
 }

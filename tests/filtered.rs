@@ -1,5 +1,5 @@
-//! Filtered shadow maps: `pcf`, `vsm`, `esm`. Each shows its known artefact on the case made for it,
-//! and less of it by the param that is meant against it.
+//! Filtered shadow maps: `pcf`, `vsm`, `esm`. Each shows its known artefact on the case made for
+//! it, and less of it by the param that is meant against it.
 
 mod support;
 

@@ -21,9 +21,10 @@ fn look(pixel: vec2<u32>, radius: u32) -> Look {
         return Look(false, f32(initial_visibility(status)), vec2(0.0), 0.0, 0.0);
     }
     let texel = light_texel(receiver.xyz);
-    let step = max(step_along(pixel, vec2(1, 0), texel.xy), step_along(pixel, vec2(0, 1), texel.xy));
+    let across = step_along(pixel, vec2(1, 0), texel.xy);
+    let down = step_along(pixel, vec2(0, 1), texel.xy);
     // A blurred texel already holds the mean over so many.
-    let mip = log2(max(step / f32(2u * radius + 1u), 1.0));
+    let mip = log2(max(max(across, down) / f32(2u * radius + 1u), 1.0));
     // Outside the map nothing is known to cast a shadow.
     return Look(!is_outside(texel.xy), 1.0, texel.xy / map_fit.size, texel.z, mip);
 }

@@ -33,17 +33,19 @@ const NEAR_AND_FAR: [Block; 3] = [
 pub(crate) const CASES: &[HardCase] = &[
     HardCase::closed(
         "two_occluders",
-        "a silhouette within another caster's shadow: where the variance of depths lets light through",
+        "a silhouette within another's shadow: the variance of depths lets light through",
         || {
-            Shape::default()
-                .cuboids(&TWO_OCCLUDERS)
-                .scene([3.6, 2.2, 2.4], [0.1, 0.0, 0.0], OBLIQUE)
+            Shape::default().cuboids(&TWO_OCCLUDERS).scene(
+                [3.6, 2.2, 2.4],
+                [0.1, 0.0, 0.0],
+                OBLIQUE,
+            )
         },
     )
     .with_answer(|p| among(p, OBLIQUE, &TWO_OCCLUDERS, 1e-4)),
     HardCase::closed(
         "contact",
-        "a thin wall that stands on its shadow: near it receiver and caster have the same depth, almost",
+        "a thin wall on its own shadow: receivers near it are as deep as their caster, almost",
         || {
             Shape::default()
                 .cuboids(&CONTACT)
@@ -53,7 +55,7 @@ pub(crate) const CASES: &[HardCase] = &[
     .with_answer(|p| among(p, ACROSS, &CONTACT, 1e-4)),
     HardCase::closed(
         "near_and_far",
-        "plates a tenth and three units above the floor: a lamp would blur one shadow thirty times as wide as the other",
+        "plates near the floor and far above: a lamp would blur the shadow of one alone",
         || {
             Shape::default()
                 .cuboids(&NEAR_AND_FAR)

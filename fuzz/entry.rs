@@ -91,7 +91,13 @@ pub fn scene(bytes: &[u8]) -> String {
                 assert!(frame.iter().all(|axis| axis.is_normalized()), "{view:?}");
                 assert!(camera.view_projection().as_mat4().is_finite(), "{view:?}");
             }
-            assert!(scene.light.to_light().is_normalized());
+            assert!(
+                scene
+                    .light()
+                    .towards(glam::DVec3::ZERO)
+                    .direction
+                    .is_normalized()
+            );
         }
     }
     answer
@@ -247,6 +253,7 @@ impl Describe for SmallScene {
             items: Some(items),
             stride,
             binding,
+            kind: None,
         })
     }
 }

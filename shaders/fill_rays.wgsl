@@ -96,9 +96,9 @@ fn append(slot: u32, pixel: vec2<u32>) {
     let id = textureLoad(primitive, pixel, 0).x;
     let receiver = textureLoad(position, pixel, 0).xyz;
     // The background has no receiver: its ray is empty.
-    let max_distance = select(light.max_distance, -1.0, id == NO_PRIMITIVE);
+    let max_distance = select(light_distance(receiver), -1.0, id == NO_PRIMITIVE);
     let t_min = receiver_error_bound(receiver, camera.eye);
-    rays[slot] = Ray(receiver, t_min, light.to_light, max_distance);
+    rays[slot] = Ray(receiver, t_min, to_light_from(receiver), max_distance);
     ray_primitives[slot] = id;
     // Rays of certain pixels cost their time and change no pixel.
     let place = pixel.y * textureDimensions(status).x + pixel.x;

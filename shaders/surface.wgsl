@@ -1,5 +1,5 @@
 // Stage to find the receiver of each pixel: its position, and dot(n, l) of its interpolated normal
-// in w; one thread per pixel. The ray through the pixel's centre is met with the plane of the
+// in w, 0 outside of a spot light's cone; one thread per pixel. The ray through the pixel's centre is met with the plane of the
 // pixel's primitive anew instead of interpolating rasterised attributes, whose precision is the
 // adapter's affair: the edge functions of Davidovic et al., "3D Rasterization", TUGraz 2012.
 
@@ -62,8 +62,8 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
         + weights.z * corner_normal(3u * id + 2u);
     let length_squared = dot(normal, normal);
     var n_dot_l = 0.0;
-    if length_squared > 0.0 {
-        n_dot_l = dot(normal, light.to_light) * inverseSqrt(length_squared);
+    if length_squared > 0.0 && light_shines_on(receiver) {
+        n_dot_l = dot(normal, to_light_from(receiver)) * inverseSqrt(length_squared);
     }
     textureStore(position, pixel, vec4(receiver, n_dot_l));
 }

@@ -87,8 +87,9 @@ fn test_casters(receiver: vec3<f32>, own: u32) -> u32 {
     }
     var walk = Walk(list.head, coarse_depth(bitcast<f32>(place.depth)), place.offset, own);
     let t_min = receiver_error_bound(receiver, camera.eye);
-    let ray = sheared(Ray(receiver, t_min, light.to_light, light.max_distance));
-    var hit = Hit(light.max_distance, NO_PRIMITIVE, 0.0, 0.0);
+    let end = light_distance(receiver);
+    let ray = sheared(Ray(receiver, t_min, to_light_from(receiver), end));
+    var hit = Hit(end, NO_PRIMITIVE, 0.0, 0.0);
     var is_hit = false;
     // Testing costs the most: threads that run in step do it together.
     loop {

@@ -107,7 +107,11 @@ impl<'a> Bench<'a> {
         let primitives = values(&report, "primitive");
         let camera = self.scene.views[0].camera(self.viewport);
         let maps = cpu
-            .maps(&self.scene.mesh, &self.adjacency, &self.scene.light)
+            .maps(
+                &self.scene.mesh,
+                &self.adjacency,
+                &self.scene.sun().unwrap(),
+            )
             .unwrap();
         let expected = maps
             .classify(&camera, &primitives, Progress::default())
@@ -217,9 +221,7 @@ fn hard() -> Arc<Scene> {
         name: "hard".into(),
         mesh: meshes::mesh(positions, triangles),
         views: vec![view],
-        light: DirectionalLight {
-            direction: DVec3::new(-0.3, -1.0, 0.2),
-        },
+        lights: vec![DirectionalLight::new(DVec3::new(-0.3, -1.0, 0.2)).into()],
     })
 }
 
@@ -250,7 +252,7 @@ fn the_presets_maps_end_where_f32_places_no_receiver() {
     )
     .unwrap();
     let places = |size: u32| {
-        let space = LightSpace::new(&scene.mesh, &scene.light, size);
+        let space = LightSpace::new(&scene.mesh, &scene.sun().unwrap(), size);
         let corners = scene.mesh.corner_positions();
         corners
             .filter(|corner| space.light_space_error_bound(corner.as_dvec3()).0 <= SLACK)

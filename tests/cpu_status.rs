@@ -94,9 +94,7 @@ fn folds_and_culled_neighbours_are_ends() {
             triangles: triangles.clone(),
             ..Mesh::default()
         };
-        let light = DirectionalLight {
-            direction: DVec3::Z,
-        };
+        let light = DirectionalLight::new(DVec3::Z);
         let adjacency = Adjacency::new(&mesh);
         let space = LightSpace::new(&mesh, &light, 64);
         let adjacent = [Cull::None, Cull::Front].map(|cull| {
@@ -117,12 +115,10 @@ fn wrong_input_is_an_error() {
     let (mesh, camera) = (floor(), from_above(1.0, [4, 4]));
     let adjacency = Adjacency::new(&mesh);
     let cpu = cpu_reference(Method::Crsm, 8);
-    let dark = DirectionalLight {
-        direction: DVec3::ZERO,
-    };
+    let dark = DirectionalLight::new(DVec3::ZERO);
     assert!(matches!(
         cpu.maps(&mesh, &adjacency, &dark).err(),
-        Some(Error::Light { .. })
+        Some(Error::Light(_))
     ));
     let maps = cpu.maps(&mesh, &adjacency, &light(0.0, -1.0, 0.0)).unwrap();
     let classify = |primitives: &[u32]| {

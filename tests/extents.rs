@@ -26,7 +26,7 @@ fn scene(mesh: Mesh, eye: DVec3, target: DVec3, far: f64, direction: DVec3) -> A
             far,
             light: None,
         }],
-        light: DirectionalLight { direction },
+        lights: vec![DirectionalLight::new(direction).into()],
     })
 }
 

@@ -6,7 +6,7 @@ mod support;
 use glam::Vec3;
 use skiagraph_graph::{Capture, ParamValue};
 use skiagraph_reference::{Class, Oracle, OracleMode, Progress};
-use skiagraph_scene::Scene;
+use skiagraph_scene::{DirectionalLight, Scene};
 use std::sync::Arc;
 use support::graphs::{open, plan, provider, run_on, shares, values};
 
@@ -51,7 +51,7 @@ fn see(scene: &Arc<Scene>, preset: &str, params: Params) -> Seen {
     let oracle = Oracle::new(&scene.mesh);
     let camera = scene.views[0].camera(VIEWPORT);
     let (primitives, mode) = (values(&report, "primitive"), OracleMode::Exact);
-    let light = &scene.light;
+    let light = scene.light();
     let shaded = oracle.shade(&camera, light, &primitives, mode, Progress::default());
     Seen {
         visibility,
@@ -105,11 +105,18 @@ fn number(name: &str, value: u32) -> (&str, ParamValue) {
 fn vsm_bleeds_behind_two_occluders_and_less_when_it_is_cut() {
     let scene = case("two_occluders");
     let leaks = |preset: &str, params: Params| see(&scene, preset, params).leaks(4, 0.1);
-    let bleeding = [0.0, 0.2, 0.6]
-        .map(|cut| leaks("vsm", &[map(512), number("radius", 4), float("bleed_reduction", cut)]));
+    let bleeding = [0.0, 0.2, 0.6].map(|cut| {
+        leaks(
+            "vsm",
+            &[map(512), number("radius", 4), float("bleed_reduction", cut)],
+        )
+    });
     println!("vsm leaks at {bleeding:?} pixels");
     assert!(bleeding[0] > 300, "{bleeding:?}");
-    assert!(bleeding[1] < bleeding[0] && bleeding[2] * 10 < bleeding[0], "{bleeding:?}");
+    assert!(
+        bleeding[1] < bleeding[0] && bleeding[2] * 10 < bleeding[0],
+        "{bleeding:?}"
+    );
     // What compares with every depth does not.
     let compared = leaks("pcf", &[map(512), number("radius", 4)]);
     assert_eq!(compared, 0);
@@ -123,7 +130,10 @@ fn esm_fails_at_contact_and_less_with_a_greater_exponent() {
         .map(|exponent| leaks("esm", &[map(2048), float("exponent", exponent)]));
     println!("esm leaks at {fading:?} pixels");
     assert!(fading[1] > 300, "{fading:?}");
-    assert!(fading[1] < fading[0] && fading[2] * 10 < fading[1], "{fading:?}");
+    assert!(
+        fading[1] < fading[0] && fading[2] * 10 < fading[1],
+        "{fading:?}"
+    );
     let compared = leaks("pcf", &[map(2048)]);
     assert_eq!(compared, 0);
 }
@@ -138,11 +148,36 @@ fn the_blur_of_pcf_knows_no_distance() {
         let pixels = (0..seen.visibility.len()).filter(between);
         let (near, far): (Vec<usize>, Vec<usize>) =
             pixels.partition(|&pixel| seen.position[pixel].x < 0.0);
-        println!("pcf, radius {radius}: {} and {} pixels", near.len(), far.len());
+        println!(
+            "pcf, radius {radius}: {} and {} pixels",
+            near.len(),
+            far.len()
+        );
         assert!(near.len() > 100, "{}", near.len());
         let ratio = far.len() as f64 / near.len() as f64;
         assert!((0.6..1.7).contains(&ratio), "{ratio}");
     }
+    // Under a lamp of four degrees the oracle's do differ.
+    let sun = scene.sun().unwrap();
+    let lamp = DirectionalLight {
+        angle_degrees: 4.0,
+        ..sun
+    };
+    let (oracle, camera) = (Oracle::new(&scene.mesh), scene.views[0].camera(VIEWPORT));
+    let primitives = oracle.primary(&camera, Progress::default()).unwrap();
+    let (how, progress) = ((OracleMode::Exact, 64), Progress::default());
+    let area = oracle.shade_area(&camera, lamp, &primitives, how, progress);
+    let shares = area.unwrap().1.shares;
+    let seen = see(&scene, "pcf", &[map(512)]);
+    let between = |right: bool| {
+        let pixels = shares.iter().zip(&seen.position);
+        let found =
+            pixels.filter(|(share, at)| (0.1..0.9).contains(*share) && (at.x >= 0.0) == right);
+        found.count()
+    };
+    let (near, far) = (between(false), between(true));
+    println!("the oracle: {near} and {far} pixels");
+    assert!(far > 4 * near, "{near}, {far}");
 }
 
 /// Comparison sampler and shader, hardware filter and shader: the same picture.
@@ -152,11 +187,27 @@ fn the_device_filters_as_the_shaders_do() {
     let word = |name: &'static str, word: &str| (name, ParamValue::Choice(word.into()));
     let flag = |name: &'static str, flag| (name, ParamValue::Bool(flag));
     for (preset, ways, size) in [
-        ("pcf", [word("compare", "sampler"), word("compare", "by_hand")], 100),
-        ("vsm", [flag("filterable", true), flag("filterable", false)], 100),
+        (
+            "pcf",
+            [word("compare", "sampler"), word("compare", "by_hand")],
+            100,
+        ),
+        (
+            "vsm",
+            [flag("filterable", true), flag("filterable", false)],
+            100,
+        ),
         // Mips are looked up.
-        ("vsm", [flag("filterable", true), flag("filterable", false)], 1024),
-        ("esm", [flag("filterable", true), flag("filterable", false)], 1024),
+        (
+            "vsm",
+            [flag("filterable", true), flag("filterable", false)],
+            1024,
+        ),
+        (
+            "esm",
+            [flag("filterable", true), flag("filterable", false)],
+            1024,
+        ),
     ] {
         let [device, shader] = ways.map(|way| see(&scene, preset, &[map(size), way]).visibility);
         let differences = device.iter().zip(&shader).map(|(a, b)| (a - b).abs());
@@ -180,7 +231,7 @@ fn a_lit_floor_does_not_shade_itself() {
             let edge = |pixel: &usize| seen.position[*pixel].z < -1.2;
             let lit = seen.inside(Class::Lit, 3);
             let lit: Vec<usize> = lit.into_iter().filter(edge).collect();
-            assert!(lit.len() > 100 , "{}", lit.len());
+            assert!(lit.len() > 100, "{}", lit.len());
             if size > 3 {
                 let least = lit.iter().map(|&pixel| seen.visibility[pixel]);
                 let least = least.fold(1.0, f32::min);

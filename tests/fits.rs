@@ -38,7 +38,7 @@ fn scene(seed: u64, far: f64) -> Arc<Scene> {
         name: "test".into(),
         mesh: joined(potato(4, 0.3, seed), &floor),
         views: vec![view],
-        light: DirectionalLight { direction: LIGHT },
+        lights: vec![DirectionalLight::new(LIGHT).into()],
     })
 }
 

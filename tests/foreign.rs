@@ -178,7 +178,7 @@ fn wrong(
 #[test]
 fn each_method_is_as_wrong_on_park_as_its_author_has_measured() {
     let scene = load("park");
-    let reference = reference(&scene, &scene.light);
+    let reference = reference(&scene, &scene.sun().unwrap());
     let far = [
         ("map_size", ParamValue::U32(1024)),
         ("reach", ParamValue::F32(80.0)),
@@ -205,7 +205,7 @@ fn each_method_is_as_wrong_on_park_as_its_author_has_measured() {
 #[test]
 fn temporal_is_right_once_every_pixel_has_had_its_ray() {
     let scene = load("park");
-    let reference = reference(&scene, &scene.light);
+    let reference = reference(&scene, &scene.sun().unwrap());
     let found = wrong("temporal/temporal.ron", &[], 5, &scene, &reference);
     println!("{found:?}");
     for (found, percent) in found.iter().zip([53.8, 35.9, 18.0, 0.003, 0.003]) {
@@ -240,9 +240,7 @@ fn the_two_lights_are_each_asked_by_itself() {
     assert_eq!(both, expected);
     assert!(both != sun && both != sky);
     // The light that a pass has aimed is one as good as the scene's.
-    let light = DirectionalLight {
-        direction: DVec3::NEG_Y,
-    };
+    let light = DirectionalLight::new(DVec3::NEG_Y);
     let counts = Statistics::judged(&sky, &status, &reference(&scene, &light))
         .unwrap_or_else(|error| panic!("{error}"));
     println!("straight from above: {:.2} %", 100.0 * counts.wrong_share());
@@ -288,9 +286,7 @@ fn one() -> Arc<Scene> {
         name: "one".into(),
         mesh: meshes::mesh(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]]),
         views: vec![view],
-        light: DirectionalLight {
-            direction: DVec3::NEG_Z,
-        },
+        lights: vec![DirectionalLight::new(DVec3::NEG_Z).into()],
     })
 }
 

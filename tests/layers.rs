@@ -36,7 +36,7 @@ fn scene(mesh: Mesh, direction: DVec3) -> Arc<Scene> {
             far: 100.0,
             light: None,
         }],
-        light: DirectionalLight { direction },
+        lights: vec![DirectionalLight::new(direction).into()],
     })
 }
 
@@ -130,7 +130,7 @@ fn nothing_of_a_caster_is_nearer_than_the_outer_depth() {
                 ("n", ParamValue::F32(n)),
             ];
             let [outer, _] = layers("crsm", &scene, &params);
-            let space = LightSpace::new(&scene.mesh, &scene.light, MAP);
+            let space = LightSpace::new(&scene.mesh, &scene.sun().unwrap(), MAP);
             let mut random = Random(3);
             let mut points = 0;
             for [a, b, c] in casters(&scene.mesh, &space) {
@@ -171,7 +171,7 @@ fn behind_the_inner_depth_with_and_without_one_ring_is_no_hole() {
                 ("depth", choice(depth)),
             ];
             let [_, inner] = layers(preset, &scene, &params);
-            let space = LightSpace::new(&scene.mesh, &scene.light, MAP);
+            let space = LightSpace::new(&scene.mesh, &scene.sun().unwrap(), MAP);
             let casters = casters(&scene.mesh, &space);
             let mut random = Random(4);
             for (index, &stored) in inner.iter().enumerate() {
@@ -249,7 +249,7 @@ fn judge(
     let reference = Oracle::new(&scene.mesh)
         .shade(
             &camera,
-            &scene.light,
+            &scene.sun().unwrap(),
             &primitives,
             OracleMode::Exact,
             Progress::default(),
@@ -394,7 +394,7 @@ impl Provider for OtherLight {
 fn what_crosses_the_near_plane_still_casts() {
     let mesh = one_above_floor([[-4.0, 1.0, -4.0], [4.0, 5.0, -4.0], [0.0, 3.0, 4.0]]);
     let scene = scene(mesh, STRAIGHT_DOWN);
-    let mut light = LightUniform::new(&scene.light, &scene.mesh);
+    let mut light = LightUniform::new(scene.light(), &scene.mesh);
     // The near plane moves into the caster, from the top of the scene to its middle.
     light.clip_from_relative.w_axis.z -= 0.5;
     for preset in ["crsm", "crsma", "crsma_full", "crsm_depth"] {
@@ -420,7 +420,7 @@ fn receivers_outside_the_map_are_uncertain() {
     let mesh = one_above_floor([[-2.0, 2.0, -2.0], [2.0, 2.0, -2.0], [0.0, 2.0, 2.0]]);
     let scene = scene(mesh, STRAIGHT_DOWN);
     let judge_under = |preset: &str, zoom: f32, aside: f32| {
-        let mut light = LightUniform::new(&scene.light, &scene.mesh);
+        let mut light = LightUniform::new(scene.light(), &scene.mesh);
         let zoomed = glam::Mat4::from_scale(Vec3::new(zoom, zoom, 1.0));
         let moved = glam::Mat4::from_translation(Vec3::new(aside, 0.0, 0.0));
         light.clip_from_relative = moved * zoomed * light.clip_from_relative;

@@ -35,7 +35,7 @@ fn scene(mesh: Mesh, eye: DVec3, light: DVec3) -> Arc<Scene> {
         name: "test".into(),
         mesh,
         views: vec![view],
-        light: DirectionalLight { direction: light },
+        lights: vec![DirectionalLight::new(light).into()],
     })
 }
 

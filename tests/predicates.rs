@@ -96,9 +96,7 @@ fn asked(questions: &[Question]) -> Vec<Answer> {
         name: "test".into(),
         mesh: Mesh::default(),
         views: vec![],
-        light: DirectionalLight {
-            direction: DVec3::NEG_Y,
-        },
+        lights: vec![DirectionalLight::new(DVec3::NEG_Y).into()],
     })));
     provider.add("test.questions", questions);
     let files = [("test.ron", DOCUMENT), ("shaders/judge.wgsl", SHADER)];

@@ -16,14 +16,12 @@ use support::{
 };
 
 fn provider(mesh: Mesh) -> SceneProvider {
-    let light = DirectionalLight {
-        direction: DVec3::NEG_Y,
-    };
+    let light = DirectionalLight::new(DVec3::NEG_Y);
     SceneProvider::new(Arc::new(Scene {
         name: "test".into(),
         mesh,
         views: vec![],
-        light,
+        lights: vec![light.into()],
     }))
 }
 
@@ -190,9 +188,7 @@ fn a_view_with_its_own_light_is_drawn_as_its_scene_would_be_under_that_light() {
     let gpu = open();
     let viewport = [48, 32];
     let mut scene = park();
-    let own = DirectionalLight {
-        direction: DVec3::new(-0.4, -0.8, 0.3),
-    };
+    let own = DirectionalLight::new(DVec3::new(-0.4, -0.8, 0.3));
     scene.views[3].light = Some(own);
     let under_it = Arc::new(Scene {
         light: own,

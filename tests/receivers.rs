@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use skiagraph_reference::Receiver;
-use skiagraph_scene::{Camera, Mesh, View};
+use skiagraph_scene::{Camera, DirectionalLight, Mesh, View};
 use skiagraph_tests::cpu_reference::predicates::receiver_error_bound;
 
 /// Position and n · l as shaders/surface.wgsl computes them.
@@ -81,7 +81,8 @@ fn f32_stays_within_the_bounds() {
             normal_indices: vec![[0, 1, 2]],
             ..Mesh::default()
         };
-        let exact = Receiver::new(&mesh, 0, view.eye, ray, light);
+        let sun = DirectionalLight::new(-light).into();
+        let exact = Receiver::new(&mesh, 0, view.eye, ray, &sun);
         let Some(uncertainty) = exact.uncertainty else {
             continue;
         };

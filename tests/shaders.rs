@@ -6,7 +6,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use skiagraph_graph::Sources;
 use skiagraph_passes::{
     EmbeddedSources,
-    uniforms::{CameraUniform, LightUniform},
+    uniforms::{CameraUniform, LightAreaUniform, LightUniform},
 };
 use skiagraph_scene::LightSpaceNode;
 use std::mem::offset_of;
@@ -103,6 +103,17 @@ fn light_is_laid_out_as_in_rust() {
         extent
     });
     assert_eq!(layout("shared/light.wgsl", "Light"), rust);
+}
+
+#[test]
+fn light_area_is_laid_out_as_in_rust() {
+    let rust = rust_layout!(LightAreaUniform {
+        right,
+        radius,
+        up,
+        padding
+    });
+    assert_eq!(layout("shared/light_area.wgsl", "LightArea"), rust);
 }
 
 #[test]

@@ -328,14 +328,12 @@ fn the_dispatch_is_folded_to_two_dimensions() {
         (row * 64 * 3 - 63, [row, 3, 1]),
         (u32::MAX, [row, 1025, 1]),
     ] {
-        let light = DirectionalLight {
-            direction: DVec3::NEG_Y,
-        };
+        let light = DirectionalLight::new(DVec3::NEG_Y);
         let scene = Scene {
             name: "test".into(),
             mesh: Mesh::default(),
             views: vec![],
-            light,
+            lights: vec![light.into()],
         };
         let mut provider = Extended::new(SceneProvider::new(Arc::new(scene)));
         provider.add("test.number", &[count]);

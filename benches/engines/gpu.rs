@@ -44,6 +44,7 @@ impl Describe for Given<'_> {
             items: Some(content.len() as u64 / stride),
             stride,
             binding: ProvidedBinding::Storage,
+            kind: None,
         })
     }
 }

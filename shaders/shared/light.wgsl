@@ -1,25 +1,117 @@
-// The directional light and its light space. Laid out as `LightUniform` in
-// crates/passes/src/uniforms.rs.
+// The light and its light space. Laid out as `LightUniform` in crates/passes/src/uniforms.rs.
 
 struct Light {
     // From a position relative to `centre` to the light's clip space; affine, z in 0..1 grows away
-    // from the light.
+    // from the light. Of a spot or point light: see `light_homogeneous`.
     clip_from_relative: mat4x4<f32>,
-    // Unit vector towards the light.
+    // Unit vector towards the light; of a spot light, against its axis; of a point light, 0.
     to_light: vec3<f32>,
     // No two points of the scene are farther apart.
     max_distance: f32,
     // Centre of the scene's box: subtracted before the matrix, so that far-off scenes keep their
     // precision. w: the most that is summed up, sizes alone, for clip x or y of a point in the box.
     centre: vec4<f32>,
-    // World units per unit of clip x, y, z. w: as of `centre`, for z.
+    // World units per unit of clip x, y, z; of a spot or point light, at its `range`. w: as of
+    // `centre`, for z.
     extent: vec4<f32>,
+    // Of a spot or point light: its place, and what rounding that to f32 left over.
+    position: vec3<f32>,
+    // Of a spot light: cosine of the angle between its axis and the edge of its cone.
+    edge_cosine: f32,
+    position_low: vec3<f32>,
+    // Of a spot or point light: no point of the scene is farther from it.
+    range: f32,
 }
 
 var<uniform> light: Light;
 
+// Which kind of light it is: known when the graph is planned, so that nobody pays for the others.
+override light_kind: u32 = 0u;
+const LIGHT_DIRECTIONAL: u32 = 0u;
+const LIGHT_SPOT: u32 = 1u;
+const LIGHT_POINT: u32 = 2u;
+
+// What a shadow ray to a place leaves out of its way, as `LIGHT_GAP` in
+// crates/scene/src/light_kind.rs.
+const LIGHT_GAP: f32 = 0.0000152587890625;
+
+// From a position to the place of a spot or point light.
+fn light_way(position: vec3<f32>) -> vec3<f32> {
+    return (light.position - position) + light.position_low;
+}
+
+// Unit vector from a position towards the light.
+fn to_light_from(position: vec3<f32>) -> vec3<f32> {
+    if light_kind == LIGHT_DIRECTIONAL {
+        return light.to_light;
+    }
+    let way = light_way(position);
+    return way * inverseSqrt(max(dot(way, way), 1e-37));
+}
+
+// How far along `to_light_from` a shadow ray from there goes.
+fn light_distance(position: vec3<f32>) -> f32 {
+    if light_kind == LIGHT_DIRECTIONAL {
+        return light.max_distance;
+    }
+    return length(light_way(position)) * (1.0 - LIGHT_GAP);
+}
+
+// Whether the light shines on a position at all, were nothing in between.
+fn light_shines_on(position: vec3<f32>) -> bool {
+    if light_kind != LIGHT_SPOT {
+        return true;
+    }
+    let way = light_way(position);
+    return dot(way, light.to_light) >= light.edge_cosine * length(way);
+}
+
+// The face of the light's map that a position lies in: of a point light the cube's, +x, -x, +y, -y,
+// +z, -z; otherwise 0.
+fn light_face(position: vec3<f32>) -> u32 {
+    if light_kind != LIGHT_POINT {
+        return 0u;
+    }
+    let from_light = -light_way(position);
+    let size = abs(from_light);
+    let face = select(select(4u, 2u, size.y >= size.z), 0u, size.x >= max(size.y, size.z));
+    return face + select(0u, 1u, from_light[face / 2u] < 0.0);
+}
+
+// A position as a face of the light's map sees it: x and y, of which w is the half width of the
+// map, and w; z, not to be divided by w, is the share of `range`, in 0..1 before the light. Of a
+// spot light w is the distance along the axis, of a point light along the face's. Behind the light w
+// is negative.
+fn light_homogeneous(position: vec3<f32>, face: u32) -> vec4<f32> {
+    if light_kind == LIGHT_DIRECTIONAL {
+        return light.clip_from_relative * vec4(position - light.centre.xyz, 1.0);
+    }
+    let from_light = -light_way(position);
+    if light_kind == LIGHT_SPOT {
+        return light.clip_from_relative * vec4(from_light, 0.0);
+    }
+    // As cube textures have it, y up.
+    let v = from_light;
+    var turned = vec3(-v.x, v.y, -v.z);
+    switch face {
+        case 0u: { turned = vec3(-v.z, v.y, v.x); }
+        case 1u: { turned = vec3(v.z, v.y, -v.x); }
+        case 2u: { turned = vec3(v.x, -v.z, v.y); }
+        case 3u: { turned = vec3(v.x, v.z, -v.y); }
+        case 4u: { turned = vec3(v.x, v.y, v.z); }
+        default: {}
+    }
+    return vec4(turned.xy, turned.z / light.range, turned.z);
+}
+
+// Of a place in the world, in the map's face that it lies in: x and y in -1..1 over the map, y up, z
+// in 0..1 away from the light. A spot light's x and y are infinite beside the light.
 fn light_clip(position: vec3<f32>) -> vec3<f32> {
-    return (light.clip_from_relative * vec4(position - light.centre.xyz, 1.0)).xyz;
+    if light_kind == LIGHT_DIRECTIONAL {
+        return (light.clip_from_relative * vec4(position - light.centre.xyz, 1.0)).xyz;
+    }
+    let seen = light_homogeneous(position, light_face(position));
+    return vec3(seen.xy / seen.w, seen.z);
 }
 
 // 4 half ulps: what clip space is off by, for each unit of what is summed up. Valid if products are

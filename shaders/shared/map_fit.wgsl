@@ -19,7 +19,10 @@ var<uniform> map_fit: MapFit;
 
 // x and y in texels; z is the map's depth, which grows away from the light.
 fn light_texel(position: vec3<f32>) -> vec3<f32> {
-    let clip = light_clip(position);
+    return texel_of_clip(light_clip(position));
+}
+
+fn texel_of_clip(clip: vec3<f32>) -> vec3<f32> {
     let across = vec3(clip.xy, 1.0);
     return vec3(dot(map_fit.x.xyz, across), dot(map_fit.y.xyz, across), clip.z);
 }

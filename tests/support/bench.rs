@@ -76,7 +76,7 @@ impl<'a> Bench<'a> {
         );
         let primitives = values(&report, "primitive");
         let camera = self.view.camera(self.viewport);
-        let light = &self.scene.light;
+        let light = self.scene.light();
         let reference = self
             .oracle
             .shade(
@@ -106,7 +106,7 @@ impl<'a> Bench<'a> {
         let plan = plan(gbuffer, &self.provider, self.viewport, |_| {});
         let report = run_on(&self.gpu, plan, &mut self.provider, &["primitive"]);
         let (primitives, progress) = (values(&report, "primitive"), Progress::default());
-        let (camera, light) = (self.view.camera(self.viewport), &self.scene.light);
+        let (camera, light) = (self.view.camera(self.viewport), self.scene.light());
         let shaded = self
             .oracle
             .shade(&camera, light, &primitives, mode, progress);

@@ -51,6 +51,7 @@ impl Describe for Extended {
             items: Some(content.len() as u64 / stride),
             stride: *stride,
             binding: ProvidedBinding::Storage,
+            kind: None,
         })
     }
 }
@@ -155,7 +156,7 @@ pub fn trace_by(
         name: "test".into(),
         mesh: mesh.clone(),
         views: vec![],
-        light: DirectionalLight { direction: light },
+        lights: vec![DirectionalLight::new(light).into()],
     };
     let mut provider = Extended::new(SceneProvider::new(Arc::new(scene)));
     provider.add("test.rays", rays);

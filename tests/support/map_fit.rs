@@ -22,7 +22,7 @@ impl MapFit {
         let number = |at: usize| f64::from(f32::from_bits(words[at]));
         let row = |at: usize| DVec3::new(number(at), number(at + 1), number(at + 2));
         Self {
-            scene: LightSpace::new(&scene.mesh, &scene.light, 1),
+            scene: LightSpace::new(&scene.mesh, &scene.sun().unwrap(), 1),
             rows: [row(0), row(4)],
             size: number(8) as u32,
         }

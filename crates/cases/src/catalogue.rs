@@ -55,14 +55,12 @@ mod tests {
                 name,
                 mesh,
                 views,
-                light,
+                lights,
             } = case.scene();
             assert_eq!(name, case.name);
             assert!(views.len() == 1 && views[0].name == "main", "{name}");
-            assert!(
-                light.direction.is_finite() && light.direction != DVec3::ZERO,
-                "{name}"
-            );
+            assert!(lights.len() == 1, "{name}");
+            assert_eq!(lights[0].check(), Ok(()), "{name}");
             assert!(mesh.positions.iter().all(|p| p.is_finite()), "{name}");
             let known = |index: &u32| (*index as usize) < mesh.positions.len();
             assert!(mesh.triangles.iter().flatten().all(known), "{name}");

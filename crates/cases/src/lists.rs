@@ -140,8 +140,9 @@ mod tests {
 
     #[test]
     fn the_crowd_is_over_one_texel() {
-        let Scene { mesh, light, .. } = crowded_texel();
-        let fit = light.fit(mesh.corner_positions());
+        let scene = crowded_texel();
+        let mesh = &scene.mesh;
+        let fit = scene.sun().unwrap().fit(mesh.corner_positions());
         let small = |&i: &u32| (mesh.corners(i)[0] - mesh.corners(i)[1]).length() < 0.01;
         let specks: Vec<u32> = (0..mesh.triangles.len() as u32).filter(small).collect();
         assert!(specks.len() >= 99_000, "{}", specks.len());
@@ -152,7 +153,7 @@ mod tests {
     #[test]
     fn every_pixel_is_over_one_of_two_texels() {
         let case = CASES[1].scene();
-        let fit = case.light.fit(case.mesh.corner_positions());
+        let fit = case.sun().unwrap().fit(case.mesh.corner_positions());
         let camera = case.views[0].camera([128; 2]);
         let pixels = (0..128).flat_map(|y| (0..128).map(move |x| (x, y)));
         let floor = pixels.map(|(x, y)| {

@@ -172,7 +172,7 @@ mod tests {
     #[test]
     fn the_vertices_are_where_texels_meet() {
         let case = CASES[0].scene();
-        let fit = case.light.fit(case.mesh.corner_positions());
+        let fit = case.sun().unwrap().fit(case.mesh.corner_positions());
         assert_eq!((fit.extent.x, fit.extent.y), (250.5, 250.5));
         let [mut corners, mut centres, mut finer] = [0; 3];
         for &position in &case.mesh.positions[8..] {
@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn the_receivers_are_where_texels_meet() {
         let case = CASES[1].scene();
-        let fit = case.light.fit(case.mesh.corner_positions());
+        let fit = case.sun().unwrap().fit(case.mesh.corner_positions());
         let camera = case.views[0].camera([128; 2]);
         let pixels = (0..128).flat_map(|y| (0..128).map(move |x| (x, y)));
         let receivers = pixels.map(|(x, y)| {

@@ -195,7 +195,7 @@ impl Shape {
                 far: 100.0 * direction.length(),
                 light: None,
             }],
-            light: DirectionalLight { direction: light },
+            lights: vec![DirectionalLight::new(light).into()],
         }
     }
 }

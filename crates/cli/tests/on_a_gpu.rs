@@ -484,6 +484,94 @@ fn a_views_own_light_is_drawn_judged_and_remembered() {
     assert_eq!(same, own);
 }
 
+/// Under a light that has an extent all is judged by shares; a graph needs no status.
+#[test]
+fn a_light_with_extent_is_judged_by_shares() {
+    let folder = tempfile::tempdir().unwrap();
+    let bare = LIT.replace(", \"status\"]", "]");
+    let soft = bare.replace(
+        "visibility\", format: R8Uint",
+        "visibility\", format: R16Float",
+    );
+    fs::write(folder.path().join("lit.ron"), bare).unwrap();
+    fs::write(
+        folder.path().join("half.ron"),
+        soft.replace("value: 1", "value: 0.5"),
+    )
+    .unwrap();
+    fs::write(
+        folder.path().join("odd.ron"),
+        soft.replace("value: 1", "value: 1.5"),
+    )
+    .unwrap();
+    let compare = |scene: &str, rest: &str| {
+        let line = format!(
+            "compare lit.ron half.ron odd.ron --scene {scene} --view bench_side --size 32x32 \
+             --frames 1 --warmup 0 --cached-frames 0 --out out {rest}"
+        );
+        let output = skiagraph(folder.path(), &line);
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        let log = String::from_utf8_lossy(&output.stderr).into_owned();
+        (
+            results(&folder.path().join("out"))["runs"].clone(),
+            text,
+            log,
+        )
+    };
+    let (runs, text, _) = compare("park", "");
+    assert!(
+        text.contains("Hard answers against the hard reference"),
+        "{text}"
+    );
+    assert!(
+        text.contains("Graded answers against the hard reference"),
+        "{text}"
+    );
+    assert_eq!(
+        (&runs[0]["answer"], &runs[0]["graded"]),
+        (&"hard".into(), &Value::Null)
+    );
+    let certain = count(&runs[0]["certain"]["lit"]);
+    assert_eq!(
+        certain,
+        count(&runs[0]["pixels"]["facing_light"]),
+        "certain of all that it lights"
+    );
+    assert_eq!(runs[1]["answer"], "graded");
+    assert_eq!(runs[1]["graded"]["rmse"], 0.5);
+    assert_eq!(count(&runs[2]["graded"]["invalid"]["outside"]), certain);
+    assert!(text.contains("odd.ron: visibility that is no share of light: outside 0 to 1"));
+
+    let soft = park_with_width();
+    fs::write(folder.path().join("soft.ron"), soft).unwrap();
+    let (runs, text, _) = compare("soft.ron", "--reference-samples 32");
+    assert!(text.contains("reference of 32 samples per pixel"), "{text}");
+    assert!(text.contains("by RMSE: "), "{text}");
+    let area = &runs[0]["area"];
+    assert_eq!(area["samples"], 32);
+    assert!(count(&area["penumbra"]) > 20);
+    assert!(area["standard_error_rms"].as_f64().unwrap() > 0.0);
+    // A hard answer is judged by shares, too; what is lit throughout is off by the shadow alone.
+    let mean = |run: usize| runs[run]["graded"]["mean_absolute_error"].as_f64().unwrap();
+    assert_eq!(runs[0]["answer"], "hard");
+    assert!(mean(0) < 0.5 && mean(0) > 0.01, "{}", mean(0));
+    assert_eq!(mean(0), mean(2), "1.5 counts as 1");
+    // Another number of samples is another reference.
+    let (_, _, log) = compare("soft.ron", "--reference-samples 32 --resume");
+    assert!(log.contains("3 of 3 runs are kept"), "{log}");
+    let (_, _, log) = compare("soft.ron", "--reference-samples 64 --resume");
+    assert!(log.contains("0 of 3 runs are kept"), "{log}");
+}
+
+/// The park's first view under a wide light.
+fn park_with_width() -> String {
+    r#"(format: 1, name: "soft", mesh: Generated("park"),
+        light: (direction: (0.744, -0.408, 0.527), angle_degrees: 8),
+        views: [(name: "bench_side", eye: (-23.277, 18.541, 30.143),
+            direction: (0.397, -0.645, -0.652), fov_y_degrees: 60, near: 1, far: 400)])"#
+        .into()
+}
+
 /// A floor, a sheet above it whose front faces the light, and a box beside the sheet.
 const SHEET_AND_BOX: &str = "
 v -9 0 -9\nv -9 0 9\nv 9 0 9\nv 9 0 -9\nf 1 2 3 4

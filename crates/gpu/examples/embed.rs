@@ -135,6 +135,7 @@ impl Describe for Scene {
             items: Some(items),
             stride,
             binding,
+            kind: None,
         })
     }
 }

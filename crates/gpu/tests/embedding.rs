@@ -141,6 +141,7 @@ impl Describe for Number {
             items: Some(1),
             stride: 4,
             binding: ProvidedBinding::Storage,
+            kind: None,
         })
     }
 }

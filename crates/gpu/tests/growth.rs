@@ -342,6 +342,7 @@ impl Describe for Wanted {
             items: Some(1),
             stride: 4,
             binding: ProvidedBinding::Storage,
+            kind: None,
         })
     }
 }

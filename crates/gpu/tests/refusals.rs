@@ -74,6 +74,7 @@ impl Describe for Broken {
             items: Some(4),
             stride: 4,
             binding: ProvidedBinding::Storage,
+            kind: None,
         })
     }
 }

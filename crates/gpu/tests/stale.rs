@@ -58,6 +58,7 @@ impl Describe for Updated {
             items: Some(self.items),
             stride: 4,
             binding: ProvidedBinding::Storage,
+            kind: None,
         })
     }
 }

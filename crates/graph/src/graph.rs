@@ -17,7 +17,7 @@ use crate::{
     },
     errors::{compose::ComposeError, resource::SizeError},
     kinds::registry::Registry,
-    language::syntax::Leaf,
+    language::{name::Name, syntax::Leaf},
     shader::{constants::ChoiceConstants, expand::ShaderFiles, reflect::Shader},
     source::{
         paths::{escapes, folder_of, include_candidates},
@@ -233,6 +233,12 @@ impl Graph {
     pub fn outputs(&self) -> Vec<&str> {
         let outputs = self.document.outputs.iter();
         outputs.map(|output| output.name.as_str()).collect()
+    }
+
+    /// The words of the section `lights`: the kinds of light that the method takes, each where it
+    /// was written. The graph does not know what they mean.
+    pub fn lights(&self) -> impl Iterator<Item = &Located<Name>> {
+        self.document.lights.iter()
     }
 
     /// Names of what the host must import.

@@ -41,7 +41,7 @@ pub use link::{
     PassId, Usage,
 };
 pub use plan::{CulledPass, MemoryEntry, OutputSummary, PassSummary, Plan, text};
-pub use provider::{Describe, Import, NoProvider, Provided, ProvidedBinding};
+pub use provider::{Describe, Import, NoProvider, Provided, ProvidedBinding, ProvidedKind};
 pub use request::{Capture, PlanRequest};
 pub use resource::{
     Buffer, FRAME_BYTES, Growth, Origin, Resource, ResourceId, ResourceKind, Sampler,

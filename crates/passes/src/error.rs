@@ -32,6 +32,12 @@ pub enum Error {
         /// Triangles of the mesh.
         triangles: usize,
     },
+    /// The hierarchy in light space is that of one direction.
+    #[error(
+        "`scene.light_space_nodes` is made for a directional light, not for a {0} light: trace with \
+         `engine: Hierarchy`"
+    )]
+    LightSpaceKind(&'static str),
     /// A triangle without its corner.
     #[error("a triangle of the mesh has the corner {index}, but it has only {corners} positions")]
     Corner {

@@ -3,12 +3,12 @@
 use crate::{
     error::Error,
     ray_query,
-    uniforms::{CameraUniform, LightUniform},
+    uniforms::{CameraUniform, LIGHT_KINDS, LightAreaUniform, LightUniform},
 };
 use skiagraph_gpu::{Provider, ProviderError};
-use skiagraph_graph::{Describe, Provided, ProvidedBinding};
+use skiagraph_graph::{Describe, Provided, ProvidedBinding, ProvidedKind};
 use skiagraph_scene::{
-    Adjacency, Bvh, BvhNode, DirectionalLight, LightSpace, LightSpaceNode, Scene, View,
+    Adjacency, Bvh, BvhNode, LightKind, LightSpace, LightSpaceNode, Scene, View,
 };
 use std::{collections::BTreeMap, sync::Arc};
 use wgpu::util::DeviceExt;
@@ -27,8 +27,10 @@ const TLAS: &str = "scene.tlas";
 pub const CAMERA: &str = "camera";
 /// The uniform of `shared/light.wgsl`.
 pub const LIGHT: &str = "light";
+/// The uniform of `shared/light_area.wgsl`.
+pub const LIGHT_AREA: &str = "light_area";
 
-const NAMES: [&str; 12] = [
+const NAMES: [&str; 13] = [
     POSITIONS,
     INDICES,
     NORMALS,
@@ -41,10 +43,11 @@ const NAMES: [&str; 12] = [
     TLAS,
     CAMERA,
     LIGHT,
+    LIGHT_AREA,
 ];
 
 /// What is built anew for another light.
-const OF_LIGHT: [&str; 3] = [LIGHT, LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES];
+const OF_LIGHT: [&str; 4] = [LIGHT, LIGHT_AREA, LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES];
 
 /// Provides one scene under one view, on one device.
 ///
@@ -62,11 +65,12 @@ const OF_LIGHT: [&str; 3] = [LIGHT, LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES];
 /// | `scene.tlas` | `acceleration_structure`, one instance; primitives have their ids |
 /// | `camera` | [`CameraUniform`] |
 /// | `light` | [`LightUniform`] |
+/// | `light_area` | [`LightAreaUniform`] |
 ///
 /// What was built stays and is shared by all graphs that are executed with the same provider, which
 /// therefore belongs to the device that it was first used with;
-/// [`set_view`](SceneProvider::set_view) changes the one camera that they all see, and the light if
-/// the view has one of its own. wgpu binds no buffer of size zero: an array of an empty scene holds
+/// [`set_view`](SceneProvider::set_view) changes the one camera that they all see, and the light to
+/// the first of the view's own or the scene's. wgpu binds no buffer of size zero: an array of an empty scene holds
 /// one zero item, its hierarchy one leaf around a triangle without area, which no ray hits;
 /// [`Describe::describe`] still says 0 items, so that nothing is drawn.
 pub struct SceneProvider {
@@ -75,7 +79,7 @@ pub struct SceneProvider {
     /// How often the camera was set, and which of these is in its buffer.
     camera_version: u64,
     camera_uploaded: u64,
-    light: DirectionalLight,
+    light: LightKind,
     /// How often the light was changed.
     light_version: u64,
     buffers: BTreeMap<&'static str, wgpu::Buffer>,
@@ -88,7 +92,7 @@ impl SceneProvider {
     /// zeros, and the light is the scene's.
     pub fn new(scene: Arc<Scene>) -> Self {
         Self {
-            light: scene.light,
+            light: scene.light(),
             light_version: 0,
             scene,
             camera: CameraUniform::default(),
@@ -110,7 +114,17 @@ impl SceneProvider {
     pub fn set_view(&mut self, view: &View, viewport: [u32; 2]) {
         self.camera = CameraUniform::from(&view.camera(viewport));
         self.camera_version += 1;
-        let light = self.scene.light_of(view);
+        self.set_light(self.scene.light_of(view));
+    }
+
+    /// The light.
+    pub fn light(&self) -> LightKind {
+        self.light
+    }
+
+    /// Another light. A plan depends on the light's kind: what was planned under a light of another
+    /// kind is planned anew.
+    pub fn set_light(&mut self, light: LightKind) {
         if light != self.light {
             self.light = light;
             self.light_version += 1;
@@ -153,7 +167,7 @@ impl SceneProvider {
                 limit,
             });
         }
-        let uniform = matches!(name, CAMERA | LIGHT);
+        let uniform = matches!(name, CAMERA | LIGHT | LIGHT_AREA);
         let usage = if uniform {
             wgpu::BufferUsages::UNIFORM
         } else {
@@ -206,10 +220,23 @@ impl SceneProvider {
     }
 
     fn light_uniform(&self) -> LightUniform {
-        LightUniform::new(&self.light, &self.scene.mesh)
+        LightUniform::new(self.light, &self.scene.mesh)
+    }
+
+    fn light_kind(&self) -> ProvidedKind {
+        let number = LIGHT_KINDS
+            .iter()
+            .position(|word| *word == self.light.word());
+        ProvidedKind {
+            words: &LIGHT_KINDS,
+            number: number.unwrap_or_default() as u32,
+        }
     }
 
     fn upload_light_space(&mut self, device: &wgpu::Device) -> Result<(), Error> {
+        if self.light.directional().is_none() {
+            return Err(Error::LightSpaceKind(self.light.word()));
+        }
         let light = self.light_uniform();
         let space = LightSpace {
             direction: light.to_light,
@@ -252,6 +279,7 @@ impl SceneProvider {
             ADJACENCY => self.upload_items(name, &Adjacency::new(mesh).opposite, device),
             CAMERA => self.upload_items(name, &[self.camera], device),
             LIGHT => self.upload_items(name, &[self.light_uniform()], device),
+            LIGHT_AREA => self.upload_items(name, &[LightAreaUniform::from(&self.light)], device),
             BVH_NODES | BVH_PRIMITIVES => self.upload_hierarchy(device),
             LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.upload_light_space(device),
             _ => Ok(()),
@@ -304,6 +332,7 @@ impl Describe for SceneProvider {
                 items: items.map(|items| items as u64),
                 stride,
                 binding: ProvidedBinding::Storage,
+                kind: None,
             })
         };
         let uniform = |bytes: usize| {
@@ -311,6 +340,7 @@ impl Describe for SceneProvider {
                 items: Some(1),
                 stride: bytes as u64,
                 binding: ProvidedBinding::Uniform,
+                kind: None,
             })
         };
         match name {
@@ -322,7 +352,11 @@ impl Describe for SceneProvider {
             BVH_PRIMITIVES | LIGHT_SPACE_PRIMITIVES => array(Some(mesh.triangles.len()), 4),
             TLAS => Some(Provided::ACCELERATION_STRUCTURE),
             CAMERA => uniform(size_of::<CameraUniform>()),
-            LIGHT => uniform(size_of::<LightUniform>()),
+            LIGHT => uniform(size_of::<LightUniform>()).map(|light| Provided {
+                kind: Some(self.light_kind()),
+                ..light
+            }),
+            LIGHT_AREA => uniform(size_of::<LightAreaUniform>()),
             _ => None,
         }
     }

@@ -1,8 +1,9 @@
 //! `Trace`: rays in, hits out, by one of several engines. The number of rays stays on the GPU.
 
+use crate::{provider::LIGHT, uniforms::LIGHT_KINDS};
 use serde::Deserialize;
 use skiagraph_graph::{
-    Chosen, Code, Diagnostic, Lowering, PassKind, Reference,
+    Chosen, Code, Diagnostic, Lowering, PassKind, Reference, Span,
     step::{Dispatch, Groups, Operand, Program, Step, Threads},
 };
 
@@ -31,7 +32,8 @@ pub enum Engine {
 /// What all rays of a pass have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub enum Direction {
-    /// The direction of each is `light.to_light`, to the bit.
+    /// The direction of each is `to_light_from` its origin, to the bit: under a directional light
+    /// `light.to_light`.
     Light,
 }
 
@@ -122,10 +124,7 @@ impl Trace {
     }
 
     fn refuse(&self, pass: &mut Lowering<'_>) {
-        let place = match &self.engine {
-            Chosen::Expr(expr) => expr.span().clone(),
-            Chosen::Word(_) => pass.name().span,
-        };
+        let place = self.engine_place(pass);
         let what = "`LightSpace` traces only rays that go towards the light";
         let mistake = Diagnostic::error(Code::Unasked, what)
             .at(place, "nothing says that those of this pass do")
@@ -134,6 +133,21 @@ impl Trace {
                  `shared/fill_rays.ron` makes them; else take `engine: Hierarchy`",
             );
         pass.report(mistake);
+    }
+
+    fn refuse_light(&self, pass: &mut Lowering<'_>, kind: &str) {
+        let what = format!("`LightSpace` traces no rays to a {kind} light");
+        let mistake = Diagnostic::error(Code::Unasked, what)
+            .at(self.engine_place(pass), "its rays all have one direction")
+            .help("take the engine `hierarchy`, or `ray_query` where there is one");
+        pass.report(mistake);
+    }
+
+    fn engine_place(&self, pass: &Lowering<'_>) -> Span {
+        match &self.engine {
+            Chosen::Expr(expr) => expr.span().clone(),
+            Chosen::Word(_) => pass.name().span,
+        }
     }
 
     /// A dispatch of its own, because a buffer cannot be written and be the size of the dispatch
@@ -165,8 +179,14 @@ impl PassKind for Trace {
         }
         let engine = pass.word(&self.engine, &Engine::WORDS);
         pass.alternative(engine.shader(), engine.features());
-        if engine == Engine::LightSpace && self.direction.is_none() {
-            self.refuse(pass);
+        if engine == Engine::LightSpace {
+            match (self.direction, pass.kind_of(LIGHT)) {
+                (None, _) => self.refuse(pass),
+                (Some(Direction::Light), Some(kind)) if kind != LIGHT_KINDS[0] => {
+                    self.refuse_light(pass, kind);
+                }
+                (Some(Direction::Light), _) => {}
+            }
         }
         let mut trace = pass.program_of(engine.shader());
         trace.compute = Some(pass.named(self.entry_point()));

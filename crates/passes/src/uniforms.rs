@@ -1,8 +1,8 @@
 //! What shaders know of the camera and the light. The structs of `shaders/shared/camera.wgsl` and
 //! `light.wgsl` are laid out alike; a test compares both with what naga makes of them.
 
-use glam::{Mat3, Mat4, Vec3};
-use skiagraph_scene::{Camera, DirectionalLight, Mesh};
+use glam::{DMat4, DVec3, Mat3, Mat4, Vec3};
+use skiagraph_scene::{Camera, DirectionalLight, LightKind, Mesh, SpotLight};
 
 /// WGSL's `Camera`: a perspective camera, 80 bytes.
 #[repr(C)]
@@ -49,15 +49,17 @@ impl From<&Camera> for CameraUniform {
     }
 }
 
-/// WGSL's `Light`: a directional light and the light space fitted to the scene's corners,
-/// 112 bytes.
+/// WGSL's `Light`: a light and its light space, of a directional light fitted to the scene's corners;
+/// 144 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LightUniform {
     /// From a position relative to `centre` to the light's clip space (w stays 1; z in 0..1 grows
-    /// away from the light).
+    /// away from the light). Of a spot light, from what is relative to the light to x, y and w, of
+    /// which w, the distance along the axis, is the half width of the map, and z, its share of
+    /// `range`.
     pub clip_from_relative: Mat4,
-    /// Unit vector towards the light.
+    /// Unit vector towards the light; of a spot light, against its axis; of a point light, 0.
     pub to_light: Vec3,
     /// No two points of the scene are farther apart.
     pub max_distance: f32,
@@ -67,20 +69,83 @@ pub struct LightUniform {
     /// The most that is summed up, sizes alone, for clip x or y of a point in the scene's box: what
     /// their rounding is a share of.
     pub corner_across: f32,
-    /// World units per unit of light-space clip x, y and z.
+    /// World units per unit of light-space clip x, y and z; of a spot or point light, at `range`.
     pub extent: Vec3,
     /// The same for clip z.
     pub corner_along: f32,
+    /// Place of a spot or point light, rounded to f32.
+    pub position: Vec3,
+    /// Cosine of the angle between a spot light's axis and the edge of its cone.
+    pub edge_cosine: f32,
+    /// What rounding the position left over.
+    pub position_low: Vec3,
+    /// No point of the scene is farther from a spot or point light.
+    pub range: f32,
 }
+
+/// The kinds of light: words for documents and scene files, numbers for shaders.
+pub const LIGHT_KINDS: [&str; 3] = ["directional", "spot", "point"];
 
 impl LightUniform {
     /// The light over all corners of a mesh; an empty one counts as a point at the origin.
-    pub fn new(light: &DirectionalLight, mesh: &Mesh) -> Self {
+    pub fn new(light: impl Into<LightKind>, mesh: &Mesh) -> Self {
+        match light.into() {
+            LightKind::Directional(light) => Self::directional(&light, mesh),
+            LightKind::Spot(spot) => Self {
+                to_light: -spot.direction.normalize().as_vec3(),
+                edge_cosine: spot.edge_cosine() as f32,
+                ..Self::at(spot.position, mesh).seen_by(&spot)
+            },
+            LightKind::Point(point) => Self::at(point.position, mesh),
+        }
+    }
+
+    /// A light at a place.
+    fn at(position: DVec3, mesh: &Mesh) -> Self {
+        let (min, max) = mesh.bounds().unwrap_or((Vec3::ZERO, Vec3::ZERO));
+        let (min, max) = (min.as_dvec3(), max.as_dvec3());
+        let rounded = position.as_vec3();
+        let farthest = (position - min).abs().max((position - max).abs()).length();
+        // A hair more, as of a directional light's box; and no scene is a point to divide by.
+        let range = (farthest * 1.002).max(1e-12) as f32;
+        Self {
+            max_distance: (2.0 * min.distance(max)) as f32,
+            centre: ((min + max) * 0.5).as_vec3(),
+            extent: Vec3::splat(range),
+            position: rounded,
+            position_low: (position - rounded.as_dvec3()).as_vec3(),
+            range,
+            ..Self::default()
+        }
+    }
+
+    /// With the light space of a spot light.
+    fn seen_by(self, spot: &SpotLight) -> Self {
+        let forward = spot.direction.normalize();
+        let (right, up) = across(forward);
+        let half_width = (spot.cone_degrees * 0.5).to_radians().tan();
+        let rows = [
+            (right / half_width).extend(0.0),
+            (up / half_width).extend(0.0),
+            (forward / f64::from(self.range)).extend(0.0),
+            forward.extend(0.0),
+        ];
+        let across = self.range * half_width as f32;
+        Self {
+            clip_from_relative: DMat4::from_cols_array_2d(&rows.map(|row| row.to_array()))
+                .transpose()
+                .as_mat4(),
+            extent: Vec3::new(across, across, self.range),
+            ..self
+        }
+    }
+
+    fn directional(light: &DirectionalLight, mesh: &Mesh) -> Self {
         let (min, max) = mesh.bounds().unwrap_or((Vec3::ZERO, Vec3::ZERO));
         let fit = light.fit(mesh.corner_positions());
         let (min, max) = (min.as_dvec3(), max.as_dvec3());
         let centre = ((min + max) * 0.5).as_vec3();
-        let to_relative = glam::DMat4::from_translation(centre.as_dvec3());
+        let to_relative = DMat4::from_translation(centre.as_dvec3());
         let clip_from_relative = (fit.view_projection * to_relative).as_mat4();
         let matrix = Mat3::from_mat4(clip_from_relative);
         let half = ((max - min) * 0.5).as_vec3();
@@ -98,6 +163,52 @@ impl LightUniform {
             corner_across: summed.x.max(summed.y),
             extent: fit.extent.as_vec3(),
             corner_along: summed.z,
+            ..Self::default()
+        }
+    }
+}
+
+/// Two unit vectors across a direction, to the right and up.
+fn across(forward: DVec3) -> (DVec3, DVec3) {
+    let helper = if forward.y.abs() < 0.9 {
+        DVec3::Y
+    } else {
+        DVec3::Z
+    };
+    let right = forward.cross(helper).normalize();
+    (right, right.cross(forward))
+}
+
+/// WGSL's `LightArea`: how far the light reaches around its centre, 32 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct LightAreaUniform {
+    /// From the light's centre to its rim, of a directional light at distance 1; 0 of a point
+    /// light, whose disk faces each receiver.
+    pub right: Vec3,
+    /// Radius of the disk that `right` and `up` span; 0 for a light without extent.
+    pub radius: f32,
+    /// As `right`, at a right angle to it.
+    pub up: Vec3,
+    /// Unused.
+    pub padding: f32,
+}
+
+impl From<&LightKind> for LightAreaUniform {
+    fn from(light: &LightKind) -> Self {
+        let ([right, up], radius) = match light {
+            LightKind::Directional(light) => (light.across(), light.across()[0].length()),
+            LightKind::Spot(spot) => {
+                let (right, up) = spot.direction.normalize().any_orthonormal_pair();
+                ([right, up].map(|axis| axis * spot.radius), spot.radius)
+            }
+            LightKind::Point(point) => ([DVec3::ZERO; 2], point.radius),
+        };
+        Self {
+            right: right.as_vec3(),
+            radius: radius as f32,
+            up: up.as_vec3(),
+            padding: 0.0,
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::{
 use glam::DVec3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use skiagraph_scene::{Camera, DirectionalLight, Parts};
+use skiagraph_scene::{Camera, LightKind, Parts, Towards};
 use std::ops::ControlFlow;
 
 /// Certain wrong pixels by the parts of the mesh that block them ([`Parts`] says which are open).
@@ -61,21 +61,21 @@ impl Oracle<'_> {
     pub fn blockers(
         &self,
         camera: &Camera,
-        light: &DirectionalLight,
+        light: impl Into<LightKind>,
         primitives: &[u32],
         mode: OracleMode,
         pixels: &[usize],
     ) -> Result<BlockerCounts, Error> {
         let parts = self.parts.get_or_init(|| Parts::new(self.mesh));
-        let to_light = light.to_light();
+        let light = light.into();
         let width = camera.viewport[0] as usize;
         let blockers = pixels.par_iter().map_init(Vec::new, |stack, &pixel| {
             let pixel = [(pixel % width) as u32, (pixel / width) as u32];
-            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, pixel, to_light)?;
+            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, pixel, &light)?;
             Ok(match receiver {
-                Some(receiver) if receiver.n_dot_l > 0.0 => {
-                    let (origin, passed) = mode.ray(&receiver, to_light);
-                    self.blocker(origin, to_light, passed, parts, stack)
+                Some(receiver) if receiver.n_dot_l > 0.0 && !receiver.outside_cone => {
+                    let (origin, way, passed) = mode.ray(&receiver);
+                    self.blocker(origin, way, passed, parts, stack)
                 }
                 _ => Blocker::None,
             })
@@ -89,16 +89,17 @@ impl Oracle<'_> {
     fn blocker(
         &self,
         origin: DVec3,
-        to_light: DVec3,
+        way: Towards,
         passed: u32,
         parts: &Parts,
         stack: &mut Vec<u32>,
     ) -> Blocker {
-        let ray = Ray::new(origin, to_light, self.tree.max_distance(origin), 0.0);
+        let max_distance = self.tree.max_distance(origin);
+        let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
         let mut found = Blocker::None;
         self.tree.walk(&ray, stack, |caster, _| {
             let hit = ray.hit(&caster.corners);
-            if caster.primitive == passed || hit.is_none_or(|hit| hit.t <= ray.nearest) {
+            if caster.primitive == passed || !hit.is_some_and(|hit| ray.reaches(hit.t)) {
                 return ControlFlow::Continue(());
             }
             if parts.is_open(caster.primitive) {

@@ -14,6 +14,7 @@ use crate::{
     tree::Caster,
 };
 use glam::DVec3;
+use skiagraph_scene::Towards;
 
 /// What a shadow ray has to do with a caster.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,17 +38,19 @@ pub(crate) enum Contact {
 pub(crate) struct FuzzyRay<'a> {
     ray: &'a Ray,
     origin: DVec3,
-    direction: DVec3,
+    towards: Towards,
     uncertainty: &'a Uncertainty,
     sheared_segments: [DVec3; 3],
+    /// What the ray's end may be off by.
+    end_error: f64,
 }
 
 impl<'a> FuzzyRay<'a> {
-    /// `direction` is a unit vector, the one `ray` was made of.
+    /// `towards` is what `ray` was made of.
     pub(crate) fn new(
         ray: &'a Ray,
         origin: DVec3,
-        direction: DVec3,
+        towards: Towards,
         uncertainty: &'a Uncertainty,
     ) -> Self {
         let sheared_segments = uncertainty
@@ -56,9 +59,10 @@ impl<'a> FuzzyRay<'a> {
         Self {
             ray,
             origin,
-            direction,
+            towards,
             uncertainty,
             sheared_segments,
+            end_error: uncertainty.end_error(&towards),
         }
     }
 
@@ -71,7 +75,8 @@ impl<'a> FuzzyRay<'a> {
         // of the corner itself.
         let farthest = corners
             .map(|corner| (glam::Vec3::from(corner).as_dvec3() - self.origin).length_squared());
-        let caster = caster_error(farthest[0].max(farthest[1]).max(farthest[2]).sqrt());
+        let farthest = farthest[0].max(farthest[1]).max(farthest[2]).sqrt();
+        let caster = caster_error(farthest, &self.towards);
         let ball = self.uncertainty.radius + caster;
         let extent = self
             .sheared_segments
@@ -84,6 +89,7 @@ impl<'a> FuzzyRay<'a> {
             || high.x < -extent.x
             || high.y < -extent.y
             || high.z < -extent.z
+            || low.z > self.ray.end + self.end_error + extent.z
         {
             return Contact::Miss;
         }
@@ -110,16 +116,31 @@ impl<'a> FuzzyRay<'a> {
         let (t, t_error) = self.distance(&corners, ball);
         let inside =
             |sign: f64, margin: f64| (0..3).all(|i| sign * edges[i] >= margin * thresholds[i]);
-        match Ray::hit_sheared(sheared, edges).filter(|hit| hit.t > self.ray.nearest) {
-            Some(_) if t > t_error && (inside(1.0, 1.0) || inside(-1.0, 1.0)) => Contact::Robust,
+        let (end, end_error) = (self.ray.end, self.end_error + t_error);
+        match Ray::hit_sheared(sheared, edges).filter(|hit| self.ray.reaches(hit.t)) {
+            Some(_)
+                if t > t_error
+                    && (end == f64::INFINITY || t < end - end_error)
+                    && (inside(1.0, 1.0) || inside(-1.0, 1.0)) =>
+            {
+                Contact::Robust
+            }
             Some(_) => {
-                let near_open_edge = (0..3).any(|i| open[i] && edges[i].abs() < thresholds[i]);
+                // A ray that may as well end before the caster passes all around it, too.
+                let near_end = end != f64::INFINITY && t > end - end_error;
+                let near_open_edge =
+                    near_end || (0..3).any(|i| open[i] && edges[i].abs() < thresholds[i]);
                 Contact::Hit {
                     error: caster,
                     near_open_edge,
                 }
             }
-            None if t > -t_error && (inside(1.0, -1.0) || inside(-1.0, -1.0)) => Contact::Touched,
+            None if t > -t_error
+                && t < end + end_error
+                && (inside(1.0, -1.0) || inside(-1.0, -1.0)) =>
+            {
+                Contact::Touched
+            }
             None => Contact::Miss,
         }
     }
@@ -129,7 +150,7 @@ impl<'a> FuzzyRay<'a> {
     fn distance(&self, corners: &Corners, ball: f64) -> (f64, f64) {
         let [a, b, c] = corners.map(|corner| glam::Vec3::from(corner).as_dvec3());
         let normal = (b - a).cross(c - a);
-        let slope = normal.dot(self.direction);
+        let slope = normal.dot(self.towards.direction);
         if slope == 0.0 {
             return (0.0, f64::INFINITY);
         }

@@ -53,16 +53,9 @@ pub enum Error {
         /// The values the contract allows, as a sentence.
         expected: &'static str,
     },
-    /// The light's direction has no length or is not finite.
-    #[error("the light's direction ({x}, {y}, {z}) has no length or is not finite")]
-    Light {
-        /// Component x.
-        x: f64,
-        /// Component y.
-        y: f64,
-        /// Component z.
-        z: f64,
-    },
+    /// The light cannot be: its direction has no length, a number is not finite.
+    #[error("{0}")]
+    Light(String),
     /// The offset of [`OracleMode::Offset`](crate::OracleMode::Offset) is negative or not finite.
     #[error("the oracle's offset is {0}; expected a finite length of at least 0, in scene units")]
     Offset(f64),

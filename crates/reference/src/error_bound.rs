@@ -1,6 +1,7 @@
 //! What f32 may move receivers and casters by, as lengths and as displacements.
 
 use glam::DVec3;
+use skiagraph_scene::Towards;
 
 /// Half an ulp of 1 in f32: the relative error of one rounding.
 pub const F32_ROUNDING: f64 = 1.0 / (1u32 << 24) as f64;
@@ -9,6 +10,14 @@ pub const F32_ROUNDING: f64 = 1.0 / (1u32 << 24) as f64;
 /// receiver: corner − origin (1), the shear's coefficients (3: two rounded components and a
 /// division), its product and sum (2), both axes together (√2).
 const CASTER_ROUNDINGS: f64 = 8.0;
+
+/// The same where the ray's direction is the difference of two rounded places, with what rounding
+/// left over of one of them, made of unit length: three roundings of a component instead of one.
+const POSITIONAL_CASTER_ROUNDINGS: f64 = CASTER_ROUNDINGS + 4.0;
+
+/// Roundings that move a ray's end along it, in units of its length: those of its direction (3), of
+/// the length (4) and of the distance at which a caster is met (8).
+const END_ROUNDINGS: f64 = 16.0;
 
 /// Where f32 arithmetic may put a receiver: its exact place + Σ [−1, 1] · segmentᵢ + a ball.
 #[derive(Clone, Copy, Debug)]
@@ -28,15 +37,27 @@ impl Uncertainty {
             .sum()
     }
 
-    /// Radius of a ball that holds every displacement of receiver and casters within
-    /// `max_distance`.
-    pub(crate) fn extent(&self, max_distance: f64) -> f64 {
+    /// The longest displacement of the receiver.
+    pub(crate) fn reach(&self) -> f64 {
         self.segments
             .iter()
             .map(|segment| segment.length())
             .sum::<f64>()
             + self.radius
-            + caster_error(max_distance)
+    }
+
+    /// Radius of a ball that holds every displacement of receiver and casters within
+    /// `max_distance`.
+    pub(crate) fn extent(&self, max_distance: f64, towards: &Towards) -> f64 {
+        self.reach() + caster_error(max_distance, towards)
+    }
+
+    /// What f32 may move the end of a shadow ray by, along it: of one that ends at its light.
+    pub(crate) fn end_error(&self, towards: &Towards) -> f64 {
+        match towards.distance.is_finite() {
+            true => END_ROUNDINGS * F32_ROUNDING * towards.distance + self.reach(),
+            false => 0.0,
+        }
     }
 
     /// Displacements of the receiver towards eight sides of the light direction, each raised
@@ -57,7 +78,12 @@ impl Uncertainty {
     }
 }
 
-/// Bound on the f32 displacement of a caster whose corners are within `distance` of the receiver.
-pub(crate) fn caster_error(distance: f64) -> f64 {
-    CASTER_ROUNDINGS * F32_ROUNDING * distance
+/// Bound on the f32 displacement of a caster whose corners are within `distance` of the receiver,
+/// across a shadow ray along `towards`.
+pub(crate) fn caster_error(distance: f64, towards: &Towards) -> f64 {
+    let roundings = match towards.distance.is_finite() {
+        true => POSITIONAL_CASTER_ROUNDINGS,
+        false => CASTER_ROUNDINGS,
+    };
+    roundings * F32_ROUNDING * distance
 }

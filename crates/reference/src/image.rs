@@ -10,8 +10,6 @@ use crate::{
 type Colour = [u8; 3];
 
 const BACKGROUND: Colour = [96, 112, 128];
-const LIGHT: Colour = [255, 255, 255];
-const SHADOW: Colour = [0, 0, 0];
 /// Facing away is green and uncertain is purple, as in the dissertation's figures (38, 46).
 const FACING_AWAY: Colour = [0, 128, 0];
 const UNCERTAIN: Colour = [160, 32, 240];
@@ -26,8 +24,37 @@ const DIM_SHADOW: Colour = [40, 40, 40];
 const DIM_FACING_AWAY: Colour = [24, 24, 24];
 const DIM_BACKGROUND: Colour = [8, 8, 8];
 
+const NO_NUMBER: Colour = [255, 0, 255];
+/// The error from which on [`Image::difference`] shows its colours in full.
+pub const FULL_COLOUR: f64 = 0.25;
+
 /// Ambient light of [`Image::shaded`], as a share of the light's own at normal incidence.
 const AMBIENT: f32 = 0.2;
+
+/// What a pixel shows of the light: 0 or 1, or a share of it.
+pub trait Shown: Copy {
+    /// 0 in shadow to 1 in light; what is no share is clamped, NaN is shadow.
+    fn share(self) -> f32;
+}
+
+impl Shown for u8 {
+    fn share(self) -> f32 {
+        u32::from(self).share()
+    }
+}
+
+impl Shown for u32 {
+    fn share(self) -> f32 {
+        f32::from(u8::from(self != 0))
+    }
+}
+
+impl Shown for f32 {
+    fn share(self) -> f32 {
+        // `max` takes the number that is one.
+        self.max(0.0).min(1.0)
+    }
+}
 
 /// An RGB picture, 8 bits per channel.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -74,27 +101,60 @@ impl Image {
         })
     }
 
-    /// A method's shadows: white = lit, black = shadow, green = facing away, grey-blue =
-    /// background.
+    /// Where shares of light are off: blue = too light, red = too dark, the stronger the farther,
+    /// at [`FULL_COLOUR`] in full, over the reference's shares in dark grey; magenta = no number.
+    ///
+    /// # Errors
+    /// [`Error::PixelCount`] if a buffer does not fit the reference.
+    pub fn difference(
+        visibility: &[f32],
+        shares: &[f32],
+        reference: &Reference,
+    ) -> Result<Self, Error> {
+        check_pixel_count("visibility", reference.viewport, visibility.len())?;
+        check_pixel_count("shares", reference.viewport, shares.len())?;
+        let colour = |(index, class): (usize, &Class)| match class {
+            Class::Background => DIM_BACKGROUND,
+            Class::FacingAway => DIM_FACING_AWAY,
+            _ if visibility[index].is_nan() => NO_NUMBER,
+            _ => {
+                let off = error(visibility[index], shares[index]);
+                let full = if off > 0.0 {
+                    WRONGLY_LIT
+                } else {
+                    WRONGLY_SHADOWED
+                };
+                let dim = mixed(DIM_SHADOW, DIM_LIGHT, shares[index].into());
+                mixed(dim, full, (off.abs() / FULL_COLOUR).min(1.0))
+            }
+        };
+        let pixels = reference.classes.iter().enumerate();
+        Ok(Self {
+            size: reference.viewport,
+            rgb: pixels.flat_map(colour).collect(),
+        })
+    }
+
+    /// A method's shadows: white = lit, black = shadow, grey in between, green = facing away,
+    /// grey-blue = background.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if a buffer does not fit `viewport`.
     pub fn visibility(
         viewport: [u32; 2],
-        visibility: &[impl Copy + Into<u32>],
+        visibility: &[impl Shown],
         status: &[impl Copy + Into<u32>],
     ) -> Result<Self, Error> {
         check_pixel_count("visibility", viewport, visibility.len())?;
         check_pixel_count("status", viewport, status.len())?;
-        let colour = |visibility: u32, status: u32| match status {
+        let colour = |share: f32, status: u32| match status {
             status::BACKGROUND => BACKGROUND,
             status::FACING_AWAY => FACING_AWAY,
-            _ if visibility == 0 => SHADOW,
-            _ => LIGHT,
+            _ => grey(share),
         };
         let pixels = visibility.iter().zip(status);
         let rgb = pixels
-            .flat_map(|(&visibility, &status)| colour(visibility.into(), status.into()))
+            .flat_map(|(visibility, &status)| colour(visibility.share(), status.into()))
             .collect();
         Ok(Self {
             size: viewport,
@@ -107,7 +167,7 @@ impl Image {
     /// # Errors
     /// [`Error::PixelCount`] if a buffer does not fit the reference.
     pub fn uncertain(
-        visibility: &[impl Copy + Into<u32>],
+        visibility: &[impl Shown],
         status: &[impl Copy + Into<u32>],
         reference: &Reference,
     ) -> Result<Self, Error> {
@@ -126,19 +186,11 @@ impl Image {
     ///
     /// # Errors
     /// [`Error::PixelCount`] if `visibility` does not fit the reference.
-    pub fn shaded(
-        visibility: &[impl Copy + Into<u32>],
-        reference: &Reference,
-    ) -> Result<Self, Error> {
+    pub fn shaded(visibility: &[impl Shown], reference: &Reference) -> Result<Self, Error> {
         check_pixel_count("visibility", reference.viewport, visibility.len())?;
         let mut rgb = Vec::with_capacity(reference.classes.len() * 3);
         for (index, &class) in reference.classes.iter().enumerate() {
-            let shown: u32 = visibility[index].into();
-            let direct = if shown == 0 {
-                0.0
-            } else {
-                reference.n_dot_l[index].max(0.0)
-            };
+            let direct = visibility[index].share() * reference.n_dot_l[index].max(0.0);
             // A little of n · l in the ambient term keeps form readable where no light arrives.
             let ambient = AMBIENT * (0.75 + 0.25 * reference.n_dot_l[index].clamp(-1.0, 1.0));
             rgb.extend(if class == Class::Background {
@@ -176,6 +228,24 @@ impl Reference {
             .map(|class| status(class) as u8)
             .collect()
     }
+}
+
+/// The error of one pixel: positive where the method shows too much light. NaN is a whole light
+/// off, to the side on which there is room.
+pub(crate) fn error(shown: f32, share: f32) -> f64 {
+    let share = f64::from(share);
+    match f64::from(shown) {
+        shown if shown.is_nan() && share < 0.5 => 1.0,
+        shown if shown.is_nan() => -1.0,
+        shown => shown.clamp(0.0, 1.0) - share,
+    }
+}
+
+fn mixed(from: Colour, to: Colour, share: f64) -> Colour {
+    std::array::from_fn(|channel| {
+        let [from, to] = [from, to].map(|colour| f64::from(colour[channel]));
+        (from + (to - from) * share).round() as u8
+    })
 }
 
 /// Linear light 0..1 as an sRGB grey (gamma 2.2 is near enough for a picture).
@@ -246,7 +316,7 @@ mod tests {
     fn visibility_and_uncertainty_follow_the_method() {
         let (visibility, status) = ([1u8, 1, 1, 0, 1], [0u8, 1, 2, 3, 4]);
         let shown = colours(Image::visibility([5, 1], &visibility, &status).expect("same sizes"));
-        assert_eq!(shown, [BACKGROUND, FACING_AWAY, LIGHT, SHADOW, LIGHT]);
+        assert_eq!(shown, [BACKGROUND, FACING_AWAY, [255; 3], [0; 3], [255; 3]]);
         let reference = reference();
         let shaded = colours(Image::shaded(&visibility, &reference).expect("same size"));
         let shown =
@@ -254,6 +324,25 @@ mod tests {
         assert_eq!((&shown[..4], shown[4]), (&shaded[..4], UNCERTAIN));
         assert!(Image::uncertain(&visibility, &status[1..], &reference).is_err());
         assert!(Image::visibility([5, 2], &visibility, &status).is_err());
+    }
+
+    #[test]
+    fn differences_of_shares_have_a_side_and_a_strength() {
+        let reference = reference();
+        let shares = [0.0, 0.0, 1.0, 0.5, 0.5];
+        let shown = [1.0, 1.0, 0.75, 0.625, f32::NAN];
+        let shown = colours(Image::difference(&shown, &shares, &reference).expect("same sizes"));
+        let middle = mixed(DIM_SHADOW, DIM_LIGHT, 0.5);
+        let half = mixed(middle, WRONGLY_LIT, 0.5);
+        let expected = [
+            DIM_BACKGROUND,
+            DIM_FACING_AWAY,
+            WRONGLY_SHADOWED,
+            half,
+            NO_NUMBER,
+        ];
+        assert_eq!(shown, expected);
+        assert!(Image::difference(&shares[1..], &shares, &reference).is_err());
     }
 
     #[test]

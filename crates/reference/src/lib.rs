@@ -16,7 +16,7 @@
 //!     name: "main".into(), eye: DVec3::ZERO, direction: DVec3::NEG_Z, up: DVec3::Y,
 //!     fov_y_degrees: 60.0, near: 0.1, far: 100.0, light: None,
 //! };
-//! let light = DirectionalLight { direction: DVec3::NEG_Y };
+//! let light = DirectionalLight::new(DVec3::NEG_Y);
 //! let camera = view.camera([8, 8]);
 //! let oracle = Oracle::new(&mesh);
 //! let primitives = oracle.primary(&camera, Progress::default())?;
@@ -28,20 +28,26 @@
 //! # Ok::<(), skiagraph_reference::Error>(())
 //! ```
 
+pub mod area;
 pub mod blockers;
 mod contact;
 mod error;
 pub mod error_bound;
+pub mod flip;
+pub mod graded;
 pub mod image;
 pub mod oracle;
 pub mod pixels;
 mod ray;
 pub mod receiver;
 pub mod statistics;
+mod strata;
 mod tree;
 
+pub use area::{AreaVisibility, RightAnswer};
 pub use blockers::BlockerCounts;
 pub use error::Error;
+pub use graded::{Graded, Invalid, OffBy};
 pub use image::Image;
 pub use oracle::{Class, Occlusion, Oracle, OracleMode, Reference};
 pub use pixels::{BACKGROUND, Progress};

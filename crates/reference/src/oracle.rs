@@ -11,7 +11,7 @@ use crate::{
 };
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-use skiagraph_scene::{Bvh, Camera, DirectionalLight, Mesh, Parts};
+use skiagraph_scene::{Bvh, Camera, LIGHT_GAP, LightKind, Mesh, Parts, Towards};
 use std::{borrow::Cow, fmt, ops::ControlFlow, str::FromStr, sync::OnceLock};
 
 /// How a shadow ray leaves its receiver.
@@ -26,12 +26,20 @@ pub enum OracleMode {
 }
 
 impl OracleMode {
-    /// Where the receiver's shadow ray begins, and the primitive that it passes.
-    pub(crate) fn ray(self, receiver: &Receiver, to_light: DVec3) -> (DVec3, u32) {
-        match self {
-            Self::Exact => (receiver.position, receiver.primitive),
-            Self::Offset(length) => (receiver.position + to_light * length, BACKGROUND),
-        }
+    /// Where the receiver's shadow ray begins, the way from there to its end, and the primitive that
+    /// it passes. A light at a place is not quite reached: see [`LIGHT_GAP`].
+    pub(crate) fn ray(self, receiver: &Receiver) -> (DVec3, Towards, u32) {
+        let towards = receiver.towards;
+        let distance = towards.distance * (1.0 - LIGHT_GAP);
+        let (offset, passed) = match self {
+            Self::Exact => (0.0, receiver.primitive),
+            Self::Offset(length) => (length, BACKGROUND),
+        };
+        let way = Towards {
+            distance: distance - offset,
+            ..towards
+        };
+        (receiver.position + towards.direction * offset, way, passed)
     }
 }
 
@@ -71,7 +79,8 @@ const MOST_EXTENTS: f64 = 1e6;
 pub enum Class {
     /// Shows no geometry.
     Background,
-    /// dot(interpolated normal, l) ≤ 0: in its own shade, whatever stands in between.
+    /// dot(interpolated normal, l) ≤ 0, in its own shade, whatever stands in between; or outside of
+    /// a spot light's cone.
     FacingAway,
     /// Faces the light and sees it.
     Lit,
@@ -121,10 +130,49 @@ pub struct Occlusion {
 }
 
 #[derive(Clone, Copy)]
-struct Answer {
-    class: Class,
+pub(crate) struct Answer {
+    pub(crate) class: Class,
     indeterminate: bool,
     n_dot_l: f32,
+}
+
+impl Answer {
+    pub(crate) const BACKGROUND: Self = Self {
+        class: Class::Background,
+        indeterminate: false,
+        n_dot_l: 0.0,
+    };
+
+    /// Facing away, or lit as long as nobody has looked for blockers.
+    pub(crate) fn facing(receiver: &Receiver) -> Self {
+        let faces_away = receiver.n_dot_l <= 0.0;
+        let could_turn = receiver.n_dot_l.abs() <= receiver.n_dot_l_error;
+        // What faces away does so within the cone and outside of it.
+        let could_leave = receiver.on_cone_edge && (!faces_away || could_turn);
+        let beyond_cone = receiver.outside_cone && !receiver.on_cone_edge;
+        Self {
+            class: match faces_away || receiver.outside_cone {
+                true => Class::FacingAway,
+                false => Class::Lit,
+            },
+            indeterminate: !beyond_cone && (could_turn || could_leave),
+            n_dot_l: match receiver.outside_cone {
+                true => receiver.n_dot_l.min(0.0) as f32,
+                false => receiver.n_dot_l as f32,
+            },
+        }
+    }
+}
+
+impl Reference {
+    pub(crate) fn of(viewport: [u32; 2], answers: &[Answer]) -> Self {
+        Self {
+            viewport,
+            classes: answers.iter().map(|answer| answer.class).collect(),
+            indeterminate: answers.iter().map(|answer| answer.indeterminate).collect(),
+            n_dot_l: answers.iter().map(|answer| answer.n_dot_l).collect(),
+        }
+    }
 }
 
 impl<'a> Oracle<'a> {
@@ -192,18 +240,28 @@ impl<'a> Oracle<'a> {
     pub fn shade(
         &self,
         camera: &Camera,
-        light: &DirectionalLight,
+        light: impl Into<LightKind>,
         primitives: &[u32],
         mode: OracleMode,
         progress: Progress,
     ) -> Result<Reference, Error> {
         let viewport = camera.viewport;
         check_pixel_count("primitives", viewport, primitives.len())?;
-        let to_light = light.to_light();
-        if !to_light.is_finite() {
-            let [x, y, z] = light.direction.to_array();
-            return Err(Error::Light { x, y, z });
-        }
+        let light = light.into();
+        self.check(&light, mode)?;
+        let answers = per_pixel(viewport, progress, |x, y, stack| {
+            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, [x, y], &light)?;
+            Ok(match receiver {
+                Some(receiver) => self.answer(&receiver, mode, stack),
+                None => Answer::BACKGROUND,
+            })
+        })?;
+        Ok(Reference::of(viewport, &answers))
+    }
+
+    /// Whether a light can be traced.
+    pub(crate) fn check(&self, light: &LightKind, mode: OracleMode) -> Result<(), Error> {
+        light.check().map_err(Error::Light)?;
         if let OracleMode::Offset(length) = mode {
             if !(length.is_finite() && length >= 0.0) {
                 return Err(Error::Offset(length));
@@ -213,23 +271,7 @@ impl<'a> Oracle<'a> {
                 return Err(Error::OffsetTooLong { length, most });
             }
         }
-        let answers = per_pixel(viewport, progress, |x, y, stack| {
-            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, [x, y], to_light)?;
-            Ok(match receiver {
-                Some(receiver) => self.answer(&receiver, to_light, mode, stack),
-                None => Answer {
-                    class: Class::Background,
-                    indeterminate: false,
-                    n_dot_l: 0.0,
-                },
-            })
-        })?;
-        Ok(Reference {
-            viewport,
-            classes: answers.iter().map(|answer| answer.class).collect(),
-            indeterminate: answers.iter().map(|answer| answer.indeterminate).collect(),
-            n_dot_l: answers.iter().map(|answer| answer.n_dot_l).collect(),
-        })
+        Ok(())
     }
 
     /// Traces rays given by origin and direction (any length but zero), for tracers of f32 to be
@@ -241,9 +283,12 @@ impl<'a> Oracle<'a> {
         };
         rays.par_iter()
             .map_init(Vec::new, |stack, (origin, direction)| {
-                let to_light = direction.as_dvec3().normalize();
+                let way = Towards {
+                    direction: direction.as_dvec3().normalize(),
+                    distance: f64::INFINITY,
+                };
                 let (blocked, indeterminate) =
-                    self.visibility(origin.as_dvec3(), to_light, &exact, BACKGROUND, stack);
+                    self.visibility(origin.as_dvec3(), way, &exact, BACKGROUND, stack);
                 Occlusion {
                     blocked,
                     indeterminate,
@@ -252,40 +297,29 @@ impl<'a> Oracle<'a> {
             .collect()
     }
 
-    fn answer(
-        &self,
-        receiver: &Receiver,
-        to_light: DVec3,
-        mode: OracleMode,
-        stack: &mut Vec<u32>,
-    ) -> Answer {
-        let facing_indeterminate = receiver.n_dot_l.abs() <= receiver.n_dot_l_error;
-        let n_dot_l = receiver.n_dot_l as f32;
-        if receiver.n_dot_l <= 0.0 {
-            return Answer {
-                class: Class::FacingAway,
-                indeterminate: facing_indeterminate,
-                n_dot_l,
-            };
+    fn answer(&self, receiver: &Receiver, mode: OracleMode, stack: &mut Vec<u32>) -> Answer {
+        let facing = Answer::facing(receiver);
+        if facing.class == Class::FacingAway {
+            return facing;
         }
-        let (origin, excluded) = mode.ray(receiver, to_light);
+        let (origin, way, excluded) = mode.ray(receiver);
         let (shadow, indeterminate) = match &receiver.uncertainty {
-            Some(uncertainty) => self.visibility(origin, to_light, uncertainty, excluded, stack),
-            None => (self.occluded(origin, to_light, excluded, stack), true),
+            Some(uncertainty) => self.visibility(origin, way, uncertainty, excluded, stack),
+            None => (self.occluded(origin, way, excluded, stack), true),
         };
         // A rasteriser's snapping puts it beyond its primitive, where a neighbour may lie on top of
         // it.
         let snapped = |border: DVec3| {
             let origin = border + (origin - receiver.position);
-            self.occluded(origin, to_light, excluded, stack) != shadow
+            self.occluded(origin, way, excluded, stack) != shadow
         };
-        let indeterminate =
-            indeterminate || facing_indeterminate || receiver.on_border.is_some_and(snapped);
         let class = if shadow { Class::Shadow } else { Class::Lit };
         Answer {
             class,
-            indeterminate,
-            n_dot_l,
+            indeterminate: indeterminate
+                || facing.indeterminate
+                || receiver.on_border.is_some_and(snapped),
+            ..facing
         }
     }
 
@@ -293,7 +327,7 @@ impl<'a> Oracle<'a> {
     fn visibility(
         &self,
         origin: DVec3,
-        to_light: DVec3,
+        way: Towards,
         uncertainty: &Uncertainty,
         excluded: u32,
         stack: &mut Vec<u32>,
@@ -301,11 +335,12 @@ impl<'a> Oracle<'a> {
         let max_distance = self.tree.max_distance(origin);
         let ray = Ray::new(
             origin,
-            to_light,
+            way.direction,
             max_distance,
-            uncertainty.extent(max_distance),
-        );
-        let fuzzy = FuzzyRay::new(&ray, origin, to_light, uncertainty);
+            uncertainty.extent(max_distance, &way),
+        )
+        .ending(way.distance);
+        let fuzzy = FuzzyRay::new(&ray, origin, way, uncertainty);
         let (mut touched, mut robust) = (false, false);
         let mut blocked: Option<(f64, bool)> = None;
         self.tree.walk(&ray, stack, |caster, _| {
@@ -334,32 +369,33 @@ impl<'a> Oracle<'a> {
             None => (false, touched),
             Some((_, true)) => (true, true),
             Some((error, false)) => {
-                let displaced = uncertainty.displacements(to_light, error);
+                let displaced = uncertainty.displacements(way.direction, error);
                 (
                     true,
                     !displaced
                         .iter()
-                        .all(|&by| self.occluded(origin + by, to_light, excluded, stack)),
+                        .all(|&by| self.occluded(origin + by, way, excluded, stack)),
                 )
             }
         }
     }
 
     /// Whether any triangle but `excluded` stands between `origin` and the light.
-    fn occluded(
+    pub(crate) fn occluded(
         &self,
         origin: DVec3,
-        to_light: DVec3,
+        way: Towards,
         excluded: u32,
         stack: &mut Vec<u32>,
     ) -> bool {
-        let ray = Ray::new(origin, to_light, self.tree.max_distance(origin), 0.0);
+        let max_distance = self.tree.max_distance(origin);
+        let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
         let mut occluded = false;
         self.tree.walk(&ray, stack, |caster, _| {
             if caster.primitive != excluded
                 && ray
                     .hit(&caster.corners)
-                    .is_some_and(|hit| hit.t > ray.nearest)
+                    .is_some_and(|hit| ray.reaches(hit.t))
             {
                 occluded = true;
                 return ControlFlow::Break(());

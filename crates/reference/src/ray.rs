@@ -26,6 +26,8 @@ pub(crate) struct Ray {
     /// What f64 rounding may have moved the origin by along the ray: a surface met sooner is the
     /// origin's own, beyond an edge.
     pub(crate) nearest: f64,
+    /// Where it ends: what is farther away is not in its way.
+    pub(crate) end: f64,
 }
 
 /// Where a ray meets a triangle.
@@ -80,7 +82,25 @@ impl Ray {
             // Rounding of the origin and of t, up to grazing angles where it is met four times
             // magnified.
             nearest: (max_distance + origin.abs().max_element()) * (64.0 * f64::EPSILON),
+            end: f64::INFINITY,
         }
+    }
+
+    /// The same, as long as this.
+    pub(crate) fn ending(self, end: f64) -> Self {
+        Self { end, ..self }
+    }
+
+    /// Whether what is met at this distance is in the ray's way.
+    pub(crate) fn reaches(&self, t: f64) -> bool {
+        t > self.nearest && t < self.end
+    }
+
+    /// Where it leaves the last widened box of what it may meet.
+    pub(crate) fn far_side(&self) -> f64 {
+        // As `pad` contains the errors of distances, and a widened box begins sooner by as much for
+        // each of its three sides.
+        self.end + 4.0 * self.pad
     }
 
     /// Distance at which the ray slab_test the widened box, if it does so between 0 and `t_max`.

@@ -7,7 +7,7 @@ use crate::{
     pixels::BACKGROUND,
 };
 use glam::DVec3;
-use skiagraph_scene::{Camera, Mesh};
+use skiagraph_scene::{Camera, LightKind, Mesh, Towards};
 
 /// Roundings in an edge function of a receiver, `dir · ((p + q) × (q − p))` with corners relative
 /// to the eye: the pixel's direction (three products and two sums of rounded vectors, 4), corners
@@ -25,6 +25,14 @@ const POSITION_ROUNDINGS: f64 = 5.0;
 /// (6), the light's rounded direction (2).
 const FACING_ROUNDINGS: f64 = 8.0;
 
+/// The same where the way to the light is a difference of two rounded places.
+const POSITIONAL_FACING_ROUNDINGS: f64 = FACING_ROUNDINGS + 4.0;
+
+/// Roundings in the comparison of a receiver with a cone, in units of 1: axis and way (3 each, of
+/// the components that are summed up), products and sums (5), the way's length and the product with
+/// the cosine (5).
+const CONE_ROUNDINGS: f64 = 16.0;
+
 /// Share of the determinant beyond which the edge functions' error makes the hit meaningless.
 const INDETERMINATE: f64 = 0.25;
 
@@ -37,6 +45,12 @@ pub struct Receiver {
     /// The point of the primitive's border where it would lie, had the rasteriser not snapped
     /// corners; `None` where it lies on the primitive.
     pub on_border: Option<DVec3>,
+    /// The way to the light.
+    pub towards: Towards,
+    /// Whether it lies outside of a spot light's cone.
+    pub outside_cone: bool,
+    /// Whether f32 may take `outside_cone` for the contrary.
+    pub on_cone_edge: bool,
     /// Interpolated, unnormalised vertex normal · unit vector towards the light.
     pub n_dot_l: f64,
     /// Bound on the f32 error of `n_dot_l`.
@@ -57,7 +71,7 @@ impl Receiver {
         primitives: &[u32],
         camera: &Camera,
         [x, y]: [u32; 2],
-        to_light: DVec3,
+        light: &LightKind,
     ) -> Result<Option<Self>, Error> {
         let primitive = primitives[x as usize + y as usize * camera.viewport[0] as usize];
         let count = mesh.triangles.len() as u64;
@@ -74,7 +88,7 @@ impl Receiver {
         }
         let direction = camera.pixel_direction(x, y);
         Ok(Some(Self::new(
-            mesh, primitive, camera.eye, direction, to_light,
+            mesh, primitive, camera.eye, direction, light,
         )))
     }
 
@@ -84,7 +98,13 @@ impl Receiver {
     /// pixel's centre may lie a little outside the primitive that covers it, and a deferred shader
     /// that does not clamp sees the same point. A primitive exactly edge-on has no such point; its
     /// centroid stands in, and the pixel is always indeterminate.
-    pub fn new(mesh: &Mesh, primitive: u32, eye: DVec3, direction: DVec3, to_light: DVec3) -> Self {
+    pub fn new(
+        mesh: &Mesh,
+        primitive: u32,
+        eye: DVec3,
+        direction: DVec3,
+        light: &LightKind,
+    ) -> Self {
         let world = mesh.corners(primitive);
         let normals = mesh.corner_normals(primitive);
         let [a, b, c] = world.map(|corner| corner - eye);
@@ -111,6 +131,8 @@ impl Receiver {
         let clamped = weights.map(|weight| weight.max(0.0));
         let on_border =
             (clamped != weights).then(|| weighted(clamped, world) / clamped.iter().sum::<f64>());
+        let towards = light.towards(position);
+        let to_light = towards.direction;
         let n_dot_l = weighted(weights, normals).dot(to_light);
         // The larger of both lengths: a shader may sum corners relative to the eye and add the eye
         // last.
@@ -121,13 +143,16 @@ impl Receiver {
             .map(|(w, corner)| w.abs() * length(corner))
             .sum();
         let position_error = POSITION_ROUNDINGS * F32_ROUNDING * lengths;
-        let facing_error = FACING_ROUNDINGS
-            * F32_ROUNDING
-            * weights
-                .iter()
-                .zip(normals)
-                .map(|(w, n)| w.abs() * n.length())
-                .sum::<f64>();
+        let roundings = match light.position() {
+            Some(_) => POSITIONAL_FACING_ROUNDINGS,
+            None => FACING_ROUNDINGS,
+        };
+        let normal_lengths = weights
+            .iter()
+            .zip(normals)
+            .map(|(w, n)| w.abs() * n.length())
+            .sum::<f64>();
+        let facing_error = roundings * F32_ROUNDING * normal_lengths;
         // Weight i off by errorᵢ moves the point along (cornerᵢ − point), before dividing by the
         // new sum of weights.
         let scale = |i: usize| errors[i] / (1.0 - error);
@@ -139,15 +164,29 @@ impl Receiver {
             segments: std::array::from_fn(|i| (world[i] - position) * scale(i)),
             radius: position_error,
         });
-        let n_dot_l_error = if determinate {
-            n_dot_l_error
+        // By what angle a displaced receiver sees a light at a place elsewhere.
+        let turned = match (light.position(), &uncertainty) {
+            (None, _) => 0.0,
+            (Some(_), Some(by)) if towards.distance > 0.0 => by.reach() / towards.distance,
+            (Some(_), _) => f64::INFINITY,
+        };
+        let n_dot_l_error = if determinate && turned.is_finite() {
+            n_dot_l_error + turned * normal_lengths
         } else {
             f64::INFINITY
         };
+        let beyond_edge = match light {
+            LightKind::Spot(spot) => spot.edge_cosine() - spot.axis_cosine(to_light),
+            _ => -1.0,
+        };
+        let cone_error = CONE_ROUNDINGS * F32_ROUNDING + turned;
         Self {
             primitive,
             position,
             on_border,
+            towards,
+            outside_cone: beyond_edge > 0.0,
+            on_cone_edge: matches!(light, LightKind::Spot(_)) && beyond_edge.abs() <= cone_error,
             n_dot_l,
             n_dot_l_error,
             uncertainty,

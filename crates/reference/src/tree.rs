@@ -4,7 +4,7 @@ use crate::{
     error::Error,
     ray::{Corners, Ray},
 };
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use skiagraph_scene::{Bvh, Mesh};
 use std::{borrow::Cow, ops::ControlFlow};
@@ -19,6 +19,28 @@ pub(crate) struct Caster {
     /// For each edge, in the order of `Ray::edges`, whether no other triangle has it: it may be the
     /// rim of a crack.
     pub(crate) open: [bool; 3],
+}
+
+/// What lies within an angle of an axis.
+pub(crate) struct Cone {
+    /// Unit vector.
+    pub(crate) axis: DVec3,
+    /// Of the angle, which is no more than a right one.
+    pub(crate) sin: f64,
+    pub(crate) cos: f64,
+}
+
+impl Cone {
+    /// Whether it could meet the ball around the box of two opposite corners, both relative to its
+    /// apex: by its distance to the cone's side, with room for rounding.
+    fn meets_ball(&self, low: DVec3, high: DVec3) -> bool {
+        let centre = (low + high) * 0.5;
+        let room = 1e-12 * (low.abs().max_element() + high.abs().max_element());
+        let radius = (high - low).length() * 0.5 + room;
+        let along = centre.dot(self.axis);
+        let away = (centre - self.axis * along).length();
+        along >= -radius && away * self.cos - along * self.sin <= radius
+    }
 }
 
 /// A hierarchy with its triangles in leaf order.
@@ -97,6 +119,38 @@ impl<'a> Tree<'a> {
         self.bounds.map(|(min, max)| (max - min).length())
     }
 
+    /// Calls `visit` with every triangle that could meet a cone from `origin`, until it breaks.
+    /// `stack` is scratch memory.
+    pub(crate) fn within(
+        &self,
+        origin: DVec3,
+        cone: &Cone,
+        stack: &mut Vec<u32>,
+        mut visit: impl FnMut(&Caster) -> ControlFlow<()>,
+    ) {
+        let nodes = &self.bvh.nodes;
+        let relative = |corner: [f32; 3]| Vec3::from(corner).as_dvec3() - origin;
+        stack.clear();
+        stack.extend(nodes.first().map(|_| 0));
+        while let Some(index) = stack.pop() {
+            let node = &nodes[index as usize];
+            if !cone.meets_ball(relative(node.min), relative(node.max)) {
+                continue;
+            }
+            if node.count == 0 {
+                stack.extend([node.first, node.first + 1]);
+                continue;
+            }
+            let first = node.first as usize;
+            for caster in &self.casters[first..first + node.count as usize] {
+                let [a, b, c] = caster.corners.map(relative);
+                if cone.meets_ball(a.min(b).min(c), a.max(b).max(c)) && visit(caster).is_break() {
+                    return;
+                }
+            }
+        }
+    }
+
     /// Calls `visit` with the current end of the ray and every triangle whose box the ray enters,
     /// nearer boxes first. `visit` may shorten the ray, or end the walk by `Break`. `stack` is
     /// scratch memory.
@@ -107,7 +161,7 @@ impl<'a> Tree<'a> {
         mut visit: impl FnMut(&Caster, &mut f64) -> ControlFlow<()>,
     ) {
         let nodes = &self.bvh.nodes;
-        let mut t_max = f64::INFINITY;
+        let mut t_max = ray.far_side();
         stack.clear();
         if nodes
             .first()

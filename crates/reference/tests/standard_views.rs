@@ -76,7 +76,7 @@ fn shade(
     mode: OracleMode,
 ) -> Reference {
     oracle
-        .shade(camera, &scene.light, primitives, mode, Progress::default())
+        .shade(camera, scene.light(), primitives, mode, Progress::default())
         .expect("the mesh's own primitives")
 }
 
@@ -91,8 +91,14 @@ fn f32_errs_in_few_indeterminate_pixels_only(scene: &Scene, mode: OracleMode) {
             .primary(&snapped(&camera), Progress::default())
             .expect("nobody interrupts");
         let reference = shade(&oracle, scene, &camera, &primitives, mode);
-        let (visibility, status) =
-            f32_shading::shade(&scene.mesh, &bvh, &camera, &scene.light, &primitives, mode);
+        let (visibility, status) = f32_shading::shade(
+            &scene.mesh,
+            &bvh,
+            &camera,
+            &scene.sun().unwrap(),
+            &primitives,
+            mode,
+        );
         let counts = Statistics::judged(&visibility, &status, &reference).expect("valid values");
         let (name, share) = (&view.name, 100.0 * counts.indeterminate_share());
         println!("{name} {mode}: {counts:?}, indeterminate {share:.4} %");

@@ -1,4 +1,4 @@
-//! Scenes for Skiagraph: a triangle [`Mesh`], named [`View`]s, a [`DirectionalLight`], and the
+//! Scenes for Skiagraph: a triangle [`Mesh`], named [`View`]s, its [`Light`]s, and the
 //! [`Bvh`] over them.
 //!
 //! The crate knows no GPU. World space is right-handed, units are the scene's own; positions are
@@ -12,6 +12,7 @@ pub mod error;
 pub mod generate;
 pub mod library;
 pub mod light;
+pub mod light_kind;
 mod limit;
 pub mod mesh;
 pub mod obj;
@@ -27,6 +28,7 @@ pub use camera::{Camera, View};
 pub use error::SceneError;
 pub use library::{ObjSetup, SceneLibrary, SceneListing, SceneRequest};
 pub use light::{DirectionalLight, LightFit};
+pub use light_kind::{LIGHT_GAP, Light, LightKind, PointLight, SpotLight, Towards};
 pub use limit::Limit;
 pub use mesh::{Group, Mesh};
 pub use obj::{ObjOptions, QuadDiagonal, load_obj};

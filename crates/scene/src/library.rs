@@ -3,7 +3,7 @@
 use crate::{
     camera::View,
     error::SceneError,
-    light::DirectionalLight,
+    light_kind::Light,
     limit::Limit,
     obj::{
         options::{ObjOptions, QuadDiagonal},
@@ -26,11 +26,12 @@ const SCENE_FILE: Limit = Limit {
 };
 
 /// Scene files that are part of the program: name and text.
-const BUILT_IN: [(&str, &str); 5] = [
+const BUILT_IN: [(&str, &str); 6] = [
     ("bench", include_str!("../../../scenes/bench.ron")),
     ("city", include_str!("../../../scenes/city.ron")),
     ("forest", include_str!("../../../scenes/forest.ron")),
     ("park", include_str!("../../../scenes/park.ron")),
+    ("park_soft", include_str!("../../../scenes/park_soft.ron")),
     ("sponza", include_str!("../../../scenes/sponza.ron")),
 ];
 
@@ -52,7 +53,7 @@ pub struct ObjSetup {
     /// The only view.
     pub view: View,
     /// The light.
-    pub light: DirectionalLight,
+    pub light: Light,
     /// How polygons are split.
     pub quads: QuadDiagonal,
 }
@@ -269,7 +270,7 @@ impl SceneLibrary {
                 name: scene.name,
                 mesh,
                 views: scene.views,
-                light: scene.light,
+                lights: scene.lights,
             },
             report,
         ))
@@ -330,7 +331,7 @@ fn load_bare_obj(
             name,
             mesh,
             views: vec![setup.view.clone()],
-            light: setup.light,
+            lights: vec![setup.light.clone()],
         },
         report,
     ))

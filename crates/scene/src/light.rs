@@ -7,6 +7,9 @@ use glam::{DMat4, DVec2, DVec3, Vec3};
 pub struct DirectionalLight {
     /// Direction in which the light travels, any length but zero. Shadow rays go the other way.
     pub direction: DVec3,
+    /// Angular diameter of the round light as receivers see it, in degrees; 0 is a light without
+    /// extent, whose shadows are hard. The sun's is 0.53.
+    pub angle_degrees: f64,
 }
 
 /// Light space: an orthographic box that maps to wgpu clip space; depth z in 0..1 grows away from
@@ -21,23 +24,55 @@ pub struct LightFit {
 }
 
 impl DirectionalLight {
+    /// One without extent.
+    pub const fn new(direction: DVec3) -> Self {
+        Self {
+            direction,
+            angle_degrees: 0.0,
+        }
+    }
+
+    /// Whether it is an area, whose shadows have a penumbra.
+    pub fn has_extent(&self) -> bool {
+        self.angle_degrees > 0.0
+    }
+
+    /// Half the light's width at distance 1.
+    fn radius_at_one(&self) -> f64 {
+        (self.angle_degrees.to_radians() * 0.5).tan()
+    }
+
+    /// From the light's centre to its rim along two axes, as seen from distance 1: its points lie
+    /// at `to_light() + across()[0] · x + across()[1] · y` of the unit disk's points.
+    pub fn across(&self) -> [DVec3; 2] {
+        let (right, up) = self.to_light().any_orthonormal_pair();
+        [right, up].map(|axis| axis * self.radius_at_one())
+    }
+
     /// Unit vector from any point to the light, l = −direction.
     pub fn to_light(&self) -> DVec3 {
         -self.direction.normalize()
     }
 
-    /// Whether the light has a direction.
+    /// Whether the light has a direction, and an angle below a half turn.
     ///
     /// # Errors
     /// What is wrong with it.
     pub fn check(&self) -> Result<(), String> {
-        match self.direction.try_normalize() {
-            Some(_) => Ok(()),
-            None => Err(format!(
+        if self.direction.try_normalize().is_none() {
+            return Err(format!(
                 "the light's direction {} must be finite and longer than 0",
                 self.direction
-            )),
+            ));
         }
+        if !(0.0..180.0).contains(&self.angle_degrees) {
+            return Err(format!(
+                "the light's angle_degrees is {}; expected at least 0 and less than 180, the \
+                 angle that it takes up in the sky",
+                self.angle_degrees
+            ));
+        }
+        Ok(())
     }
 
     /// The smallest light-space box around some points whose third axis is the light's direction:
@@ -158,7 +193,7 @@ mod tests {
         let pick = |i: u32, bit: u32, axis: usize| if i & bit == 0 { min[axis] } else { max[axis] };
         let corners = (0..8).map(|i| Vec3::new(pick(i, 1, 0), pick(i, 2, 1), pick(i, 4, 2)));
         for direction in LIGHTS {
-            let fit = DirectionalLight { direction }.fit(corners.clone());
+            let fit = DirectionalLight::new(direction).fit(corners.clone());
             for corner in corners.clone() {
                 let corner = corner.as_dvec3();
                 let clip = fit.view_projection.project_point3(corner);
@@ -192,10 +227,7 @@ mod tests {
         ];
         let points =
             corners.map(|[x, z]: [f32; 2]| Vec3::new(x * cos - z * sin, 0.0, x * sin + z * cos));
-        let fit = DirectionalLight {
-            direction: DVec3::NEG_Y,
-        }
-        .fit(points);
+        let fit = DirectionalLight::new(DVec3::NEG_Y).fit(points);
         let sides = [
             fit.extent.x.max(fit.extent.y),
             fit.extent.x.min(fit.extent.y),
@@ -220,7 +252,7 @@ mod tests {
     fn one_point_or_none_still_makes_a_finite_box() {
         for direction in LIGHTS {
             for points in [&[][..], &[Vec3::ONE], &[Vec3::ONE, Vec3::ONE]] {
-                let fit = DirectionalLight { direction }.fit(points.iter().copied());
+                let fit = DirectionalLight::new(direction).fit(points.iter().copied());
                 assert!(
                     fit.view_projection.as_mat4().is_finite() && fit.extent.min_element() > 0.0
                 );

@@ -1,6 +1,12 @@
 //! What is drawn.
 
-use crate::{camera::View, light::DirectionalLight, mesh::Mesh};
+use crate::{
+    camera::View,
+    light::DirectionalLight,
+    light_kind::{Light, LightKind},
+    mesh::Mesh,
+};
+use glam::DVec3;
 
 /// A mesh with the views and the light under which it is drawn.
 #[derive(Clone, Debug)]
@@ -11,8 +17,8 @@ pub struct Scene {
     pub mesh: Mesh,
     /// At least one view; the first is the default.
     pub views: Vec<View>,
-    /// The light of all views that have none of their own.
-    pub light: DirectionalLight,
+    /// The lights of all views that have none of their own: at least one; the first is the default.
+    pub lights: Vec<Light>,
 }
 
 impl Scene {
@@ -21,8 +27,32 @@ impl Scene {
         self.views.iter().find(|view| view.name == name)
     }
 
-    /// The light under which a view is drawn.
-    pub fn light_of(&self, view: &View) -> DirectionalLight {
-        view.light.unwrap_or(self.light)
+    /// The default light of the scene.
+    pub fn light(&self) -> LightKind {
+        first(&self.lights)
     }
+
+    /// The default light where that is directional.
+    pub fn sun(&self) -> Option<DirectionalLight> {
+        self.light().directional().copied()
+    }
+
+    /// The default light of a view.
+    pub fn light_of(&self, view: &View) -> LightKind {
+        first(&self.lights_of(view))
+    }
+
+    /// The lights under which a view is drawn: its own, or all of the scene's.
+    pub fn lights_of(&self, view: &View) -> Vec<Light> {
+        match view.light {
+            Some(own) => vec![own.into()],
+            None => self.lights.clone(),
+        }
+    }
+}
+
+/// One at least is what a scene promises.
+fn first(lights: &[Light]) -> LightKind {
+    let down = || DirectionalLight::new(DVec3::NEG_Y).into();
+    lights.first().map_or_else(down, |light| light.kind)
 }

@@ -10,7 +10,7 @@
 //!     views: [(
 //!         name: "bench", eye: (-23, 18, 30), direction: (0.4, -0.6, -0.7),
 //!         fov_y_degrees: 60, near: 1, far: 400,
-//!         light: (direction: (0, -1, 0)), // without it: the scene's
+//!         light: (direction: (0, -1, 0)), // without it: the scene's `light`, or its `lights`
 //!     )],
 //! )"#;
 //! let scene = skiagraph_scene::SceneFile::parse(text, "garden.ron")?;
@@ -19,7 +19,11 @@
 //! ```
 
 use crate::{
-    camera::View, error::SceneError, generate::Generator, light::DirectionalLight,
+    camera::View,
+    error::SceneError,
+    generate::Generator,
+    light::DirectionalLight,
+    light_kind::{Light, LightKind, PointLight, SpotLight},
     obj::options::QuadDiagonal,
 };
 use serde::{Deserialize, Deserializer, de::Error};
@@ -39,9 +43,12 @@ pub struct SceneFile {
     pub description: String,
     /// Where the triangles come from.
     pub mesh: MeshSource,
-    /// The light of all views that have none of their own.
-    #[serde(deserialize_with = "light")]
-    pub light: DirectionalLight,
+    /// What a file says that has one light; [`lights`](Self::lights) holds it then.
+    #[serde(default, deserialize_with = "light")]
+    light: Option<Light>,
+    /// The lights of all views that have none of their own: at least one, no two of the same name.
+    #[serde(default, deserialize_with = "lights")]
+    pub lights: Vec<Light>,
     /// At least one view, no two of the same name.
     #[serde(deserialize_with = "views")]
     pub views: Vec<View>,
@@ -79,14 +86,26 @@ impl SceneFile {
     /// field, or makes no camera or light.
     pub fn parse(text: &str, file: &str) -> Result<Self, SceneError> {
         let options = ron::Options::default();
-        options
-            .from_str(text)
-            .map_err(|error| SceneError::SceneFile {
-                file: file.to_owned(),
-                line: error.span.start.line,
-                column: error.span.start.col,
-                reason: error.code.to_string(),
-            })
+        let error = |line, column, reason| SceneError::SceneFile {
+            file: file.to_owned(),
+            line,
+            column,
+            reason,
+        };
+        let mut scene: Self = options.from_str(text).map_err(|found| {
+            let start = found.span.start;
+            error(start.line, start.col, found.code.to_string())
+        })?;
+        let reason = match (scene.light.take(), scene.lights.is_empty()) {
+            (Some(light), true) => {
+                scene.lights = vec![light];
+                return Ok(scene);
+            }
+            (None, false) => return Ok(scene),
+            (None, true) => "a scene needs a `light`, or `lights`",
+            (Some(_), false) => "a scene has one `light`, or `lights`, not both",
+        };
+        Err(error(text.lines().count(), 1, reason.to_owned()))
     }
 }
 
@@ -113,6 +132,75 @@ fn y_axis() -> (f64, f64, f64) {
 #[serde(deny_unknown_fields, rename = "Light")]
 struct LightText {
     direction: (f64, f64, f64),
+    #[serde(default)]
+    angle_degrees: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename = "light")]
+enum NamedLightText {
+    Directional {
+        name: String,
+        direction: (f64, f64, f64),
+        #[serde(default)]
+        angle_degrees: f64,
+    },
+    Spot {
+        name: String,
+        position: (f64, f64, f64),
+        direction: (f64, f64, f64),
+        cone_degrees: f64,
+        #[serde(default)]
+        radius: f64,
+    },
+    Point {
+        name: String,
+        position: (f64, f64, f64),
+        #[serde(default)]
+        radius: f64,
+    },
+}
+
+impl From<NamedLightText> for Light {
+    fn from(text: NamedLightText) -> Self {
+        let (name, kind): (_, LightKind) = match text {
+            NamedLightText::Directional {
+                name,
+                direction,
+                angle_degrees,
+            } => {
+                let light = DirectionalLight {
+                    direction: direction.into(),
+                    angle_degrees,
+                };
+                (name, light.into())
+            }
+            NamedLightText::Spot {
+                name,
+                position,
+                direction,
+                cone_degrees,
+                radius,
+            } => {
+                let spot = SpotLight {
+                    position: position.into(),
+                    direction: direction.into(),
+                    cone_degrees,
+                    radius,
+                };
+                (name, spot.into())
+            }
+            NamedLightText::Point {
+                name,
+                position,
+                radius,
+            } => {
+                let position = position.into();
+                (name, PointLight { position, radius }.into())
+            }
+        };
+        Self { name, kind }
+    }
 }
 
 impl<'de> Deserialize<'de> for View {
@@ -152,10 +240,10 @@ fn generator<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Generator, D:
     name.parse().map_err(D::Error::custom)
 }
 
-fn light<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DirectionalLight, D::Error> {
-    let light = any_light(deserializer)?;
+fn light<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Light>, D::Error> {
+    let light = Light::only(any_light(deserializer)?);
     light.check().map_err(D::Error::custom)?;
-    Ok(light)
+    Ok(Some(light))
 }
 
 /// That of a view, which checks it and says whose it is.
@@ -166,8 +254,30 @@ fn own_light<'de, D: Deserializer<'de>>(
 }
 
 fn any_light<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DirectionalLight, D::Error> {
-    let direction = LightText::deserialize(deserializer)?.direction.into();
-    Ok(DirectionalLight { direction })
+    let text = LightText::deserialize(deserializer)?;
+    Ok(DirectionalLight {
+        direction: text.direction.into(),
+        angle_degrees: text.angle_degrees,
+    })
+}
+
+fn lights<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Light>, D::Error> {
+    let lights: Vec<_> = Vec::<NamedLightText>::deserialize(deserializer)?
+        .into_iter()
+        .map(Light::from)
+        .collect();
+    if lights.is_empty() {
+        return Err(D::Error::custom("`lights` is empty; a scene needs one"));
+    }
+    let mut names = HashSet::new();
+    for light in &lights {
+        light.check().map_err(D::Error::custom)?;
+        if !names.insert(&light.name) {
+            let name = &light.name;
+            return Err(D::Error::custom(format!("two lights are called {name:?}")));
+        }
+    }
+    Ok(lights)
 }
 
 fn views<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<View>, D::Error> {

@@ -160,7 +160,7 @@ fn every_view_shows_light_and_shadow() {
     ] {
         let scene = scene(name).unwrap();
         let bvh = Bvh::build(&scene.mesh);
-        let to_light = scene.light.to_light();
+        let to_light = scene.light().towards(glam::DVec3::ZERO).direction;
         for view in &scene.views {
             let camera = view.camera([64, 36]);
             let (mut lit, mut shadow) = (0, 0);

@@ -68,7 +68,7 @@ fn big_triangles_in_the_trees_and_tiny_ones_in_the_flowers() {
 #[test]
 fn no_flat_face_of_the_furniture_lies_along_the_light() {
     let (scene, _) = &*PARK;
-    let to_light = scene.light.to_light();
+    let to_light = scene.light().towards(glam::DVec3::ZERO).direction;
     for name in ["lawn", "bench", "planter"] {
         let group = scene.mesh.groups.iter().find(|group| group.name == name);
         for primitive in group.unwrap().triangles.clone() {
@@ -169,7 +169,7 @@ fn every_view_sees_ground_to_its_borders() {
 #[test]
 fn the_views_face_the_light_and_show_light_and_shadow() {
     let (scene, bvh) = &*PARK;
-    let to_light = scene.light.to_light();
+    let to_light = scene.light().towards(glam::DVec3::ZERO).direction;
     for view in &scene.views {
         let (name, camera) = (&view.name, view.camera([96, 96]));
         let (mut facing, mut shadow) = (0, 0);

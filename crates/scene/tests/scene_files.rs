@@ -32,7 +32,10 @@ fn a_good_file() {
         ("garden", "")
     );
     assert_eq!(scene.views[0].up, glam::DVec3::Y);
-    assert_eq!(scene.light.to_light(), glam::DVec3::Y);
+    assert_eq!(
+        scene.light().towards(glam::DVec3::ZERO).direction,
+        glam::DVec3::Y
+    );
     assert_eq!(scene.views[0].light, None);
 }
 
@@ -59,7 +62,8 @@ fn broken_files_are_explained_with_line_and_column() {
     assert_snapshot!(own_light("direction: (0, 0, 0)"), @"garden.ron:7:126: view \"a\": the \
         light's direction [0, 0, 0] must be finite and longer than 0");
     assert_snapshot!(own_light("towards: (0, 1, 0)"), @"garden.ron:7:105: Unexpected field named \
-        `towards` in `Light`, expected `direction` instead");
+        `towards` in `Light`, expected either `direction` or `angle_degrees` \
+        instead");
     assert_snapshot!(error("name: \"garden\",", ""), @"garden.ron:9:1: Unexpected missing field \
         named `name` in `SceneFile`");
     assert_snapshot!(error("format: 1", "format: 2"), @"garden.ron:2:13: format 2 is unknown; \
@@ -72,6 +76,12 @@ fn broken_files_are_explained_with_line_and_column() {
         3 but found 2 elements instead");
     assert_snapshot!(error("(0, -1, 0)", "(0, 0, 0)"), @"garden.ron:5:33: the light's direction \
         [0, 0, 0] must be finite and longer than 0");
+    assert_snapshot!(error("(0, -1, 0)", "(0, -1, 0), angle_degrees: 180"), @"garden.ron:5:54: the \
+        light's angle_degrees is 180; expected at least 0 and less than 180, the angle that it \
+        takes up in the sky");
+    assert_snapshot!(own_light("direction: (0, 1, 0), angle_degrees: -1"), @"garden.ron:7:145: \
+        view \"a\": the light's angle_degrees is -1; expected at least 0 and less than 180, the \
+        angle that it takes up in the sky");
     assert_snapshot!(error("direction: (0, 0, 1)", "direction: (0, NaN, 1)"), @"garden.ron:7:97: \
         view \"a\": direction [0, NaN, 1] and up [0, 1, 0] must be finite and longer than 0");
     assert_snapshot!(error("direction: (0, 0, 1)", "direction: (0, -2, 0)"), @"garden.ron:7:96: \
@@ -105,9 +115,7 @@ fn setup() -> ObjSetup {
         .remove(0);
     ObjSetup {
         view,
-        light: DirectionalLight {
-            direction: glam::DVec3::NEG_Y,
-        },
+        lights: vec![DirectionalLight::new(glam::DVec3::NEG_Y).into()],
         quads: QuadDiagonal::FirstThird,
     }
 }
@@ -154,6 +162,7 @@ fn a_file_in_the_scenes_folder_wins_over_the_built_in_scene() {
             ("city".to_owned(), true, false),
             ("forest".to_owned(), true, false),
             ("park".to_owned(), true, true),
+            ("park_soft".to_owned(), true, false),
             ("sponza".to_owned(), false, false)
         ]
     );
@@ -179,7 +188,7 @@ fn unknown_scenes_and_missing_files() {
     };
     assert_snapshot!(library.load(&request("parc")).unwrap_err(), @"no scene \"parc\": it is \
         neither the path of a .ron or .obj file, nor the name of a .ron file in scenes, nor one of \
-        the built-in scenes bench, city, forest, park, sponza");
+        the built-in scenes bench, city, forest, park, park_soft, sponza");
     assert!(matches!(
         library.load(&request("nowhere/parc.ron")),
         Err(SceneError::Read { .. })

@@ -13,7 +13,7 @@ use skiagraph_reference::{
     pixels::{check_pixel_count, per_pixel},
     statistics::status,
 };
-use skiagraph_scene::{Adjacency, Camera, DirectionalLight, Mesh};
+use skiagraph_scene::{Adjacency, Camera, DirectionalLight, LightKind, Mesh};
 
 /// What a preset's `status` must be. Both buffers have one entry per pixel, row by row from the top
 /// left.
@@ -29,7 +29,7 @@ pub struct Classification {
 pub struct Maps<'a> {
     mesh: &'a Mesh,
     space: LightSpace,
-    to_light: DVec3,
+    light: LightKind,
     layers: Layers,
 }
 
@@ -49,11 +49,7 @@ impl CpuReference {
         adjacency: &Adjacency,
         light: &DirectionalLight,
     ) -> Result<Maps<'a>, Error> {
-        let to_light = light.to_light();
-        if !to_light.is_finite() {
-            let [x, y, z] = light.direction.to_array();
-            return Err(Error::Light { x, y, z });
-        }
+        light.check().map_err(Error::Light)?;
         let space = LightSpace::new(mesh, light, self.map_size);
         let casters = Casters::new(mesh, adjacency, space, self.cull);
         let (n, depth) = (self.n, self.depth);
@@ -70,7 +66,7 @@ impl CpuReference {
         Ok(Maps {
             mesh,
             space,
-            to_light,
+            light: light.into(),
             layers,
         })
     }
@@ -147,7 +143,7 @@ impl Maps<'_> {
         check_pixel_count("primitives", viewport, primitives.len())?;
         let answers = per_pixel(viewport, progress, |x, y, _| {
             let pixel = [x, y];
-            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, pixel, self.to_light)?;
+            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, pixel, &self.light)?;
             let background = (status::BACKGROUND, false);
             Ok(receiver.map_or(background, |receiver| self.answer(&receiver)))
         })?;

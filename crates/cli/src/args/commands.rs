@@ -8,11 +8,14 @@ use clap::{Args, ValueEnum};
 use skiagraph_reference::OracleMode;
 use std::path::PathBuf;
 
+/// Samples of lights with an extent where nobody says how many.
+pub const REFERENCE_SAMPLES: u32 = 512;
+
 /// `skiagraph compare`.
 #[derive(Args, Debug)]
 pub struct CompareArgs {
-    /// Presets by name, or graphs (.ron) with the outputs `visibility` and `status`. Without any:
-    /// all presets, those in ./pipelines and the built-in ones.
+    /// Presets by name, or graphs (.ron) with the output `visibility`, and perhaps `status`.
+    /// Without any: all presets, those in ./pipelines and the built-in ones.
     #[arg(value_name = "PRESET|FILE.ron")]
     pub presets: Vec<String>,
     /// What is drawn.
@@ -52,6 +55,10 @@ pub struct CompareArgs {
     /// moved towards the light).
     #[arg(long, default_value = "exact", value_name = "MODE")]
     pub oracle: OracleMode,
+    /// Shadow rays per pixel to a light that has an extent, of which the reference is made.
+    #[arg(long, value_name = "N", default_value_t = REFERENCE_SAMPLES,
+          value_parser = clap::value_parser!(u32).range(4..=1_048_576))]
+    pub reference_samples: u32,
     /// Folder for results.json, results.csv and the pictures.
     #[arg(long, default_value = "compare", value_name = "DIR")]
     pub out: PathBuf,
@@ -195,8 +202,8 @@ pub struct ProfileArgs {
 /// `skiagraph stress`.
 #[derive(Args, Debug)]
 pub struct StressArgs {
-    /// Presets by name, or graphs (.ron) with the outputs `visibility` and `status`. Without any:
-    /// all presets, those in ./pipelines and the built-in ones.
+    /// Presets by name, or graphs (.ron) with the output `visibility`, and perhaps `status`.
+    /// Without any: all presets, those in ./pipelines and the built-in ones.
     #[arg(value_name = "PRESET|FILE.ron")]
     pub presets: Vec<String>,
     /// List the cases instead: names, casters, reasons. Needs no GPU.

@@ -75,6 +75,10 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         cached_frames: args.cached_frames.unwrap_or(args.frames),
         runs: Vec::new(),
     };
+    let mut fingerprint = primary.fingerprint.with_scene(&scene.mesh, &scene.lights);
+    if views.iter().any(|view| scene.light_of(view).has_extent()) {
+        fingerprint = fingerprint.with_text(&args.reference_samples.to_string());
+    }
     let setup = ComparisonSetup {
         gpu: &gpu,
         scene: &scene,
@@ -82,7 +86,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         viewports: &viewports,
         methods: &methods,
         primary: &primary,
-        fingerprint: primary.fingerprint.with_scene(&scene.mesh, &scene.light),
+        fingerprint,
     };
     let mut comparison = Comparison::new(args, setup, provider, published, results)?;
     interrupt::install()?;

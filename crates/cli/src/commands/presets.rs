@@ -58,6 +58,7 @@ fn table(presets: &[Preset]) -> Result<String, CliError> {
     let heads = [
         "preset",
         "what it is",
+        "lights",
         "answers",
         "rays",
         "fits",
@@ -67,14 +68,14 @@ fn table(presets: &[Preset]) -> Result<String, CliError> {
     for preset in presets {
         lines.push(row(preset)?);
     }
-    let line = |cells: &[String; 6]| {
+    let line = |cells: &[String; 7]| {
         let cells = cells.each_ref().map(|cell| cell.replace('|', "\\|"));
         format!("| {} |\n", cells.join(" | "))
     };
     Ok(lines.iter().map(line).collect())
 }
 
-fn row(preset: &Preset) -> Result<[String; 6], CliError> {
+fn row(preset: &Preset) -> Result<[String; 7], CliError> {
     let graph = &preset.graph;
     let provider = placeholder([64, 64]);
     let plan = preset.plan(&Capabilities::greatest().request([64, 64], &provider))?;
@@ -86,6 +87,11 @@ fn row(preset: &Preset) -> Result<[String; 6], CliError> {
         }
         Some(_) => "graded",
         None => "–",
+    };
+    let lights: Vec<&str> = graph.lights().map(|kind| kind.value.as_str()).collect();
+    let lights = match lights[..] {
+        [] => "directional".to_owned(), // where a document says nothing
+        _ => lights.join(", "),
     };
     let traces = graph.outputs().contains(&RAY_COUNT);
     let fits = match preset.param("fit").map(|fit| &fit.ty) {
@@ -102,6 +108,7 @@ fn row(preset: &Preset) -> Result<[String; 6], CliError> {
     Ok([
         format!("`{}`", preset.name),
         description,
+        lights,
         answers.to_owned(),
         if traces { "yes" } else { "–" }.to_owned(),
         fits,

@@ -2,7 +2,7 @@
 //! changed.
 
 use skiagraph_graph::{Picture, Sources};
-use skiagraph_scene::{DirectionalLight, Mesh, View};
+use skiagraph_scene::{Light, Mesh, View};
 use std::{
     collections::BTreeMap,
     fmt,
@@ -38,8 +38,8 @@ impl Fingerprint {
         self.with(other.0.to_le_bytes())
     }
 
-    /// With a mesh and its light.
-    pub fn with_scene(self, mesh: &Mesh, light: &DirectionalLight) -> Self {
+    /// With a mesh and its lights.
+    pub fn with_scene(self, mesh: &Mesh, lights: &[Light]) -> Self {
         let floats = |list: &[glam::Vec3]| -> Self {
             let numbers = list.iter().flat_map(|v| v.to_array());
             Self::EMPTY.with(numbers.flat_map(f32::to_le_bytes))
@@ -52,7 +52,7 @@ impl Fingerprint {
             .with_all(indices(&mesh.triangles))
             .with_all(floats(&mesh.normals))
             .with_all(indices(&mesh.normal_indices))
-            .with_text(&format!("{light:?}"))
+            .with_text(&format!("{lights:?}"))
     }
 
     /// With a view.

@@ -8,12 +8,18 @@ use crate::graphs::preset::{self, Preset};
 use crate::wording::size;
 use skiagraph_gpu::{Content, Provider};
 use skiagraph_graph::{Plan, Sources};
-use skiagraph_reference::{Reference, Statistics};
-use std::collections::{BTreeMap, BTreeSet};
+use skiagraph_reference::{
+    Class, Graded, Reference, RightAnswer, Statistics, image::Shown, statistics::status,
+};
+use std::{
+    borrow::Cow,
+    collections::{BTreeMap, BTreeSet},
+};
 
-/// The output with 0 in shadow and 1 in light.
+/// The output from 0 in shadow to 1 in light.
 pub const VISIBILITY: &str = "visibility";
-/// The output with 0 background, 1 facing away, 2 certain light, 3 certain shadow, 4 uncertain.
+/// The optional output with 0 background, 1 facing away, 2 certain light, 3 certain shadow, 4
+/// uncertain.
 pub const STATUS: &str = "status";
 /// The optional output with the number of rays traced in the frame.
 pub const RAY_COUNT: &str = "ray_count";
@@ -76,28 +82,27 @@ pub fn check_plans(
 
 /// What the graph lacks as a shadow preset.
 fn missing_outputs(preset: &Preset) -> Option<String> {
-    let outputs = preset.graph.outputs();
-    let missing: Vec<String> = [VISIBILITY, STATUS]
-        .iter()
-        .filter(|name| !outputs.contains(name))
-        .map(|name| format!("`{name}`"))
-        .collect();
-    if missing.is_empty() {
+    if preset.graph.outputs().contains(&VISIBILITY) {
         return None;
     }
     Some(format!(
-        "`{}` has no output {}, so it cannot be compared\n  \
+        "`{}` has no output `{VISIBILITY}`, so it cannot be compared\n  \
          a shadow method declares\n    \
-         outputs: [\"{VISIBILITY}\", \"{STATUS}\"]\n  \
-         {VISIBILITY}: per pixel 0 in shadow, 1 in light\n  \
+         outputs: [\"{VISIBILITY}\"] or [\"{VISIBILITY}\", \"{STATUS}\"]\n  \
+         {VISIBILITY}: per pixel 0 in shadow to 1 in light, {INTEGERS} for a hard answer, 0 or 1, \
+         or {FLOATS} for a graded one\n  \
          {STATUS}: per pixel 0 background, 1 facing away from the light, 2 certain light, \
-         3 certain shadow, 4 uncertain\n  \
-         both R8Uint or R32Uint, of the viewport's size; {VISIBILITY} may be R8Unorm, R16Float or \
-         R32Float, of which 0.5 and more is light",
+         3 certain shadow, 4 uncertain, {INTEGERS}; without it the reference says what faces the \
+         light, and all else counts as certain\n  \
+         all of the viewport's size",
         preset.name,
-        missing.join(" and no output ")
     ))
 }
+
+/// The formats of integers, as messages name them.
+const INTEGERS: &str = "R8Uint, R16Uint or R32Uint";
+/// The formats of shares.
+const FLOATS: &str = "R8Unorm, R16Unorm, R16Float or R32Float";
 
 /// What is wrong with the outputs' sizes and formats on this viewport.
 fn mismatch(preset: &Preset, plan: &Plan, viewport: [u32; 2]) -> Option<String> {
@@ -105,7 +110,7 @@ fn mismatch(preset: &Preset, plan: &Plan, viewport: [u32; 2]) -> Option<String> 
     plan.outputs().into_iter().find_map(|output| {
         let fits = match (output.name.as_str(), output.format) {
             (VISIBILITY | STATUS, Some(F::R8Uint | F::R16Uint | F::R32Uint))
-            | (VISIBILITY, Some(F::R8Unorm | F::R16Float | F::R32Float)) => true,
+            | (VISIBILITY, Some(F::R8Unorm | F::R16Unorm | F::R16Float | F::R32Float)) => true,
             (VISIBILITY | STATUS, _) => false,
             _ => return None,
         };
@@ -113,16 +118,16 @@ fn mismatch(preset: &Preset, plan: &Plan, viewport: [u32; 2]) -> Option<String> 
             .format
             .map_or("a buffer".into(), |format| format!("{format:?}"));
         (!fits || output.size != viewport).then(|| {
+            let floats = match output.name.as_str() {
+                VISIBILITY => format!(" (0 or 1), {FLOATS} (0 to 1)"),
+                _ => String::new(),
+            };
             format!(
-                "`{}`: the output `{}` is {kind} of {}; expected R8Uint or R32Uint{} \
-                 of the viewport's {}",
+                "`{}`: the output `{}` is {kind} of {}; expected {INTEGERS}{floats} of the \
+                 viewport's {}",
                 preset.name,
                 output.name,
                 size(output.size),
-                match output.name.as_str() {
-                    VISIBILITY => ", R8Unorm, R16Float or R32Float",
-                    _ => "",
-                },
                 size(viewport)
             )
         })
@@ -131,8 +136,10 @@ fn mismatch(preset: &Preset, plan: &Plan, viewport: [u32; 2]) -> Option<String> 
 
 /// One frame's outputs.
 pub struct Outputs {
-    /// Per pixel 0 or 1.
+    /// Per pixel 0 or 1; of shares, whether they are one half or more.
     pub visibility: Vec<u32>,
+    /// Per pixel the share of light, 0 to 1 if the method is right, where it answers in shares.
+    pub shares: Option<Vec<f32>>,
     /// Per pixel 0 to 4.
     pub status: Vec<u32>,
     /// Rays traced, where the graph counts them.
@@ -149,95 +156,187 @@ impl Outputs {
             .collect()
     }
 
-    /// Decodes what was read; a soft visibility counts as light from one half on.
+    /// Decodes what was read. Without a status the reference says what faces the light, and the
+    /// method is certain of it.
     ///
     /// # Errors
     /// An output that is not there or not in one of the contract's formats.
-    pub fn decode(contents: &BTreeMap<String, Content>) -> Result<Self, String> {
+    pub fn decode(
+        contents: &BTreeMap<String, Content>,
+        reference: &Reference,
+    ) -> Result<Self, String> {
         let integers = |name: &str| contents.get(name).and_then(Content::as_u32);
-        let soft = || {
-            let shares = contents.get(VISIBILITY)?.as_f32()?.into_iter();
-            Some(shares.map(|share| u32::from(share >= 0.5)).collect())
+        let shares = contents.get(VISIBILITY).and_then(Content::as_f32);
+        let visibility = match &shares {
+            Some(shares) => shares
+                .iter()
+                .map(|&share| u32::from(share >= 0.5))
+                .collect(),
+            None => integers(VISIBILITY).ok_or("`visibility` cannot be read as numbers")?,
+        };
+        let status = match contents.get(STATUS) {
+            Some(status) => status
+                .as_u32()
+                .ok_or("`status` cannot be read as integers")?,
+            None => certain(&visibility, reference),
         };
         Ok(Self {
-            visibility: integers(VISIBILITY)
-                .or_else(soft)
-                .ok_or("`visibility` cannot be read as numbers")?,
-            status: integers(STATUS).ok_or("`status` cannot be read as integers")?,
+            visibility,
+            shares,
+            status,
             rays: integers(RAY_COUNT)
                 .and_then(|count| count.first().copied())
                 .map(u64::from),
         })
     }
+
+    /// What each pixel shows of the light, of hard answers 0 or 1.
+    pub fn shown(&self) -> Cow<'_, [f32]> {
+        match &self.shares {
+            Some(shares) => Cow::Borrowed(shares),
+            None => Cow::Owned(self.visibility.iter().map(|&lit| lit.share()).collect()),
+        }
+    }
 }
 
-/// A frame's outputs beside the reference.
+/// The status of a method that has none.
+fn certain(visibility: &[u32], reference: &Reference) -> Vec<u32> {
+    let of = |(&class, &visibility): (&Class, &u32)| match (class, visibility) {
+        (Class::Background, _) => status::BACKGROUND,
+        (Class::FacingAway, _) => status::FACING_AWAY,
+        (_, 0) => status::CERTAIN_SHADOW,
+        _ => status::CERTAIN_LIGHT,
+    };
+    reference.classes.iter().zip(visibility).map(of).collect()
+}
+
+/// How a frame compares with the right answer.
+pub struct Judgement {
+    /// Its pixels counted; of shares as if they were cut at one half.
+    pub counts: Statistics,
+    /// Where the answer or the light is graded.
+    pub graded: Option<Graded>,
+}
+
+/// A frame's outputs beside the right answer.
 ///
 /// # Errors
 /// [`CliError::Contract`] where they are not what a shadow method's must be.
 pub fn judged(
     preset: &Preset,
     outputs: Result<Outputs, String>,
-    reference: &Reference,
-) -> Result<(Outputs, Statistics), CliError> {
+    right: &RightAnswer,
+) -> Result<(Outputs, Judgement), CliError> {
     let broken = |reason: String| {
         let name = &preset.name;
         CliError::Contract(format!("`{name}` breaks the contract of outputs: {reason}"))
     };
     let outputs = outputs.map_err(broken)?;
+    let reference = &right.reference;
     let counts = Statistics::judged(&outputs.visibility, &outputs.status, reference)
         .map_err(|error| broken(error.to_string()))?;
-    Ok((outputs, counts))
+    let graded = (outputs.shares.is_some() || right.area.is_some())
+        .then(|| Graded::judged(&outputs.shown(), &right.shares(), reference))
+        .transpose()
+        .map_err(|error| broken(error.to_string()))?;
+    Ok((outputs, Judgement { counts, graded }))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use skiagraph_reference::AreaVisibility;
     use wgpu::TextureFormat as F;
 
-    fn contents(visibility: Content, status: Content) -> BTreeMap<String, Content> {
-        [(VISIBILITY, visibility), (STATUS, status)]
-            .map(|(name, content)| (name.to_string(), content))
-            .into()
+    fn reference() -> Reference {
+        Reference {
+            viewport: [4, 1],
+            classes: vec![
+                Class::Shadow,
+                Class::Lit,
+                Class::FacingAway,
+                Class::Background,
+            ],
+            indeterminate: vec![false; 4],
+            n_dot_l: vec![0.5; 4],
+        }
+    }
+
+    fn texture(format: F, bytes: &[u8]) -> Content {
+        Content::Texture {
+            format,
+            parts: vec![[4, 1]],
+            bytes: bytes.to_vec(),
+        }
+    }
+
+    fn contents(visibility: Content, status: Option<Content>) -> BTreeMap<String, Content> {
+        let status = status.map(|status| (STATUS.to_owned(), status));
+        let visibility = (VISIBILITY.to_owned(), visibility);
+        [visibility].into_iter().chain(status).collect()
     }
 
     #[test]
-    fn hard_and_soft_visibility_are_read_alike() {
-        let status = || Content::Texture {
-            format: F::R8Uint,
-            parts: vec![[2, 1]],
-            bytes: vec![3, 2],
-        };
-        let hard = Content::Texture {
-            format: F::R32Uint,
-            parts: vec![[2, 1]],
-            bytes: vec![0, 0, 0, 0, 1, 0, 0, 0],
-        };
-        let soft = [0.25f32, 0.5]
-            .iter()
-            .flat_map(|share| share.to_le_bytes())
-            .collect();
-        let soft = Content::Texture {
-            format: F::R32Float,
-            parts: vec![[2, 1]],
-            bytes: soft,
-        };
-        for visibility in [hard, soft] {
-            let outputs = Outputs::decode(&contents(visibility, status())).unwrap();
-            assert_eq!(
-                (outputs.visibility, outputs.status, outputs.rays),
-                (vec![0, 1], vec![3, 2], None)
-            );
+    fn integers_are_hard_and_floats_are_graded() {
+        let status = || Some(texture(F::R8Uint, &[3, 2, 1, 0]));
+        let hard = texture(F::R8Uint, &[0, 1, 0, 0]);
+        let floats = [0.25f32, 0.5, 0.0, f32::NAN];
+        let graded = floats.iter().flat_map(|share| share.to_le_bytes());
+        let graded = texture(F::R32Float, &graded.collect::<Vec<_>>());
+        let eighths = texture(F::R8Unorm, &[51, 255, 0, 0]);
+        for (visibility, shares) in [
+            (hard, None),
+            (graded, Some([0.25, 0.5])),
+            (eighths, Some([0.2, 1.0])),
+        ] {
+            let outputs = Outputs::decode(&contents(visibility, status()), &reference()).unwrap();
+            assert_eq!(outputs.visibility, [0, 1, 0, 0]);
+            assert_eq!(outputs.status, [3, 2, 1, 0]);
+            let first = outputs.shares.as_ref().map(|shares| [shares[0], shares[1]]);
+            assert_eq!(first, shares);
+            let shown = outputs.shown();
+            assert_eq!([shown[0], shown[1]], shares.unwrap_or([0.0, 1.0]));
         }
     }
 
     #[test]
-    fn a_missing_output_is_named() {
-        assert!(
-            Outputs::decode(&BTreeMap::new())
-                .err()
-                .unwrap()
-                .contains("visibility")
+    fn without_a_status_the_reference_says_what_faces_the_light() {
+        let hard = texture(F::R8Uint, &[1, 0, 1, 0]);
+        let outputs = Outputs::decode(&contents(hard, None), &reference()).unwrap();
+        assert_eq!(outputs.status, [2, 3, 1, 0]);
+    }
+
+    #[test]
+    fn a_graded_answer_or_light_is_judged_as_graded() {
+        let presets = preset::load_all(&["nsm".into()], &skiagraph_passes::EmbeddedSources);
+        let presets = presets.unwrap();
+        let is_graded = |visibility: Content, area: Option<AreaVisibility>| {
+            let reference = reference();
+            let outputs = Outputs::decode(&contents(visibility, None), &reference);
+            let right = RightAnswer { reference, area };
+            let (_, judgement) = judged(&presets[0], outputs, &right).unwrap();
+            judgement.graded.map(|graded| graded.mean_absolute_error)
+        };
+        let hard = || texture(F::R8Uint, &[0, 1, 0, 0]);
+        let area = AreaVisibility {
+            samples: 4,
+            shares: vec![0.5, 1.0, 0.0, 0.0],
+            standard_errors: vec![0.0; 4],
+        };
+        assert_eq!(is_graded(hard(), None), None);
+        assert_eq!(
+            is_graded(texture(F::R8Unorm, &[0, 255, 9, 9]), None),
+            Some(0.0)
         );
+        assert_eq!(is_graded(hard(), Some(area)), Some(0.25));
+    }
+
+    #[test]
+    fn a_missing_output_is_named() {
+        let missing = Outputs::decode(&BTreeMap::new(), &reference()).err();
+        assert!(missing.unwrap().contains("visibility"));
+        let status = Some(texture(F::R8Unorm, &[0; 4]));
+        let wrong = Outputs::decode(&contents(texture(F::R8Uint, &[0; 4]), status), &reference());
+        assert!(wrong.err().unwrap().contains("status"));
     }
 }

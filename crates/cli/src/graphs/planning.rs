@@ -96,14 +96,12 @@ pub fn placeholder(viewport: [u32; 2]) -> SceneProvider {
         normal_indices: vec![[0, 0, 0]],
         groups: Vec::new(),
     };
-    let light = DirectionalLight {
-        direction: DVec3::NEG_Z,
-    };
+    let light = DirectionalLight::new(DVec3::NEG_Z);
     let scene = Scene {
         name: "check".into(),
         mesh,
         views: vec![view.clone()],
-        light,
+        lights: vec![light.into()],
     };
     let mut provider = SceneProvider::new(Arc::new(scene));
     provider.set_view(&view, viewport);

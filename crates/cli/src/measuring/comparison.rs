@@ -6,7 +6,7 @@ use crate::files::fingerprint::Fingerprint;
 use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
-use crate::measuring::reference::{Judge, PrimaryVisibility};
+use crate::measuring::reference::{Judge, PrimaryVisibility, Tracing};
 use crate::measuring::resume::{RunKey, resume};
 use crate::measuring::run::MeasureContext;
 use crate::pictures::run_pictures::save_reference;
@@ -224,11 +224,15 @@ impl<'a> Comparison<'a> {
         let step = Step::begin(format!("visible triangles, {what}"), 1, "frames");
         let ids = primary.ids(self.setup.gpu, viewport, &mut self.provider)?;
         step.end();
-        let (camera, mode) = (view.camera(viewport), self.args.oracle);
-        let light = scene.light_of(view);
-        let judge = Judge::new(oracle.clone(), camera, light, ids, mode, &what)?;
+        let camera = view.camera(viewport);
+        let tracing = Tracing {
+            mode: self.args.oracle,
+            samples: self.args.reference_samples,
+        };
+        let light = self.provider.light();
+        let judge = Judge::new(oracle.clone(), camera, light, ids, tracing, &what)?;
         if let Some(folder) = self.pictures() {
-            save_reference(folder, &view.name, &judge.reference)?;
+            save_reference(folder, &view.name, &judge.right)?;
         }
         Ok(judge)
     }

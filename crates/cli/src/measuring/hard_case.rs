@@ -1,20 +1,23 @@
 //! One case with every method.
 
+use crate::args::commands::REFERENCE_SAMPLES;
 use crate::error::{CliError, is_fatal, with_causes};
-use crate::graphs::contract::{Outputs, judged};
+use crate::graphs::contract::{Judgement, Outputs, judged};
 use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::frame;
 use crate::measuring::guarantee::{self, WITHOUT_CULLING};
-use crate::measuring::reference::{PrimaryVisibility, own_counts, shade};
+use crate::measuring::reference::{PrimaryVisibility, Tracing, own_counts, right_answer};
 use crate::pictures::run_pictures::{save_pictures, save_reference, stem};
 use crate::records::stress::{Case, Casters, Cell, Column, Counts, Guarantee, Verdict};
 use crate::terminal::interrupt;
 use skiagraph_cases::HardCase;
 use skiagraph_gpu::device::Gpu;
 use skiagraph_passes::SceneProvider;
-use skiagraph_reference::{Class, Oracle, OracleMode, PixelCounts, Reference, Statistics};
+use skiagraph_reference::{
+    Class, Error, Oracle, OracleMode, PixelCounts, Reference, RightAnswer, Statistics,
+};
 use skiagraph_scene::{Scene, View};
 use std::{path::Path, sync::Arc};
 
@@ -141,8 +144,8 @@ impl HardCaseContext<'_> {
             band: 0,
             cells: Vec::new(),
         };
-        let reference = match self.reference(&scene, &mut provider) {
-            Ok(reference) => reference,
+        let right = match self.right_answer(&scene, &mut provider) {
+            Ok(right) => right,
             Err(error) if ends_all(&error) => return Err(error),
             Err(error) => {
                 case.failed = Some(with_causes(&error));
@@ -150,9 +153,9 @@ impl HardCaseContext<'_> {
             }
         };
         if let Some(folder) = self.pictures {
-            save_reference(folder, hard.name, &reference)?;
+            save_reference(folder, hard.name, &right)?;
         }
-        let counts = own_counts(&reference);
+        let counts = own_counts(&right.reference);
         (case.pixels, case.band) = (counts.pixels, counts.band);
         if !case.exceeds_cap() {
             case.verdict = Verdict::Pass;
@@ -172,7 +175,7 @@ impl HardCaseContext<'_> {
                     failed: None,
                     images: None,
                 };
-                match self.count(variant.method, &mut provider, &reference) {
+                match self.count(variant.method, &mut provider, &right) {
                     Ok((outputs, whole, counts)) => {
                         let guarantee = run.guarantee.as_ref().map(|(guarantee, _)| *guarantee);
                         let certain = case.pixels.facing_light.saturating_sub(counts.uncertain);
@@ -182,7 +185,7 @@ impl HardCaseContext<'_> {
                         cell.counts = Some(counts);
                         let images = self.pictures.map(|folder| {
                             let stem = variant.stem(hard, self.viewport);
-                            save_pictures(folder, &stem, &reference, &outputs, &whole)
+                            save_pictures(folder, &stem, &right, &outputs, &whole)
                         });
                         cell.images = images.transpose()?;
                     }
@@ -196,11 +199,11 @@ impl HardCaseContext<'_> {
     }
 
     /// The right answer.
-    fn reference(
+    fn right_answer(
         &self,
         scene: &Scene,
         provider: &mut SceneProvider,
-    ) -> Result<Reference, CliError> {
+    ) -> Result<RightAnswer, CliError> {
         let [view] = &scene.views[..] else {
             return Err(CliError::Input(format!(
                 "{} has no single view",
@@ -211,12 +214,16 @@ impl HardCaseContext<'_> {
         provider.set_view(view, self.viewport);
         let ids = self.primary.ids(self.gpu, self.viewport, provider)?;
         let oracle = Oracle::new(&scene.mesh);
-        shade(
+        let tracing = Tracing {
+            mode: OracleMode::Exact,
+            samples: REFERENCE_SAMPLES,
+        };
+        right_answer(
             &oracle,
             &view.camera(self.viewport),
             &scene.light_of(view),
             &ids,
-            OracleMode::Exact,
+            tracing,
             &|_| (),
             &scene.name,
         )
@@ -227,20 +234,38 @@ impl HardCaseContext<'_> {
         &self,
         method: &Method,
         provider: &mut SceneProvider,
-        reference: &Reference,
-    ) -> Result<(Outputs, Statistics, Counts), CliError> {
+        right: &RightAnswer,
+    ) -> Result<(Outputs, Judgement, Counts), CliError> {
         let preset = method.preset;
         let plan = method.plan(self.viewport, Capabilities::of(self.gpu), provider);
         let plan = plan.map_err(|faults| CliError::Input(reasons(&faults)))?;
         let names = Outputs::names(preset);
         let contents = frame::render(self.gpu, &preset.name, plan, provider, &names)?;
-        let (outputs, whole) = judged(preset, Outputs::decode(&contents), reference)?;
-        let right_in_band = right_in_band(&outputs.visibility, reference);
-        let outside = Statistics::judged(&right_in_band, &outputs.status, reference)
-            .map_err(|error| CliError::Contract(error.to_string()))?;
+        let reference = &right.reference;
+        let (outputs, judgement) = judged(preset, Outputs::decode(&contents, reference), right)?;
+        let broken = |error: Error| CliError::Contract(error.to_string());
+        let (visibility, status) = (strict(&outputs, right), &outputs.status);
+        let whole = Statistics::judged(&visibility, status, reference).map_err(broken)?;
+        let settled = right_in_band(&visibility, reference);
+        let outside = Statistics::judged(&settled, status, reference).map_err(broken)?;
         let counts = Counts::new(&whole, &outside, outputs.rays);
-        Ok((outputs, whole, counts))
+        Ok((outputs, judgement, counts))
     }
+}
+
+/// The picture as 0 and 1. A share that is off by more than 8 bits can tell is as wrong as it can
+/// be: what is guaranteed is guaranteed of shares, too.
+fn strict(outputs: &Outputs, right: &RightAnswer) -> Vec<u32> {
+    let Some(shown) = &outputs.shares else {
+        return outputs.visibility.clone();
+    };
+    let answers = right.reference.classes.iter().zip(right.shares().to_vec());
+    let pixels = shown.iter().zip(answers);
+    let strict = |(&shown, (&class, share)): (&f32, (&Class, f32))| {
+        let is_right = f64::from((shown - share).abs()) <= 1.0 / 255.0;
+        u32::from(is_right == (class == Class::Lit))
+    };
+    pixels.map(strict).collect()
 }
 
 /// The picture with the reference's answer wherever that is in the band.

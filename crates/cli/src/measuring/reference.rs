@@ -12,9 +12,9 @@ use skiagraph_gpu::{Content, Provider, device::Gpu};
 use skiagraph_graph::{Graph, Plan, Sources};
 use skiagraph_passes::registry;
 use skiagraph_reference::{
-    BlockerCounts, Error, Oracle, OracleMode, Progress, Reference, Statistics,
+    BlockerCounts, Error, Oracle, OracleMode, Progress, Reference, RightAnswer, Statistics,
 };
-use skiagraph_scene::{Camera, DirectionalLight};
+use skiagraph_scene::{Camera, LightKind};
 use std::rc::Rc;
 
 /// The graph that every comparison draws first, as far as its output `primitive` needs: which one
@@ -89,15 +89,24 @@ pub fn own_counts(reference: &Reference) -> Statistics {
     Statistics::judged(&visibility, &status, reference).unwrap_or_default()
 }
 
+/// How the oracle traces.
+#[derive(Clone, Copy, Debug)]
+pub struct Tracing {
+    /// How rays leave their receivers.
+    pub mode: OracleMode,
+    /// How many to a light that has an extent.
+    pub samples: u32,
+}
+
 /// The oracle on one view and viewport.
 pub struct Judge<'a> {
     oracle: Rc<Oracle<'a>>,
     camera: Camera,
-    light: DirectionalLight,
+    light: LightKind,
     primitives: Vec<u32>,
     mode: OracleMode,
     /// The right answer.
-    pub reference: Reference,
+    pub right: RightAnswer,
 }
 
 impl<'a> Judge<'a> {
@@ -108,9 +117,9 @@ impl<'a> Judge<'a> {
     pub fn new(
         oracle: Rc<Oracle<'a>>,
         camera: Camera,
-        light: DirectionalLight,
+        light: LightKind,
         primitives: Vec<u32>,
-        mode: OracleMode,
+        tracing: Tracing,
         what: &str,
     ) -> Result<Self, CliError> {
         let step = Step::begin(
@@ -119,12 +128,12 @@ impl<'a> Judge<'a> {
             "rows",
         );
         let rows_done = |rows| step.set_done(rows);
-        let reference = shade(
+        let right = right_answer(
             &oracle,
             &camera,
             &light,
             &primitives,
-            mode,
+            tracing,
             &rows_done,
             what,
         )?;
@@ -134,18 +143,18 @@ impl<'a> Judge<'a> {
             camera,
             light,
             primitives,
-            mode,
-            reference,
+            mode: tracing.mode,
+            right,
         })
     }
 
-    /// What blocks the pixels that a method is certain and wrong of.
+    /// What blocks the pixels that a method is certain and wrong of, under a light without extent.
     ///
     /// # Errors
     /// Outputs that do not fit the reference.
     pub fn blockers(&self, outputs: &Outputs) -> Result<BlockerCounts, CliError> {
         let (visibility, status) = (&outputs.visibility, &outputs.status);
-        let pixels = Statistics::certain_wrong_pixels(visibility, status, &self.reference);
+        let pixels = Statistics::certain_wrong_pixels(visibility, status, &self.right.reference);
         let (camera, light, primitives) = (&self.camera, &self.light, &self.primitives);
         let blockers = pixels.and_then(|pixels| {
             let oracle = &self.oracle;
@@ -159,21 +168,21 @@ impl<'a> Judge<'a> {
 ///
 /// # Errors
 /// Ctrl-C, ids of another mesh, an impossible light.
-pub fn shade(
+pub fn right_answer(
     oracle: &Oracle,
     camera: &Camera,
-    light: &DirectionalLight,
+    light: &LightKind,
     primitives: &[u32],
-    mode: OracleMode,
+    Tracing { mode, samples }: Tracing,
     rows_done: &(dyn Fn(u64) + Sync),
     what: &str,
-) -> Result<Reference, CliError> {
+) -> Result<RightAnswer, CliError> {
     let progress = Progress {
         rows_done,
         interrupted: interrupt::flag(),
     };
-    let reference = oracle.shade(camera, light, primitives, mode, progress);
-    reference.map_err(|error| match error {
+    let right = oracle.right_answer(camera, light, primitives, (mode, samples), progress);
+    right.map_err(|error| match error {
         Error::Interrupted => CliError::interrupted(),
         error => CliError::Input(format!("no reference for {what}: {error}")),
     })

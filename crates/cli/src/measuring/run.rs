@@ -2,7 +2,7 @@
 
 use crate::error::{CliError, explain, is_fatal};
 use crate::files::fingerprint::Fingerprint;
-use crate::graphs::contract::{Outputs, judged};
+use crate::graphs::contract::{Judgement, Outputs, judged};
 use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
@@ -10,7 +10,7 @@ use crate::measuring::reference::{Judge, own_counts};
 use crate::measuring::timing::{self, FrameMode, Times};
 use crate::measuring::{date, frame};
 use crate::pictures::run_pictures::{conditions, save_pictures, stem};
-use crate::records::results::{Cached, Measured, Run};
+use crate::records::results::{Answer, AreaReference, Cached, Measured, Run};
 use crate::terminal::progress::Step;
 use skiagraph_gpu::{ExecuteError, Provider, device::Gpu};
 use skiagraph_graph::Plan;
@@ -54,7 +54,7 @@ impl MeasureContext<'_> {
     /// Ctrl-C, a lost device, outputs that break the contract ([`CliError::Contract`]), a picture
     /// that cannot be written.
     pub fn measure(&self, method: &Method, provider: &mut dyn Provider) -> Result<Run, CliError> {
-        let viewport = self.judge.reference.viewport;
+        let viewport = self.judge.right.reference.viewport;
         let plan = match method.plan(viewport, Capabilities::of(self.gpu), provider) {
             Ok(plan) => plan,
             // The graph itself is sound: that was checked before anything ran.
@@ -119,7 +119,7 @@ impl MeasureContext<'_> {
         Ok(Some(Executed {
             times,
             cached,
-            outputs: Outputs::decode(&contents),
+            outputs: Outputs::decode(&contents, &self.judge.right.reference),
             memory,
             scene_bytes,
         }))
@@ -152,10 +152,13 @@ impl MeasureContext<'_> {
             memory: (memory_bytes, saved_bytes),
             scene_bytes,
         } = executed;
-        let reference = &self.judge.reference;
-        let (outputs, counts) = judged(method.preset, outputs, reference)?;
+        let right = &self.judge.right;
+        let (outputs, judgement) = judged(method.preset, outputs, right)?;
+        let Judgement { counts, graded } = &judgement;
         let blockers = match counts.wrong.certain {
             0 => None,
+            // Which pixels are wrong is a question of grades.
+            _ if graded.is_some() => None,
             _ => Some(self.judge.blockers(&outputs)?),
         };
         if !self.timestamps {
@@ -166,8 +169,8 @@ impl MeasureContext<'_> {
             times.passes.iter_mut().for_each(|pass| pass.gpu_ms = None);
         }
         let images = self.pictures.map(|folder| {
-            let stem = stem(method, self.view, reference.viewport);
-            save_pictures(folder, &stem, reference, &outputs, &counts)
+            let stem = stem(method, self.view, right.reference.viewport);
+            save_pictures(folder, &stem, right, &outputs, &judgement)
         });
         Ok(Measured {
             certain: counts.certain,
@@ -177,6 +180,11 @@ impl MeasureContext<'_> {
             wrong: counts.wrong,
             certain_wrong_blockers: blockers,
             facing_mismatch: counts.facing_mismatch,
+            answer: match outputs.shares {
+                Some(_) => Answer::Graded,
+                None => Answer::Hard,
+            },
+            graded: *graded,
             passes: times.passes,
             frame: times.frame,
             cached,
@@ -189,7 +197,8 @@ impl MeasureContext<'_> {
 
     /// The run with nothing measured.
     fn empty(&self, method: &Method) -> Run {
-        let reference = &self.judge.reference;
+        let right = &self.judge.right;
+        let (reference, area) = (&right.reference, right.area.as_ref());
         let counts = own_counts(reference);
         Run {
             preset: method.preset.name.clone(),
@@ -201,6 +210,7 @@ impl MeasureContext<'_> {
             date: date::today(),
             pixels: counts.pixels,
             band: counts.band,
+            area: area.map(|area| AreaReference::of(area, reference)),
             measured: None,
             unavailable: None,
             published: Vec::new(),

@@ -97,7 +97,7 @@ fn obj_setup(args: &SceneArgs) -> Result<Option<ObjSetup>, CliError> {
             far,
             light: None,
         },
-        light: DirectionalLight { direction: light },
+        light: DirectionalLight::new(light).into(),
         quads: QuadDiagonal::default(),
     }))
 }

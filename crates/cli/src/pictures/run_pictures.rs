@@ -1,12 +1,12 @@
 //! The pictures of a run and of the reference, and their file names.
 
 use crate::error::CliError;
-use crate::graphs::contract::Outputs;
+use crate::graphs::contract::{Judgement, Outputs};
 use crate::graphs::method::Method;
 use crate::pictures::png;
 use crate::records::results::Images;
 use crate::wording::size;
-use skiagraph_reference::{Error, Image, Reference, Statistics};
+use skiagraph_reference::{Error, Image, RightAnswer};
 use std::{collections::BTreeMap, path::Path};
 
 /// Writes the pictures of a frame, their names beginning with `stem`.
@@ -16,11 +16,12 @@ use std::{collections::BTreeMap, path::Path};
 pub fn save_pictures(
     folder: &Path,
     stem: &str,
-    reference: &Reference,
+    right: &RightAnswer,
     outputs: &Outputs,
-    counts: &Statistics,
+    judgement: &Judgement,
 ) -> Result<Images, CliError> {
-    let (visibility, status) = (&outputs.visibility, &outputs.status);
+    let Judgement { counts, graded } = judgement;
+    let (reference, visibility, status) = (&right.reference, &outputs.shown(), &outputs.status);
     let save = |kind: &str, image| save_picture(folder, format!("{stem}-{kind}.png"), image);
     Ok(Images {
         shaded: save("shaded", Image::shaded(visibility, reference))?,
@@ -28,7 +29,16 @@ pub fn save_pictures(
             "visibility",
             Image::visibility(reference.viewport, visibility, status),
         )?,
-        error: save("error", Image::error(visibility, status, reference))?,
+        error: match graded {
+            None => save(
+                "error",
+                Image::error(&outputs.visibility, status, reference),
+            )?,
+            Some(_) => {
+                let difference = Image::difference(visibility, &right.shares(), reference);
+                save("error", difference)?
+            }
+        },
         uncertain: match counts.certain.lit + counts.certain.shadow + counts.uncertain {
             0 => None,
             _ => {
@@ -43,9 +53,9 @@ pub fn save_pictures(
 ///
 /// # Errors
 /// It cannot be written.
-pub fn save_reference(folder: &Path, view: &str, reference: &Reference) -> Result<(), CliError> {
-    let (visibility, status) = (reference.visibility(), reference.status());
-    let image = Image::visibility(reference.viewport, &visibility, &status);
+pub fn save_reference(folder: &Path, view: &str, right: &RightAnswer) -> Result<(), CliError> {
+    let reference = &right.reference;
+    let image = Image::visibility(reference.viewport, &right.shares(), &reference.status());
     let stem = reference_stem(view, reference.viewport);
     save_picture(folder, format!("{stem}-visibility.png"), image).map(|_| ())
 }

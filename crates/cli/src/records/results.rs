@@ -4,7 +4,10 @@
 use crate::records::statistics::Spread;
 use crate::wording::{size, thousands};
 use serde::{Deserialize, Serialize};
-use skiagraph_reference::{BlockerCounts, CertainCounts, PixelCounts, Split, WrongCounts};
+use skiagraph_reference::{
+    AreaVisibility, BlockerCounts, CertainCounts, Graded, PixelCounts, Reference, Split,
+    WrongCounts,
+};
 use std::{collections::BTreeMap, fmt};
 
 /// The program that measures, as files name it.
@@ -110,6 +113,9 @@ pub struct Run {
     /// Of those facing the light, the ones whose answer flips within the rounding error of receiver
     /// and casters.
     pub band: u64,
+    /// Of a light that has an extent, how the reference was sampled; absent where it has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub area: Option<AreaReference>,
     /// What was measured; absent where the preset is unavailable.
     #[serde(flatten)]
     pub measured: Option<Measured>,
@@ -122,6 +128,12 @@ pub struct Run {
 }
 
 impl Run {
+    /// Whether answer and light are hard, so that pixels are right or wrong.
+    pub fn is_hard(&self) -> bool {
+        let graded = self.measured.as_ref().and_then(|of| of.graded.as_ref());
+        self.area.is_none() && graded.is_none()
+    }
+
     /// Method, view, viewport and map in words.
     pub fn label(&self) -> String {
         let map = self
@@ -159,6 +171,59 @@ impl Run {
     pub fn method_label(&self) -> String {
         let with_size = |size| format!("{} {size}", self.preset);
         self.map_size.map_or(self.preset.clone(), with_size)
+    }
+}
+
+/// In what a method answers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Answer {
+    /// In 0 and 1: its visibility is a texture of integers.
+    #[default]
+    Hard,
+    /// In shares of light.
+    Graded,
+}
+
+impl Answer {
+    /// As tables and files have it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Hard => "hard",
+            Self::Graded => "graded",
+        }
+    }
+}
+
+/// The reference of a light that has an extent; the run's `pixels` count as lit what sees half of
+/// it or more.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AreaReference {
+    /// Shadow rays per pixel that faces the light.
+    pub samples: u32,
+    /// The estimated standard error of its shares, root mean square over the pixels that face the
+    /// light.
+    pub standard_error_rms: f64,
+    /// The greatest one.
+    pub standard_error_worst: f64,
+    /// Pixels facing the light that see a part of it.
+    pub penumbra: u64,
+}
+
+impl AreaReference {
+    /// Of the oracle's answer.
+    pub fn of(area: &AreaVisibility, reference: &Reference) -> Self {
+        let [standard_error_rms, standard_error_worst] = area.standard_error(reference);
+        let partial = area
+            .shares
+            .iter()
+            .filter(|share| **share > 0.0 && **share < 1.0);
+        Self {
+            samples: area.samples,
+            standard_error_rms,
+            standard_error_worst,
+            penumbra: partial.count() as u64,
+        }
     }
 }
 
@@ -207,6 +272,14 @@ pub struct Measured {
     pub certain_wrong_blockers: Option<BlockerCounts>,
     /// Pixels that face the light by the reference but not by the method, or the other way round.
     pub facing_mismatch: u64,
+    /// In what the method answers. Of shares, `certain`, `split` and `wrong` are counted as if they
+    /// were cut at one half.
+    #[serde(default)]
+    pub answer: Answer,
+    /// How far the shares are from the reference's, where the answer is graded or the light has an
+    /// extent; absent where both are hard.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub graded: Option<Graded>,
     /// Times of each pass, in the order in which they ran.
     pub passes: Vec<Pass>,
     /// Times of whole frames.
@@ -320,7 +393,8 @@ pub struct Images {
     pub shaded: String,
     /// The output `visibility`.
     pub visibility: String,
-    /// Blue where wrongly lit, red where wrongly in shadow.
+    /// Blue where wrongly lit, red where wrongly in shadow; of grades the stronger the farther off,
+    /// in full from a quarter on.
     pub error: String,
     /// `shaded` with purple where uncertain; absent where the method calls no pixel certain or
     /// uncertain.
@@ -361,6 +435,7 @@ pub(crate) mod tests {
                 shadow: 40_000,
             },
             band: 12,
+            area: None,
             measured: None,
             unavailable: None,
             published: Vec::new(),
@@ -408,6 +483,8 @@ pub(crate) mod tests {
                 none: 396,
             }),
             facing_mismatch: 3,
+            answer: Answer::Hard,
+            graded: None,
             passes: ["gbuffer", name]
                 .map(|name| Pass {
                     name: name.into(),

@@ -54,7 +54,9 @@ pub fn front(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CliErr
 }
 
 fn front_panel(kept: &Kept, viewport: [u32; 2], maps: &[u32]) -> Result<Panel, CliError> {
-    let runs: Vec<(&Run, &Measured)> = drawn(&kept.results, viewport).collect();
+    // A graded answer has no wrong pixels.
+    let runs = drawn(&kept.results, viewport).filter(|(run, _)| run.is_hard());
+    let runs: Vec<(&Run, &Measured)> = runs.collect();
     let mut series: Vec<Series> = Vec::new();
     let mut seen: Vec<(&str, Option<u32>)> = Vec::new();
     for (run, _) in &runs {

@@ -1,12 +1,12 @@
 //! The columns of a comparison: for the terminal, for documents and for results.csv. Each figure
 //! is defined once; a table says in which order it shows which figures, and under which heads.
 
-use crate::records::results::{Measured, Part, Results, Run};
+use crate::records::results::{AreaReference, Measured, Part, Results, Run};
 use crate::records::statistics::Spread;
 use crate::wording::{ms, thousands};
 use Source::{Always, Measure};
-use Value::{Count, OfPicture, Share, Text, Time, Unknown};
-use skiagraph_reference::BlockerCounts;
+use Value::{Count, OfPicture, Real, Share, Text, Time, Unknown};
+use skiagraph_reference::{BlockerCounts, Graded};
 
 /// A name, and where the figure of that name comes from.
 type Figure = (&'static str, Source);
@@ -29,6 +29,8 @@ enum Value {
     OfPicture(Part),
     /// Milliseconds.
     Time(f64),
+    /// A number that is small.
+    Real(f64),
 }
 
 /// The figures of results.csv in its order. Scripts rely on it: new ones stand at the end.
@@ -82,6 +84,21 @@ const CSV: &[Figure] = &[
     ("wrong_certain_open_part", Measure(|of| blocked(of, |by| by.open_part))),
     ("wrong_certain_closed_part", Measure(|of| blocked(of, |by| by.closed_part))),
     ("wrong_certain_no_blocker", Measure(|of| blocked(of, |by| by.none))),
+    ("answer", Measure(|of| text(of.answer.word()))),
+    ("reference", Always(|_, run| text(run.area.map_or("hard", |_| "area")))),
+    ("reference_samples", Always(|_, run| area(run, |of| Count(of.samples.into())))),
+    ("reference_error_rms", Always(|_, run| area(run, |of| Real(of.standard_error_rms)))),
+    ("reference_error_worst", Always(|_, run| area(run, |of| Real(of.standard_error_worst)))),
+    ("penumbra", Always(|_, run| area(run, |of| Count(of.penumbra)))),
+    ("rmse", Measure(|of| graded(of, |by| Real(by.rmse)))),
+    ("mean_absolute_error", Measure(|of| graded(of, |by| Real(by.mean_absolute_error)))),
+    ("off_over_1_255", Measure(|of| graded(of, |by| Share(by.off.over_1_255)))),
+    ("off_over_1_16", Measure(|of| graded(of, |by| Share(by.off.over_1_16)))),
+    ("off_over_1_4", Measure(|of| graded(of, |by| Share(by.off.over_1_4)))),
+    ("flip", Measure(|of| graded(of, |by| Real(by.flip)))),
+    ("nan", Measure(|of| graded(of, |by| Count(by.invalid.nan)))),
+    ("infinite", Measure(|of| graded(of, |by| Count(by.invalid.infinite)))),
+    ("outside", Measure(|of| graded(of, |by| Count(by.invalid.outside)))),
 ];
 
 /// Figures that only tables show.
@@ -93,6 +110,7 @@ const IN_TABLES: &[Figure] = &[
     ("wrong_shadow_percent", Always(|_, run| run.wrong_shadow().map_or(Unknown, OfPicture))),
     ("steps_ms", Measure(|of| of.steps_ms().map_or(Unknown, Time))),
     ("fps", Measure(|of| of.fps().map_or(Unknown, |rate| text(&format!("{rate:.2}"))))),
+    ("no_share", Measure(|of| graded(of, |by| Count(by.invalid.total())))),
 ];
 
 /// A column: its figure, its head, and what published figures of it are called, if there are any.
@@ -111,6 +129,41 @@ const TERMINAL: [Entry; 11] = [
     ("uncertain", "uncertain", ""),
     ("certain_wrong", "certain wrong", ""),
     ("rays", "rays", ""),
+];
+
+/// The terminal's table of answers that are graded, or judged by the shares of a light with extent.
+const GRADED: [Entry; 14] = [
+    ("preset", "method", ""),
+    (MAP_SIZE, "map", ""),
+    ("answer", "answer", ""),
+    ("gpu_ms", "GPU ms", ""),
+    ("wall_ms", "wall ms", ""),
+    ("rmse", "RMSE", ""),
+    ("mean_absolute_error", "mean error", ""),
+    ("off_over_1_255", "> 1/255", ""),
+    ("off_over_1_16", "> 1/16", ""),
+    ("off_over_1_4", "> 1/4", ""),
+    ("flip", "FLIP", ""),
+    ("no_share", "no share", ""),
+    ("uncertain", "uncertain", ""),
+    ("rays", "rays", ""),
+];
+
+/// The same of a document.
+const GRADED_DOCUMENT: [Entry; 13] = [
+    ("preset", "method", ""),
+    (MAP_SIZE, "map", ""),
+    ("answer", "answer", ""),
+    ("rmse", "RMSE", ""),
+    ("mean_absolute_error", "mean error", ""),
+    ("off_over_1_255", "> 1/255 %", ""),
+    ("off_over_1_16", "> 1/16 %", ""),
+    ("off_over_1_4", "> 1/4 %", ""),
+    ("flip", "FLIP", ""),
+    ("no_share", "no share", ""),
+    ("uncertain", "uncertain %", "uncertain_percent"),
+    ("rays", "rays", "rays"),
+    ("gpu_ms", "frame ms", "ms.frame"),
 ];
 
 /// The column that only stands in the terminal's table if there are maps.
@@ -192,6 +245,16 @@ fn blocked(measured: &Measured, count: fn(BlockerCounts) -> u64) -> Value {
     }
 }
 
+/// A figure of how far shares are off; pixels that are right or wrong have none.
+fn graded(measured: &Measured, figure: fn(&Graded) -> Value) -> Value {
+    measured.graded.as_ref().map_or(Unknown, figure)
+}
+
+/// A figure of the reference of a light with extent.
+fn area(run: &Run, figure: fn(&AreaReference) -> Value) -> Value {
+    run.area.as_ref().map_or(Unknown, figure)
+}
+
 /// A column of a table.
 pub struct Column {
     /// What stands above it.
@@ -233,6 +296,7 @@ impl Column {
             Share(count) => share(count, run.pixels.facing_light),
             OfPicture(Part { count, of }) => share(count, of),
             Time(time) => ms(time),
+            Real(number) => format!("{number:.5}"),
         }
     }
 
@@ -243,6 +307,7 @@ impl Column {
             Text(text) => text,
             Count(count) | Share(count) | OfPicture(Part { count, .. }) => count.to_string(),
             Time(time) => format!("{time:.6}"),
+            Real(number) => format!("{number:.9}"),
         }
     }
 }
@@ -253,19 +318,23 @@ pub fn csv() -> Vec<Column> {
     entries.filter_map(Column::of).collect()
 }
 
-/// The columns of the terminal's table; that of map sizes only if there are any.
-pub fn terminal(has_maps: bool) -> Vec<Column> {
-    let shown = |(name, ..): &Entry| has_maps || *name != MAP_SIZE;
-    let entries = TERMINAL.into_iter().filter(shown);
+/// The columns of the terminal's table, of hard answers to hard light or of any others; that of map
+/// sizes only if there are any.
+pub fn terminal(is_hard: bool, has_maps: bool) -> Vec<Column> {
+    let shown = |(name, ..): &&Entry| has_maps || *name != MAP_SIZE;
+    let entries: &[Entry] = if is_hard { &TERMINAL } else { &GRADED };
+    let entries = entries.iter().filter(shown).copied();
     entries.filter_map(Column::of).collect()
 }
 
 /// The columns of a document's table but for the times of steps, of which two parts stand before
-/// and behind them. `published` says of which quantities there are published figures in it.
-pub fn document(published: impl Fn(&str) -> bool) -> [Vec<Column>; 2] {
+/// and behind them, of hard answers to hard light or of any others. `published` says of which
+/// quantities there are published figures in it.
+pub fn document(is_hard: bool, published: impl Fn(&str) -> bool) -> [Vec<Column>; 2] {
     let shown = |(name, _, quantity): &Entry| !IF_PUBLISHED.contains(name) || published(quantity);
-    let rays = DOCUMENT.iter().position(|(name, ..)| *name == "rays");
-    let (front, back) = DOCUMENT.split_at(rays.map_or(DOCUMENT.len(), |rays| rays + 1));
+    let entries: &[Entry] = if is_hard { &DOCUMENT } else { &GRADED_DOCUMENT };
+    let rays = entries.iter().position(|(name, ..)| *name == "rays");
+    let (front, back) = entries.split_at(rays.map_or(entries.len(), |rays| rays + 1));
     [front, back].map(|part| {
         let entries = part.iter().copied().filter(shown);
         entries.filter_map(Column::of).collect()
@@ -290,9 +359,12 @@ mod tests {
     #[test]
     fn every_column_of_a_table_has_its_figure() {
         assert_eq!(csv().len(), CSV.len());
-        assert_eq!(terminal(true).len(), TERMINAL.len());
-        assert_eq!(terminal(false).len(), TERMINAL.len() - 1);
-        let parts = |published| document(|_| published).map(|part| part.len());
+        assert_eq!(terminal(true, true).len(), TERMINAL.len());
+        assert_eq!(terminal(true, false).len(), TERMINAL.len() - 1);
+        assert_eq!(terminal(false, true).len(), GRADED.len());
+        let parts = document(false, |_| true).map(|part| part.len());
+        assert_eq!(parts, [GRADED_DOCUMENT.len() - 1, 1]);
+        let parts = |published| document(true, |_| published).map(|part| part.len());
         assert_eq!(parts(true).iter().sum::<usize>(), DOCUMENT.len());
         let fewer = DOCUMENT.len() - IF_PUBLISHED.len();
         assert_eq!(

@@ -4,6 +4,7 @@
 use crate::args::values::PublishedFile;
 use crate::records::results::{Measured, Results, Run, step};
 use crate::reporting::columns::{self, Column, STEPS};
+use crate::reporting::graded::{area_reference, by_answer, graded};
 use crate::reporting::notes::{band_warning, certain_wrong, times_missing};
 use crate::wording::{command_line, frames, ms, share, thousands};
 use std::{collections::BTreeSet, env};
@@ -71,17 +72,24 @@ pub fn viewport(results: &Results, runs: &[Run]) -> String {
     };
     let mut footnotes = Footnotes::default();
     let mut text = format!("\n{}\n", pixels(first, &mut footnotes));
-    let measured: Vec<(&Run, &Measured)> = runs
-        .iter()
-        .filter_map(|run| Some((run, run.measured.as_ref()?)))
-        .collect();
-    if !measured.is_empty() {
+    for (title, runs) in by_answer(runs) {
+        let is_hard = runs.iter().all(|run| run.is_hard());
+        let measured = runs.into_iter();
+        let measured: Vec<(&Run, &Measured)> = measured
+            .filter_map(|run| Some((run, run.measured.as_ref()?)))
+            .collect();
+        if measured.is_empty() {
+            continue;
+        }
+        if let Some(title) = title {
+            text += &format!("\n{title}\n");
+        }
         let is_published = |quantity: &str| {
             let mut figures = measured.iter().flat_map(|(run, _)| &run.published);
             figures.any(|figure| figure.quantity == quantity)
         };
         let table = Table {
-            columns: columns::document(is_published),
+            columns: columns::document(is_hard, is_published),
             steps: steps(&measured),
         };
         text.push('\n');
@@ -93,6 +101,7 @@ pub fn viewport(results: &Results, runs: &[Run]) -> String {
     }
     let mut notes: Vec<String> = band_warning(first).into_iter().collect();
     notes.extend(certain_wrong(runs));
+    notes.extend(graded(runs));
     if results.adapter.gpu_unavailable.is_none() {
         notes.extend(runs.iter().filter_map(times_missing));
     }
@@ -111,12 +120,18 @@ fn pixels<'a>(run: &'a Run, footnotes: &mut Footnotes<'a>) -> String {
     let facing_light = count(counts.facing_light, "facing_light");
     let (lit, shadow) = (count(counts.lit, "lit"), count(counts.shadow, "shadow"));
     let facing_away = count(counts.facing_away, "facing_away");
+    let doubt = match &run.area {
+        Some(area) => area_reference(area),
+        None => format!(
+            "in the band {} ({} % of PFL)",
+            thousands(run.band),
+            share(run.band, counts.facing_light)
+        ),
+    };
     format!(
         "**{width}×{height}**: PFL {facing_light} = lit {lit} + shadow {shadow}; PnFL \
-         {facing_away}; background {}; in the band {} ({} % of PFL)",
+         {facing_away}; background {}; {doubt}",
         thousands(counts.background),
-        thousands(run.band),
-        share(run.band, counts.facing_light),
     )
 }
 

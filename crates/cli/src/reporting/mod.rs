@@ -3,6 +3,7 @@
 
 pub mod charts;
 pub mod columns;
+pub mod graded;
 pub mod markdown;
 pub mod notes;
 pub mod profile_csv;

@@ -16,7 +16,10 @@ pub fn band_warning(run: &Run) -> Option<String> {
 /// Of each method that is wrong of certain pixels: how many, and what blocks them. All maps of a
 /// method, whose runs stand together, are in one line.
 pub fn certain_wrong(runs: &[Run]) -> Vec<String> {
-    let wrong = |run: &Run| run.measured.as_ref().is_some_and(|of| of.wrong.certain > 0);
+    let wrong = |run: &Run| {
+        let certain = run.measured.as_ref().map_or(0, |of| of.wrong.certain);
+        run.is_hard() && certain > 0
+    };
     runs.chunk_by(|one, other| one.preset == other.preset)
         .map(|runs| runs.iter().filter(|run| wrong(run)).collect::<Vec<_>>())
         .filter_map(|runs| Some(format!("{}: {}", maps(&runs)?, blockers(&runs))))

@@ -3,6 +3,7 @@
 use crate::records::results::{Results, Run};
 use crate::records::statistics::Spread;
 use crate::reporting::columns::{self, Column};
+use crate::reporting::graded::{area_reference, by_answer, graded};
 use crate::reporting::notes::{band_warning, certain_wrong, times_missing};
 use crate::reporting::table::table;
 use crate::wording::{frames, ms, percent, size, thousands};
@@ -14,8 +15,11 @@ pub fn group(results: &Results, runs: &[Run]) -> String {
         return String::new();
     };
     let mut text = heading(results, first);
-    text.push_str(&comparison(results, runs));
-    text.push('\n');
+    let tables = by_answer(runs).into_iter().map(|(title, runs)| {
+        let title = title.map_or(String::new(), |title| format!("{title}\n"));
+        format!("{title}{}\n", comparison(results, &runs))
+    });
+    text += &tables.collect::<Vec<_>>().join("\n");
     if runs.iter().any(|run| run.measured.is_some()) {
         text += &format!(
             "\nEach pass, ms: least, median and 95th percentile of {}\n",
@@ -38,6 +42,7 @@ fn heading(results: &Results, run: &Run) -> String {
         viewport,
         pixels,
         band,
+        area,
         ..
     } = run;
     let title = format!("{} · view {view} · {}", results.scene, size(*viewport));
@@ -57,18 +62,22 @@ fn heading(results: &Results, run: &Run) -> String {
             thousands(pixels.facing_away),
             thousands(pixels.background)
         ),
-        format!(
+    ];
+    lines.push(match area {
+        Some(area) => area_reference(area),
+        None => format!(
             "in the band, where the answer hangs on rounding: {} ({} of PFL)",
             thousands(*band),
             percent(*band, pixels.facing_light)
         ),
-    ];
+    });
     lines.extend(band_warning(run));
     format!("{title}\n{}\n", lines.join("\n"))
 }
 
-fn comparison(results: &Results, runs: &[Run]) -> String {
-    let columns = columns::terminal(runs.iter().any(|run| run.map_size.is_some()));
+fn comparison(results: &Results, runs: &[&Run]) -> String {
+    let is_hard = runs.iter().all(|run| run.is_hard());
+    let columns = columns::terminal(is_hard, runs.iter().any(|run| run.map_size.is_some()));
     let first = columns.iter().position(Column::is_measured);
     let row = |run: &Run| {
         let cells = columns
@@ -81,7 +90,7 @@ fn comparison(results: &Results, runs: &[Run]) -> String {
         row
     };
     let heads = columns.iter().map(|column| column.head);
-    table(heads, 1, runs.iter().map(row))
+    table(heads, 1, runs.iter().copied().map(row))
 }
 
 fn passes(runs: &[Run]) -> String {
@@ -116,6 +125,7 @@ fn passes(runs: &[Run]) -> String {
 
 fn footnotes(results: &Results, runs: &[Run]) -> Vec<String> {
     let mut notes = certain_wrong(runs);
+    notes.extend(graded(runs));
     match &results.adapter.gpu_unavailable {
         Some(reason) => notes.push(format!("No GPU times: {reason}")),
         None => notes.extend(runs.iter().filter_map(times_missing)),

@@ -28,7 +28,9 @@ pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports)
             false => own.outputs,
         },
         set: base.set,
-        // What a method promises holds of it as it is written, not of what others make of it.
+        // What a method takes and promises holds of it as it is written, not of what others make
+        // of it.
+        lights: own.lights,
         claims: own.claims,
         broken_params: base.broken_params.or(own.broken_params),
         incomplete: base.incomplete.or(own.incomplete),

@@ -25,6 +25,7 @@ pub(crate) fn flat(document: &RawDocument) -> String {
         flat.line(1, "],", &[]);
     }
     flat.nodes("outputs", &document.outputs);
+    flat.nodes("lights", &document.lights);
     flat.map(1, "claims", &document.claims);
     flat.line(0, ")", &[]);
     flat.text

@@ -32,6 +32,7 @@ pub(crate) struct RawDocument {
     pub passes: Vec<Result<RawEntry, Broken>>,
     pub outputs: Vec<Node>,
     pub set: RawMap,
+    pub lights: Vec<Node>,
     pub claims: RawMap,
     /// A param could not be read: nothing of the document has a size then.
     pub broken_params: Option<Reported>,
@@ -105,7 +106,7 @@ pub(crate) fn stem(path: &str) -> &str {
     file.strip_suffix(".ron").unwrap_or(file)
 }
 
-const SECTIONS: [&str; 11] = [
+const SECTIONS: [&str; 12] = [
     "format",
     "extends",
     "description",
@@ -116,6 +117,7 @@ const SECTIONS: [&str; 11] = [
     "materials",
     "passes",
     "outputs",
+    "lights",
     "claims",
 ];
 
@@ -148,6 +150,7 @@ pub(crate) fn split(file: SourceFile, reports: &mut Reports) -> Result<RawDocume
         materials,
         outputs: sections.list("outputs"),
         set: sections.map("set"),
+        lights: sections.list("lights"),
         claims: sections.map("claims"),
         passes: entries(passes, sections.reports),
         broken_params: None,

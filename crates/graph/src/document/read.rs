@@ -33,6 +33,7 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
         materials: Vec::new(),
         entries: Vec::new(),
         outputs: Vec::new(),
+        lights: Vec::new(),
         claims: Vec::new(),
         broken_materials: Vec::new(),
         broken_params: raw.broken_params,
@@ -95,6 +96,9 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
         keep(node.parse(), reports, |value| {
             document.defaults.push((name, value))
         });
+    }
+    for node in &raw.lights {
+        keep(node.parse(), reports, |kind| document.lights.push(kind));
     }
     for (name, node) in raw.claims {
         keep(node.parse(), reports, |value| {

@@ -35,6 +35,8 @@ pub(crate) struct Document {
     pub materials: Vec<Material>,
     pub entries: Vec<Result<Entry, Broken>>,
     pub outputs: Vec<Output>,
+    /// The kinds of light that it takes.
+    pub lights: Vec<Located<Name>>,
     pub claims: Vec<(Located<String>, ClaimEntry)>,
     /// Names of materials and inputs that could not be read.
     pub broken_materials: Vec<(String, Reported)>,

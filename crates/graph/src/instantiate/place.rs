@@ -10,6 +10,7 @@ use crate::{
         syntax::{Attribute, Reference, Selection},
         value::{Scalar, Value},
     },
+    provider::ProvidedKind,
     resource::{ResourceKind, SubresourceRange, Target},
     shader::reflect::Shader,
     source::span::{Located, Span},
@@ -175,6 +176,9 @@ impl<'a> World<'a> {
             {
                 return self.items(target).map(Value::count);
             }
+            ResourceKind::Provided(provided) if attribute == Attribute::Kind => {
+                return provided.kind.map(Value::kind);
+            }
             _ => return None,
         };
         let [width, height] = texture.mip_size(part.mips.start);
@@ -204,7 +208,7 @@ impl<'a> World<'a> {
                 Value::count(count.saturating_mul(depth))
             }
             Attribute::Format => Value::Format(texture.format),
-            Attribute::Index => return None,
+            Attribute::Kind | Attribute::Index => return None,
         })
     }
 
@@ -297,6 +301,10 @@ impl Environment for At<'_, '_, '_> {
             name: name.to_owned(),
             known,
         }))
+    }
+
+    fn kind(&mut self, of: &str) -> Option<ProvidedKind> {
+        self.world.provided_kind(of, self.place.frame)
     }
 
     fn report(&mut self, error: EvaluationError) -> Reported {

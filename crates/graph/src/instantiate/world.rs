@@ -13,7 +13,7 @@ use crate::{
         parser,
         syntax::{Reference, Segment, Selection},
     },
-    provider::{Provided, ProvidedBinding},
+    provider::{Provided, ProvidedBinding, ProvidedKind},
     request::PlanRequest,
     resource::{FRAME, Origin, Resource, ResourceId, ResourceKind, SubresourceRange, Target},
     source::span::{Located, SourceFile},
@@ -268,6 +268,21 @@ impl<'a> World<'a> {
             }
         };
         Some(Ok(self.whole(id)))
+    }
+
+    /// The kind of what a name of the scene stands for in a frame, if that is provided.
+    pub fn provided_kind(&mut self, name: &str, frame: FrameId) -> Option<ProvidedKind> {
+        let target = self.find_scene(name, frame)?.ok()?;
+        match &self.get(target.id).kind {
+            ResourceKind::Provided(provided) => provided.kind,
+            _ => None,
+        }
+    }
+
+    /// The kind that a shader asks for by an overridable constant of that name: `light_kind`.
+    pub fn kind_spelt(&mut self, constant: &str, frame: FrameId) -> Option<ProvidedKind> {
+        let name = self.spelt.get(constant.strip_suffix("_kind")?)?.clone();
+        self.provided_kind(&name, frame)
     }
 
     /// What a shader's global of that name stands for in a frame.

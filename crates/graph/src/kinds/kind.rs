@@ -156,6 +156,13 @@ impl<'a> Lowering<'a> {
         self.evaluate(false, |environment| expr.boolean(environment))
     }
 
+    /// The word for the kind of something that is provided, where it has one; `None` where the
+    /// document is only read.
+    pub fn kind_of(&mut self, name: &str) -> Option<&'static str> {
+        let environment = self.environment.as_mut()?;
+        environment.kind(name).map(|kind| kind.word())
+    }
+
     /// One number, or several; none where the document is only read.
     pub(crate) fn list(&mut self, expr: &Expr) -> Vec<Scalar> {
         self.evaluate(Vec::new(), |environment| {

@@ -6,7 +6,8 @@ use super::{
     value::{Scalar, Value, Word},
 };
 use crate::{
-    diagnostics::reports::Reported, errors::evaluation::EvaluationError, source::span::Span,
+    diagnostics::reports::Reported, errors::evaluation::EvaluationError, provider::ProvidedKind,
+    source::span::Span,
 };
 
 /// What names in an expression stand for at its place.
@@ -31,6 +32,11 @@ pub(crate) trait Environment {
     ) -> Result<Value, Reported>;
 
     fn constant(&mut self, name: &str, span: &Span) -> Result<Value, Reported>;
+
+    /// The kind of something that is provided, by its name.
+    fn kind(&mut self, _of: &str) -> Option<ProvidedKind> {
+        None
+    }
 
     fn report(&mut self, error: EvaluationError) -> Reported;
 }
@@ -83,7 +89,7 @@ impl Expr {
             Attribute::Height => Value::whole(height),
             Attribute::Count => Value::count(u64::from(width) * u64::from(height)),
             Attribute::Layers | Attribute::Mips | Attribute::Samples => Value::whole(1),
-            Attribute::Format | Attribute::Index => {
+            Attribute::Format | Attribute::Kind | Attribute::Index => {
                 let error = EvaluationError::NoAttribute {
                     span: self.span.clone(),
                     of: "the viewport".to_owned(),

@@ -6,9 +6,9 @@ use std::{fmt, ops::Deref, sync::Arc};
 const LONGEST: usize = 64;
 
 /// What stands behind a dot, and so is no name of a material, group or include.
-pub(crate) const RESERVED: [&str; 12] = [
-    "size", "width", "height", "layers", "mips", "samples", "count", "format", "index", "previous",
-    "mip", "viewport",
+pub(crate) const RESERVED: [&str; 13] = [
+    "size", "width", "height", "layers", "mips", "samples", "count", "format", "kind", "index",
+    "previous", "mip", "viewport",
 ];
 
 /// A name: `[a-z][a-z0-9_]*`, at most 64 characters, without `__`. Cheap to clone.

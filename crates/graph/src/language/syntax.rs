@@ -50,11 +50,12 @@ pub(crate) enum Attribute {
     Samples,
     Count,
     Format,
+    Kind,
     Index,
 }
 
 impl Attribute {
-    pub const ALL: [(&str, Self); 9] = [
+    pub const ALL: [(&str, Self); 10] = [
         ("size", Self::Size),
         ("width", Self::Width),
         ("height", Self::Height),
@@ -63,6 +64,7 @@ impl Attribute {
         ("samples", Self::Samples),
         ("count", Self::Count),
         ("format", Self::Format),
+        ("kind", Self::Kind),
         ("index", Self::Index),
     ];
 }

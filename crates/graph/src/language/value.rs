@@ -1,6 +1,7 @@
 //! Values of expressions.
 
 use super::name::Name;
+use crate::provider::ProvidedKind;
 use std::{fmt, sync::Arc};
 
 /// A number of an expression.
@@ -66,6 +67,17 @@ impl Value {
     /// A whole number.
     pub(crate) fn whole(number: impl Into<i64>) -> Self {
         Self::Scalar(Scalar::Whole(number.into()))
+    }
+
+    /// The word of a kind, among those of all its kinds.
+    pub(crate) fn kind(kind: ProvidedKind) -> Self {
+        // A provider's words are names, or nobody can write them.
+        let name = |word: &&str| Name::new(word).ok();
+        let words: Option<Arc<[Name]>> = kind.words.iter().map(name).collect();
+        match Name::new(kind.word()) {
+            Ok(word) => Self::Word(Word { word, of: words }),
+            Err(_) => Self::whole(kind.number),
+        }
     }
 
     /// A count, which is far below what an `i64` holds or as good as that.

@@ -103,7 +103,7 @@ impl<'a> Linker<'a, '_> {
             }
             let value = match self.asked(name).transpose()? {
                 Some(asked) => self.number(name, &asked, shader, &span)?,
-                None => None,
+                None => self.kind(name),
             };
             match value {
                 Some(value) => constants.push((key, value)),
@@ -115,6 +115,13 @@ impl<'a> Linker<'a, '_> {
             }
         }
         Ok(constants)
+    }
+
+    /// The kind of what is provided, under which the plan is made.
+    fn kind(&mut self, name: &str) -> Option<f64> {
+        let frame = self.scope.place?.frame;
+        let kind = self.world.kind_spelt(name, frame)?;
+        Some(f64::from(kind.number))
     }
 
     /// A value as one number of the override's type; `span` is the override's place.

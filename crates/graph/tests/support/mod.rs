@@ -111,6 +111,7 @@ impl Describe for Triangle {
             items,
             stride,
             binding,
+            kind: None,
         })
     }
 }

@@ -64,9 +64,7 @@ pub fn from_above(height: f64, viewport: [u32; 2]) -> Camera {
 }
 
 pub fn light(x: f64, y: f64, z: f64) -> DirectionalLight {
-    DirectionalLight {
-        direction: DVec3::new(x, y, z),
-    }
+    DirectionalLight::new(DVec3::new(x, y, z))
 }
 
 /// Primary and shadow rays of the oracle alone.

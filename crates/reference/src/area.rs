@@ -1,0 +1,257 @@
+//! What share of a light that is an area each receiver sees: stratified samples in f64.
+
+use crate::{
+    error::Error,
+    oracle::{Answer, Class, Oracle, OracleMode, Reference},
+    pixels::{Progress, check_pixel_count, per_pixel},
+    ray::Ray,
+    receiver::Receiver,
+    strata::{Strata, disk},
+    tree::{Caster, Cone},
+};
+use glam::DVec3;
+use skiagraph_scene::{Camera, LIGHT_GAP, LightKind, Towards};
+use std::{borrow::Cow, ops::ControlFlow};
+
+/// Casters among which a receiver's rays search one by one; where there are more, each walks the
+/// hierarchy.
+const MOST_CASTERS: usize = 48;
+
+/// The share of an area light that each pixel sees, row by row from the top left.
+///
+/// The samples are two independent sets of as many strata of equal area, so that half the
+/// difference of their means estimates the standard error of the whole.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AreaVisibility {
+    /// Shadow rays per pixel that faces the light.
+    pub samples: u32,
+    /// 0 in the umbra, 1 where all of the light is seen; 0 where the pixel does not face the light.
+    pub shares: Vec<f32>,
+    /// The estimated standard error of each share.
+    pub standard_errors: Vec<f32>,
+}
+
+impl AreaVisibility {
+    /// The standard errors' root mean square and greatest over the pixels that face the light.
+    pub fn standard_error(&self, reference: &Reference) -> [f64; 2] {
+        let classes = reference.classes.iter().zip(&self.standard_errors);
+        let facing = classes.filter(|(class, _)| class.faces_light());
+        let errors: Vec<f64> = facing.map(|(_, &error)| f64::from(error)).collect();
+        let squares: f64 = errors.iter().map(|error| error * error).sum();
+        [
+            (squares / (errors.len().max(1)) as f64).sqrt(),
+            errors.iter().copied().fold(0.0, f64::max),
+        ]
+    }
+}
+
+/// What is right for one view: of a light without extent which pixels are lit, of one with extent
+/// what share of it each sees, too.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RightAnswer {
+    /// What each pixel shows.
+    pub reference: Reference,
+    /// The shares, of a light with extent.
+    pub area: Option<AreaVisibility>,
+}
+
+impl RightAnswer {
+    /// What share of the light each pixel sees.
+    pub fn shares(&self) -> Cow<'_, [f32]> {
+        match &self.area {
+            Some(area) => Cow::Borrowed(&area.shares),
+            None => Cow::Owned(self.reference.shares()),
+        }
+    }
+}
+
+/// The points of a light, as vectors from a receiver.
+struct Emitter {
+    /// To its centre.
+    centre: DVec3,
+    /// From there to its rim, along two axes.
+    across: [DVec3; 2],
+    /// Whether its points are places, or directions alone.
+    is_place: bool,
+    /// What contains all of it.
+    cone: Cone,
+}
+
+impl Emitter {
+    /// As a receiver sees it. A point light's disk faces the receiver, a spot light's is across its
+    /// axis.
+    fn seen_from(light: &LightKind, receiver: &Receiver) -> Self {
+        let (across, radius) = match light {
+            LightKind::Directional(light) => {
+                let angle = light.angle_degrees.to_radians() * 0.5;
+                let centre = light.to_light();
+                return Self {
+                    centre,
+                    across: light.across(),
+                    is_place: false,
+                    cone: Cone {
+                        axis: centre,
+                        sin: angle.sin(),
+                        cos: angle.cos(),
+                    },
+                };
+            }
+            LightKind::Spot(spot) => (spot.direction.normalize(), spot.radius),
+            LightKind::Point(point) => (receiver.towards.direction, point.radius),
+        };
+        let Towards {
+            direction,
+            distance,
+        } = receiver.towards;
+        // All of the ball around the centre.
+        let sin = (radius / distance).min(1.0);
+        let (right, up) = across.any_orthonormal_pair();
+        Self {
+            centre: direction * distance,
+            across: [right * radius, up * radius],
+            is_place: true,
+            cone: Cone {
+                axis: direction,
+                sin,
+                cos: (1.0 - sin * sin).sqrt(),
+            },
+        }
+    }
+
+    /// The way to a point of the unit disk.
+    fn towards(&self, [x, y]: [f64; 2]) -> Towards {
+        let way = self.centre + self.across[0] * x + self.across[1] * y;
+        Towards {
+            direction: way.normalize(),
+            distance: match self.is_place {
+                true => way.length() * (1.0 - LIGHT_GAP),
+                false => f64::INFINITY,
+            },
+        }
+    }
+}
+
+impl Oracle<'_> {
+    /// The right answer under this light: [`shade`](Self::shade) of one without extent,
+    /// [`shade_area`](Self::shade_area) of one that has an extent.
+    ///
+    /// # Errors
+    /// Those of [`shade`](Self::shade).
+    pub fn right_answer(
+        &self,
+        camera: &Camera,
+        light: impl Into<LightKind>,
+        primitives: &[u32],
+        (mode, samples): (OracleMode, u32),
+        progress: Progress,
+    ) -> Result<RightAnswer, Error> {
+        let light = light.into();
+        if light.has_extent() {
+            let answer = self.shade_area(camera, light, primitives, (mode, samples), progress)?;
+            let (reference, area) = (answer.0, Some(answer.1));
+            return Ok(RightAnswer { reference, area });
+        }
+        let reference = self.shade(camera, light, primitives, mode, progress)?;
+        let area = None;
+        Ok(RightAnswer { reference, area })
+    }
+
+    /// As [`shade`](Self::shade), of a light that is an area: the share of it that each pixel sees,
+    /// of at least `samples` shadow rays (an even number; four at least). The rays of the exact
+    /// mode pass the pixel's own primitive, whichever way they go; those of the mode with an offset
+    /// begin at the receiver moved towards the light's centre.
+    ///
+    /// Which pixels face the light, the centre of the light decides: dot(n, l) ≤ 0 is facing away,
+    /// though a part of the light may be above the horizon. A pixel's class is *lit* where it sees
+    /// half of the light or more. Indeterminate are only those that could face away as well.
+    ///
+    /// # Errors
+    /// Those of [`shade`](Self::shade).
+    pub fn shade_area(
+        &self,
+        camera: &Camera,
+        light: impl Into<LightKind>,
+        primitives: &[u32],
+        (mode, samples): (OracleMode, u32),
+        progress: Progress,
+    ) -> Result<(Reference, AreaVisibility), Error> {
+        check_pixel_count("primitives", camera.viewport, primitives.len())?;
+        let light = light.into();
+        self.check(&light, mode)?;
+        let strata = Strata::new(samples.div_ceil(2).max(2));
+        let pixels = per_pixel(camera.viewport, progress, |x, y, stack| {
+            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, [x, y], &light)?;
+            let Some(receiver) = receiver else {
+                return Ok((Answer::BACKGROUND, [0.0; 2]));
+            };
+            let mut answer = Answer::facing(&receiver);
+            if answer.class == Class::FacingAway {
+                return Ok((answer, [0.0; 2]));
+            }
+            let emitter = Emitter::seen_from(&light, &receiver);
+            let of = self.share(&emitter, &strata, &receiver, mode, [x, y], stack);
+            if of[0] < 0.5 {
+                answer.class = Class::Shadow;
+            }
+            Ok((answer, of))
+        })?;
+        let (answers, shares): (Vec<Answer>, Vec<[f64; 2]>) = pixels.into_iter().unzip();
+        let area = AreaVisibility {
+            samples: 2 * strata.count(),
+            shares: shares.iter().map(|[share, _]| *share as f32).collect(),
+            standard_errors: shares.iter().map(|[_, error]| *error as f32).collect(),
+        };
+        Ok((Reference::of(camera.viewport, &answers), area))
+    }
+
+    /// The share that a receiver sees, and its standard error.
+    fn share(
+        &self,
+        emitter: &Emitter,
+        strata: &Strata,
+        receiver: &Receiver,
+        mode: OracleMode,
+        pixel: [u32; 2],
+        stack: &mut Vec<u32>,
+    ) -> [f64; 2] {
+        let (origin, _, excluded) = mode.ray(receiver);
+        let mut casters: Vec<Caster> = Vec::new();
+        self.tree.within(origin, &emitter.cone, stack, |caster| {
+            if caster.primitive != excluded {
+                casters.push(*caster);
+            }
+            match casters.len() > MOST_CASTERS {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        });
+        if casters.is_empty() {
+            return [1.0, 0.0];
+        }
+        let max_distance = self.tree.max_distance(origin);
+        let mut is_seen = |way: Towards| {
+            if casters.len() > MOST_CASTERS {
+                return !self.occluded(origin, way, excluded, stack);
+            }
+            let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
+            let blocks = |caster: &Caster| {
+                ray.hit(&caster.corners)
+                    .is_some_and(|hit| ray.reaches(hit.t))
+            };
+            let blocker = casters.iter().position(blocks);
+            // What blocks one ray is likely to block the next.
+            if let Some(blocker) = blocker {
+                casters.swap(0, blocker);
+            }
+            blocker.is_none()
+        };
+        let halves = [0, 1].map(|half| {
+            let points = strata.points([pixel[0], pixel[1], half]);
+            points
+                .filter(|&point| is_seen(emitter.towards(disk(point))))
+                .count()
+        });
+        let [one, other] = halves.map(|seen| seen as f64 / f64::from(strata.count()));
+        [(one + other) * 0.5, (one - other).abs() * 0.5]
+    }
+}

@@ -1,0 +1,165 @@
+//! How far shares of light are from the reference's.
+
+use crate::{
+    error::Error,
+    flip::flip,
+    image::{Image, error},
+    oracle::{Class, Reference},
+    pixels::check_pixel_count,
+};
+use serde::{Deserialize, Serialize};
+
+/// How a picture of shares, 0 in shadow to 1 in light, compares with the reference.
+///
+/// Judged are the pixels that face the light by the reference (PFL); in all others no light
+/// arrives, whatever the visibility. What is no share is counted in `invalid`, and judged as a
+/// texture of 0 to 1 would hold it: infinities and what is outside are clamped. NaN counts as 1
+/// off.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Graded {
+    /// Root of the mean squared error over PFL.
+    pub rmse: f64,
+    /// Mean of the errors' sizes over PFL.
+    pub mean_absolute_error: f64,
+    /// PFL pixels that are off by more than some bounds.
+    pub off: OffBy,
+    /// FLIP of the shaded picture against the reference's, its mean over the whole picture.
+    pub flip: f64,
+    /// PFL pixels that hold no share at all.
+    pub invalid: Invalid,
+}
+
+/// PFL pixels that are off by more than a bound; each holds those of the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct OffBy {
+    /// By more than 1/255: what 8 bits can tell.
+    pub over_1_255: u64,
+    /// By more than 1/16.
+    pub over_1_16: u64,
+    /// By more than 1/4.
+    pub over_1_4: u64,
+}
+
+/// PFL pixels whose visibility is no share.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Invalid {
+    /// No number.
+    pub nan: u64,
+    /// ∞ or −∞.
+    pub infinite: u64,
+    /// Finite, and below 0 or above 1.
+    pub outside: u64,
+}
+
+impl Invalid {
+    /// All of them.
+    pub fn total(&self) -> u64 {
+        self.nan + self.infinite + self.outside
+    }
+
+    fn add(&mut self, share: f32) {
+        self.nan += u64::from(share.is_nan());
+        self.infinite += u64::from(share.is_infinite());
+        self.outside += u64::from(share.is_finite() && !(0.0..=1.0).contains(&share));
+    }
+}
+
+impl Graded {
+    /// Judges a method's `visibility` against the reference's `shares`, both one value per pixel,
+    /// row by row from the top left.
+    ///
+    /// # Errors
+    /// [`Error::PixelCount`] if a buffer is not as large as the reference.
+    pub fn judged(
+        visibility: &[f32],
+        shares: &[f32],
+        reference: &Reference,
+    ) -> Result<Self, Error> {
+        check_pixel_count("visibility", reference.viewport, visibility.len())?;
+        check_pixel_count("shares", reference.viewport, shares.len())?;
+        let mut graded = Self::default();
+        let (mut facing, mut squares) = (0u64, 0.0);
+        for ((&shown, &share), class) in visibility.iter().zip(shares).zip(&reference.classes) {
+            if !class.faces_light() {
+                continue;
+            }
+            graded.invalid.add(shown);
+            let off = error(shown, share).abs();
+            facing += 1;
+            squares += off * off;
+            graded.mean_absolute_error += off;
+            graded.off.over_1_255 += u64::from(off > 1.0 / 255.0);
+            graded.off.over_1_16 += u64::from(off > 1.0 / 16.0);
+            graded.off.over_1_4 += u64::from(off > 1.0 / 4.0);
+        }
+        let facing = facing.max(1) as f64;
+        graded.rmse = (squares / facing).sqrt();
+        graded.mean_absolute_error /= facing;
+        let right = Image::shaded(shares, reference)?;
+        graded.flip = flip(&right, &Image::shaded(visibility, reference)?)?;
+        Ok(graded)
+    }
+}
+
+impl Reference {
+    /// The reference's own shares of a light without extent: 1 where lit, 0 elsewhere.
+    pub fn shares(&self) -> Vec<f32> {
+        let share = |&class: &Class| f32::from(u8::from(class == Class::Lit));
+        self.classes.iter().map(share).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn reference(classes: &[Class]) -> Reference {
+        Reference {
+            viewport: [classes.len() as u32, 1],
+            classes: classes.to_vec(),
+            indeterminate: vec![false; classes.len()],
+            n_dot_l: vec![0.5; classes.len()],
+        }
+    }
+
+    #[test]
+    fn errors_are_means_over_the_pixels_that_face_the_light() {
+        use Class::{Background, FacingAway, Lit, Shadow};
+        let reference = reference(&[Lit, Shadow, Lit, Lit, FacingAway, Background]);
+        let shares = [1.0, 0.0, 0.75, 0.5, 0.0, 0.0];
+        let graded = Graded::judged(&[1.0, 0.5, 0.75, 0.4, 1.0, 1.0], &shares, &reference).unwrap();
+        // Errors 0, 0.5, 0, −0.1.
+        assert!(
+            (graded.rmse - (0.26f64 / 4.0).sqrt()).abs() < 1e-7,
+            "{graded:?}"
+        );
+        assert!((graded.mean_absolute_error - 0.15).abs() < 1e-7);
+        let off = OffBy {
+            over_1_255: 2,
+            over_1_16: 2,
+            over_1_4: 1,
+        };
+        assert_eq!((graded.off, graded.invalid.total()), (off, 0));
+        assert!(graded.flip > 0.0);
+        let right = Graded::judged(&shares, &shares, &reference).unwrap();
+        assert_eq!(right, Graded::default());
+        assert!(Graded::judged(&shares[1..], &shares, &reference).is_err());
+    }
+
+    #[test]
+    fn what_is_no_share_is_counted_and_clamped() {
+        let reference = reference(&[Class::Lit; 6]);
+        let shown = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1.5, -0.5, 1.0];
+        let graded = Graded::judged(&shown, &[1.0; 6], &reference).unwrap();
+        let invalid = Invalid {
+            nan: 1,
+            infinite: 2,
+            outside: 2,
+        };
+        assert_eq!(graded.invalid, invalid);
+        // NaN, −∞ and −0.5 are a whole light off.
+        assert!((graded.rmse - 0.5f64.sqrt()).abs() < 1e-12);
+        assert_eq!(graded.off.over_1_4, 3);
+        assert_eq!([error(f32::NAN, 0.2), error(f32::NAN, 0.8)], [1.0, -1.0]);
+    }
+}

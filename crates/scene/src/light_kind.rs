@@ -1,0 +1,250 @@
+//! The lights of a scene: directional, spot and point.
+
+use crate::light::DirectionalLight;
+use glam::DVec3;
+
+/// A light of a scene, with the name by which commands and results know it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Light {
+    /// Small letters, digits and `_`; no two of a scene are alike.
+    pub name: String,
+    /// What it is.
+    pub kind: LightKind,
+}
+
+/// What a light is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LightKind {
+    /// Infinitely far away.
+    Directional(DirectionalLight),
+    /// A lamp that lights a cone.
+    Spot(SpotLight),
+    /// A bulb that lights every direction.
+    Point(PointLight),
+}
+
+/// A light at a place that lights a cone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpotLight {
+    /// Apex of the cone, world space.
+    pub position: DVec3,
+    /// Axis of the cone, away from the light, any length but zero.
+    pub direction: DVec3,
+    /// The whole angle at the apex, more than 0 and less than 180.
+    pub cone_degrees: f64,
+    /// Radius of the emitting disk, which faces along the axis; 0 for hard shadows.
+    pub radius: f64,
+}
+
+/// A light at a place that lights every direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointLight {
+    /// World space.
+    pub position: DVec3,
+    /// Radius of the emitting sphere; 0 for hard shadows.
+    pub radius: f64,
+}
+
+/// Where a light is, seen from a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Towards {
+    /// Unit vector to the light; zero at the light itself.
+    pub direction: DVec3,
+    /// How far away it is; infinite for a directional light.
+    pub distance: f64,
+}
+
+/// Name of the light of a scene file that has one `light`.
+pub const ONLY_LIGHT: &str = "light";
+
+/// A positional light farther from the origin is as good as directional, and f32 cannot square the
+/// distance.
+const FARTHEST: f64 = 1e18;
+
+/// The share of a shadow ray's way that it stays short of a positional light. So a surface on which
+/// the light lies shades nobody, instead of being decided by rounding.
+pub const LIGHT_GAP: f64 = 1.0 / 65536.0;
+
+impl Light {
+    /// A light of the name that the only one of a scene file has.
+    pub fn only(kind: impl Into<LightKind>) -> Self {
+        Self {
+            name: ONLY_LIGHT.to_owned(),
+            kind: kind.into(),
+        }
+    }
+
+    /// Whether the name and the light are of use.
+    ///
+    /// # Errors
+    /// What is wrong.
+    pub fn check(&self) -> Result<(), String> {
+        let starts = |c: char| c.is_ascii_lowercase();
+        let goes_on = |c: char| starts(c) || c.is_ascii_digit() || c == '_';
+        if !(self.name.starts_with(starts) && self.name.chars().all(goes_on)) {
+            return Err(format!(
+                "a light is called {:?}; expected small letters, digits and `_`, a letter first",
+                self.name
+            ));
+        }
+        if self.name == "all" {
+            return Err("a light is called \"all\", which means all lights".to_owned());
+        }
+        let named = |reason| match self.name.as_str() {
+            ONLY_LIGHT => reason,
+            name => format!("light {name:?}: {reason}"),
+        };
+        self.kind.check().map_err(named)
+    }
+}
+
+impl LightKind {
+    /// The word for it in documents, messages and results.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Directional(_) => "directional",
+            Self::Spot(_) => "spot",
+            Self::Point(_) => "point",
+        }
+    }
+
+    /// The directional light that it is.
+    pub fn directional(&self) -> Option<&DirectionalLight> {
+        match self {
+            Self::Directional(light) => Some(light),
+            Self::Spot(_) | Self::Point(_) => None,
+        }
+    }
+
+    /// Whether it is an area, whose shadows have a penumbra.
+    pub fn has_extent(&self) -> bool {
+        match self {
+            Self::Directional(light) => light.has_extent(),
+            Self::Spot(SpotLight { radius, .. }) | Self::Point(PointLight { radius, .. }) => {
+                *radius > 0.0
+            }
+        }
+    }
+
+    /// Where it is, unless it is infinitely far away.
+    pub fn position(&self) -> Option<DVec3> {
+        match self {
+            Self::Directional(_) => None,
+            Self::Spot(SpotLight { position, .. }) | Self::Point(PointLight { position, .. }) => {
+                Some(*position)
+            }
+        }
+    }
+
+    /// The way from a point to the light.
+    pub fn towards(&self, point: DVec3) -> Towards {
+        match (self, self.position()) {
+            (Self::Directional(light), _) => Towards {
+                direction: light.to_light(),
+                distance: f64::INFINITY,
+            },
+            (_, position) => {
+                let way = position.unwrap_or(point) - point;
+                Towards {
+                    direction: way.normalize_or_zero(),
+                    distance: way.length(),
+                }
+            }
+        }
+    }
+
+    /// Whether the light can be.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn check(&self) -> Result<(), String> {
+        if let Some(position) = self.position()
+            && !(position.abs().max_element() <= FARTHEST)
+        {
+            return Err(format!(
+                "the light's position {position} must be finite, and no number beyond {FARTHEST:e}; \
+                 a light so far away is directional"
+            ));
+        }
+        match self {
+            Self::Directional(light) => light.check(),
+            Self::Spot(spot) => {
+                let direction = spot.direction;
+                DirectionalLight::new(direction).check()?;
+                if !(spot.cone_degrees > 0.0 && spot.cone_degrees < 180.0) {
+                    return Err(format!(
+                        "cone_degrees is {}, expected more than 0 and less than 180, the whole \
+                         angle at the light",
+                        spot.cone_degrees
+                    ));
+                }
+                check_radius(spot.radius)
+            }
+            Self::Point(point) => check_radius(point.radius),
+        }
+    }
+}
+
+fn check_radius(radius: f64) -> Result<(), String> {
+    match radius.is_finite() && radius >= 0.0 {
+        true => Ok(()),
+        false => Err(format!(
+            "radius is {radius}, expected a length of at least 0"
+        )),
+    }
+}
+
+impl SpotLight {
+    /// Cosine of the angle between axis and edge of the cone.
+    pub fn edge_cosine(&self) -> f64 {
+        (self.cone_degrees * 0.5).to_radians().cos()
+    }
+
+    /// Cosine of the angle between the axis and the way to the light, seen from the light. At least
+    /// [`edge_cosine`](Self::edge_cosine) within the cone.
+    pub fn axis_cosine(&self, to_light: DVec3) -> f64 {
+        -self.direction.normalize().dot(to_light)
+    }
+}
+
+impl From<DirectionalLight> for LightKind {
+    fn from(light: DirectionalLight) -> Self {
+        Self::Directional(light)
+    }
+}
+
+impl From<&DirectionalLight> for LightKind {
+    fn from(light: &DirectionalLight) -> Self {
+        Self::Directional(*light)
+    }
+}
+
+impl From<SpotLight> for LightKind {
+    fn from(light: SpotLight) -> Self {
+        Self::Spot(light)
+    }
+}
+
+impl From<PointLight> for LightKind {
+    fn from(light: PointLight) -> Self {
+        Self::Point(light)
+    }
+}
+
+impl From<&LightKind> for LightKind {
+    fn from(light: &LightKind) -> Self {
+        *light
+    }
+}
+
+impl From<&Light> for LightKind {
+    fn from(light: &Light) -> Self {
+        light.kind
+    }
+}
+
+impl<L: Into<LightKind>> From<L> for Light {
+    fn from(kind: L) -> Self {
+        Self::only(kind)
+    }
+}

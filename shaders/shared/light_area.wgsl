@@ -1,0 +1,34 @@
+// How far the light reaches around its centre. Laid out as `LightAreaUniform` in
+// crates/passes/src/uniforms.rs.
+
+#import "shared/light.wgsl"
+
+struct LightArea {
+    // From the light's centre to its rim, of a directional light at distance 1; 0 of a point light,
+    // whose disk faces each receiver.
+    right: vec3<f32>,
+    // Radius of the disk that `right` and `up` span; 0 for a light without extent.
+    radius: f32,
+    // As `right`, at a right angle to it.
+    up: vec3<f32>,
+    padding: f32,
+}
+
+var<uniform> light_area: LightArea;
+
+// From the light's centre to a point of the unit disk, as a receiver sees it that has the light's
+// centre in that direction.
+fn across_light(point: vec2<f32>, to_light: vec3<f32>) -> vec3<f32> {
+    if light_kind != LIGHT_POINT {
+        return light_area.right * point.x + light_area.up * point.y;
+    }
+    // Any axis across will do; this one is never along the light.
+    let helper = select(vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), abs(to_light.x) > 0.5);
+    let right = normalize(cross(to_light, helper));
+    return light_area.radius * (right * point.x + cross(right, to_light) * point.y);
+}
+
+// A light without extent looks the same from each of its points: one sample does.
+fn samples_needed(samples: u32) -> u32 {
+    return select(samples, 1u, light_area.radius == 0.0);
+}

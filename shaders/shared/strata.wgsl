@@ -1,0 +1,46 @@
+// Points spread over a disk, one in each of some parts of equal area.
+// crates/reference/src/strata.rs has the same parts, and other points in them.
+
+// A point in part `index` of `count` of the unit square: columns as wide as they have rows.
+fn stratum_point(index: u32, count: u32, jitter: vec2<f32>) -> vec2<f32> {
+    let columns = u32(round(sqrt(f32(count))));
+    // The column that begins at or before the part: part c * count / columns is its first.
+    let column = ((index + 1u) * columns + count - 1u) / count - 1u;
+    let first = column * count / columns;
+    let rows = (column + 1u) * count / columns - first;
+    return vec2(
+        (f32(first) + jitter.x * f32(rows)) / f32(count),
+        (f32(index - first) + jitter.y) / f32(rows),
+    );
+}
+
+// From the unit square to the unit disk; parts of equal area stay so. Shirley, Chiu, "A Low
+// Distortion Map Between Disk and Square", JGT 2(3), 1997.
+fn disk_point(square: vec2<f32>) -> vec2<f32> {
+    const QUARTER: f32 = 0.78539816;
+    let at = 2.0 * square - 1.0;
+    if all(at == vec2(0.0)) {
+        return at;
+    }
+    if abs(at.x) > abs(at.y) {
+        let angle = QUARTER * (at.y / at.x);
+        return at.x * vec2(cos(angle), sin(angle));
+    }
+    let angle = 2.0 * QUARTER - QUARTER * (at.x / at.y);
+    return at.y * vec2(cos(angle), sin(angle));
+}
+
+// Two numbers in 0..1, others for every pixel and sample: pcg3d of Jarzynski, Olano, "Hash
+// Functions for GPU Rendering", JCGT 9(3), 2020.
+fn random_pair(pixel: u32, sample: u32) -> vec2<f32> {
+    var v = vec3(pixel, sample, 0u) * 1664525u + 1013904223u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v ^= v >> vec3(16u);
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    // 24 bits: all that a float below 1 can tell.
+    return vec2<f32>(v.xy >> vec2(8u)) / 16777216.0;
+}

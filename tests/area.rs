@@ -1,0 +1,243 @@
+//! Lights that have an extent: the presets that sample them against the oracle.
+
+mod support;
+
+use glam::{DVec3, Vec3};
+use skiagraph_graph::PassSummary;
+use skiagraph_reference::{Graded, Oracle, OracleMode, Progress, RightAnswer};
+use skiagraph_scene::{DirectionalLight, LightKind, Mesh, PointLight, Scene, SpotLight, View};
+use std::sync::Arc;
+use support::graphs::{plan_files, provider, run, values};
+
+const VIEWPORT: [u32; 2] = [64, 48];
+
+/// A floor under a square plate whose edges are thin, closed and front-facing outwards.
+fn mesh() -> Mesh {
+    let (mut positions, mut triangles) = (vec![], vec![]);
+    let mut quad = |corners: [Vec3; 4]| {
+        let first = positions.len() as u32;
+        positions.extend(corners);
+        triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+    };
+    quad([(-6.0, 6.0), (6.0, 6.0), (6.0, -6.0), (-6.0, -6.0)].map(|(x, z)| Vec3::new(x, 0.0, z)));
+    for axis in 0..3 {
+        for side in [-1.0, 1.0] {
+            let (u, v) = (
+                Vec3::AXES[(axis + 1) % 3] * side,
+                Vec3::AXES[(axis + 2) % 3],
+            );
+            let face = Vec3::AXES[axis] * side;
+            quad(
+                [face - u - v, face + u - v, face + u + v, face - u + v]
+                    .map(|p| p * Vec3::new(1.2, 0.2, 1.1) + Vec3::Y * 1.5),
+            );
+        }
+    }
+    support::meshes::mesh(positions, triangles)
+}
+
+fn scene(light: impl Into<LightKind>) -> Arc<Scene> {
+    let view = View {
+        name: "main".into(),
+        eye: DVec3::new(0.5, 6.0, 7.0),
+        direction: DVec3::new(0.0, -0.8, -1.0),
+        up: DVec3::Y,
+        fov_y_degrees: 50.0,
+        near: 0.5,
+        far: 50.0,
+        light: None,
+    };
+    let light = skiagraph_scene::Light::only(light);
+    Arc::new(Scene {
+        name: "plate".into(),
+        mesh: mesh(),
+        views: vec![view],
+        lights: vec![light],
+    })
+}
+
+fn sun(angle_degrees: f64) -> DirectionalLight {
+    DirectionalLight {
+        direction: DVec3::new(-0.4, -1.0, 0.3),
+        angle_degrees,
+    }
+}
+
+/// What a document shows, and its rays and passes.
+struct Shown {
+    shares: Vec<f32>,
+    status: Vec<u32>,
+    rays: u32,
+    traces: usize,
+}
+
+fn shown(document: &str, scene: &Arc<Scene>) -> Shown {
+    let mut provider = provider(scene, &scene.views[0], VIEWPORT);
+    let plan = plan_files(&[("test.ron", document)], &provider, VIEWPORT);
+    let is_trace = |pass: &&PassSummary| pass.name.ends_with("trace_rays");
+    let traces = plan.passes().iter().filter(is_trace).count();
+    let report = run(plan, &mut provider, &["visibility", "status", "ray_count"]);
+    let visibility = report
+        .readbacks
+        .iter()
+        .find(|read| read.name == "visibility");
+    Shown {
+        shares: visibility.and_then(|read| read.content.as_f32()).unwrap(),
+        status: values(&report, "status"),
+        rays: values(&report, "ray_count")[0],
+        traces,
+    }
+}
+
+fn preset(name: &str, set: &str) -> String {
+    format!(
+        r#"(format: 2, extends: "{name}.ron", lights: [directional, spot, point], set: {{{set}}})"#
+    )
+}
+
+fn right(scene: &Scene) -> RightAnswer {
+    let (oracle, camera) = (Oracle::new(&scene.mesh), scene.views[0].camera(VIEWPORT));
+    let primitives = oracle.primary(&camera, Progress::default()).unwrap();
+    let (how, progress) = ((OracleMode::Exact, 2048), Progress::default());
+    let right = oracle.right_answer(&camera, scene.light(), &primitives, how, progress);
+    right.unwrap()
+}
+
+fn judged(shown: &Shown, right: &RightAnswer) -> Graded {
+    Graded::judged(&shown.shares, &right.shares(), &right.reference).unwrap()
+}
+
+#[test]
+fn samples_converge_to_the_oracles_shares_under_every_kind_of_light() {
+    let spot = SpotLight {
+        position: DVec3::new(1.5, 6.0, -1.0),
+        direction: DVec3::new(-0.25, -1.0, 0.2),
+        cone_degrees: 100.0,
+        radius: 0.7,
+    };
+    let point = PointLight {
+        position: DVec3::new(1.5, 6.0, -1.0),
+        radius: 0.7,
+    };
+    for light in [
+        LightKind::from(sun(12.0)),
+        LightKind::Spot(spot),
+        LightKind::Point(point),
+    ] {
+        let scene = scene(light);
+        let right = right(&scene);
+        let partial = right
+            .shares()
+            .iter()
+            .filter(|share| (0.1..0.9).contains(*share))
+            .count();
+        assert!(
+            partial > 100,
+            "{}: {partial} pixels in penumbra",
+            light.word()
+        );
+        let rmse = [4, 32, 256].map(|samples| {
+            let shown = shown(
+                &preset("rt_area", &format!(r#""samples": {samples}"#)),
+                &scene,
+            );
+            let facing = shown.status.iter().filter(|status| **status == 4).count();
+            assert_eq!(shown.rays as usize, samples * facing);
+            judged(&shown, &right).rmse
+        });
+        // Strata of a straight edge: better than the square root, by which eight times as many
+        // would leave 0.35.
+        assert!(
+            rmse[1] < 0.33 * rmse[0] && rmse[2] < 0.33 * rmse[1] && rmse[2] < 0.01,
+            "{}: {rmse:?}",
+            light.word()
+        );
+    }
+}
+
+#[test]
+fn without_extent_one_ray_decides_as_in_rt() {
+    let scene = scene(sun(0.0));
+    let soft = shown(&preset("rt_area", r#""samples": 64"#), &scene);
+    let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
+    let plan = plan_files(&[("test.ron", &preset("rt", ""))], &provider, VIEWPORT);
+    let report = run(plan, &mut provider, &["visibility", "status", "ray_count"]);
+    let hard: Vec<f32> = values(&report, "visibility")
+        .iter()
+        .map(|&lit| lit as f32)
+        .collect();
+    assert_eq!(soft.shares, hard);
+    assert_eq!(soft.status, values(&report, "status"));
+    assert_eq!(soft.rays, values(&report, "ray_count")[0]);
+    assert!(hard.iter().filter(|share| **share == 0.0).count() > 100);
+}
+
+#[test]
+fn samples_and_pixels_in_turns_show_what_they_show_at_once() {
+    let scene = scene(sun(12.0));
+    let at = |most_rays: u32| {
+        let document = format!(
+            r#"(
+                format: 2,
+                extends: "rt_area.ron",
+                set: {{"samples": 23}},
+                passes: [Change(pass: "sample_light", set: {{"most_rays": {most_rays}}})],
+            )"#
+        );
+        shown(&document, &scene)
+    };
+    let once = at(1 << 22);
+    // 3,072 pixels: five samples at a time; then four parts of the pixels, a sample at a time.
+    for (most_rays, traces) in [(16_000, 5), (1_000, 4 * 23)] {
+        let turns = at(most_rays);
+        assert_eq!((once.traces, turns.traces), (1, traces));
+        assert_eq!(turns.shares, once.shares, "{most_rays}");
+        assert_eq!(turns.rays, once.rays);
+    }
+}
+
+#[test]
+fn eight_maps_agree_in_light_and_umbra_and_leave_the_penumbra_to_rays() {
+    let scene = scene(sun(12.0));
+    let right = right(&scene);
+    let set = r#""map_size": 256, "samples": 64"#;
+    let hybrid = shown(
+        &preset("hybrid_pcf_area", set).replace(", spot, point", ""),
+        &scene,
+    );
+    let all = shown(&preset("rt_area", r#""samples": 64"#), &scene);
+    assert!(
+        hybrid.rays < all.rays / 2,
+        "{} of {}",
+        hybrid.rays,
+        all.rays
+    );
+    let shares = right.shares();
+    for (status, share) in [(2, 1.0), (3, 0.0)] {
+        let certain = hybrid
+            .status
+            .iter()
+            .enumerate()
+            .filter(|(_, is)| **is == status);
+        let pixels: Vec<usize> = certain.map(|(pixel, _)| pixel).collect();
+        assert!(pixels.len() > 100, "{} of status {status}", pixels.len());
+        assert!(pixels.iter().all(|&pixel| hybrid.shares[pixel] == share));
+        // What is certain is a pixel of no penumbra, but for what lies between eight points.
+        let wrong = pixels
+            .iter()
+            .filter(|&&pixel| (shares[pixel] - share).abs() > 0.05);
+        assert!(wrong.count() * 50 < pixels.len());
+    }
+    // Where it asks, it asks the rays that `rt_area` asks.
+    let asked = hybrid
+        .status
+        .iter()
+        .zip(hybrid.shares.iter().zip(&all.shares));
+    assert!(
+        asked
+            .filter(|(is, _)| **is == 4)
+            .all(|(_, (one, other))| one == other)
+    );
+    let [hybrid, all] = [&hybrid, &all].map(|shown| judged(shown, &right).rmse);
+    assert!(hybrid < 2.0 * all, "{hybrid} {all}");
+}

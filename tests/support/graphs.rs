@@ -259,3 +259,17 @@ pub fn values(report: &FrameReport, name: &str) -> Vec<u32> {
         .unwrap();
     readback.content.as_u32().unwrap()
 }
+
+/// The numbers of an output, whole or not.
+pub fn shares(report: &FrameReport, name: &str) -> Vec<f32> {
+    let mut found = report.readbacks.iter().filter(|found| found.name == name);
+    let content = &found.next().unwrap().content;
+    let whole = || {
+        content
+            .as_u32()?
+            .into_iter()
+            .map(|value| Some(value as f32))
+            .collect()
+    };
+    content.as_f32().or_else(whole).unwrap()
+}

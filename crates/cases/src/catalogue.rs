@@ -1,6 +1,8 @@
 //! All cases.
 
-use crate::{case::HardCase, fences, light, lists, map, plain, rounding, solids, thin, topology};
+use crate::{
+    case::HardCase, fences, light, lists, map, plain, rounding, soft, solids, thin, topology,
+};
 
 /// The catalogue, in the order in which it is shown.
 pub fn cases() -> Vec<HardCase> {
@@ -12,6 +14,7 @@ pub fn cases() -> Vec<HardCase> {
         lists::CASES,
         fences::CASES,
         thin::CASES,
+        soft::CASES,
         solids::CASES,
         topology::CASES,
     ]

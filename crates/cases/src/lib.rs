@@ -14,6 +14,7 @@ mod map;
 mod plain;
 mod rounding;
 mod shape;
+mod soft;
 mod solids;
 mod thin;
 mod topology;

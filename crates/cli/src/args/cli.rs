@@ -3,7 +3,8 @@
 
 use crate::args::{
     commands::{
-        ChartArgs, CheckArgs, CompareArgs, GraphArgs, ProfileArgs, RunArgs, ShowArgs, StressArgs,
+        ChartArgs, CheckArgs, CompareArgs, GraphArgs, PresetsArgs, ProfileArgs, RunArgs, ShowArgs,
+        StressArgs,
     },
     shared::GpuArgs,
 };
@@ -104,8 +105,9 @@ pub enum Command {
         skiagraph graph rt --format json")]
     Graph(GraphArgs),
     /// List the presets, those in ./pipelines and the built-in ones, and their params.
-    #[command(after_help = "Example:\n  skiagraph presets")]
-    Presets,
+    #[command(after_help = "Examples:\n  skiagraph presets\n  \
+        skiagraph presets --format markdown")]
+    Presets(PresetsArgs),
     /// Print a document or shader, of the working directory or built in.
     #[command(after_help = "Examples:\n  skiagraph show nsm\n  \
         skiagraph show shared/light.wgsl\n  skiagraph show crsma_full --flat")]

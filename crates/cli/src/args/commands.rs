@@ -271,6 +271,23 @@ pub enum CheckFormat {
     Json,
 }
 
+/// `skiagraph presets`.
+#[derive(Args, Debug)]
+pub struct PresetsArgs {
+    /// How they are listed.
+    #[arg(long, value_enum, default_value_t = PresetsFormat::Text)]
+    pub format: PresetsFormat,
+}
+
+/// How presets are listed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PresetsFormat {
+    /// Each with its params.
+    Text,
+    /// As the table of the README.
+    Markdown,
+}
+
 /// `skiagraph graph`.
 #[derive(Args, Debug)]
 pub struct GraphArgs {

@@ -1,22 +1,31 @@
 //! `skiagraph presets`: the methods that `compare` and `run` know by name.
 
+use crate::args::commands::{PresetsArgs, PresetsFormat};
 use crate::error::CliError;
-use crate::graphs::preset;
+use crate::graphs::contract::{RAY_COUNT, VISIBILITY};
+use crate::graphs::method::Method;
+use crate::graphs::planning::{Capabilities, placeholder};
+use crate::graphs::preset::{self, Preset};
+use crate::measuring::guarantee;
 use crate::terminal::console::print;
-use skiagraph_graph::{Graph, Param};
+use skiagraph_graph::{Graph, Param, ParamType};
 
-/// Lists the presets with their params.
+/// Lists the presets with their params, or as a table.
 ///
 /// # Errors
-/// A preset on disk that cannot be loaded, standard output.
-pub fn presets() -> Result<(), CliError> {
+/// A preset on disk that cannot be loaded or planned, standard output.
+pub fn presets(args: &PresetsArgs) -> Result<(), CliError> {
     let sources = preset::sources();
     let loaded = preset::load_all(&preset::names(&sources), &sources)?;
-    let texts: Vec<String> = loaded
-        .iter()
-        .map(|preset| describe(&preset.name, &preset.graph))
-        .collect();
-    print(&texts.join("\n"))
+    match args.format {
+        PresetsFormat::Text => {
+            let texts = loaded
+                .iter()
+                .map(|preset| describe(&preset.name, &preset.graph));
+            print(&texts.collect::<Vec<_>>().join("\n"))
+        }
+        PresetsFormat::Markdown => print(&table(&loaded)?),
+    }
 }
 
 fn describe(name: &str, graph: &Graph) -> String {
@@ -41,5 +50,87 @@ fn range(param: &Param) -> String {
         (Some(min), None) => format!(", from {min}"),
         (None, Some(max)) => format!(", to {max}"),
         (None, None) => String::new(),
+    }
+}
+
+/// What each preset is and answers, as its document says it.
+fn table(presets: &[Preset]) -> Result<String, CliError> {
+    let heads = [
+        "preset",
+        "what it is",
+        "lights",
+        "answers",
+        "rays",
+        "fits",
+        "promises",
+    ];
+    let mut lines = vec![heads.map(str::to_owned), heads.map(|_| "---".to_owned())];
+    for preset in presets {
+        lines.push(row(preset)?);
+    }
+    let line = |cells: &[String; 7]| {
+        let cells = cells.each_ref().map(|cell| cell.replace('|', "\\|"));
+        format!("| {} |\n", cells.join(" | "))
+    };
+    Ok(lines.iter().map(line).collect())
+}
+
+fn row(preset: &Preset) -> Result<[String; 7], CliError> {
+    let graph = &preset.graph;
+    let provider = placeholder([64, 64]);
+    let plan = preset.plan(&Capabilities::greatest().request([64, 64], &provider))?;
+    let outputs = plan.outputs();
+    let format = outputs.iter().find(|output| output.name == VISIBILITY);
+    let answers = match format.and_then(|output| output.format) {
+        Some(format) if format.sample_type(None, None) == Some(wgpu::TextureSampleType::Uint) => {
+            "hard"
+        }
+        Some(_) => "graded",
+        None => "–",
+    };
+    let lights: Vec<&str> = graph.lights().map(|kind| kind.value.as_str()).collect();
+    let lights = match lights[..] {
+        [] => "directional".to_owned(), // where a document says nothing
+        _ => lights.join(", "),
+    };
+    let traces = graph.outputs().contains(&RAY_COUNT);
+    let fits = match preset.param("fit").map(|fit| &fit.ty) {
+        Some(ParamType::Choice(words)) => {
+            let words: Vec<&str> = words.iter().map(|word| word.as_str()).collect();
+            words.join(", ")
+        }
+        _ => "–".to_owned(),
+    };
+    let method = Method::new(preset, Default::default());
+    let promise = guarantee::of(&method, &[])?;
+    let promise = promise.map_or("–", |(guarantee, _)| guarantee.word());
+    let description = graph.description().trim_end_matches('.').to_owned();
+    Ok([
+        format!("`{}`", preset.name),
+        description,
+        lights,
+        answers.to_owned(),
+        if traces { "yes" } else { "–" }.to_owned(),
+        fits,
+        promise.to_owned(),
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_of_the_readme_is_the_one_of_the_presets() {
+        let sources = skiagraph_passes::EmbeddedSources;
+        let presets = preset::load_all(&preset::names(&sources), &sources).unwrap();
+        let table = table(&presets).unwrap();
+        assert_eq!(table.lines().count(), presets.len() + 2);
+        let readme = concat!(env!("CARGO_MANIFEST_DIR"), "/../../README.md");
+        let readme = std::fs::read_to_string(readme).unwrap();
+        assert!(
+            readme.contains(&table),
+            "`skiagraph presets --format markdown` belongs into README.md:\n{table}"
+        );
     }
 }

@@ -1,0 +1,66 @@
+//! What maps that are filtered get wrong, each by its own means.
+
+use crate::{
+    answer::among,
+    case::HardCase,
+    shape::{Block, Shape},
+};
+use glam::DVec3;
+
+const OBLIQUE: DVec3 = DVec3::new(1.0, -1.0, 0.1);
+/// A floor, a plate above it, and one six times as high whose shadow ends in the middle of the
+/// lower one's.
+const TWO_OCCLUDERS: [Block; 3] = [
+    [[-3.0, -0.5, -2.5], [3.0, 0.0, 2.5]],
+    [[-2.0, 1.0, -1.0], [0.0, 1.05, 1.0]],
+    [[-8.0, 6.0, -2.0], [-6.0, 6.05, 1.5]],
+];
+
+const ACROSS: DVec3 = DVec3::new(0.2, -1.0, 0.9);
+const CONTACT: [Block; 2] = [
+    [[-5.0, -0.5, -5.0], [5.0, 0.0, 5.0]],
+    [[-1.0, 0.0, -0.01], [1.0, 0.8, 0.01]],
+];
+
+const STEEP: DVec3 = DVec3::new(0.3, -1.0, 0.1);
+/// Their shadows lie side by side.
+const NEAR_AND_FAR: [Block; 3] = [
+    [[-2.5, -0.5, -2.0], [2.5, 0.0, 2.0]],
+    [[-1.43, 0.1, -0.61], [-0.23, 0.12, 0.59]],
+    [[-0.7, 3.0, -0.9], [0.5, 3.02, 0.3]],
+];
+
+pub(crate) const CASES: &[HardCase] = &[
+    HardCase::closed(
+        "two_occluders",
+        "a silhouette within another's shadow: the variance of depths lets light through",
+        || {
+            Shape::default().cuboids(&TWO_OCCLUDERS).scene(
+                [3.6, 2.2, 2.4],
+                [0.1, 0.0, 0.0],
+                OBLIQUE,
+            )
+        },
+    )
+    .with_answer(|p| among(p, OBLIQUE, &TWO_OCCLUDERS, 1e-4)),
+    HardCase::closed(
+        "contact",
+        "a thin wall on its own shadow: receivers near it are as deep as their caster, almost",
+        || {
+            Shape::default()
+                .cuboids(&CONTACT)
+                .scene([0.5, 1.2, 2.0], [0.0, 0.0, 0.3], ACROSS)
+        },
+    )
+    .with_answer(|p| among(p, ACROSS, &CONTACT, 1e-4)),
+    HardCase::closed(
+        "near_and_far",
+        "plates near the floor and far above: a lamp would blur the shadow of one alone",
+        || {
+            Shape::default()
+                .cuboids(&NEAR_AND_FAR)
+                .scene([0.0, 2.4, 3.0], [0.0, 0.0, 0.0], STEEP)
+        },
+    )
+    .with_answer(|p| among(p, STEEP, &NEAR_AND_FAR, 1e-4)),
+];

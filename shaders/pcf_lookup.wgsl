@@ -1,0 +1,73 @@
+// Stage to compare each pixel's depth in light space with a square of texels of the shadow map, and
+// to answer with the share of them that lie behind it; a full-screen triangle. Reeves, Salesin,
+// Cook, "Rendering Antialiased Shadows with Depth Maps", SIGGRAPH 1987, with every texel of the
+// region instead of some by chance.
+
+#import "shared/depth_bias.wgsl"
+#import "shared/receiver.wgsl"
+
+struct Params {
+    radius: u32,
+    compare: u32,
+    bias: f32,
+    slope_bias: f32,
+}
+
+var<uniform> params: Params;
+var shadow_map: texture_depth_2d;
+var nearer: sampler_comparison;
+
+@fragment
+fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) f32 {
+    let pixel = vec2<u32>(centre.xy);
+    let receiver = textureLoad(position, pixel, 0);
+    let status = initial_status(pixel, receiver);
+    if status != STATUS_UNCERTAIN {
+        return f32(initial_visibility(status));
+    }
+    let place = light_texel(receiver.xyz);
+    if is_outside(place.xy) {
+        return 1.0;
+    }
+    // The plane rises over all of the square.
+    let slope_bias = params.slope_bias * f32(params.radius + 1u);
+    let depth = place.z - depth_bias(receiver.w, params.bias, slope_bias);
+    if params.compare == COMPARE_SAMPLER {
+        return sampled(place.xy, depth);
+    }
+    return by_hand(place.xy, depth);
+}
+
+// The mean of 2 · radius + 1 bilinear comparisons in each direction.
+fn sampled(place: vec2<f32>, depth: f32) -> f32 {
+    let radius = i32(params.radius);
+    var lit = 0.0;
+    for (var y = -radius; y <= radius; y++) {
+        for (var x = -radius; x <= radius; x++) {
+            let at = (place + vec2(f32(x), f32(y))) / map_fit.size;
+            lit += textureSampleCompareLevel(shadow_map, nearer, at, depth);
+        }
+    }
+    return lit / f32((2 * radius + 1) * (2 * radius + 1));
+}
+
+// The same, each texel compared once: those between count whole, the outermost by what a square of
+// 2 · radius + 1 texels around the receiver covers of them.
+fn by_hand(place: vec2<f32>, depth: f32) -> f32 {
+    let radius = i32(params.radius);
+    let end = vec2<i32>(textureDimensions(shadow_map)) - 1;
+    let first = vec2<i32>(floor(place - 0.5)) - radius;
+    let last = 2 * radius + 1;
+    let part = fract(place - 0.5);
+    var lit = 0.0;
+    for (var y = 0; y <= last; y++) {
+        for (var x = 0; x <= last; x++) {
+            let step = vec2(x, y);
+            let begun = select(vec2(1.0), 1.0 - part, step == vec2(0));
+            let cover = select(begun, part, step == vec2(last));
+            let stored = textureLoad(shadow_map, clamp(first + step, vec2(0), end), 0);
+            lit += cover.x * cover.y * select(0.0, 1.0, depth <= stored);
+        }
+    }
+    return lit / f32(last * last);
+}

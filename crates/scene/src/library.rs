@@ -3,6 +3,7 @@
 use crate::{
     camera::View,
     error::SceneError,
+    gltf::load_gltf,
     light::DirectionalLight,
     limit::Limit,
     obj::{
@@ -163,7 +164,7 @@ impl SceneLibrary {
                 views: scene.views.iter().map(|view| view.name.clone()).collect(),
                 mesh_found: match &scene.mesh {
                     MeshSource::Generated(_) => true,
-                    MeshSource::Obj { file: mesh, .. } => self
+                    MeshSource::Obj { file: mesh, .. } | MeshSource::Gltf { file: mesh, .. } => self
                         .mesh_places(mesh, file.as_deref())
                         .iter()
                         .any(|place| place.is_file()),
@@ -220,6 +221,38 @@ impl SceneLibrary {
             .collect()
     }
 
+    /// Where the mesh of a scene file is.
+    fn mesh_file(
+        &self,
+        scene: &SceneFile,
+        mesh: &str,
+        source: &Option<String>,
+        file: Option<&Path>,
+    ) -> Result<PathBuf, SceneError> {
+        let places = self.mesh_places(mesh, file);
+        // What is neither file nor folder is there as well; reading it says what is wrong with it.
+        let place = places.iter().find(|place| place.is_file()).or_else(|| {
+            places
+                .iter()
+                .find(|place| place.exists() && !place.is_dir())
+        });
+        if let Some(place) = place {
+            return Ok(place.clone());
+        }
+        if let Some(folder) = places.iter().find(|place| place.is_dir()) {
+            return Err(SceneError::MeshIsFolder {
+                scene: scene.name.clone(),
+                path: folder.clone(),
+            });
+        }
+        Err(SceneError::MeshNotFound {
+            scene: scene.name.clone(),
+            file: mesh.to_owned(),
+            searched: places,
+            source_text: source.clone(),
+        })
+    }
+
     fn assemble(
         &self,
         scene: SceneFile,
@@ -231,37 +264,18 @@ impl SceneLibrary {
                 file: mesh,
                 leave_out,
                 quads,
+                materials,
                 source,
             } => {
-                let places = self.mesh_places(mesh, file);
-                // What is neither file nor folder is there as well; reading it says what is wrong
-                // with it.
-                let place = places.iter().find(|place| place.is_file()).or_else(|| {
-                    places
-                        .iter()
-                        .find(|place| place.exists() && !place.is_dir())
-                });
-                let Some(place) = place else {
-                    if let Some(folder) = places.iter().find(|place| place.is_dir()) {
-                        return Err(SceneError::MeshIsFolder {
-                            scene: scene.name,
-                            path: folder.clone(),
-                        });
-                    }
-                    return Err(SceneError::MeshNotFound {
-                        scene: scene.name,
-                        file: mesh.clone(),
-                        searched: places,
-                        source_text: source.clone(),
-                    });
+                let options = ObjOptions {
+                    leave_out: leave_out.clone(),
+                    quads: *quads,
+                    materials: *materials,
                 };
-                load_obj(
-                    place,
-                    &ObjOptions {
-                        leave_out: leave_out.clone(),
-                        quads: *quads,
-                    },
-                )?
+                load_obj(&self.mesh_file(&scene, mesh, source, file)?, &options)?
+            }
+            MeshSource::Gltf { file: mesh, source } => {
+                load_gltf(&self.mesh_file(&scene, mesh, source, file)?)?
             }
         };
         Ok((
@@ -294,7 +308,7 @@ fn resize(scene: &mut SceneFile, size: &str) -> Result<(), String> {
             *generator = generator.with_triangles(size)?;
             Ok(())
         }
-        MeshSource::Obj { file, .. } => Err(format!("the mesh {file:?} is a file of one size")),
+        MeshSource::Obj { file, .. } | MeshSource::Gltf { file, .. } => Err(format!("the mesh {file:?} is a file of one size")),
     }
 }
 

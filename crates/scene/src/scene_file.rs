@@ -20,7 +20,7 @@
 
 use crate::{
     camera::View, error::SceneError, generate::Generator, light::DirectionalLight,
-    obj::options::QuadDiagonal,
+    obj::options::{ObjMaterials, QuadDiagonal},
 };
 use serde::{Deserialize, Deserializer, de::Error};
 use std::collections::HashSet;
@@ -62,8 +62,19 @@ pub enum MeshSource {
         /// How polygons are split.
         #[serde(default)]
         quads: QuadDiagonal,
+        /// What is taken of its materials.
+        #[serde(default)]
+        materials: ObjMaterials,
         /// Where the file can be downloaded, for the message that it is missing; absent for a mesh
         /// of one's own.
+        #[serde(default, deserialize_with = "given")]
+        source: Option<String>,
+    },
+    /// A glTF 2.0 file, `.gltf` or `.glb`.
+    Gltf {
+        /// Path, as of `Obj`.
+        file: String,
+        /// As of `Obj`.
         #[serde(default, deserialize_with = "given")]
         source: Option<String>,
     },

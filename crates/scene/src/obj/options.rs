@@ -23,6 +23,18 @@ impl QuadDiagonal {
     }
 }
 
+/// What is taken of an OBJ file's materials.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub enum ObjMaterials {
+    /// Nothing: files of materials and textures need not be there.
+    Ignore,
+    /// Colours, for pictures. Every surface is opaque, and what cannot be read is a warning.
+    Color,
+    /// Colours and masks (`map_d`, `d`); masks must be there.
+    #[default]
+    All,
+}
+
 /// How an OBJ file becomes a mesh.
 #[derive(Clone, Debug, Default)]
 pub struct ObjOptions {
@@ -30,4 +42,6 @@ pub struct ObjOptions {
     pub leave_out: Vec<String>,
     /// How polygons are split.
     pub quads: QuadDiagonal,
+    /// What is taken of its materials.
+    pub materials: ObjMaterials,
 }

@@ -1,6 +1,8 @@
 //! All cases.
 
-use crate::{case::HardCase, fences, light, lists, map, plain, rounding, solids, thin, topology};
+use crate::{
+    case::HardCase, fences, light, lists, map, masked, plain, rounding, solids, thin, topology,
+};
 
 /// The catalogue, in the order in which it is shown.
 pub fn cases() -> Vec<HardCase> {
@@ -14,6 +16,7 @@ pub fn cases() -> Vec<HardCase> {
         thin::CASES,
         solids::CASES,
         topology::CASES,
+        masked::CASES,
     ]
     .concat()
 }

@@ -32,6 +32,12 @@ pub enum Error {
         /// Triangles of the mesh.
         triangles: usize,
     },
+    /// A texture of the mesh that cannot be read.
+    #[error("texture {0}")]
+    Texture(
+        /// Which one, and why.
+        String,
+    ),
     /// A triangle without its corner.
     #[error("a triangle of the mesh has the corner {index}, but it has only {corners} positions")]
     Corner {

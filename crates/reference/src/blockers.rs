@@ -97,7 +97,7 @@ impl Oracle<'_> {
         let ray = Ray::new(origin, to_light, self.tree.max_distance(origin), 0.0);
         let mut found = Blocker::None;
         self.tree.walk(&ray, stack, |caster, _| {
-            let hit = ray.hit(&caster.corners);
+            let hit = caster.hit(&ray);
             if caster.primitive == passed || hit.is_none_or(|hit| hit.t <= ray.nearest) {
                 return ControlFlow::Continue(());
             }

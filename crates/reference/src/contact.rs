@@ -14,6 +14,7 @@ use crate::{
     tree::Caster,
 };
 use glam::DVec3;
+use skiagraph_scene::mask::Asked;
 
 /// What a shadow ray has to do with a caster.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +32,22 @@ pub(crate) enum Contact {
     },
     /// A hit under every displacement.
     Robust,
+}
+
+impl Contact {
+    /// The same of a masked caster. Where its mask flips within the error it may be there or not,
+    /// as across an open edge.
+    fn masked(self, asked: Asked, error: f64) -> Self {
+        match (asked.flips, asked.opaque) {
+            (false, true) => self,
+            (false, false) => Self::Miss,
+            (true, true) if self != Self::Touched => Self::Hit {
+                error,
+                near_open_edge: true,
+            },
+            (true, _) => Self::Touched,
+        }
+    }
 }
 
 /// A shadow ray with its uncertainty, in the ray's sheared space.
@@ -63,7 +80,13 @@ impl<'a> FuzzyRay<'a> {
     }
 
     /// Classifies one caster.
-    pub(crate) fn contact(&self, &Caster { corners, open, .. }: &Caster) -> Contact {
+    pub(crate) fn contact(&self, caster: &Caster<'_>) -> Contact {
+        let &Caster {
+            corners,
+            open,
+            ref masked,
+            ..
+        } = caster;
         let sheared = corners.map(|corner| self.ray.sheared(corner));
         let [a, b, c] = sheared;
         let [sx, sy, _] = self.ray.shear;
@@ -71,8 +94,8 @@ impl<'a> FuzzyRay<'a> {
         // of the corner itself.
         let farthest = corners
             .map(|corner| (glam::Vec3::from(corner).as_dvec3() - self.origin).length_squared());
-        let caster = caster_error(farthest[0].max(farthest[1]).max(farthest[2]).sqrt());
-        let ball = self.uncertainty.radius + caster;
+        let error = caster_error(farthest[0].max(farthest[1]).max(farthest[2]).sqrt());
+        let ball = self.uncertainty.radius + error;
         let extent = self
             .sheared_segments
             .iter()
@@ -110,17 +133,24 @@ impl<'a> FuzzyRay<'a> {
         let (t, t_error) = self.distance(&corners, ball);
         let inside =
             |sign: f64, margin: f64| (0..3).all(|i| sign * edges[i] >= margin * thresholds[i]);
-        match Ray::hit_sheared(sheared, edges).filter(|hit| hit.t > self.ray.nearest) {
+        let contact = match Ray::hit_sheared(sheared, edges).filter(|hit| hit.t > self.ray.nearest)
+        {
             Some(_) if t > t_error && (inside(1.0, 1.0) || inside(-1.0, 1.0)) => Contact::Robust,
             Some(_) => {
                 let near_open_edge = (0..3).any(|i| open[i] && edges[i].abs() < thresholds[i]);
                 Contact::Hit {
-                    error: caster,
+                    error,
                     near_open_edge,
                 }
             }
             None if t > -t_error && (inside(1.0, -1.0) || inside(-1.0, -1.0)) => Contact::Touched,
             None => Contact::Miss,
+        };
+        match masked {
+            Some(masked) if contact != Contact::Miss => {
+                contact.masked(masked.ask(edges, thresholds), error)
+            }
+            _ => contact,
         }
     }
 

@@ -33,6 +33,7 @@ mod contact;
 mod error;
 pub mod error_bound;
 pub mod image;
+mod masked;
 pub mod oracle;
 pub mod pixels;
 mod ray;

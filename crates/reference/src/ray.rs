@@ -35,6 +35,8 @@ pub(crate) struct Hit {
     pub(crate) t: f64,
     /// Counter-clockwise as seen from the ray's origin.
     pub(crate) front: bool,
+    /// Weights of the corners.
+    pub(crate) weights: [f64; 3],
 }
 
 impl Ray {
@@ -141,6 +143,7 @@ impl Ray {
         Some(Hit {
             t: (u * a.z + v * b.z + w * c.z) / determinant,
             front: determinant > 0.0,
+            weights: [u, v, w].map(|edge| edge / determinant),
         })
     }
 }

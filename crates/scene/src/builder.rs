@@ -103,4 +103,3 @@ pub(crate) fn has_no_area([a, b, c]: [DVec3; 3]) -> bool {
 fn geometric_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
     (b - a).cross(c - a).try_normalize()
 }
-

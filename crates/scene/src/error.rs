@@ -151,8 +151,8 @@ pub enum SceneError {
     },
     /// No scene of that name, and no file of that path.
     #[error(
-        "no scene {argument:?}: it is neither the path of a .ron or .obj file, nor the name of a \
-         .ron file in {}, nor one of the built-in scenes {}",
+        "no scene {argument:?}: it is neither the path of a .ron, .obj, .gltf or .glb file, nor \
+         the name of a .ron file in {}, nor one of the built-in scenes {}",
         folder.display(), builtin.join(", ")
     )]
     UnknownScene {
@@ -211,7 +211,12 @@ pub struct FaceRef {
 
 impl fmt::Display for FaceRef {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "face {} of group {:?}", self.number, beginning(&self.group))?;
+        write!(
+            f,
+            "face {} of group {:?}",
+            self.number,
+            beginning(&self.group)
+        )?;
         match self.line {
             0 => Ok(()),
             line => write!(f, " (line {line})"),
@@ -297,8 +302,8 @@ impl fmt::Display for FaceProblem {
                 )
             }
             Self::CannotBeCut => f.write_str(
-                "cannot be cut into triangles, for its outline crosses itself: triangulate it where \
-                 it was made",
+                "cannot be cut into triangles, for its outline crosses itself: triangulate it \
+                 where it was made, or have a scene file say `concave: Fan`",
             ),
             Self::NotACorner(text) => {
                 write!(

@@ -107,7 +107,11 @@ impl fmt::Display for ImportReport {
         }
         if let Some(first) = self.colours_missing.first() {
             let count = self.colours_missing.len();
-            writeln!(f, "{} without colours: {first}", plural(count, "material", "materials"))?;
+            writeln!(
+                f,
+                "{} without colours: {first}",
+                plural(count, "material", "materials")
+            )?;
         }
         Ok(())
     }

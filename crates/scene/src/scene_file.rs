@@ -19,8 +19,11 @@
 //! ```
 
 use crate::{
-    camera::View, error::SceneError, generate::Generator, light::DirectionalLight,
-    obj::options::{ObjMaterials, QuadDiagonal},
+    camera::View,
+    error::SceneError,
+    generate::Generator,
+    light::DirectionalLight,
+    obj::options::{Concave, ObjMaterials, QuadDiagonal},
 };
 use serde::{Deserialize, Deserializer, de::Error};
 use std::collections::HashSet;
@@ -62,6 +65,9 @@ pub enum MeshSource {
         /// How polygons are split.
         #[serde(default)]
         quads: QuadDiagonal,
+        /// What becomes of concave ones.
+        #[serde(default)]
+        concave: Concave,
         /// What is taken of its materials.
         #[serde(default)]
         materials: ObjMaterials,

@@ -22,9 +22,15 @@ pub(super) fn floats<const N: usize>(
         std::array::from_fn(|at| number(&bytes[at * ty.size()..], ty, normalized))
     };
     let mut items: Vec<[f32; N]> = match accessor.view() {
-        Some(view) => raw(&view, accessor.offset(), accessor.size(), accessor.count(), buffers)?
-            .map(item)
-            .collect(),
+        Some(view) => raw(
+            &view,
+            accessor.offset(),
+            accessor.size(),
+            accessor.count(),
+            buffers,
+        )?
+        .map(item)
+        .collect(),
         None => {
             // Zeros that no buffer holds: a damaged count must not take memory without bound.
             let limit = 1 << 26;
@@ -50,9 +56,9 @@ pub(super) fn floats<const N: usize>(
     let total = items.len();
     for (place, value) in places.zip(values) {
         let place = whole(place, index_type) as usize;
-        let slot = items.get_mut(place).ok_or_else(|| {
-            format!("its sparse values name item {place}, but it has {total}")
-        })?;
+        let slot = items
+            .get_mut(place)
+            .ok_or_else(|| format!("its sparse values name item {place}, but it has {total}"))?;
         *slot = item(value);
     }
     Ok(items)
@@ -73,7 +79,13 @@ pub(super) fn indices(accessor: &Accessor<'_>, buffers: &Bytes) -> Result<Vec<u3
     let view = accessor
         .view()
         .ok_or_else(|| "indices without a buffer view".to_owned())?;
-    let items = raw(&view, accessor.offset(), ty.size(), accessor.count(), buffers)?;
+    let items = raw(
+        &view,
+        accessor.offset(),
+        ty.size(),
+        accessor.count(),
+        buffers,
+    )?;
     Ok(items.map(|bytes| whole(bytes, ty)).collect())
 }
 
@@ -87,7 +99,9 @@ fn raw<'b>(
 ) -> Result<impl Iterator<Item = &'b [u8]> + use<'b>, String> {
     let buffer = buffers.get(view.buffer().index());
     let end = view.offset().checked_add(view.length());
-    let bytes = buffer.zip(end).and_then(|(bytes, end)| bytes.get(view.offset()..end));
+    let bytes = buffer
+        .zip(end)
+        .and_then(|(bytes, end)| bytes.get(view.offset()..end));
     let bytes = bytes.ok_or_else(|| {
         format!(
             "buffer view {} reaches beyond buffer {}",
@@ -97,7 +111,9 @@ fn raw<'b>(
     })?;
     let stride = view.stride().unwrap_or(size).max(1);
     let needed = count.checked_sub(1).map_or(Some(0), |last| {
-        last.checked_mul(stride)?.checked_add(size)?.checked_add(offset)
+        last.checked_mul(stride)?
+            .checked_add(size)?
+            .checked_add(offset)
     });
     if !needed.is_some_and(|needed| needed <= bytes.len()) {
         return Err(format!(
@@ -130,5 +146,9 @@ fn number(bytes: &[u8], ty: DataType, normalized: bool) -> f32 {
         DataType::U16 => (word as f32, 65535.0),
         DataType::U32 => (word as f32, 4_294_967_295.0),
     };
-    if normalized { (value / most).max(-1.0) } else { value }
+    if normalized {
+        (value / most).max(-1.0)
+    } else {
+        value
+    }
 }

@@ -67,9 +67,9 @@ pub(super) fn read(
                     Some(decoded) => decoded.map_err(fail)?,
                     None => {
                         let path = folder.join(&*path_of(uri));
-                        GLTF_FILE.read(&path).map_err(|why| {
-                            fail(format!("cannot read {}: {why}", path.display()))
-                        })?
+                        GLTF_FILE
+                            .read(&path)
+                            .map_err(|why| fail(format!("cannot read {}: {why}", path.display())))?
                     }
                 },
             };

@@ -15,13 +15,10 @@ use crate::{
 };
 use glam::{DMat3, DMat4, DVec3, Mat4, Vec2, Vec3};
 use gltf::{Semantic, mesh::Mode};
-use std::{path::Path, sync::Arc};
+use std::{collections::HashSet, path::Path, sync::Arc};
 
-/// Deeper trees are not made by hand, and a damaged file may have a cycle.
-const DEEPEST_NODE: usize = 256;
-
-/// Most nodes that are visited: several may share one child.
-const MOST_NODES: usize = 1 << 20;
+/// Most corners of all triangles together: a small file may place one mesh any number of times.
+const MOST_CORNERS: usize = 1 << 28;
 
 /// Reads a `.gltf` or `.glb` file with what it names.
 ///
@@ -103,7 +100,6 @@ struct Import<'a> {
     materials: Vec<materials::Read>,
     builder: MeshBuilder,
     corners: usize,
-    nodes: usize,
 }
 
 impl<'a> Import<'a> {
@@ -116,7 +112,6 @@ impl<'a> Import<'a> {
             materials: Vec::new(),
             builder,
             corners: 0,
-            nodes: 0,
         }
     }
 
@@ -143,7 +138,9 @@ impl<'a> Import<'a> {
     }
 
     fn read_nodes(&mut self, document: &gltf::Document) -> Result<(), Fault> {
-        let scene = document.default_scene().or_else(|| document.scenes().next());
+        let scene = document
+            .default_scene()
+            .or_else(|| document.scenes().next());
         let roots: Vec<gltf::Node<'_>> = match scene {
             Some(scene) => scene.nodes().collect(),
             None => {
@@ -153,14 +150,14 @@ impl<'a> Import<'a> {
                 return Ok(());
             }
         };
-        let mut open: Vec<(gltf::Node<'_>, DMat4, usize)> = Vec::new();
-        open.extend(roots.into_iter().rev().map(|node| (node, DMat4::IDENTITY, 0)));
-        while let Some((node, above, depth)) = open.pop() {
-            self.nodes += 1;
+        let mut open: Vec<(gltf::Node<'_>, DMat4)> = Vec::new();
+        open.extend(roots.into_iter().rev().map(|node| (node, DMat4::IDENTITY)));
+        let mut seen = HashSet::new();
+        while let Some((node, above)) = open.pop() {
             let place = || format!("node {}", node.index());
-            if depth > DEEPEST_NODE || self.nodes > MOST_NODES {
-                let why = "nodes are children of themselves, or too many".to_owned();
-                return Err((place(), why));
+            if !seen.insert(node.index()) {
+                let why = "two nodes have it as a child, or it is its own";
+                return Err((place(), why.to_owned()));
             }
             let local = Mat4::from_cols_array_2d(&node.transform().matrix()).as_dmat4();
             let transform = above * local;
@@ -171,7 +168,7 @@ impl<'a> Import<'a> {
                 self.read_mesh(&mesh, transform, node.name().or(mesh.name()))?;
             }
             let children: Vec<_> = node.children().collect();
-            open.extend(children.into_iter().rev().map(|child| (child, transform, depth + 1)));
+            open.extend(children.into_iter().rev().map(|child| (child, transform)));
         }
         Ok(())
     }
@@ -204,22 +201,27 @@ impl<'a> Import<'a> {
         let named = |(index, why): (usize, String)| format!("accessor {index}: {why}");
         let (index, accessor) = of(&Semantic::Positions)
             .ok_or_else(|| "it has no POSITION, so nothing can be drawn of it".to_owned())?;
-        let positions = accessor::floats::<3>(&accessor, self.buffers)
-            .map_err(|why| named((index, why)))?;
-        let material = primitive.material().index().unwrap_or(self.materials.len() - 1);
+        let positions =
+            accessor::floats::<3>(&accessor, self.buffers).map_err(|why| named((index, why)))?;
+        let material = primitive
+            .material()
+            .index()
+            .unwrap_or(self.materials.len() - 1);
         let (uv_set, (turn, offset)) = {
             let material = &self.materials[material];
             (material.uv_set, material.uv_transform)
         };
         let normals = match of(&Semantic::Normals) {
             Some((index, accessor)) => Some(
-                accessor::floats::<3>(&accessor, self.buffers).map_err(|why| named((index, why)))?,
+                accessor::floats::<3>(&accessor, self.buffers)
+                    .map_err(|why| named((index, why)))?,
             ),
             None => None,
         };
         let uvs = match of(&Semantic::TexCoords(uv_set)) {
             Some((index, accessor)) => Some(
-                accessor::floats::<2>(&accessor, self.buffers).map_err(|why| named((index, why)))?,
+                accessor::floats::<2>(&accessor, self.buffers)
+                    .map_err(|why| named((index, why)))?,
             ),
             None => None,
         };
@@ -230,8 +232,10 @@ impl<'a> Import<'a> {
         };
         let triangles = self.triangles(primitive.mode(), &indices);
         self.corners += 3 * triangles.len();
-        if u32::try_from(self.corners).is_err() {
-            return Err(format!("more than {} corners in all", u32::MAX));
+        if self.corners > MOST_CORNERS {
+            return Err(format!(
+                "more than {MOST_CORNERS} corners in all: split the file"
+            ));
         }
         self.builder.report.faces += triangles.len();
         if normals.is_none() {
@@ -249,9 +253,13 @@ impl<'a> Import<'a> {
             let position = positions.get(at).ok_or_else(|| {
                 format!("names vertex {index}, but there are {}", positions.len())
             })?;
-            let placed = transform.transform_point3(Vec3::from(*position).as_dvec3()).as_vec3();
+            let placed = transform
+                .transform_point3(Vec3::from(*position).as_dvec3())
+                .as_vec3();
             if !placed.is_finite() {
-                return Err(format!("vertex {index} is at {placed}, which is not finite"));
+                return Err(format!(
+                    "vertex {index} is at {placed}, which is not finite"
+                ));
             }
             let normal = normals.as_ref().and_then(|normals| normals.get(at));
             let uv = uvs.as_ref().and_then(|uvs| uvs.get(at));
@@ -276,7 +284,8 @@ impl<'a> Import<'a> {
                 line: 0,
             };
             let none = |_: &MeshBuilder| None::<DVec3>;
-            self.builder.add(corners, none, group, Some(material as u32), face);
+            self.builder
+                .add(corners, none, group, Some(material as u32), face);
         }
         Ok(())
     }
@@ -304,7 +313,10 @@ impl<'a> Import<'a> {
             }
             Mode::TriangleFan => {
                 let rim = indices.get(1..).unwrap_or_default();
-                return rim.windows(2).map(|of| [of[0], of[1], indices[0]]).collect();
+                return rim
+                    .windows(2)
+                    .map(|of| [of[0], of[1], indices[0]])
+                    .collect();
             }
         }
         Vec::new()

@@ -329,7 +329,8 @@ impl<'a> Guard<'a> {
             })?),
         };
         let uv = match uv {
-            Some(uv) if self.with_materials && !uv.is_empty() => {
+            // Without a file of materials nothing is looked up by them.
+            Some(uv) if !self.libraries.is_empty() && !uv.is_empty() => {
                 Some(resolve(uv, self.uvs.len(), |written, available| {
                     FaceProblem::NoSuchUv { written, available }
                 })?)

@@ -86,7 +86,9 @@ impl Import<'_> {
                 .positions
                 .chunks_exact(3)
                 .map(|p| Vec3::new(p[0], p[1], p[2]));
-            let welded: Vec<u32> = points.map(|point| self.builder.positions.index(point)).collect();
+            let welded: Vec<u32> = points
+                .map(|point| self.builder.positions.index(point))
+                .collect();
             read += welded.len();
             for (range, record) in faces(mesh).zip(&mut records) {
                 polygon.clear();
@@ -160,7 +162,9 @@ impl Import<'_> {
             .iter()
             .map(|corner| builder.point(corner.position))
             .collect();
-        let Some(triangles) = polygon::cut(&points, self.options.quads.apex()) else {
+        let Some(triangles) =
+            polygon::cut(&points, self.options.quads.apex(), self.options.concave)
+        else {
             self.uncut_count += 1;
             if self.uncut.len() < FACES_SHOWN {
                 self.uncut.push(FaceFault {

@@ -9,10 +9,11 @@ use crate::{
     limit::Limit,
     mask::Mask,
     material::Material,
+    pattern::Pattern,
     texture::{Source, Texels, Texture, Wrap},
 };
 use std::{
-    collections::HashMap,
+    collections::{BTreeMap, HashMap},
     io::{self, BufRead, Read},
     path::{Path, PathBuf},
     sync::Arc,
@@ -42,6 +43,9 @@ pub(super) fn materials(
     options: &ObjOptions,
     path: &Path,
 ) -> Result<Found, SceneError> {
+    if let ObjMaterials::Made(patterns) = &options.materials {
+        return made(guard, patterns, path).map(|materials| (materials, Vec::new()));
+    }
     let mut reading = Reading {
         path,
         with_masks: options.materials == ObjMaterials::All,
@@ -75,6 +79,32 @@ pub(super) fn materials(
         });
     }
     Ok((materials, reading.missing))
+}
+
+/// Materials that are known by name alone, some with a mask that is made here.
+fn made(
+    guard: &Guard<'_>,
+    patterns: &BTreeMap<String, Pattern>,
+    path: &Path,
+) -> Result<Vec<Material>, SceneError> {
+    if let Some(unknown) = patterns.keys().find(|name| !guard.materials.contains(name)) {
+        return Err(SceneError::Material {
+            path: path.to_owned(),
+            place: format!("material {unknown:?}"),
+            reason: "the scene file makes a mask for it, but no face uses it".to_owned(),
+            way_out: "leave it out of the scene file",
+        });
+    }
+    let masks: BTreeMap<&String, Arc<Mask>> = patterns
+        .iter()
+        .map(|(name, pattern)| (name, Arc::new(pattern.mask())))
+        .collect();
+    let materials = guard.materials.iter().map(|name| Material {
+        name: name.clone(),
+        mask: masks.get(name).cloned(),
+        ..Material::default()
+    });
+    Ok(materials.collect())
 }
 
 struct Reading<'a> {
@@ -187,7 +217,11 @@ fn beside(file: &Path, name: &str) -> PathBuf {
 fn texture_name(text: &str) -> (String, Wrap) {
     let mut wrap = Wrap::Repeat;
     let mut rest = text.trim();
-    while let Some(option) = rest.split_whitespace().next().filter(|word| is_option(word)) {
+    while let Some(option) = rest
+        .split_whitespace()
+        .next()
+        .filter(|word| is_option(word))
+    {
         rest = rest[option.len()..].trim_start();
         while let Some(word) = rest.split_whitespace().next() {
             let is_value = match option {

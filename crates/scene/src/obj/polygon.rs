@@ -1,5 +1,6 @@
 //! Cuts a polygon into triangles.
 
+use super::options::Concave;
 use earcut::Earcut;
 use glam::{DVec2, DVec3};
 
@@ -7,14 +8,14 @@ use glam::{DVec2, DVec3};
 const FLAT: f64 = 1.0 / (1u32 << 20) as f64;
 
 /// The triangles of a polygon, as corner numbers, wound as it is: the fan from corner `apex` where
-/// that is a partition of it, as it is of every convex polygon; else what an ear cutter makes of it.
-/// `None` where the polygon intersects itself.
-pub(super) fn cut(points: &[DVec3], apex: usize) -> Option<Vec<[usize; 3]>> {
+/// that is a partition of it, as it is of every convex polygon; else what an ear cutter makes of
+/// it. `None` where the polygon intersects itself.
+pub(super) fn cut(points: &[DVec3], apex: usize, concave: Concave) -> Option<Vec<[usize; 3]>> {
     let count = points.len();
     let fan: Vec<[usize; 3]> = (1..count - 1)
         .map(|step| [apex, (apex + step) % count, (apex + step + 1) % count])
         .collect();
-    if count == 3 {
+    if count == 3 || concave == Concave::Fan {
         return Some(fan);
     }
     let flat = project(points);
@@ -104,7 +105,11 @@ fn ears(points: &[DVec2]) -> Vec<[usize; 3]> {
             ring.push((from, true));
             if following(from) == to {
                 let between = (1..count).map(|step| (from + step) % count);
-                ring.extend(between.take_while(|&next| next != to).map(|next| (next, false)));
+                ring.extend(
+                    between
+                        .take_while(|&next| next != to)
+                        .map(|next| (next, false)),
+                );
             }
         }
         split(ring, &mut triangles);

@@ -1,6 +1,10 @@
 //! Reading the file, and what is refused of it.
 
-use super::{guard::Guard, import::import, options::{ObjMaterials, ObjOptions}};
+use super::{
+    guard::Guard,
+    import::import,
+    options::{ObjMaterials, ObjOptions},
+};
 use crate::{
     error::{EXTENTS, SceneError},
     limit::Limit,

@@ -196,7 +196,8 @@ mod tests {
                 hit,
                 Hit {
                     t: 2.0,
-                    front: true
+                    front: true,
+                    weights: [0.5, 0.25, 0.25],
                 }
             );
             let behind = Ray::new(
@@ -209,7 +210,8 @@ mod tests {
                 behind.hit(&turned),
                 Some(Hit {
                     t: 2.0,
-                    front: false
+                    front: false,
+                    weights: [0.5, 0.25, 0.25],
                 })
             );
         }

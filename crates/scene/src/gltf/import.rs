@@ -3,6 +3,7 @@
 use super::{
     accessor,
     buffers::{self, GLTF_FILE},
+    document::{self, Fault},
     materials,
 };
 use crate::{
@@ -44,8 +45,7 @@ pub fn parse_gltf(bytes: &[u8], path: &Path) -> Result<(Mesh, ImportReport), Sce
         place,
         reason,
     };
-    let gltf::Gltf { document, blob } =
-        gltf::Gltf::from_slice(bytes).map_err(|why| fail(refusal(&why)))?;
+    let (document, blob) = document::parse(bytes).map_err(fail)?;
     let buffers = buffers::read(&document, blob, path).map_err(fail)?;
     let mut import = Import::new(path, &buffers);
     import.read_materials(&document).map_err(fail)?;
@@ -62,37 +62,6 @@ pub fn parse_gltf(bytes: &[u8], path: &Path) -> Result<(Mesh, ImportReport), Sce
     check_extent(&mesh, path)?;
     Ok((mesh, report))
 }
-
-/// Where the `gltf` crate found a mistake, and what it is.
-fn refusal(error: &gltf::Error) -> (String, String) {
-    match error {
-        gltf::Error::Validation(mistakes) => {
-            let (place, what) = match mistakes.first() {
-                Some((place, what)) => (place.to_string(), what.to_string()),
-                None => (String::new(), String::new()),
-            };
-            let more = match mistakes.len() {
-                0 | 1 => String::new(),
-                count => format!(" (and {} more)", count - 1),
-            };
-            let required = place.starts_with("extensionsRequired");
-            let reason = match required {
-                true => format!(
-                    "the file cannot be read without an extension that this program does not \
-                     know{more}; export it without"
-                ),
-                false => format!("{what}{more}"),
-            };
-            (place, reason)
-        }
-        gltf::Error::Deserialize(why) => ("its JSON".to_owned(), why.to_string()),
-        gltf::Error::Binary(why) => ("its binary container".to_owned(), why.to_string()),
-        other => ("the file".to_owned(), other.to_string()),
-    }
-}
-
-/// A place in the file, and what is wrong there.
-type Fault = (String, String);
 
 struct Import<'a> {
     path: &'a Path,

@@ -6,6 +6,7 @@
 
 mod accessor;
 mod buffers;
+mod document;
 mod import;
 mod materials;
 

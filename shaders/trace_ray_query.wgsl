@@ -5,6 +5,7 @@
 enable wgpu_ray_query;
 
 #import "shared/trace_entries.wgsl"
+#import "shared/solid.wgsl"
 
 var scene_tlas: acceleration_structure;
 
@@ -23,8 +24,11 @@ fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
     rayQueryInitialize(&query, scene_tlas, asked);
     while rayQueryProceed(&query) {
         let found = rayQueryGetCandidateIntersection(&query);
+        let weights = found.barycentrics;
         // The interval is open below, whatever the device holds.
-        if found.primitive_index != skipped && found.t > ray.t_min {
+        if found.primitive_index != skipped
+            && found.t > ray.t_min
+            && is_opaque(found.primitive_index, weights.x, weights.y) {
             rayQueryConfirmIntersection(&query);
         }
     }

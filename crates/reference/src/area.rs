@@ -131,7 +131,7 @@ impl Emitter {
     }
 }
 
-impl Oracle<'_> {
+impl<'a> Oracle<'a> {
     /// The right answer under this light: [`shade`](Self::shade) of one without extent,
     /// [`shade_area`](Self::shade_area) of one that has an extent.
     ///
@@ -201,7 +201,14 @@ impl Oracle<'_> {
             shares: shares.iter().map(|[share, _]| *share as f32).collect(),
             standard_errors: shares.iter().map(|[_, error]| *error as f32).collect(),
         };
-        Ok((Reference::of(camera.viewport, &answers), area))
+        Ok((
+            Reference::of(
+                camera.viewport,
+                &answers,
+                self.base_colors(camera, primitives),
+            ),
+            area,
+        ))
     }
 
     /// Those that could stand in the light's cone; `None` if they are many, or the receiver is within
@@ -212,14 +219,14 @@ impl Oracle<'_> {
         cone: &Cone,
         excluded: u32,
         stack: &mut Vec<u32>,
-    ) -> Option<Vec<Caster>> {
+    ) -> Option<Vec<Caster<'a>>> {
         if cone.sin >= 1.0 {
             return None;
         }
         let mut casters = Vec::new();
         self.tree.within(origin, cone, stack, |caster| {
             if caster.primitive != excluded {
-                casters.push(*caster);
+                casters.push(caster);
             }
             match casters.len() > MOST_CASTERS {
                 true => ControlFlow::Break(()),
@@ -250,10 +257,7 @@ impl Oracle<'_> {
                 return !self.occluded(origin, way, excluded, stack);
             };
             let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
-            let blocks = |caster: &Caster| {
-                ray.hit(&caster.corners)
-                    .is_some_and(|hit| ray.reaches(hit.t))
-            };
+            let blocks = |caster: &Caster| caster.hit(&ray).is_some_and(|hit| ray.reaches(hit.t));
             let blocker = casters.iter().position(blocks);
             // What blocks one ray is likely to block the next.
             if let Some(blocker) = blocker {

@@ -241,8 +241,9 @@ fn bin(caster: Caster, first: u32, end: u32, step: u32) {
             let texel = at * TILE + first_of(texels);
             let bit = first_bit(texels);
             let centre = vec2<f32>(texel) + 0.5;
+            let deepest = farthest[texel_number(binned_layer, texel)];
             let is_overlapped = all(inward_of(caster.triangle, centre) >= -caster.reach)
-                && depth_bits(least_depth(caster, centre)) <= farthest[texel_number(binned_layer, texel)];
+                && depth_bits(least_depth(caster, centre)) <= deepest;
             overlapped |= select(vec2(0u), bit, is_overlapped);
             texels &= ~bit;
             if all(texels == vec2(0u)) {

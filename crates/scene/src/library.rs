@@ -26,7 +26,7 @@ const SCENE_FILE: Limit = Limit {
 };
 
 /// Scene files that are part of the program: name and text.
-const BUILT_IN: [(&str, &str); 6] = [
+const BUILT_IN: [(&str, &str); 7] = [
     ("avenue", include_str!("../../../scenes/avenue.ron")),
     ("bench", include_str!("../../../scenes/bench.ron")),
     ("city", include_str!("../../../scenes/city.ron")),

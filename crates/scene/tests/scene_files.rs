@@ -69,7 +69,7 @@ fn broken_files_are_explained_with_line_and_column() {
     assert_snapshot!(error("format: 1", "format: 2"), @"garden.ron:2:13: format 2 is unknown; \
         this program reads format 1");
     assert_snapshot!(error("\"park\"", "\"parc\""), @"garden.ron:4:22: no generated mesh is called \
-        \"parc\"; there are: park, city:TRIANGLES, forest:TRIANGLES");
+        \"parc\"; there are: park, avenue, city:TRIANGLES, forest:TRIANGLES");
     assert_snapshot!(error("Generated(", "Made("), @"garden.ron:4:11: Unexpected variant named \
         `Made` in enum `MeshSource`, expected one of `Obj`, `Gltf`, or `Generated` instead");
     assert_snapshot!(error("(0, -1, 0)", "(0, -1)"), @"garden.ron:5:30: Expected a tuple of size \

@@ -297,7 +297,12 @@ impl<'a> Oracle<'a> {
             .collect()
     }
 
-    fn answer(&self, receiver: &Receiver, mode: OracleMode, stack: &mut Vec<u32>) -> Answer {
+    pub(crate) fn answer(
+        &self,
+        receiver: &Receiver,
+        mode: OracleMode,
+        stack: &mut Vec<u32>,
+    ) -> Answer {
         let facing = Answer::facing(receiver);
         if facing.class == Class::FacingAway {
             return facing;

@@ -91,6 +91,7 @@ const CSV: &[Figure] = &[
     ("reference_error_worst", Always(|_, run| area(run, |of| Real(of.standard_error_worst)))),
     ("penumbra", Always(|_, run| area(run, |of| Count(of.penumbra)))),
     ("rmse", Measure(|of| graded(of, |by| Real(by.rmse)))),
+    ("rmse_outside_band", Measure(|of| graded(of, |by| Real(by.rmse_outside_band)))),
     ("mean_absolute_error", Measure(|of| graded(of, |by| Real(by.mean_absolute_error)))),
     ("off_over_1_255", Measure(|of| graded(of, |by| Share(by.off.over_1_255)))),
     ("off_over_1_16", Measure(|of| graded(of, |by| Share(by.off.over_1_16)))),
@@ -132,13 +133,14 @@ const TERMINAL: [Entry; 11] = [
 ];
 
 /// The terminal's table of answers that are graded, or judged by the shares of a light with extent.
-const GRADED: [Entry; 14] = [
+const GRADED: [Entry; 15] = [
     ("preset", "method", ""),
     (MAP_SIZE, "map", ""),
     ("answer", "answer", ""),
     ("gpu_ms", "GPU ms", ""),
     ("wall_ms", "wall ms", ""),
     ("rmse", "RMSE", ""),
+    ("rmse_outside_band", "outside band", ""),
     ("mean_absolute_error", "mean error", ""),
     ("off_over_1_255", "> 1/255", ""),
     ("off_over_1_16", "> 1/16", ""),
@@ -150,11 +152,12 @@ const GRADED: [Entry; 14] = [
 ];
 
 /// The same of a document.
-const GRADED_DOCUMENT: [Entry; 13] = [
+const GRADED_DOCUMENT: [Entry; 14] = [
     ("preset", "method", ""),
     (MAP_SIZE, "map", ""),
     ("answer", "answer", ""),
     ("rmse", "RMSE", ""),
+    ("rmse_outside_band", "outside band", ""),
     ("mean_absolute_error", "mean error", ""),
     ("off_over_1_255", "> 1/255 %", ""),
     ("off_over_1_16", "> 1/16 %", ""),

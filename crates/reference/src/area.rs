@@ -163,7 +163,7 @@ impl<'a> Oracle<'a> {
     ///
     /// Which pixels face the light, the centre of the light decides: dot(n, l) ≤ 0 is facing away,
     /// though a part of the light may be above the horizon. A pixel's class is *lit* where it sees
-    /// half of the light or more. Indeterminate are only those that could face away as well.
+    /// half of the light or more. Indeterminate are those whose answer to the light's centre is.
     ///
     /// # Errors
     /// Those of [`shade`](Self::shade).
@@ -184,15 +184,17 @@ impl<'a> Oracle<'a> {
             let Some(receiver) = receiver else {
                 return Ok((Answer::BACKGROUND, [0.0; 2]));
             };
-            let mut answer = Answer::facing(&receiver);
+            // Of the light's centre, for what is indeterminate.
+            let mut answer = self.answer(&receiver, mode, stack);
             if answer.class == Class::FacingAway {
                 return Ok((answer, [0.0; 2]));
             }
             let emitter = Emitter::seen_from(&light, &receiver);
             let of = self.share(&emitter, &strata, &receiver, mode, [x, y], stack);
-            if of[0] < 0.5 {
-                answer.class = Class::Shadow;
-            }
+            answer.class = match of[0] < 0.5 {
+                true => Class::Shadow,
+                false => Class::Lit,
+            };
             Ok((answer, of))
         })?;
         let (answers, shares): (Vec<Answer>, Vec<[f64; 2]>) = pixels.into_iter().unzip();

@@ -320,7 +320,12 @@ impl<'a> Oracle<'a> {
         primitives.par_iter().enumerate().map(colour).collect()
     }
 
-    fn answer(&self, receiver: &Receiver, mode: OracleMode, stack: &mut Vec<u32>) -> Answer {
+    pub(crate) fn answer(
+        &self,
+        receiver: &Receiver,
+        mode: OracleMode,
+        stack: &mut Vec<u32>,
+    ) -> Answer {
         let facing = Answer::facing(receiver);
         if facing.class == Class::FacingAway {
             return facing;

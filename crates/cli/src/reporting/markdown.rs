@@ -122,7 +122,7 @@ fn pixels<'a>(run: &'a Run, footnotes: &mut Footnotes<'a>) -> String {
     let (lit, shadow) = (count(counts.lit, "lit"), count(counts.shadow, "shadow"));
     let facing_away = count(counts.facing_away, "facing_away");
     let doubt = match &run.area {
-        Some(area) => area_reference(area),
+        Some(area) => area_reference(area, run.band),
         None => format!(
             "in the band {} ({} % of PFL)",
             thousands(run.band),

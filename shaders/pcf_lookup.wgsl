@@ -4,6 +4,7 @@
 // region instead of some by chance.
 
 #import "shared/depth_bias.wgsl"
+#import "shared/map_layers.wgsl"
 #import "shared/receiver.wgsl"
 
 struct Params {
@@ -14,7 +15,7 @@ struct Params {
 }
 
 var<uniform> params: Params;
-var shadow_map: texture_depth_2d;
+var shadow_maps: texture_depth_2d_array;
 var nearer: sampler_comparison;
 
 @fragment
@@ -25,27 +26,30 @@ fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) f32 {
     if status != STATUS_UNCERTAIN {
         return f32(initial_visibility(status));
     }
-    let place = light_texel(receiver.xyz);
-    if is_outside(place.xy) {
+    let layer = layer_of(receiver.xyz);
+    let fit = fit_of(layer);
+    let place = texel_of(fit, receiver.xyz);
+    if is_outside_of(fit, place.xy) {
         return 1.0;
     }
     // The plane rises over all of the square.
     let slope_bias = params.slope_bias * f32(params.radius + 1u);
-    let depth = place.z - depth_bias(receiver.w, params.bias, slope_bias);
+    let bias = bias_at(fit, receiver.xyz, place, receiver.w, params.bias, slope_bias);
+    let depth = place.z - bias;
     if params.compare == COMPARE_SAMPLER {
-        return sampled(place.xy, depth);
+        return sampled(place.xy, layer, depth);
     }
-    return by_hand(place.xy, depth);
+    return by_hand(place.xy, layer, depth);
 }
 
 // The mean of 2 · radius + 1 bilinear comparisons in each direction.
-fn sampled(place: vec2<f32>, depth: f32) -> f32 {
+fn sampled(place: vec2<f32>, layer: u32, depth: f32) -> f32 {
     let radius = i32(params.radius);
     var lit = 0.0;
     for (var y = -radius; y <= radius; y++) {
         for (var x = -radius; x <= radius; x++) {
             let at = (place + vec2(f32(x), f32(y))) / map_fit.size;
-            lit += textureSampleCompareLevel(shadow_map, nearer, at, depth);
+            lit += textureSampleCompareLevel(shadow_maps, nearer, at, layer, depth);
         }
     }
     return lit / f32((2 * radius + 1) * (2 * radius + 1));
@@ -53,9 +57,9 @@ fn sampled(place: vec2<f32>, depth: f32) -> f32 {
 
 // The same, each texel compared once: those between count whole, the outermost by what a square of
 // 2 · radius + 1 texels around the receiver covers of them.
-fn by_hand(place: vec2<f32>, depth: f32) -> f32 {
+fn by_hand(place: vec2<f32>, layer: u32, depth: f32) -> f32 {
     let radius = i32(params.radius);
-    let end = vec2<i32>(textureDimensions(shadow_map)) - 1;
+    let end = vec2<i32>(textureDimensions(shadow_maps)) - 1;
     let first = vec2<i32>(floor(place - 0.5)) - radius;
     let last = 2 * radius + 1;
     let part = fract(place - 0.5);
@@ -65,7 +69,7 @@ fn by_hand(place: vec2<f32>, depth: f32) -> f32 {
             let step = vec2(x, y);
             let begun = select(vec2(1.0), 1.0 - part, step == vec2(0));
             let cover = select(begun, part, step == vec2(last));
-            let stored = textureLoad(shadow_map, clamp(first + step, vec2(0), end), 0);
+            let stored = textureLoad(shadow_maps, clamp(first + step, vec2(0), end), layer, 0);
             lit += cover.x * cover.y * select(0.0, 1.0, depth <= stored);
         }
     }

@@ -42,22 +42,6 @@ fn is_lit(receiver: vec3<f32>, n_dot_l: f32) -> bool {
     }
     let stored = textureLoad(shadow_maps, vec2<u32>(place.xy), layer, 0);
     // 1 is what the map was cleared to: no caster, however far.
-    return stored >= 1.0 || place.z <= stored + bias_at(fit, receiver, place, n_dot_l);
-}
-
-fn bias_at(fit: MapFit, receiver: vec3<f32>, place: vec3<f32>, n_dot_l: f32) -> f32 {
-    var x = fit.x.xy;
-    var y = fit.y.xy;
-    if map_is_projective {
-        // Texels differ in size: by the derivative of the quotients here.
-        let w = dot(fit.w.xyz, vec3(light_clip(receiver).xy, 1.0));
-        x = (x - place.x * fit.w.xy) / w;
-        y = (y - place.y * fit.w.xy) / w;
-    }
-    if light_kind != LIGHT_DIRECTIONAL {
-        // The nearer the light, the smaller.
-        x /= max(place.z, 1e-6);
-        y /= max(place.z, 1e-6);
-    }
-    return depth_bias_of(x, y, n_dot_l, params.bias, params.slope_bias);
+    let bias = bias_at(fit, receiver, place, n_dot_l, params.bias, params.slope_bias);
+    return stored >= 1.0 || place.z <= stored + bias;
 }

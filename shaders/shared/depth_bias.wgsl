@@ -4,8 +4,28 @@
 
 // The plane of the receiver rises by tan(angle to the light) per unit across; `slope_bias` counts
 // in texels of that rise.
-fn depth_bias(n_dot_l: f32, bias: f32, slope_bias: f32) -> f32 {
-    return depth_bias_of(map_fit.x.xy, map_fit.y.xy, n_dot_l, bias, slope_bias);
+fn bias_at(
+    fit: MapFit,
+    receiver: vec3<f32>,
+    place: vec3<f32>,
+    n_dot_l: f32,
+    bias: f32,
+    slope_bias: f32,
+) -> f32 {
+    var x = fit.x.xy;
+    var y = fit.y.xy;
+    if map_is_projective {
+        // Texels differ in size: by the derivative of the quotients here.
+        let w = dot(fit.w.xyz, vec3(light_clip(receiver).xy, 1.0));
+        x = (x - place.x * fit.w.xy) / w;
+        y = (y - place.y * fit.w.xy) / w;
+    }
+    if light_kind != LIGHT_DIRECTIONAL {
+        // The nearer the light, the smaller.
+        x /= max(place.z, 1e-6);
+        y /= max(place.z, 1e-6);
+    }
+    return depth_bias_of(x, y, n_dot_l, bias, slope_bias);
 }
 
 // `x` and `y`: what the map's x and y grow by per unit of clip x and y.

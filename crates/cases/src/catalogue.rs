@@ -1,6 +1,8 @@
 //! All cases.
 
-use crate::{case::HardCase, fences, light, lists, map, plain, rounding, solids, thin, topology};
+use crate::{
+    case::HardCase, fences, lamps, light, lists, map, plain, rounding, solids, thin, topology,
+};
 
 /// The catalogue, in the order in which it is shown.
 pub fn cases() -> Vec<HardCase> {
@@ -8,6 +10,7 @@ pub fn cases() -> Vec<HardCase> {
         plain::CASES,
         rounding::CASES,
         light::CASES,
+        lamps::CASES,
         map::CASES,
         lists::CASES,
         fences::CASES,
@@ -27,7 +30,6 @@ pub fn case(name: &str) -> Option<HardCase> {
 mod tests {
     use super::*;
     use crate::case::Casters;
-    use glam::DVec3;
     use skiagraph_scene::{Mesh, Scene};
     use std::collections::{BTreeSet, HashMap};
 

@@ -53,8 +53,8 @@ pub fn scene(bytes: &[u8]) -> String {
     let mut answer = String::new();
     for quads in [QuadDiagonal::FirstThird, QuadDiagonal::SecondFourth] {
         let options = ObjOptions {
-            leave_out: Vec::new(),
             quads,
+            ..ObjOptions::default()
         };
         match parse_obj(bytes, Path::new("house.obj"), &options) {
             Err(error) => answer = error.to_string(),

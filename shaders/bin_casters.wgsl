@@ -156,8 +156,9 @@ fn caster_of_face(primitive: u32) -> Caster {
     // What projection makes of rounding, and of what the tracer takes to be on an edge: 8 half ulps
     // of the longest way there is, seen from the nearest corner.
     let aside = max(farthest_aside(a), max(farthest_aside(b), farthest_aside(c)));
-    let rounding = 8.0 * HALF_ULP * light.max_distance / nearest
-        + CLIP_ROUNDING * (2.0 + 4.0 * light_spread()) * (1.0 + aside) * (1.0 + aside);
+    let spread = light_spread();
+    let rounding = 8.0 * HALF_ULP * light.max_distance * spread / nearest
+        + CLIP_ROUNDING * (2.0 + 4.0 * spread) * (1.0 + aside) * (1.0 + aside);
     let slack = SLACK + map_fit.scale * rounding;
     if !(nearest > 0.0 && slack < 0.125 * map_fit.size) {
         let plane = DepthPlane(vec3(0.0), vec2(0.0), -1.0, least, greatest);
@@ -189,8 +190,9 @@ fn caster_of_whole_face(
     plane: DepthPlane,
 ) -> Caster {
     // Beyond one of the planes x = w, x = -w, y = w, y = -w, by more than rounding.
-    let room = 2.0 * CLIP_ROUNDING * (1.0 + light_spread()) * light.range
-        + 8.0 * HALF_ULP * light.max_distance;
+    let spread = light_spread();
+    let room = 2.0 * CLIP_ROUNDING * (1.0 + spread) * light.range
+        + 8.0 * HALF_ULP * light.max_distance * spread;
     let wide = (1.0 + 2.0 / map_fit.size) * vec3(a.w, b.w, c.w) + room;
     let x = vec3(a.x, b.x, c.x);
     let y = vec3(a.y, b.y, c.y);
@@ -241,8 +243,9 @@ fn bin(caster: Caster, first: u32, end: u32, step: u32) {
             let texel = at * TILE + first_of(texels);
             let bit = first_bit(texels);
             let centre = vec2<f32>(texel) + 0.5;
+            let deepest = farthest[texel_number(binned_layer, texel)];
             let is_overlapped = all(inward_of(caster.triangle, centre) >= -caster.reach)
-                && depth_bits(least_depth(caster, centre)) <= farthest[texel_number(binned_layer, texel)];
+                && depth_bits(least_depth(caster, centre)) <= deepest;
             overlapped |= select(vec2(0u), bit, is_overlapped);
             texels &= ~bit;
             if all(texels == vec2(0u)) {

@@ -4,33 +4,4 @@
 
 enable wgpu_ray_query;
 
-#import "shared/trace_entries.wgsl"
-
-var scene_tlas: acceleration_structure;
-
-const ALL_INSTANCES: u32 = 0xffu;
-
-fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
-    let missed = Hit(ray.t_max, NO_PRIMITIVE, 0.0, 0.0);
-    if !(ray.t_min < ray.t_max) || all(ray.direction == vec3(0.0)) {
-        return missed;
-    }
-    let flags = select(RAY_FLAG_NONE, RAY_FLAG_TERMINATE_ON_FIRST_HIT, first_found);
-    let asked = RayDesc(
-        flags, ALL_INSTANCES, ray.t_min, ray.t_max, ray.origin, ray.direction,
-    );
-    var query: ray_query;
-    rayQueryInitialize(&query, scene_tlas, asked);
-    while rayQueryProceed(&query) {
-        let found = rayQueryGetCandidateIntersection(&query);
-        // The interval is open below, whatever the device holds.
-        if found.primitive_index != skipped && found.t > ray.t_min {
-            rayQueryConfirmIntersection(&query);
-        }
-    }
-    let found = rayQueryGetCommittedIntersection(&query);
-    if found.kind == RAY_QUERY_INTERSECTION_NONE {
-        return missed;
-    }
-    return Hit(found.t, found.primitive_index, found.barycentrics.x, found.barycentrics.y);
-}
+#import "shared/trace_queries.wgsl"

@@ -17,7 +17,7 @@ fn plan(path: &str, outputs: Option<&[&str]>) -> Plan {
         triangles: vec![[0, 1, 2]],
         normals: vec![Vec3::Z],
         normal_indices: vec![[0; 3]],
-        groups: vec![],
+        ..Mesh::default()
     };
     let light = DirectionalLight::new(DVec3::NEG_Z);
     let provider = SceneProvider::new(Arc::new(Scene {

@@ -42,16 +42,19 @@ fn buffers(provider: &SceneProvider) -> Vec<String> {
 #[test]
 fn buffers_are_as_large_as_described() {
     let gpu = open();
-    let mut provider = provider(meshes::soup(50, 0.2, 1));
-    for name in buffers(&provider) {
-        let described = provider.describe(&name).unwrap();
-        let size = build(&mut provider, &gpu, &name).unwrap().size();
-        match described.items {
-            Some(items) => assert_eq!(size, items * described.stride, "{name}"),
-            None => assert_eq!(size % described.stride, 0, "{name}"),
+    for mesh in [meshes::soup(50, 0.2, 1), meshes::foliage(50, 0.2, 2.0, 1)] {
+        let mut provider = provider(mesh);
+        for name in buffers(&provider) {
+            let described = provider.describe(&name).unwrap();
+            let size = build(&mut provider, &gpu, &name).unwrap().size();
+            match described.items {
+                // What a mesh has none of is one zero item.
+                Some(items) => assert_eq!(size, items.max(1) * described.stride, "{name}"),
+                None => assert_eq!(size % described.stride, 0, "{name}"),
+            }
+            let is_uniform = described.binding == ProvidedBinding::Uniform;
+            assert_eq!(is_uniform, !name.starts_with("scene."), "{name}");
         }
-        let is_uniform = described.binding == ProvidedBinding::Uniform;
-        assert_eq!(is_uniform, !name.starts_with("scene."), "{name}");
     }
 }
 

@@ -280,8 +280,8 @@ fn wrong_share(answers: &Answers, distances: &[f64], between: [f64; 2]) -> f64 {
     wrong / all
 }
 
-/// Duelling frusta: where the light shines into the eye no trapezoid is better than a rectangle, and
-/// `tsm` falls back to one; from aside it has a fraction of its wrong pixels.
+/// Duelling frusta: where the light shines into the eye no trapezoid is better than a rectangle,
+/// and `tsm` falls back to one; from aside it has a fraction of its wrong pixels.
 #[test]
 fn against_the_light_a_trapezoid_gains_nothing() {
     let share = |view: &str| {

@@ -4,6 +4,7 @@
 #import "shared/geometry.wgsl"
 #import "shared/ray.wgsl"
 #import "shared/predicates.wgsl"
+#import "shared/solid.wgsl"
 
 // The axis permutation and the shear that turn a ray into the z axis.
 struct Sheared {
@@ -44,7 +45,7 @@ fn intersect(ray: Sheared, primitive: u32, t_min: f32, hit: ptr<function, Hit>) 
     // Divided first: the product of a small area and a small distance would underflow.
     let barycentric = weights / sum;
     let t = dot(barycentric, vec3(a.z, b.z, c.z));
-    if !(t > t_min && t <= (*hit).t) {
+    if !(t > t_min && t <= (*hit).t) || !is_opaque(primitive, barycentric.y, barycentric.z) {
         return false;
     }
     *hit = Hit(t, primitive, barycentric.y, barycentric.z);

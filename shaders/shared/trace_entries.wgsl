@@ -4,8 +4,8 @@
 #import "shared/groups.wgsl"
 #import "shared/ray.wgsl"
 #import "shared/ids.wgsl"
+#import "shared/ray_total.wgsl"
 
-var<storage, read> count: u32;
 var<storage, read> rays: array<Ray>;
 var<storage, read> skip: array<u32>;
 var<storage, read_write> hits: array<Hit>;

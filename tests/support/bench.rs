@@ -11,6 +11,7 @@ use std::sync::Arc;
 /// What a preset answers, pixel by pixel, and the oracle.
 pub struct Answers {
     pub visibility: Vec<u32>,
+    pub primitives: Vec<u32>,
     pub reference: Reference,
     pub counts: Statistics,
 }
@@ -95,6 +96,7 @@ impl<'a> Bench<'a> {
         );
         Answers {
             visibility,
+            primitives,
             reference,
             counts,
         }

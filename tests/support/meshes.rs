@@ -1,8 +1,9 @@
 //! Small meshes.
 
 use super::random::Random;
-use glam::Vec3;
-use skiagraph_scene::Mesh;
+use glam::{Vec2, Vec3};
+use skiagraph_scene::{Mask, Material, Mesh, Surfaces, Wrap};
+use std::sync::Arc;
 
 /// A mesh with one normal per triangle.
 pub fn mesh(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Mesh {
@@ -95,4 +96,61 @@ pub fn potato(levels: u32, roughness: f32, seed: u64) -> Mesh {
         .map(|p| p * (1.0 + roughness * random.unit()))
         .collect();
     mesh(positions, triangles)
+}
+
+/// `count` masked, double-sided squares of about `size` at random places in a cube of half edge 1,
+/// their texture coordinates turned, stretched and beyond 0…1, over a floor that is not masked.
+pub fn foliage(count: u32, size: f32, floor: f32, seed: u64) -> Mesh {
+    let mut random = Random(seed);
+    let mut positions = Vec::new();
+    let mut triangles = Vec::new();
+    let mut surfaces = Surfaces::default();
+    for leaf in 0..count {
+        let (centre, along) = (random.vector(), random.vector().normalize() * size);
+        let across = along.cross(random.vector()).normalize() * size;
+        let first = 4 * leaf;
+        positions.extend([
+            centre - along - across,
+            centre + along - across,
+            centre + along + across,
+            centre - along + across,
+        ]);
+        triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+        let turn = Vec2::from_angle(3.0 * random.unit()) * (1.0 + random.unit().abs());
+        let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let shift = 3.0 * random.vector().truncate();
+        let uvs = corners.map(|corner| turn.rotate(Vec2::from(corner)) + shift);
+        surfaces.uvs.extend(uvs);
+        surfaces
+            .uv_indices
+            .extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+        surfaces.of.extend([leaf % 3; 2]);
+    }
+    let corners = [
+        (-floor, floor),
+        (floor, floor),
+        (floor, -floor),
+        (-floor, -floor),
+    ];
+    let first = 4 * count;
+    positions.extend(corners.map(|(x, z)| Vec3::new(x, -1.5, z)));
+    triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+    surfaces.uv_indices.extend([[0; 3]; 2]);
+    surfaces.of.extend([3; 2]);
+    let disk = |x: u32, y: u32| (x as f32 - 15.5).hypot(y as f32 - 15.5) < 13.0;
+    let masks = [
+        Mask::new([32, 32], [Wrap::Repeat; 2], disk),
+        Mask::new([5, 3], [Wrap::Mirror, Wrap::Clamp], |x, y| (x + y) % 2 == 0),
+        Mask::new([1, 64], [Wrap::Clamp, Wrap::Repeat], |_, y| y % 7 < 4),
+    ];
+    surfaces.materials.extend(masks.map(|mask| Material {
+        mask: Some(Arc::new(mask)),
+        double_sided: true,
+        ..Material::default()
+    }));
+    surfaces.materials.push(Material::default());
+    Mesh {
+        surfaces,
+        ..mesh(positions, triangles)
+    }
 }

@@ -27,7 +27,10 @@ fn expand(path: &str, seen: &mut BTreeSet<String>) -> String {
     for line in text.lines() {
         match line.strip_prefix("#import \"") {
             Some(import) => {
-                let import = import.trim_end_matches('"');
+                let whole_import = import.trim_end_matches('"');
+                let (import, replaced) = whole_import.split_once("\" instead \"").unzip();
+                seen.extend(replaced.map(str::to_owned));
+                let import = import.unwrap_or(whole_import);
                 if seen.insert(import.to_owned()) {
                     whole += &expand(import, seen);
                 }

@@ -1,7 +1,8 @@
 //! All cases.
 
 use crate::{
-    case::HardCase, fences, light, lists, map, plain, rounding, soft, solids, thin, topology,
+    case::HardCase, fences, light, lists, map, masked, plain, rounding, soft, solids, thin,
+    topology,
 };
 
 /// The catalogue, in the order in which it is shown.
@@ -17,6 +18,7 @@ pub fn cases() -> Vec<HardCase> {
         soft::CASES,
         solids::CASES,
         topology::CASES,
+        masked::CASES,
     ]
     .concat()
 }

@@ -11,6 +11,7 @@ mod fences;
 mod light;
 mod lists;
 mod map;
+mod masked;
 mod plain;
 mod rounding;
 mod shape;

@@ -38,6 +38,12 @@ pub enum Error {
          `engine: Hierarchy`"
     )]
     LightSpaceKind(&'static str),
+    /// A texture of the mesh that cannot be read.
+    #[error("texture {0}")]
+    Texture(
+        /// Which one, and why.
+        String,
+    ),
     /// A triangle without its corner.
     #[error("a triangle of the mesh has the corner {index}, but it has only {corners} positions")]
     Corner {

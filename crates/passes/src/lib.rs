@@ -30,6 +30,7 @@
 //! # }
 //! ```
 
+pub mod atlas;
 pub mod error;
 pub mod presets;
 pub mod provider;

@@ -1,6 +1,7 @@
 //! The scene as resources of a graph, each uploaded when a live pass first asks for it.
 
 use crate::{
+    atlas::Atlas,
     error::Error,
     ray_query,
     uniforms::{CameraUniform, LIGHT_KINDS, LightAreaUniform, LightUniform},
@@ -9,6 +10,7 @@ use skiagraph_gpu::{Provider, ProviderError};
 use skiagraph_graph::{Describe, Provided, ProvidedBinding, ProvidedKind};
 use skiagraph_scene::{
     Adjacency, Bvh, BvhNode, LightKind, LightSpace, LightSpaceNode, Scene, View,
+    packed_masks::mask_words,
 };
 use std::{collections::BTreeMap, sync::Arc};
 use wgpu::util::DeviceExt;
@@ -23,6 +25,13 @@ const BVH_PRIMITIVES: &str = "scene.bvh_primitives";
 const LIGHT_SPACE_NODES: &str = "scene.light_space_nodes";
 const LIGHT_SPACE_PRIMITIVES: &str = "scene.light_space_primitives";
 const TLAS: &str = "scene.tlas";
+/// What `shared/masks.wgsl` reads: no items in a scene where no triangle is masked or double-sided.
+pub const MASKS: &str = "scene.masks";
+const UVS: &str = "scene.uvs";
+const UV_INDICES: &str = "scene.uv_indices";
+const MATERIALS: &str = "scene.materials";
+const MATERIAL_INDICES: &str = "scene.material_indices";
+const TEXELS: &str = "scene.texels";
 /// The uniform of `shared/camera.wgsl`.
 pub const CAMERA: &str = "camera";
 /// The uniform of `shared/light.wgsl`.
@@ -30,7 +39,7 @@ pub const LIGHT: &str = "light";
 /// The uniform of `shared/light_area.wgsl`.
 pub const LIGHT_AREA: &str = "light_area";
 
-const NAMES: [&str; 13] = [
+const NAMES: [&str; 19] = [
     POSITIONS,
     INDICES,
     NORMALS,
@@ -41,6 +50,12 @@ const NAMES: [&str; 13] = [
     LIGHT_SPACE_NODES,
     LIGHT_SPACE_PRIMITIVES,
     TLAS,
+    MASKS,
+    UVS,
+    UV_INDICES,
+    MATERIALS,
+    MATERIAL_INDICES,
+    TEXELS,
     CAMERA,
     LIGHT,
     LIGHT_AREA,
@@ -63,6 +78,12 @@ const OF_LIGHT: [&str; 4] = [LIGHT, LIGHT_AREA, LIGHT_SPACE_NODES, LIGHT_SPACE_P
 /// | `scene.light_space_nodes` | 32-byte [`LightSpaceNode`]s, node 0 is the root |
 /// | `scene.light_space_primitives` | `array<u32>`, primitive ids in their leaf order |
 /// | `scene.tlas` | `acceleration_structure`, one instance; primitives have their ids |
+/// | `scene.masks` | `array<u32>`: [`mask_words`], what `shared/masks.wgsl` reads |
+/// | `scene.uvs` | `array<vec2<f32>>`, v down |
+/// | `scene.uv_indices` | `array<u32>`, three per primitive |
+/// | `scene.materials` | 32-byte [`MaterialRecord`](crate::atlas::MaterialRecord)s |
+/// | `scene.material_indices` | `array<u32>`, one per primitive |
+/// | `scene.texels` | `array<u32>`, the base colours' textures, sRGB and alpha, red lowest |
 /// | `camera` | [`CameraUniform`] |
 /// | `light` | [`LightUniform`] |
 /// | `light_area` | [`LightAreaUniform`] |
@@ -82,6 +103,8 @@ pub struct SceneProvider {
     light: LightKind,
     /// How often the light was changed.
     light_version: u64,
+    /// Words of [`MASKS`], made at once: plans ask how many there are.
+    masks: Vec<u32>,
     buffers: BTreeMap<&'static str, wgpu::Buffer>,
     tlas: Option<wgpu::Tlas>,
     built: Vec<&'static str>,
@@ -94,6 +117,7 @@ impl SceneProvider {
         Self {
             light: scene.light(),
             light_version: 0,
+            masks: mask_words(&scene.mesh),
             scene,
             camera: CameraUniform::default(),
             camera_version: 0,
@@ -277,6 +301,17 @@ impl SceneProvider {
             INDICES => self.upload_items(name, mesh.triangles.as_flattened(), device),
             NORMAL_INDICES => self.upload_items(name, mesh.normal_indices.as_flattened(), device),
             ADJACENCY => self.upload_items(name, &Adjacency::new(mesh).opposite, device),
+            MASKS => {
+                let words = std::mem::take(&mut self.masks);
+                let done = self.upload_items(name, &words, device);
+                self.masks = words;
+                done
+            }
+            UVS => self.upload_items(name, &mesh.surfaces.uvs, device),
+            UV_INDICES => self.upload_items(name, mesh.surfaces.uv_indices.as_flattened(), device),
+            MATERIAL_INDICES => self.upload_items(name, &mesh.surfaces.of, device),
+            MATERIALS => self.upload_items(name, &Atlas::new(&mesh.surfaces)?.records, device),
+            TEXELS => self.upload_items(name, &Atlas::new(&mesh.surfaces)?.texels, device),
             CAMERA => self.upload_items(name, &[self.camera], device),
             LIGHT => self.upload_items(name, &[self.light_uniform()], device),
             LIGHT_AREA => self.upload_items(name, &[LightAreaUniform::from(&self.light)], device),
@@ -351,6 +386,13 @@ impl Describe for SceneProvider {
             BVH_NODES | LIGHT_SPACE_NODES => array(None, 32),
             BVH_PRIMITIVES | LIGHT_SPACE_PRIMITIVES => array(Some(mesh.triangles.len()), 4),
             TLAS => Some(Provided::ACCELERATION_STRUCTURE),
+            MASKS => array(Some(self.masks.len()), 4),
+            UVS => array(Some(mesh.surfaces.uvs.len()), 8),
+            UV_INDICES => array(Some(3 * mesh.surfaces.uv_indices.len()), 4),
+            MATERIALS => array(Some(mesh.surfaces.materials.len()), 32),
+            MATERIAL_INDICES => array(Some(mesh.surfaces.of.len()), 4),
+            // Known only once the textures are read.
+            TEXELS => array(None, 4),
             CAMERA => uniform(size_of::<CameraUniform>()),
             LIGHT => uniform(size_of::<LightUniform>()).map(|light| Provided {
                 kind: Some(self.light_kind()),

@@ -1,6 +1,9 @@
 //! `Trace`: rays in, hits out, by one of several engines. The number of rays stays on the GPU.
 
-use crate::{provider::LIGHT, uniforms::LIGHT_KINDS};
+use crate::{
+    provider::{LIGHT, MASKS},
+    uniforms::LIGHT_KINDS,
+};
 use serde::Deserialize;
 use skiagraph_graph::{
     Chosen, Code, Diagnostic, Lowering, PassKind, Reference, Span,
@@ -54,6 +57,15 @@ impl Engine {
         }
     }
 
+    /// The same where triangles are masked.
+    fn masked_shader(self) -> &'static str {
+        match self {
+            Self::Hierarchy => "trace_rays_masked",
+            Self::RayQuery => "trace_ray_query_masked",
+            Self::LightSpace => "trace_light_space_masked",
+        }
+    }
+
     /// What of a device it cannot do without.
     fn features(self) -> wgpu::Features {
         match self {
@@ -95,7 +107,8 @@ fn hierarchy() -> Chosen<Engine> {
 /// - `direction` (optional): `Light` is your word that all rays go towards the light, without which
 ///   `LightSpace` is refused. A ray that does not is recorded as a miss with t = −1.
 ///
-/// Triangles are two-sided; those without area are never hit.
+/// Triangles are two-sided; those without area are never hit, and a masked one only where its mask
+/// is opaque.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Trace {
@@ -175,6 +188,8 @@ impl PassKind for Trace {
         if let Chosen::Expr(_) = &self.engine {
             for (_, engine) in Engine::WORDS {
                 pass.alternative(engine.shader(), engine.features());
+                pass.alternative(engine.masked_shader(), engine.features());
+                pass.alternative(engine.masked_shader(), engine.features());
             }
         }
         let engine = pass.word(&self.engine, &Engine::WORDS);
@@ -188,7 +203,11 @@ impl PassKind for Trace {
                 (Some(Direction::Light), _) => {}
             }
         }
-        let mut trace = pass.program_of(engine.shader());
+        let is_masked = pass.provided_items(MASKS) > 0;
+        let mut trace = pass.program_of(match is_masked {
+            true => engine.masked_shader(),
+            false => engine.shader(),
+        });
         trace.compute = Some(pass.named(self.entry_point()));
         bind(pass, &mut trace, "count", (&self.count).into());
         bind(pass, &mut trace, "rays", (&self.rays).into());

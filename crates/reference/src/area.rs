@@ -131,7 +131,7 @@ impl Emitter {
     }
 }
 
-impl Oracle<'_> {
+impl<'a> Oracle<'a> {
     /// The right answer under this light: [`shade`](Self::shade) of one without extent,
     /// [`shade_area`](Self::shade_area) of one that has an extent.
     ///
@@ -163,7 +163,7 @@ impl Oracle<'_> {
     ///
     /// Which pixels face the light, the centre of the light decides: dot(n, l) ≤ 0 is facing away,
     /// though a part of the light may be above the horizon. A pixel's class is *lit* where it sees
-    /// half of the light or more. Indeterminate are only those that could face away as well.
+    /// half of the light or more. Indeterminate are those whose answer to the light's centre is.
     ///
     /// # Errors
     /// Those of [`shade`](Self::shade).
@@ -184,15 +184,17 @@ impl Oracle<'_> {
             let Some(receiver) = receiver else {
                 return Ok((Answer::BACKGROUND, [0.0; 2]));
             };
-            let mut answer = Answer::facing(&receiver);
+            // Of the light's centre, for what is indeterminate.
+            let mut answer = self.answer(&receiver, mode, stack);
             if answer.class == Class::FacingAway {
                 return Ok((answer, [0.0; 2]));
             }
             let emitter = Emitter::seen_from(&light, &receiver);
             let of = self.share(&emitter, &strata, &receiver, mode, [x, y], stack);
-            if of[0] < 0.5 {
-                answer.class = Class::Shadow;
-            }
+            answer.class = match of[0] < 0.5 {
+                true => Class::Shadow,
+                false => Class::Lit,
+            };
             Ok((answer, of))
         })?;
         let (answers, shares): (Vec<Answer>, Vec<[f64; 2]>) = pixels.into_iter().unzip();
@@ -201,7 +203,14 @@ impl Oracle<'_> {
             shares: shares.iter().map(|[share, _]| *share as f32).collect(),
             standard_errors: shares.iter().map(|[_, error]| *error as f32).collect(),
         };
-        Ok((Reference::of(camera.viewport, &answers), area))
+        Ok((
+            Reference::of(
+                camera.viewport,
+                &answers,
+                self.base_colors(camera, primitives),
+            ),
+            area,
+        ))
     }
 
     /// Those that could stand in the light's cone; `None` if they are many, or the receiver is within
@@ -212,14 +221,14 @@ impl Oracle<'_> {
         cone: &Cone,
         excluded: u32,
         stack: &mut Vec<u32>,
-    ) -> Option<Vec<Caster>> {
+    ) -> Option<Vec<Caster<'a>>> {
         if cone.sin >= 1.0 {
             return None;
         }
         let mut casters = Vec::new();
         self.tree.within(origin, cone, stack, |caster| {
             if caster.primitive != excluded {
-                casters.push(*caster);
+                casters.push(caster);
             }
             match casters.len() > MOST_CASTERS {
                 true => ControlFlow::Break(()),
@@ -250,10 +259,7 @@ impl Oracle<'_> {
                 return !self.occluded(origin, way, excluded, stack);
             };
             let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
-            let blocks = |caster: &Caster| {
-                ray.hit(&caster.corners)
-                    .is_some_and(|hit| ray.reaches(hit.t))
-            };
+            let blocks = |caster: &Caster| caster.hit(&ray).is_some_and(|hit| ray.reaches(hit.t));
             let blocker = casters.iter().position(blocks);
             // What blocks one ray is likely to block the next.
             if let Some(blocker) = blocker {

@@ -98,7 +98,7 @@ impl Oracle<'_> {
         let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
         let mut found = Blocker::None;
         self.tree.walk(&ray, stack, |caster, _| {
-            let hit = ray.hit(&caster.corners);
+            let hit = caster.hit(&ray);
             if caster.primitive == passed || !hit.is_some_and(|hit| ray.reaches(hit.t)) {
                 return ControlFlow::Continue(());
             }

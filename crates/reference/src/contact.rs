@@ -15,6 +15,7 @@ use crate::{
 };
 use glam::DVec3;
 use skiagraph_scene::Towards;
+use skiagraph_scene::mask::Asked;
 
 /// What a shadow ray has to do with a caster.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +33,22 @@ pub(crate) enum Contact {
     },
     /// A hit under every displacement.
     Robust,
+}
+
+impl Contact {
+    /// The same of a masked caster. Where its mask flips within the error it may be there or not,
+    /// as across an open edge.
+    fn masked(self, asked: Asked, error: f64) -> Self {
+        match (asked.flips, asked.opaque) {
+            (false, true) => self,
+            (false, false) => Self::Miss,
+            (true, true) if self != Self::Touched => Self::Hit {
+                error,
+                near_open_edge: true,
+            },
+            (true, _) => Self::Touched,
+        }
+    }
 }
 
 /// A shadow ray with its uncertainty, in the ray's sheared space.
@@ -67,7 +84,13 @@ impl<'a> FuzzyRay<'a> {
     }
 
     /// Classifies one caster.
-    pub(crate) fn contact(&self, &Caster { corners, open, .. }: &Caster) -> Contact {
+    pub(crate) fn contact(&self, caster: &Caster<'_>) -> Contact {
+        let &Caster {
+            corners,
+            open,
+            ref masked,
+            ..
+        } = caster;
         let sheared = corners.map(|corner| self.ray.sheared(corner));
         let [a, b, c] = sheared;
         let [sx, sy, _] = self.ray.shear;
@@ -76,8 +99,8 @@ impl<'a> FuzzyRay<'a> {
         let farthest = corners
             .map(|corner| (glam::Vec3::from(corner).as_dvec3() - self.origin).length_squared());
         let farthest = farthest[0].max(farthest[1]).max(farthest[2]).sqrt();
-        let caster = caster_error(farthest, &self.towards);
-        let ball = self.uncertainty.radius + caster;
+        let error = caster_error(farthest, &self.towards);
+        let ball = self.uncertainty.radius + error;
         let extent = self
             .sheared_segments
             .iter()
@@ -117,7 +140,7 @@ impl<'a> FuzzyRay<'a> {
         let inside =
             |sign: f64, margin: f64| (0..3).all(|i| sign * edges[i] >= margin * thresholds[i]);
         let (end, end_error) = (self.ray.end, self.end_error + t_error);
-        match Ray::hit_sheared(sheared, edges).filter(|hit| self.ray.reaches(hit.t)) {
+        let contact = match Ray::hit_sheared(sheared, edges).filter(|hit| self.ray.reaches(hit.t)) {
             Some(_)
                 if t > t_error
                     && (end == f64::INFINITY || t < end - end_error)
@@ -131,7 +154,7 @@ impl<'a> FuzzyRay<'a> {
                 let near_open_edge =
                     near_end || (0..3).any(|i| open[i] && edges[i].abs() < thresholds[i]);
                 Contact::Hit {
-                    error: caster,
+                    error,
                     near_open_edge,
                 }
             }
@@ -142,6 +165,12 @@ impl<'a> FuzzyRay<'a> {
                 Contact::Touched
             }
             None => Contact::Miss,
+        };
+        match masked {
+            Some(masked) if contact != Contact::Miss => {
+                contact.masked(masked.ask(edges, thresholds), error)
+            }
+            _ => contact,
         }
     }
 

@@ -19,6 +19,10 @@ use serde::{Deserialize, Serialize};
 pub struct Graded {
     /// Root of the mean squared error over PFL.
     pub rmse: f64,
+    /// The same over those pixels of PFL that are not indeterminate: of the others f32 may take
+    /// another receiver than the reference does.
+    #[serde(default)]
+    pub rmse_outside_band: f64,
     /// Mean of the errors' sizes over PFL.
     pub mean_absolute_error: f64,
     /// PFL pixels that are off by more than some bounds.
@@ -79,7 +83,11 @@ impl Graded {
         check_pixel_count("shares", reference.viewport, shares.len())?;
         let mut graded = Self::default();
         let (mut facing, mut squares) = (0u64, 0.0);
-        for ((&shown, &share), class) in visibility.iter().zip(shares).zip(&reference.classes) {
+        let (mut in_band, mut squares_in_band) = (0u64, 0.0);
+        let classes = reference.classes.iter().zip(&reference.indeterminate);
+        for ((&shown, &share), (class, &indeterminate)) in
+            visibility.iter().zip(shares).zip(classes)
+        {
             if !class.faces_light() {
                 continue;
             }
@@ -87,11 +95,17 @@ impl Graded {
             let off = error(shown, share).abs();
             facing += 1;
             squares += off * off;
+            if indeterminate {
+                in_band += 1;
+                squares_in_band += off * off;
+            }
             graded.mean_absolute_error += off;
             graded.off.over_1_255 += u64::from(off > 1.0 / 255.0);
             graded.off.over_1_16 += u64::from(off > 1.0 / 16.0);
             graded.off.over_1_4 += u64::from(off > 1.0 / 4.0);
         }
+        let outside = (facing - in_band).max(1) as f64;
+        graded.rmse_outside_band = ((squares - squares_in_band).max(0.0) / outside).sqrt();
         let facing = facing.max(1) as f64;
         graded.rmse = (squares / facing).sqrt();
         graded.mean_absolute_error /= facing;
@@ -135,11 +149,13 @@ impl Reference {
 mod tests {
     use super::*;
 
+    /// The last pixel is indeterminate.
     fn reference(classes: &[Class]) -> Reference {
+        let last = classes.len() - 1;
         Reference {
             viewport: [classes.len() as u32, 1],
             classes: classes.to_vec(),
-            indeterminate: vec![false; classes.len()],
+            indeterminate: (0..=last).map(|pixel| pixel == last).collect(),
             n_dot_l: vec![0.5; classes.len()],
         }
     }
@@ -147,10 +163,12 @@ mod tests {
     #[test]
     fn errors_are_means_over_the_pixels_that_face_the_light() {
         use Class::{Background, FacingAway, Lit, Shadow};
-        let reference = reference(&[Lit, Shadow, Lit, Lit, FacingAway, Background]);
-        let shares = [1.0, 0.0, 0.75, 0.5, 0.0, 0.0];
-        let graded = Graded::judged(&[1.0, 0.5, 0.75, 0.4, 1.0, 1.0], &shares, &reference).unwrap();
-        // Errors 0, 0.5, 0, −0.1.
+        let reference = reference(&[Shadow, Lit, Lit, FacingAway, Background, Lit]);
+        let shares = [0.0, 0.75, 0.5, 0.0, 0.0, 1.0];
+        let shown = [0.5, 0.75, 0.4, 1.0, 1.0, 1.0];
+        let graded = Graded::judged(&shown, &shares, &reference).unwrap();
+        // Errors 0.5, 0, −0.1, and 0 in the band.
+        assert!((graded.rmse_outside_band - (0.26f64 / 3.0).sqrt()).abs() < 1e-7);
         assert!(
             (graded.rmse - (0.26f64 / 4.0).sqrt()).abs() < 1e-7,
             "{graded:?}"

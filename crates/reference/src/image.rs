@@ -83,15 +83,17 @@ impl Image {
             status,
             reference,
             |class, _, indeterminate, verdict| {
+                let pixel = rgb.len() / 3;
+                let backdrop = |grey| tinted(grey, reference, pixel);
                 rgb.extend(match (verdict, indeterminate, class) {
                     (Verdict::WronglyLit, false, _) => WRONGLY_LIT,
                     (Verdict::WronglyLit, true, _) => WRONGLY_LIT_INDETERMINATE,
                     (Verdict::WronglyShadowed, false, _) => WRONGLY_SHADOWED,
                     (Verdict::WronglyShadowed, true, _) => WRONGLY_SHADOWED_INDETERMINATE,
                     (Verdict::Right, _, Class::Background) => DIM_BACKGROUND,
-                    (Verdict::Right, _, Class::FacingAway) => DIM_FACING_AWAY,
-                    (Verdict::Right, _, Class::Lit) => DIM_LIGHT,
-                    (Verdict::Right, _, Class::Shadow) => DIM_SHADOW,
+                    (Verdict::Right, _, Class::FacingAway) => backdrop(DIM_FACING_AWAY),
+                    (Verdict::Right, _, Class::Lit) => backdrop(DIM_LIGHT),
+                    (Verdict::Right, _, Class::Shadow) => backdrop(DIM_SHADOW),
                 });
             },
         )?;
@@ -150,7 +152,7 @@ impl Image {
         let colour = |share: f32, status: u32| match status {
             status::BACKGROUND => BACKGROUND,
             status::FACING_AWAY => FACING_AWAY,
-            _ => grey(share),
+            _ => [srgb(share); 3],
         };
         let pixels = visibility.iter().zip(status);
         let rgb = pixels
@@ -181,8 +183,8 @@ impl Image {
         Ok(image)
     }
 
-    /// The scene in grey under Lambert's law: max(n · l, 0) × visibility + ambient, with the
-    /// reference's n · l and the given visibility.
+    /// The scene in its base colours, or in grey where it has none, under Lambert's law: max(n · l,
+    /// 0) × visibility + ambient, with the reference's n · l and the given visibility.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if `visibility` does not fit the reference.
@@ -196,7 +198,11 @@ impl Image {
             rgb.extend(if class == Class::Background {
                 BACKGROUND
             } else {
-                grey(ambient + (1.0 - AMBIENT) * direct)
+                let light = ambient + (1.0 - AMBIENT) * direct;
+                match reference.base_colors.get(index) {
+                    Some(color) => color.map(|channel| srgb(channel * light)),
+                    None => [srgb(light); 3],
+                }
             });
         }
         Ok(Self {
@@ -248,9 +254,20 @@ fn mixed(from: Colour, to: Colour, share: f64) -> Colour {
     })
 }
 
-/// Linear light 0..1 as an sRGB grey (gamma 2.2 is near enough for a picture).
-fn grey(linear: f32) -> Colour {
-    [(linear.clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0).round() as u8; 3]
+/// Linear light 0..1 as a channel of sRGB (gamma 2.2 is near enough for a picture).
+fn srgb(linear: f32) -> u8 {
+    (linear.clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0).round() as u8
+}
+
+/// A grey of the backdrop in the colour of what the pixel shows, where that is known.
+fn tinted(grey: Colour, reference: &Reference, pixel: usize) -> Colour {
+    match reference.base_colors.get(pixel) {
+        Some(color) => {
+            let tint = color.map(|channel| f32::from(srgb(channel)) / 255.0);
+            std::array::from_fn(|at| (f32::from(grey[at]) * tint[at]).round() as u8)
+        }
+        None => grey,
+    }
 }
 
 #[cfg(test)]
@@ -270,7 +287,23 @@ mod tests {
             ],
             indeterminate: vec![false, false, false, false, true],
             n_dot_l: vec![0.0, -0.5, 1.0, 1.0, 0.5],
+            base_colors: Vec::new(),
         }
+    }
+
+    #[test]
+    fn base_colours_tint_what_is_shown() {
+        let mut reference = reference();
+        let grey = colours(Image::shaded(&[0u8, 0, 1, 0, 0], &reference).unwrap());
+        reference.base_colors = vec![[1.0, 0.0, 1.0]; 5];
+        let tinted = colours(Image::shaded(&[0u8, 0, 1, 0, 0], &reference).unwrap());
+        assert_eq!(tinted[0], grey[0], "the background");
+        for (tinted, grey) in tinted.iter().zip(&grey).skip(1) {
+            assert_eq!(*tinted, [grey[0], 0, grey[2]]);
+        }
+        let error =
+            colours(Image::error(&[0u8, 0, 1, 0, 0], &[0u8, 1, 2, 3, 3], &reference).unwrap());
+        assert_eq!(error[2], [DIM_LIGHT[0], 0, DIM_LIGHT[2]]);
     }
 
     fn colours(image: Image) -> Vec<Colour> {

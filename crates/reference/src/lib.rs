@@ -36,6 +36,7 @@ pub mod error_bound;
 pub mod flip;
 pub mod graded;
 pub mod image;
+mod masked;
 pub mod oracle;
 pub mod pixels;
 mod ray;

@@ -6,7 +6,7 @@ use crate::{
     error_bound::Uncertainty,
     pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel},
     ray::Ray,
-    receiver::Receiver,
+    receiver::{self, Receiver},
     tree::Tree,
 };
 use glam::{DVec3, Vec3};
@@ -109,6 +109,8 @@ pub struct Reference {
     pub indeterminate: Vec<bool>,
     /// dot(interpolated vertex normal, unit vector towards the light); 0 in the background.
     pub n_dot_l: Vec<f32>,
+    /// Linear base colour of each pixel, for pictures; nothing where the mesh has no materials.
+    pub base_colors: Vec<[f32; 3]>,
 }
 
 /// The f64 ray tracer over one mesh.
@@ -165,9 +167,10 @@ impl Answer {
 }
 
 impl Reference {
-    pub(crate) fn of(viewport: [u32; 2], answers: &[Answer]) -> Self {
+    pub(crate) fn of(viewport: [u32; 2], answers: &[Answer], base_colors: Vec<[f32; 3]>) -> Self {
         Self {
             viewport,
+            base_colors,
             classes: answers.iter().map(|answer| answer.class).collect(),
             indeterminate: answers.iter().map(|answer| answer.indeterminate).collect(),
             n_dot_l: answers.iter().map(|answer| answer.n_dot_l).collect(),
@@ -211,8 +214,8 @@ impl<'a> Oracle<'a> {
             let ray = Ray::new(camera.eye, camera.pixel_direction(x, y), max_distance, 0.0);
             let mut nearest = (camera.far, BACKGROUND);
             self.tree.walk(&ray, stack, |caster, t_max| {
-                if let Some(hit) = ray.hit(&caster.corners)
-                    && hit.front
+                if let Some(hit) = caster.hit(&ray)
+                    && (hit.front || caster.double_sided)
                     && hit.t >= camera.near
                     && (hit.t, caster.primitive) < nearest
                 {
@@ -256,7 +259,8 @@ impl<'a> Oracle<'a> {
                 None => Answer::BACKGROUND,
             })
         })?;
-        Ok(Reference::of(viewport, &answers))
+        let base_colors = self.base_colors(camera, primitives);
+        Ok(Reference::of(viewport, &answers, base_colors))
     }
 
     /// Whether a light can be traced.
@@ -297,7 +301,31 @@ impl<'a> Oracle<'a> {
             .collect()
     }
 
-    fn answer(&self, receiver: &Receiver, mode: OracleMode, stack: &mut Vec<u32>) -> Answer {
+    /// What the pixels of a G-buffer are made of; nothing where the mesh has no materials.
+    pub(crate) fn base_colors(&self, camera: &Camera, primitives: &[u32]) -> Vec<[f32; 3]> {
+        let surfaces = &self.mesh.surfaces;
+        if surfaces.materials.is_empty() {
+            return Vec::new();
+        }
+        let width = camera.viewport[0];
+        let colour = |(pixel, &primitive): (usize, &u32)| {
+            if primitive == BACKGROUND {
+                return [0.0; 3];
+            }
+            let pixel = pixel as u32;
+            let direction = camera.pixel_direction(pixel % width, pixel / width);
+            let weights = receiver::weights(self.mesh, primitive, camera.eye, direction);
+            surfaces.base_color(primitive, weights)
+        };
+        primitives.par_iter().enumerate().map(colour).collect()
+    }
+
+    pub(crate) fn answer(
+        &self,
+        receiver: &Receiver,
+        mode: OracleMode,
+        stack: &mut Vec<u32>,
+    ) -> Answer {
         let facing = Answer::facing(receiver);
         if facing.class == Class::FacingAway {
             return facing;
@@ -393,9 +421,7 @@ impl<'a> Oracle<'a> {
         let mut occluded = false;
         self.tree.walk(&ray, stack, |caster, _| {
             if caster.primitive != excluded
-                && ray
-                    .hit(&caster.corners)
-                    .is_some_and(|hit| ray.reaches(hit.t))
+                && caster.hit(&ray).is_some_and(|hit| ray.reaches(hit.t))
             {
                 occluded = true;
                 return ControlFlow::Break(());

@@ -37,6 +37,8 @@ pub(crate) struct Hit {
     pub(crate) t: f64,
     /// Counter-clockwise as seen from the ray's origin.
     pub(crate) front: bool,
+    /// Weights of the corners.
+    pub(crate) weights: [f64; 3],
 }
 
 impl Ray {
@@ -161,6 +163,7 @@ impl Ray {
         Some(Hit {
             t: (u * a.z + v * b.z + w * c.z) / determinant,
             front: determinant > 0.0,
+            weights: [u, v, w].map(|edge| edge / determinant),
         })
     }
 }
@@ -213,7 +216,8 @@ mod tests {
                 hit,
                 Hit {
                     t: 2.0,
-                    front: true
+                    front: true,
+                    weights: [0.5, 0.25, 0.25],
                 }
             );
             let behind = Ray::new(
@@ -226,7 +230,8 @@ mod tests {
                 behind.hit(&turned),
                 Some(Hit {
                     t: 2.0,
-                    front: false
+                    front: false,
+                    weights: [0.5, 0.25, 0.25],
                 })
             );
         }

@@ -106,11 +106,15 @@ impl Receiver {
         light: &LightKind,
     ) -> Self {
         let world = mesh.corners(primitive);
-        let normals = mesh.corner_normals(primitive);
+        let mut normals = mesh.corner_normals(primitive);
         let [a, b, c] = world.map(|corner| corner - eye);
         let pairs = [(b, c), (c, a), (a, b)];
         let edges = pairs.map(|(p, q)| direction.dot((p + q).cross(q - p)));
         let determinant: f64 = edges.iter().sum();
+        // Seen from behind, which only a double-sided primitive is.
+        if determinant > 0.0 && mesh.surfaces.is_double_sided(primitive) {
+            normals = normals.map(|normal| -normal);
+        }
         let farthest = a.length().max(b.length()).max(c.length());
         // |(p + q) × (q − p)| ≤ 2 · farthest · edge; the eye itself is rounded, which moves every
         // corner by as much (√3, taken as 2).
@@ -191,6 +195,17 @@ impl Receiver {
             n_dot_l_error,
             uncertainty,
         }
+    }
+}
+
+/// Weights of a primitive's corners where the ray from `eye` meets its plane; a third each where it
+/// meets it nowhere.
+pub(crate) fn weights(mesh: &Mesh, primitive: u32, eye: DVec3, direction: DVec3) -> [f64; 3] {
+    let [a, b, c] = mesh.corners(primitive).map(|corner| corner - eye);
+    let edges = [(b, c), (c, a), (a, b)].map(|(p, q)| direction.dot((p + q).cross(q - p)));
+    match edges.iter().sum::<f64>() {
+        0.0 => [1.0 / 3.0; 3],
+        determinant => edges.map(|edge| edge / determinant),
     }
 }
 

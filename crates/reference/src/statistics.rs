@@ -335,6 +335,7 @@ mod tests {
             classes: pixels.iter().map(|pixel| pixel.0).collect(),
             indeterminate: pixels.iter().map(|pixel| pixel.1).collect(),
             n_dot_l: vec![0.5; pixels.len()],
+            base_colors: Vec::new(),
         }
     }
 

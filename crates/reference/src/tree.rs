@@ -2,7 +2,8 @@
 
 use crate::{
     error::Error,
-    ray::{Corners, Ray},
+    masked::Masked,
+    ray::{Corners, Hit, Ray},
 };
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -11,7 +12,7 @@ use std::{borrow::Cow, ops::ControlFlow};
 
 /// A triangle as a shadow ray meets it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Caster {
+pub(crate) struct Caster<'a> {
     /// Primitive id.
     pub(crate) primitive: u32,
     /// Its corners.
@@ -19,6 +20,19 @@ pub(crate) struct Caster {
     /// For each edge, in the order of `Ray::edges`, whether no other triangle has it: it may be the
     /// rim of a crack.
     pub(crate) open: [bool; 3],
+    /// Where it is there at all, if not everywhere.
+    pub(crate) masked: Option<Masked<'a>>,
+    /// Whether its back face is seen, too.
+    pub(crate) double_sided: bool,
+}
+
+impl Caster<'_> {
+    /// Where the ray meets it, if it is there.
+    pub(crate) fn hit(&self, ray: &Ray) -> Option<Hit> {
+        let hit = ray.hit(&self.corners)?;
+        let is_there = |masked: &Masked<'_>| masked.is_opaque(hit.weights);
+        self.masked.as_ref().is_none_or(is_there).then_some(hit)
+    }
 }
 
 /// What lies within an angle of an axis.
@@ -46,13 +60,13 @@ impl Cone {
 /// A hierarchy with its triangles in leaf order.
 pub(crate) struct Tree<'a> {
     bvh: Cow<'a, Bvh>,
-    casters: Vec<Caster>,
+    casters: Vec<Caster<'a>>,
     bounds: Option<(DVec3, DVec3)>,
 }
 
 impl<'a> Tree<'a> {
     /// Checks that `bvh` was built over `mesh` as far as traversal depends on it.
-    pub(crate) fn new(mesh: &Mesh, bvh: Cow<'a, Bvh>) -> Result<Self, Error> {
+    pub(crate) fn new(mesh: &'a Mesh, bvh: Cow<'a, Bvh>) -> Result<Self, Error> {
         if bvh.primitives.len() != mesh.triangles.len() {
             return Err(Error::Hierarchy("it has another number of triangles"));
         }
@@ -95,6 +109,8 @@ impl<'a> Tree<'a> {
                 corners: mesh.triangles[primitive as usize]
                     .map(|index| mesh.positions[index as usize].to_array()),
                 open: open[primitive as usize],
+                masked: Masked::of(mesh, primitive),
+                double_sided: mesh.surfaces.is_double_sided(primitive),
             })
             .collect();
         let bounds = mesh
@@ -126,7 +142,7 @@ impl<'a> Tree<'a> {
         origin: DVec3,
         cone: &Cone,
         stack: &mut Vec<u32>,
-        mut visit: impl FnMut(&Caster) -> ControlFlow<()>,
+        mut visit: impl FnMut(Caster<'a>) -> ControlFlow<()>,
     ) {
         let nodes = &self.bvh.nodes;
         let relative = |corner: [f32; 3]| Vec3::from(corner).as_dvec3() - origin;
@@ -144,7 +160,7 @@ impl<'a> Tree<'a> {
             let first = node.first as usize;
             for caster in &self.casters[first..first + node.count as usize] {
                 let [a, b, c] = caster.corners.map(relative);
-                if cone.meets_ball(a.min(b).min(c), a.max(b).max(c)) && visit(caster).is_break() {
+                if cone.meets_ball(a.min(b).min(c), a.max(b).max(c)) && visit(*caster).is_break() {
                     return;
                 }
             }
@@ -158,7 +174,7 @@ impl<'a> Tree<'a> {
         &self,
         ray: &Ray,
         stack: &mut Vec<u32>,
-        mut visit: impl FnMut(&Caster, &mut f64) -> ControlFlow<()>,
+        mut visit: impl FnMut(&Caster<'a>, &mut f64) -> ControlFlow<()>,
     ) {
         let nodes = &self.bvh.nodes;
         let mut t_max = ray.far_side();
@@ -297,7 +313,7 @@ mod tests {
         }
     }
 
-    fn tree(mesh: &Mesh) -> Tree<'static> {
+    fn tree(mesh: &Mesh) -> Tree<'_> {
         Tree::new(mesh, Cow::Owned(Bvh::build(mesh))).expect("built over it")
     }
 

@@ -14,7 +14,7 @@ pub struct Adjacency {
     /// i to the next one, and names the corner `3 * q + k` of the triangle q across it that does
     /// not lie on the edge: q is the entry divided by 3, and its edge is the one after k.
     /// [`NO_NEIGHBOUR`] for an edge with one triangle, or with more than two. Windings play no
-    /// part.
+    /// part. [`NO_NEIGHBOUR`] also where one of both is masked: its surface may end anywhere.
     pub opposite: Vec<u32>,
 }
 
@@ -58,7 +58,22 @@ impl Adjacency {
                 }
             }
         }
+        leave_out_masked(mesh, &mut opposite);
         Self { opposite }
+    }
+}
+
+/// Edges of a masked triangle have no other one.
+fn leave_out_masked(mesh: &Mesh, opposite: &mut [u32]) {
+    let is_masked = |primitive: usize| mesh.surfaces.mask(primitive as u32).is_some();
+    if !mesh.surfaces.need_care() {
+        return;
+    }
+    for (entry, corner) in opposite.iter_mut().enumerate() {
+        let across = *corner != NO_NEIGHBOUR && is_masked(*corner as usize / 3);
+        if across || is_masked(entry / 3) {
+            *corner = NO_NEIGHBOUR;
+        }
     }
 }
 
@@ -131,6 +146,6 @@ mod tests {
     fn a_triangle_that_names_a_position_twice_is_passed_over() {
         let opposite = adjacency(&[[0, 1, 2], [1, 1, 2], [2, 1, 3]]);
         assert_eq!(opposite, [NONE, 8, NONE, NONE, NONE, NONE, 0, NONE, NONE]);
-        assert_eq!(adjacency(&[]), []);
+        assert_eq!(adjacency(&[]), [0; 0]);
     }
 }

@@ -42,6 +42,28 @@ pub enum SceneError {
         /// Number of faulty faces.
         total: usize,
     },
+    /// What an OBJ file says of its materials cannot be had.
+    #[error("{}: {place}: {reason}; {way_out}", path.display())]
+    Material {
+        /// The OBJ file.
+        path: PathBuf,
+        /// The file of materials, or the material in it.
+        place: String,
+        /// What is wrong.
+        reason: String,
+        /// What to do about it.
+        way_out: &'static str,
+    },
+    /// A glTF file that cannot be used.
+    #[error("{}: {place}: {reason}", path.display())]
+    Gltf {
+        /// The glTF file.
+        path: PathBuf,
+        /// Where in it.
+        place: String,
+        /// What is wrong, and what to do about it.
+        reason: String,
+    },
     /// A group to be left out is not in the OBJ file.
     #[error("{}: there is no group {name:?} to leave out; {}", path.display(), list_groups(groups))]
     NoSuchGroup {
@@ -129,8 +151,8 @@ pub enum SceneError {
     },
     /// No scene of that name, and no file of that path.
     #[error(
-        "no scene {argument:?}: it is neither the path of a .ron or .obj file, nor the name of a \
-         .ron file in {}, nor one of the built-in scenes {}",
+        "no scene {argument:?}: it is neither the path of a .ron, .obj, .gltf or .glb file, nor \
+         the name of a .ron file in {}, nor one of the built-in scenes {}",
         folder.display(), builtin.join(", ")
     )]
     UnknownScene {
@@ -183,7 +205,7 @@ pub struct FaceRef {
     pub group: String,
     /// Number of the face within that run of the group, in file order, from 1.
     pub number: u32,
-    /// Line in the file, from 1.
+    /// Line in the file, from 1; 0 in a file that has no lines of faces.
     pub line: u32,
 }
 
@@ -191,11 +213,14 @@ impl fmt::Display for FaceRef {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "face {} of group {:?} (line {})",
+            "face {} of group {:?}",
             self.number,
-            beginning(&self.group),
-            self.line
-        )
+            beginning(&self.group)
+        )?;
+        match self.line {
+            0 => Ok(()),
+            line => write!(f, " (line {line})"),
+        }
     }
 }
 
@@ -226,6 +251,15 @@ pub enum FaceProblem {
         /// Normals above the face.
         available: usize,
     },
+    /// A number of texture coordinates that is 0 or beyond those above the face.
+    NoSuchUv {
+        /// The number as written.
+        written: String,
+        /// Texture coordinates above the face.
+        available: usize,
+    },
+    /// A polygon that intersects itself.
+    CannotBeCut,
     /// A corner that is not `v`, `v/vt`, `v//vn` or `v/vt/vn`.
     NotACorner(
         /// The corner as written.
@@ -259,6 +293,18 @@ impl fmt::Display for FaceProblem {
                     plural(*available, "normal stands", "normals stand")
                 )
             }
+            Self::NoSuchUv { written, available } => {
+                write!(
+                    f,
+                    "names texture coordinates {}, but {} above it",
+                    beginning(written),
+                    plural(*available, "pair stands", "pairs stand")
+                )
+            }
+            Self::CannotBeCut => f.write_str(
+                "cannot be cut into triangles, for its outline crosses itself: triangulate it \
+                 where it was made, or have a scene file say `concave: Fan`",
+            ),
             Self::NotACorner(text) => {
                 write!(
                     f,

@@ -6,35 +6,47 @@
 //! reference starts from unrounded input.
 
 pub mod adjacency;
+mod builder;
 pub mod bvh;
 pub mod camera;
 pub mod error;
 pub mod generate;
+pub mod gltf;
 pub mod library;
 pub mod light;
 pub mod light_kind;
 mod limit;
+pub mod mask;
+pub mod material;
 pub mod mesh;
 pub mod obj;
+pub mod packed_masks;
 pub mod parts;
 pub mod path;
+pub mod pattern;
 pub mod report;
 mod scene;
 pub mod scene_file;
+pub mod texture;
 pub mod weld;
 
 pub use adjacency::{Adjacency, NO_NEIGHBOUR};
 pub use bvh::{Bvh, BvhNode, LightSpace, LightSpaceNode};
 pub use camera::{Camera, View};
 pub use error::SceneError;
+pub use gltf::load_gltf;
 pub use library::{ObjSetup, SceneLibrary, SceneListing, SceneRequest};
 pub use light::{DirectionalLight, LightFit};
 pub use light_kind::{LIGHT_GAP, Light, LightKind, PointLight, SpotLight, Towards};
 pub use limit::Limit;
+pub use mask::Mask;
+pub use material::{Material, Surfaces};
 pub use mesh::{Group, Mesh};
-pub use obj::{ObjOptions, QuadDiagonal, load_obj};
+pub use obj::{Concave, ObjMaterials, ObjOptions, QuadDiagonal, load_obj};
 pub use parts::Parts;
 pub use path::{CameraKey, CameraPath};
+pub use pattern::Pattern;
 pub use report::ImportReport;
 pub use scene::Scene;
 pub use scene_file::{MeshSource, SceneFile};
+pub use texture::{Texture, Wrap};

@@ -3,6 +3,7 @@
 use crate::{
     camera::View,
     error::SceneError,
+    gltf::load_gltf,
     light_kind::Light,
     limit::Limit,
     obj::{
@@ -27,7 +28,7 @@ const SCENE_FILE: Limit = Limit {
 };
 
 /// Scene files that are part of the program: name and text.
-const BUILT_IN: [(&str, &str); 6] = [
+const BUILT_IN: [(&str, &str); 8] = [
     ("avenue", include_str!("../../../scenes/avenue.ron")),
     ("bench", include_str!("../../../scenes/bench.ron")),
     ("city", include_str!("../../../scenes/city.ron")),
@@ -35,21 +36,25 @@ const BUILT_IN: [(&str, &str); 6] = [
     ("park", include_str!("../../../scenes/park.ron")),
     ("park_soft", include_str!("../../../scenes/park_soft.ron")),
     ("sponza", include_str!("../../../scenes/sponza.ron")),
+    (
+        "sponza_masked",
+        include_str!("../../../scenes/sponza_masked.ron"),
+    ),
 ];
 
 /// What a user asked for.
 #[derive(Clone, Debug, Default)]
 pub struct SceneRequest {
-    /// A built-in name, a name in `scenes/`, the path of a `.ron` file, or the path of an `.obj`
-    /// file. Behind a scene whose mesh is generated in any size may stand another one:
-    /// `city:1000000`.
+    /// A built-in name, a name in `scenes/`, the path of a `.ron` file, or the path of an `.obj`,
+    /// `.gltf` or `.glb` file. Behind a scene whose mesh is generated in any size may stand another
+    /// one: `city:1000000`.
     pub argument: String,
-    /// View and light of a bare `.obj` file; must be absent for any other scene, which brings its
+    /// View and light of a bare mesh file; must be absent for any other scene, which brings its
     /// own.
     pub obj: Option<ObjSetup>,
 }
 
-/// What an `.obj` file lacks to be a scene.
+/// What a bare mesh file lacks to be a scene.
 #[derive(Clone, Debug)]
 pub struct ObjSetup {
     /// The only view.
@@ -111,8 +116,11 @@ impl SceneLibrary {
     /// found (with every place searched), a bare `.obj` without view and light.
     pub fn load(&self, request: &SceneRequest) -> Result<(Scene, ImportReport), SceneError> {
         let path = Path::new(&request.argument);
-        if has_extension(path, "obj") {
-            return load_bare_obj(path, request.obj.as_ref());
+        if ["obj", "gltf", "glb"]
+            .iter()
+            .any(|extension| has_extension(path, extension))
+        {
+            return load_bare(path, request.obj.as_ref());
         }
         if request.obj.is_some() {
             return Err(SceneError::ViewNotWanted {
@@ -189,10 +197,11 @@ impl SceneLibrary {
                     .collect(),
                 mesh_found: match &scene.mesh {
                     MeshSource::Generated(_) => true,
-                    MeshSource::Obj { file: mesh, .. } => self
-                        .mesh_places(mesh, file.as_deref())
-                        .iter()
-                        .any(|place| place.is_file()),
+                    MeshSource::Obj { file: mesh, .. } | MeshSource::Gltf { file: mesh, .. } => {
+                        self.mesh_places(mesh, file.as_deref())
+                            .iter()
+                            .any(|place| place.is_file())
+                    }
                 },
                 description: scene.description,
                 file,
@@ -247,6 +256,38 @@ impl SceneLibrary {
             .collect()
     }
 
+    /// Where the mesh of a scene file is.
+    fn mesh_file(
+        &self,
+        scene: &SceneFile,
+        mesh: &str,
+        source: &Option<String>,
+        file: Option<&Path>,
+    ) -> Result<PathBuf, SceneError> {
+        let places = self.mesh_places(mesh, file);
+        // What is neither file nor folder is there as well; reading it says what is wrong with it.
+        let place = places.iter().find(|place| place.is_file()).or_else(|| {
+            places
+                .iter()
+                .find(|place| place.exists() && !place.is_dir())
+        });
+        if let Some(place) = place {
+            return Ok(place.clone());
+        }
+        if let Some(folder) = places.iter().find(|place| place.is_dir()) {
+            return Err(SceneError::MeshIsFolder {
+                scene: scene.name.clone(),
+                path: folder.clone(),
+            });
+        }
+        Err(SceneError::MeshNotFound {
+            scene: scene.name.clone(),
+            file: mesh.to_owned(),
+            searched: places,
+            source_text: source.clone(),
+        })
+    }
+
     fn assemble(
         &self,
         scene: SceneFile,
@@ -258,37 +299,20 @@ impl SceneLibrary {
                 file: mesh,
                 leave_out,
                 quads,
+                concave,
+                materials,
                 source,
             } => {
-                let places = self.mesh_places(mesh, file);
-                // What is neither file nor folder is there as well; reading it says what is wrong
-                // with it.
-                let place = places.iter().find(|place| place.is_file()).or_else(|| {
-                    places
-                        .iter()
-                        .find(|place| place.exists() && !place.is_dir())
-                });
-                let Some(place) = place else {
-                    if let Some(folder) = places.iter().find(|place| place.is_dir()) {
-                        return Err(SceneError::MeshIsFolder {
-                            scene: scene.name,
-                            path: folder.clone(),
-                        });
-                    }
-                    return Err(SceneError::MeshNotFound {
-                        scene: scene.name,
-                        file: mesh.clone(),
-                        searched: places,
-                        source_text: source.clone(),
-                    });
+                let options = ObjOptions {
+                    leave_out: leave_out.clone(),
+                    quads: *quads,
+                    concave: *concave,
+                    materials: materials.clone(),
                 };
-                load_obj(
-                    place,
-                    &ObjOptions {
-                        leave_out: leave_out.clone(),
-                        quads: *quads,
-                    },
-                )?
+                load_obj(&self.mesh_file(&scene, mesh, source, file)?, &options)?
+            }
+            MeshSource::Gltf { file: mesh, source } => {
+                load_gltf(&self.mesh_file(&scene, mesh, source, file)?)?
             }
         };
         Ok((
@@ -321,14 +345,13 @@ fn resize(scene: &mut SceneFile, size: &str) -> Result<(), String> {
             *generator = generator.with_triangles(size)?;
             Ok(())
         }
-        MeshSource::Obj { file, .. } => Err(format!("the mesh {file:?} is a file of one size")),
+        MeshSource::Obj { file, .. } | MeshSource::Gltf { file, .. } => {
+            Err(format!("the mesh {file:?} is a file of one size"))
+        }
     }
 }
 
-fn load_bare_obj(
-    path: &Path,
-    setup: Option<&ObjSetup>,
-) -> Result<(Scene, ImportReport), SceneError> {
+fn load_bare(path: &Path, setup: Option<&ObjSetup>) -> Result<(Scene, ImportReport), SceneError> {
     let Some(setup) = setup else {
         return Err(SceneError::ObjNeedsView {
             path: path.to_owned(),
@@ -342,13 +365,14 @@ fn load_bare_obj(
             path: path.to_owned(),
             reason,
         })?;
-    let (mesh, report) = load_obj(
-        path,
-        &ObjOptions {
-            quads: setup.quads,
-            ..ObjOptions::default()
-        },
-    )?;
+    let options = ObjOptions {
+        quads: setup.quads,
+        ..ObjOptions::default()
+    };
+    let (mesh, report) = match has_extension(path, "obj") {
+        true => load_obj(path, &options)?,
+        false => load_gltf(path)?,
+    };
     let name = path
         .file_stem()
         .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());

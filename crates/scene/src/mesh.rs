@@ -1,5 +1,6 @@
 //! Indexed triangle meshes with welded positions.
 
+use crate::material::Surfaces;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
@@ -19,6 +20,8 @@ pub struct Mesh {
     pub normal_indices: Vec<[u32; 3]>,
     /// Consecutive runs of triangles with the name they had in the file or generator.
     pub groups: Vec<Group>,
+    /// Materials and texture coordinates.
+    pub surfaces: Surfaces,
 }
 
 /// A named run of triangles.

@@ -28,6 +28,8 @@ pub struct ImportReport {
     pub dropped: Degenerate,
     /// Triangles kept although their area is zero (three different points on a line).
     pub zero_area: Degenerate,
+    /// What could not be read of colours.
+    pub colours_missing: Vec<String>,
 }
 
 /// Degenerate triangles: how many, and the faces they came from.
@@ -77,6 +79,7 @@ impl ImportReport {
             + self.normals_replaced
             + self.points
             + self.lines
+            + self.colours_missing.len()
             > 0
     }
 }
@@ -100,6 +103,14 @@ impl fmt::Display for ImportReport {
                 "{} and {} left out",
                 plural(self.points, "point", "points"),
                 plural(self.lines, "line", "lines")
+            )?;
+        }
+        if let Some(first) = self.colours_missing.first() {
+            let count = self.colours_missing.len();
+            writeln!(
+                f,
+                "{} without colours: {first}",
+                plural(count, "material", "materials")
             )?;
         }
         Ok(())

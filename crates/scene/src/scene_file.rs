@@ -24,7 +24,7 @@ use crate::{
     generate::Generator,
     light::DirectionalLight,
     light_kind::{Light, LightKind, PointLight, SpotLight},
-    obj::options::QuadDiagonal,
+    obj::options::{Concave, ObjMaterials, QuadDiagonal},
     path::{CameraKey, CameraPath},
 };
 use glam::DVec3;
@@ -74,8 +74,22 @@ pub enum MeshSource {
         /// How polygons are split.
         #[serde(default)]
         quads: QuadDiagonal,
+        /// What becomes of concave ones.
+        #[serde(default)]
+        concave: Concave,
+        /// What is taken of its materials.
+        #[serde(default)]
+        materials: ObjMaterials,
         /// Where the file can be downloaded, for the message that it is missing; absent for a mesh
         /// of one's own.
+        #[serde(default, deserialize_with = "given")]
+        source: Option<String>,
+    },
+    /// A glTF 2.0 file, `.gltf` or `.glb`.
+    Gltf {
+        /// Path, as of `Obj`.
+        file: String,
+        /// As of `Obj`.
         #[serde(default, deserialize_with = "given")]
         source: Option<String>,
     },

@@ -1,6 +1,6 @@
 //! Gives bit-equal vectors one index.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::collections::HashMap;
 
 /// Vectors met so far, each once, in the order of their first appearance.
@@ -20,6 +20,28 @@ impl Welder {
             .by_bits
             .entry(value.to_array().map(f32::to_bits))
             .or_insert(next);
+        if index == next {
+            self.values.push(value);
+        }
+        index
+    }
+}
+
+/// The same of texture coordinates.
+#[derive(Clone, Debug, Default)]
+pub struct UvWelder {
+    /// The coordinates.
+    pub values: Vec<Vec2>,
+    by_bits: HashMap<[u32; 2], u32>,
+}
+
+impl UvWelder {
+    /// Index of a pair; one that is not finite counts as (0, 0).
+    pub fn index(&mut self, value: Vec2) -> u32 {
+        let value = if value.is_finite() { value } else { Vec2::ZERO };
+        let next = self.values.len() as u32;
+        let key = value.to_array().map(f32::to_bits);
+        let index = *self.by_bits.entry(key).or_insert(next);
         if index == next {
             self.values.push(value);
         }

@@ -120,6 +120,22 @@ fn parts_are_closed_welded_and_apart() {
     }
 }
 
+#[test]
+fn the_avenue_is_closed_and_2000_units_long() {
+    let scene = scene("avenue").unwrap();
+    let mesh = &scene.mesh;
+    are_welded(mesh);
+    assert!(are_closed(mesh) > 2000);
+    let bvh = Bvh::build(mesh);
+    are_apart(mesh, &bvh);
+    let (min, max) = mesh.bounds().unwrap();
+    assert_eq!((max - min).z, 2000.0);
+    assert!(bits(mesh).eq(bits(&Generator::Avenue.build())));
+    for view in &scene.views {
+        assert_eq!(winding(mesh, &bvh, view.eye), 0, "{}", view.name);
+    }
+}
+
 /// The larger scene has the smaller one's ground, houses or ride: eyes stay outside, and a ray
 /// through the middle of the picture passes more and more surfaces.
 #[test]

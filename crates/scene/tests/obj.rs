@@ -3,7 +3,9 @@
 use glam::Vec3;
 use insta::assert_snapshot;
 use proptest::prelude::*;
-use skiagraph_scene::{ImportReport, Mesh, ObjOptions, QuadDiagonal, SceneError, obj::parse_obj};
+use skiagraph_scene::{
+    ImportReport, Mesh, ObjMaterials, ObjOptions, QuadDiagonal, SceneError, obj::parse_obj,
+};
 use std::path::Path;
 
 fn parse_with(
@@ -162,11 +164,16 @@ fn groups_are_left_out_by_name() {
 
 #[test]
 fn odd_but_valid_text() {
-    let (mesh, _) = parse(
+    let (mesh, _) = parse_with(
         "\u{feff}# bom in C:\\\r\n#no space\r\nmtllib none.mtl\r\n  v 0 0 0\r\nv\t1 0 0 1 0 \
          0\r\nv 0 2 0 2 # weight\r\nusemtl x\r\ns off\r\n\
          g C:\\\r\nf 1 \\\r\n 2 3\r\nf -3/7/ -2/8 -1\r\nf +1 2 3# end",
-    );
+        &ObjOptions {
+            materials: ObjMaterials::Ignore,
+            ..ObjOptions::default()
+        },
+    )
+    .unwrap();
     assert_eq!(mesh.triangles, [[0, 1, 2]; 3]);
     assert_eq!(mesh.positions[2], Vec3::Y, "a fourth number is a weight");
 }

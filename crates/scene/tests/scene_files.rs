@@ -69,9 +69,9 @@ fn broken_files_are_explained_with_line_and_column() {
     assert_snapshot!(error("format: 1", "format: 2"), @"garden.ron:2:13: format 2 is unknown; \
         this program reads format 1");
     assert_snapshot!(error("\"park\"", "\"parc\""), @"garden.ron:4:22: no generated mesh is called \
-        \"parc\"; there are: park, city:TRIANGLES, forest:TRIANGLES");
+        \"parc\"; there are: park, avenue, city:TRIANGLES, forest:TRIANGLES");
     assert_snapshot!(error("Generated(", "Made("), @"garden.ron:4:11: Unexpected variant named \
-        `Made` in enum `MeshSource`, expected either `Obj` or `Generated` instead");
+        `Made` in enum `MeshSource`, expected one of `Obj`, `Gltf`, or `Generated` instead");
     assert_snapshot!(error("(0, -1, 0)", "(0, -1)"), @"garden.ron:5:30: Expected a tuple of size \
         3 but found 2 elements instead");
     assert_snapshot!(error("(0, -1, 0)", "(0, 0, 0)"), @"garden.ron:5:33: the light's direction \
@@ -163,7 +163,8 @@ fn a_file_in_the_scenes_folder_wins_over_the_built_in_scene() {
             ("forest".to_owned(), true, false),
             ("park".to_owned(), true, true),
             ("park_soft".to_owned(), true, false),
-            ("sponza".to_owned(), false, false)
+            ("sponza".to_owned(), false, false),
+            ("sponza_masked".to_owned(), false, false)
         ]
     );
 }
@@ -187,8 +188,8 @@ fn unknown_scenes_and_missing_files() {
         assets: Vec::new(),
     };
     assert_snapshot!(library.load(&request("parc")).unwrap_err(), @"no scene \"parc\": it is \
-        neither the path of a .ron or .obj file, nor the name of a .ron file in scenes, nor one of \
-        the built-in scenes bench, city, forest, park, park_soft, sponza");
+        neither the path of a .ron, .obj, .gltf or .glb file, nor the name of a .ron file in \
+        scenes, nor one of the built-in scenes avenue, bench, city, forest, park, park_soft, sponza, sponza_masked");
     assert!(matches!(
         library.load(&request("nowhere/parc.ron")),
         Err(SceneError::Read { .. })

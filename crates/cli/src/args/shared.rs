@@ -31,8 +31,8 @@ const MAX_SECONDS: u64 = 86_400;
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Scene")]
 pub struct SceneArgs {
-    /// Built-in scene, scene file (.ron), name in scenes/, or a mesh (.obj) with --eye, --look and
-    /// --light.
+    /// Built-in scene, scene file (.ron), name in scenes/, or a mesh (.obj, .gltf, .glb) with
+    /// --eye, --look and --light.
     #[arg(long, default_value = "park", value_name = "SCENE")]
     pub scene: String,
     /// A view of the scene, or `all`. Without it: the scene's first view.

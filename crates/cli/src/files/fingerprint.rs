@@ -2,7 +2,7 @@
 //! changed.
 
 use skiagraph_graph::{Picture, Sources};
-use skiagraph_scene::{Light, Mesh, View};
+use skiagraph_scene::{Light, Mesh, View, packed_masks::mask_words};
 use std::{
     collections::BTreeMap,
     fmt,
@@ -48,7 +48,12 @@ impl Fingerprint {
             let numbers = list.iter().flatten();
             Self::EMPTY.with(numbers.flat_map(|index| index.to_le_bytes()))
         };
-        self.with_all(floats(&mesh.positions))
+        let masks = match mask_words(mesh) {
+            words if words.is_empty() => self,
+            words => self.with_all(Self::EMPTY.with(words.iter().flat_map(|it| it.to_le_bytes()))),
+        };
+        masks
+            .with_all(floats(&mesh.positions))
             .with_all(indices(&mesh.triangles))
             .with_all(floats(&mesh.normals))
             .with_all(indices(&mesh.normal_indices))

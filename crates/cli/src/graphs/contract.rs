@@ -269,6 +269,7 @@ mod tests {
             ],
             indeterminate: vec![false; 4],
             n_dot_l: vec![0.5; 4],
+            base_colors: Vec::new(),
         }
     }
 

@@ -94,7 +94,7 @@ pub fn placeholder(viewport: [u32; 2]) -> SceneProvider {
         triangles: vec![[0, 1, 2]],
         normals: vec![Vec3::Z],
         normal_indices: vec![[0, 0, 0]],
-        groups: Vec::new(),
+        ..Mesh::default()
     };
     let light = DirectionalLight::new(DVec3::NEG_Z);
     let scene = Scene {

@@ -323,6 +323,7 @@ mod tests {
             classes: vec![Background, FacingAway, Lit, Lit, Shadow, Shadow],
             indeterminate: vec![false, true, true, false, true, false],
             n_dot_l: vec![0.5; 6],
+            base_colors: Vec::new(),
         };
         let wrong = [0, 1, 0, 0, 1, 1];
         assert_eq!(right_in_band(&wrong, &reference), [0, 0, 1, 0, 0, 1]);

@@ -18,15 +18,16 @@ pub fn by_answer(runs: &[Run]) -> Vec<(Option<&'static str>, Vec<&Run>)> {
 }
 
 /// How the reference of a light with extent was made.
-pub fn area_reference(area: &AreaReference) -> String {
+pub fn area_reference(area: &AreaReference, band: u64) -> String {
     format!(
         "the light has an extent: reference of {} samples per pixel, standard error {:.5} (root \
          mean square over PFL; the worst {:.5}); lit is what sees half of it or more, in penumbra \
-         {}",
+         {}, in the band {}",
         thousands(area.samples.into()),
         area.standard_error_rms,
         area.standard_error_worst,
-        thousands(area.penumbra)
+        thousands(area.penumbra),
+        thousands(band)
     )
 }
 
@@ -157,8 +158,8 @@ mod tests {
             "warning: soft 1024: visibility that is no share of light: NaN 2, outside 0 to 1 1,000",
         ];
         assert_eq!(graded(&runs)[..2], expected);
-        insta::assert_snapshot!(area_reference(&reference()), @"the light has an extent: reference \
+        insta::assert_snapshot!(area_reference(&reference(), 12), @"the light has an extent: reference \
             of 512 samples per pixel, standard error 0.00150 (root mean square over PFL; the worst \
-            0.06250); lit is what sees half of it or more, in penumbra 1,234");
+            0.06250); lit is what sees half of it or more, in penumbra 1,234, in the band 12");
     }
 }

@@ -74,6 +74,7 @@ pub fn viewport(results: &Results, runs: &[Run]) -> String {
     let mut text = format!("\n{}\n", pixels(first, &mut footnotes));
     for (title, runs) in by_answer(runs) {
         let is_hard = runs.iter().all(|run| run.is_hard());
+        let are_paths = columns::are_paths(runs.iter().copied());
         let measured = runs.into_iter();
         let measured: Vec<(&Run, &Measured)> = measured
             .filter_map(|run| Some((run, run.measured.as_ref()?)))
@@ -88,7 +89,6 @@ pub fn viewport(results: &Results, runs: &[Run]) -> String {
             let mut figures = measured.iter().flat_map(|(run, _)| &run.published);
             figures.any(|figure| figure.quantity == quantity)
         };
-        let are_paths = columns::are_paths(runs);
         let table = Table {
             columns: columns::document(is_hard, are_paths, is_published),
             steps: steps(&measured),
@@ -122,7 +122,7 @@ fn pixels<'a>(run: &'a Run, footnotes: &mut Footnotes<'a>) -> String {
     let (lit, shadow) = (count(counts.lit, "lit"), count(counts.shadow, "shadow"));
     let facing_away = count(counts.facing_away, "facing_away");
     let doubt = match &run.area {
-        Some(area) => area_reference(area),
+        Some(area) => area_reference(area, run.band),
         None => format!(
             "in the band {} ({} % of PFL)",
             thousands(run.band),

@@ -68,7 +68,7 @@ fn heading(results: &Results, run: &Run, runs: &[Run]) -> String {
         ),
     ];
     lines.push(match area {
-        Some(area) => area_reference(area),
+        Some(area) => area_reference(area, *band),
         None => format!(
             "in the band, where the answer hangs on rounding: {} ({} of PFL)",
             thousands(*band),

@@ -232,6 +232,10 @@ impl Environment for At<'_, '_, '_> {
         self.world.request.features.contains(feature)
     }
 
+    fn provided_items(&self, name: &str) -> Option<u64> {
+        self.world.request.provider.describe(name)?.items
+    }
+
     fn param(&mut self, name: &str, span: &Span) -> Result<Value, Reported> {
         let instance = self.world.frames.document(self.place.frame);
         if let Some(value) = instance.params.value(name) {

@@ -136,6 +136,15 @@ impl<'a> Lowering<'a> {
         }
     }
 
+    /// How many items the scene provides under a name; none where it provides nothing of that name,
+    /// does not say, or the document is only read.
+    pub fn provided_items(&self, name: &str) -> u64 {
+        let environment = self.environment.as_ref();
+        environment
+            .and_then(|it| it.provided_items(name))
+            .unwrap_or(0)
+    }
+
     /// A number of things; 1 where the document is only read.
     pub fn count(&mut self, expr: &Expr) -> u64 {
         self.evaluate(1, |environment| expr.count(environment))

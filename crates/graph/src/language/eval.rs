@@ -17,6 +17,11 @@ pub(crate) trait Environment {
 
     fn has(&self, feature: wgt::Features) -> bool;
 
+    /// Items of what the scene provides, where that is known.
+    fn provided_items(&self, _: &str) -> Option<u64> {
+        None
+    }
+
     fn param(&mut self, name: &str, span: &Span) -> Result<Value, Reported>;
 
     /// A param of that name, where a word may stand as well.

@@ -1,5 +1,5 @@
 //! `#import "path"`: a textual, once-only line, with a map from the expanded text back to the
-//! files.
+//! files. `#import "path" instead "other"` also leaves out `other` where it is imported later.
 //!
 //! Names stay as written, so that errors, captures and bindings speak the author's language.
 
@@ -151,8 +151,12 @@ impl<'a> ShaderFiles<'a> {
                 continue;
             };
             let place = file.span(start..start + line.trim_end().len());
-            let path = path(rest).ok_or_else(|| ImportError::Unquoted(place.clone()))?;
+            let unquoted = || ImportError::Unquoted(place.clone());
+            let (path, replaced) = paths(rest).ok_or_else(unquoted)?;
             let imported = self.import(file, path, &place)?;
+            if let Some(replaced) = replaced {
+                seen.push(self.import(file, replaced, &place)?.name.to_string());
+            }
             // Once only: this also ends cycles.
             if !seen.contains(&imported.name.to_string()) {
                 if depth == DEEPEST_IMPORT {
@@ -191,10 +195,20 @@ impl<'a> ShaderFiles<'a> {
     }
 }
 
-/// The path in what follows `#import`; only a line comment may follow.
-fn path(rest: &str) -> Option<&str> {
-    let (path, after) = rest.trim().strip_prefix('"')?.split_once('"')?;
-    let after = after.trim();
+/// The path in what follows `#import`, and the one behind `instead`; only a line comment may
+/// follow.
+fn paths(rest: &str) -> Option<(&str, Option<&str>)> {
+    let (path, after) = quoted(rest)?;
+    let (replaced, after) = match after.strip_prefix("instead") {
+        Some(rest) => quoted(rest).map(|(path, after)| (Some(path), after))?,
+        None => (None, after),
+    };
     let ends = after.is_empty() || after.starts_with("//") && !after.contains(BREAKS);
-    (ends && !path.is_empty()).then_some(path)
+    ends.then_some((path, replaced))
+}
+
+/// A path in quotes, and what follows it.
+fn quoted(rest: &str) -> Option<(&str, &str)> {
+    let (path, after) = rest.trim().strip_prefix('"')?.split_once('"')?;
+    (!path.is_empty()).then_some((path, after.trim()))
 }

@@ -7,6 +7,7 @@
 //! here, line by line, before it sees them.
 
 use crate::error::{FACES_SHOWN, FaceFault, FaceProblem, FaceRef, beginning};
+use glam::Vec2;
 use std::{
     collections::HashSet,
     io::{self, BufRead, Read},
@@ -22,6 +23,10 @@ pub(super) struct FaceRecord {
     pub line: u32,
     /// Whether every corner names a normal.
     pub has_normals: bool,
+    /// Index into [`Guard::materials`].
+    pub material: u32,
+    /// The first of its corners in [`Guard::corner_uvs`], if each names texture coordinates.
+    pub uvs: Option<usize>,
 }
 
 /// The reader that `tobj` reads from.
@@ -36,6 +41,12 @@ pub(super) struct Guard<'a> {
     pub fatal: Option<String>,
     /// Names of the runs of faces, in file order, those left out included.
     pub groups: Vec<String>,
+    /// Names of the materials in use, in the order of their first use; the first is none.
+    pub materials: Vec<String>,
+    /// The files of materials that the file names.
+    pub libraries: Vec<String>,
+    /// Texture coordinates of the corners of faces, v down.
+    pub corner_uvs: Vec<Vec2>,
     /// Faces handed on, in order.
     pub faces: Vec<FaceRecord>,
     /// The first faulty faces; those are not handed on.
@@ -48,17 +59,24 @@ pub(super) struct Guard<'a> {
     pub points: usize,
     /// Lines met.
     pub lines: usize,
+    /// Whether materials and texture coordinates are of interest.
+    with_materials: bool,
+    uvs: Vec<Vec2>,
+    material: u32,
     group_left_out: bool,
     number: u32,
     vertices: usize,
     normals: usize,
 }
 
+/// Vertex, normal and texture coordinates of a corner, from 1.
+type Named = (usize, Option<usize>, Option<usize>);
+
 /// Name of the faces that stand before the first `g` or `o`.
 const UNNAMED: &str = "unnamed";
 
 impl<'a> Guard<'a> {
-    pub fn new(bytes: &'a [u8], leave_out: &'a [String]) -> Self {
+    pub fn new(bytes: &'a [u8], leave_out: &'a [String], with_materials: bool) -> Self {
         let leave_out: HashSet<&str> = leave_out.iter().map(String::as_str).collect();
         Self {
             // a byte order mark is no part of the first word
@@ -68,6 +86,12 @@ impl<'a> Guard<'a> {
             line: 0,
             fatal: None,
             groups: vec![UNNAMED.to_owned()],
+            materials: vec![String::new()],
+            libraries: Vec::new(),
+            corner_uvs: Vec::new(),
+            with_materials,
+            uvs: Vec::new(),
+            material: 0,
             faces: Vec::new(),
             faults: Vec::new(),
             fault_count: 0,
@@ -166,6 +190,18 @@ impl<'a> Guard<'a> {
                 self.normals += 1;
                 self.hand_on("vn", numbers.split_whitespace());
             }
+            "vt" if self.with_materials => self.take_uv(numbers),
+            "usemtl" if self.with_materials => {
+                let name = rest.trim();
+                let known = self.materials.iter().position(|other| other == name);
+                self.material = known.unwrap_or(self.materials.len()) as u32;
+                if known.is_none() {
+                    self.materials.push(name.to_owned());
+                }
+            }
+            "mtllib" if self.with_materials && !rest.trim().is_empty() => {
+                self.libraries.push(rest.trim().to_owned());
+            }
             "f" => self.take_face(numbers, ended)?,
             "g" | "o" => {
                 let name = if rest.trim().is_empty() {
@@ -180,8 +216,7 @@ impl<'a> Guard<'a> {
             }
             "p" => self.points += 1,
             "l" => self.lines += 1,
-            // Texture coordinates, materials, smoothing groups, comments, free-form surfaces:
-            // nothing that we draw.
+            // Smoothing groups, comments, free-form surfaces: nothing that we draw.
             _ => {}
         }
         Ok(())
@@ -194,6 +229,15 @@ impl<'a> Guard<'a> {
             self.handed_on.extend_from_slice(word.as_bytes());
         }
         self.handed_on.push(b'\n');
+    }
+
+    /// A number that cannot be read counts as 0, as one that is missing does.
+    fn take_uv(&mut self, numbers: &str) {
+        let mut numbers = numbers.split_whitespace();
+        let mut next = || numbers.next().and_then(|word| word.parse::<f32>().ok());
+        let (u, v) = (next().unwrap_or(0.0), next().unwrap_or(0.0));
+        // The first row of a texture's texels is the upper one, where v is 1.
+        self.uvs.push(Vec2::new(u, 1.0 - v));
     }
 
     fn take_face(&mut self, corners: &str, ended: bool) -> Result<(), String> {
@@ -218,9 +262,15 @@ impl<'a> Guard<'a> {
             1 => self.points += 1,
             2 => self.lines += 1,
             _ => {
-                let has_normals = parsed.iter().all(|(_, normal)| normal.is_some());
+                let has_normals = parsed.iter().all(|corner| corner.1.is_some());
+                let uvs = parsed.iter().all(|corner| corner.2.is_some());
+                let uvs = uvs.then_some(self.corner_uvs.len());
+                if uvs.is_some() {
+                    let named = parsed.iter().filter_map(|corner| corner.2);
+                    self.corner_uvs.extend(named.map(|uv| self.uvs[uv - 1]));
+                }
                 self.handed_on.push(b'f');
-                for (vertex, normal) in parsed {
+                for (vertex, normal, _) in parsed {
                     let text = match normal {
                         Some(normal) if has_normals => format!(" {vertex}//{normal}"),
                         _ => format!(" {vertex}"),
@@ -234,16 +284,18 @@ impl<'a> Guard<'a> {
                     number: self.number,
                     line: self.line,
                     has_normals,
+                    material: self.material,
+                    uvs,
                 });
             }
         }
         Ok(())
     }
 
-    /// Vertex and normal of a corner, from 1, known to exist.
-    fn corner(&self, text: &str) -> Result<(usize, Option<usize>), FaceProblem> {
+    /// Vertex, normal and texture coordinates of a corner, from 1, known to exist.
+    fn corner(&self, text: &str) -> Result<Named, FaceProblem> {
         let mut words = text.split('/');
-        let (vertex, _texture, normal) = (words.next().unwrap_or(""), words.next(), words.next());
+        let (vertex, uv, normal) = (words.next().unwrap_or(""), words.next(), words.next());
         if words.next().is_some() {
             return Err(FaceProblem::NotACorner(text.to_owned()));
         }
@@ -276,7 +328,16 @@ impl<'a> Guard<'a> {
                 FaceProblem::NoSuchNormal { written, available }
             })?),
         };
-        Ok((vertex, normal))
+        let uv = match uv {
+            // Without a file of materials nothing is looked up by them.
+            Some(uv) if !self.libraries.is_empty() && !uv.is_empty() => {
+                Some(resolve(uv, self.uvs.len(), |written, available| {
+                    FaceProblem::NoSuchUv { written, available }
+                })?)
+            }
+            _ => None,
+        };
+        Ok((vertex, normal, uv))
     }
 
     fn fault(&mut self, problem: FaceProblem) {

@@ -2,13 +2,15 @@
 
 use super::{
     guard::{FaceRecord, Guard},
+    mtl,
     options::ObjOptions,
+    polygon,
 };
 use crate::{
+    builder::{Corner, MeshBuilder},
     error::{FACES_SHOWN, FaceFault, FaceProblem, SceneError},
-    mesh::{Group, Mesh},
+    mesh::Mesh,
     report::ImportReport,
-    weld::Welder,
 };
 use glam::{DVec3, Vec3};
 use std::path::Path;
@@ -16,45 +18,53 @@ use std::path::Path;
 /// The mesh of the models that `tobj` read through `guard`.
 ///
 /// # Errors
-/// More corners than indices, or a corner that is not finite.
+/// More corners than indices, a corner that is not finite, a face that cannot be cut, or materials
+/// that cannot be had.
 pub(super) fn import(
     models: &[tobj::Model],
     guard: &Guard<'_>,
     options: &ObjOptions,
     path: &Path,
 ) -> Result<(Mesh, ImportReport), SceneError> {
-    let report = ImportReport {
+    let (materials, colours_missing) = mtl::materials(guard, options, path)?;
+    let mut import = Import {
+        guard,
+        options,
+        path,
+        with_materials: !materials.is_empty(),
+        builder: MeshBuilder::default(),
+        uncut: Vec::new(),
+        uncut_count: 0,
+    };
+    import.builder.report = ImportReport {
         file: Some(path.to_owned()),
         faces: guard.faces.len(),
         faces_left_out: guard.faces_left_out,
         points: guard.points,
         lines: guard.lines,
+        colours_missing,
         ..ImportReport::default()
     };
-    let mut import = Import {
-        guard,
-        options,
-        path,
-        mesh: Mesh::default(),
-        report,
-    };
     import.run(models)?;
-    Ok((import.mesh, import.report))
+    if import.uncut_count > 0 {
+        return Err(SceneError::ObjFaces {
+            path: path.to_owned(),
+            faults: import.uncut,
+            total: import.uncut_count,
+        });
+    }
+    Ok(import.builder.finish(materials))
 }
 
 struct Import<'a> {
     guard: &'a Guard<'a>,
     options: &'a ObjOptions,
     path: &'a Path,
-    mesh: Mesh,
-    report: ImportReport,
-}
-
-/// A corner of a polygon: welded position, and the normal that the file gives it.
-#[derive(Clone, Copy)]
-struct Corner {
-    position: u32,
-    normal: Option<DVec3>,
+    with_materials: bool,
+    builder: MeshBuilder,
+    /// The first faces that cannot be cut, and how many there are.
+    uncut: Vec<FaceFault>,
+    uncut_count: usize,
 }
 
 impl Import<'_> {
@@ -67,8 +77,6 @@ impl Import<'_> {
             });
         }
         self.check_finite(models)?;
-        let mut positions = Welder::default();
-        let mut normals = Welder::default();
         let mut read = 0;
         let mut records = self.guard.faces.iter();
         let mut polygon = Vec::new();
@@ -78,10 +86,13 @@ impl Import<'_> {
                 .positions
                 .chunks_exact(3)
                 .map(|p| Vec3::new(p[0], p[1], p[2]));
-            let welded: Vec<u32> = points.map(|point| positions.index(point)).collect();
+            let welded: Vec<u32> = points
+                .map(|point| self.builder.positions.index(point))
+                .collect();
             read += welded.len();
             for (range, record) in faces(mesh).zip(&mut records) {
                 polygon.clear();
+                let first = range.start;
                 polygon.extend(range.map(|slot| {
                     let normal = record
                         .has_normals
@@ -89,14 +100,16 @@ impl Import<'_> {
                     Corner {
                         position: welded[mesh.indices[slot] as usize],
                         normal,
+                        uv: record
+                            .uvs
+                            .map(|uvs| self.guard.corner_uvs[uvs + slot - first]),
                     }
                 }));
-                self.add_face(record, &polygon, &positions.values, &mut normals);
+                self.add_face(record, &polygon);
             }
         }
-        self.report.vertices_welded = read - positions.values.len();
-        self.mesh.positions = positions.values;
-        self.mesh.normals = normals.values;
+        let builder = &mut self.builder;
+        builder.report.vertices_welded = read - builder.positions.values.len();
         Ok(())
     }
 
@@ -140,60 +153,33 @@ impl Import<'_> {
         }
     }
 
-    fn add_face(
-        &mut self,
-        record: &FaceRecord,
-        polygon: &[Corner],
-        positions: &[Vec3],
-        normals: &mut Welder,
-    ) {
+    fn add_face(&mut self, record: &FaceRecord, polygon: &[Corner]) {
+        let (guard, builder) = (self.guard, &mut self.builder);
         if !record.has_normals {
-            self.report.faces_without_normals += 1;
+            builder.report.faces_without_normals += 1;
         }
-        let count = polygon.len();
-        let apex = self.options.quads.apex();
-        for step in 1..count - 1 {
-            let corners = [
-                polygon[apex],
-                polygon[(apex + step) % count],
-                polygon[(apex + step + 1) % count],
-            ];
-            let indices = corners.map(|corner| corner.position);
-            if indices[0] == indices[1] || indices[1] == indices[2] || indices[2] == indices[0] {
-                self.report.dropped.add(|| self.guard.face_ref(record));
-                continue;
+        let points: Vec<DVec3> = polygon
+            .iter()
+            .map(|corner| builder.point(corner.position))
+            .collect();
+        let Some(triangles) =
+            polygon::cut(&points, self.options.quads.apex(), self.options.concave)
+        else {
+            self.uncut_count += 1;
+            if self.uncut.len() < FACES_SHOWN {
+                self.uncut.push(FaceFault {
+                    face: guard.face_ref(record),
+                    problem: FaceProblem::CannotBeCut,
+                });
             }
-            let points = indices.map(|index| positions[index as usize].as_dvec3());
-            if has_no_area(points) {
-                self.report.zero_area.add(|| self.guard.face_ref(record));
-            }
-            let own = || {
-                geometric_normal(points)
-                    .or_else(|| newell(polygon, positions))
-                    .unwrap_or(DVec3::Y)
-            };
-            let normal_indices = corners.map(|corner| {
-                let given = corner.normal.map(DVec3::try_normalize);
-                if given == Some(None) {
-                    self.report.normals_replaced += 1;
-                }
-                normals.index(given.flatten().unwrap_or_else(own).as_vec3())
-            });
-            self.push(record.group, indices, normal_indices);
-        }
-    }
-
-    fn push(&mut self, group: u32, indices: [u32; 3], normal_indices: [u32; 3]) {
-        let primitive = self.mesh.triangles.len() as u32;
-        self.mesh.triangles.push(indices);
-        self.mesh.normal_indices.push(normal_indices);
-        let name = &self.guard.groups[group as usize];
-        match self.mesh.groups.last_mut() {
-            Some(last) if last.name == *name => last.triangles.end = primitive + 1,
-            _ => self.mesh.groups.push(Group {
-                name: name.clone(),
-                triangles: primitive..primitive + 1,
-            }),
+            return;
+        };
+        let of_all = |_: &MeshBuilder| polygon::normal(&points).try_normalize();
+        let group = &guard.groups[record.group as usize];
+        let material = self.with_materials.then_some(record.material);
+        for triangle in triangles {
+            let corners = triangle.map(|corner| polygon[corner]);
+            builder.add(corners, of_all, group, material, || guard.face_ref(record));
         }
     }
 }
@@ -220,31 +206,4 @@ fn faces(mesh: &tobj::Mesh) -> impl Iterator<Item = std::ops::Range<usize>> + '_
 fn vec3(values: &[f32], index: u32) -> Vec3 {
     let start = index as usize * 3;
     Vec3::new(values[start], values[start + 1], values[start + 2])
-}
-
-/// Whether the corners lie on a line. Differences of `f32` corners are exact in `f64` (unless their
-/// exponents lie more than 29 apart); the products are compared with their rounding errors, so that
-/// no tiny area is taken for none.
-fn has_no_area([a, b, c]: [DVec3; 3]) -> bool {
-    let (u, v) = (b - a, c - a);
-    let equal = |p: f64, q: f64, r: f64, s: f64| {
-        let (left, right) = (p * q, r * s);
-        left == right && p.mul_add(q, -left) == r.mul_add(s, -right)
-    };
-    equal(u.y, v.z, u.z, v.y) && equal(u.z, v.x, u.x, v.z) && equal(u.x, v.y, u.y, v.x)
-}
-
-fn geometric_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
-    (b - a).cross(c - a).try_normalize()
-}
-
-/// Normal of a whole polygon: the sum over its edges (Newell's method).
-fn newell(polygon: &[Corner], positions: &[Vec3]) -> Option<DVec3> {
-    let point =
-        |index: usize| positions[polygon[index % polygon.len()].position as usize].as_dvec3();
-    let origin = point(0);
-    (0..polygon.len())
-        .map(|i| (point(i) - origin).cross(point(i + 1) - origin))
-        .sum::<DVec3>()
-        .try_normalize()
 }

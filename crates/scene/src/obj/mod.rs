@@ -1,15 +1,17 @@
 //! Wavefront OBJ files, read by `tobj` behind a guard and welded into a [`Mesh`](crate::Mesh).
 //!
 //! Conventions: `o` and `g` both begin a group; a polygon is fanned from the corner that
-//! [`QuadDiagonal`] names; a face without a normal at every corner is *flat*: each of its triangles
-//! takes its own geometric normal. (A smooth guess would tilt the corners of boxes, and which
-//! pixels face the light is decided by these normals.) Vertex numbers refer to vertices above the
-//! face, as all known exporters write them.
+//! [`QuadDiagonal`] names, one that does not fit its fan is cut by ears; a face without a normal at
+//! every corner is *flat*: each of its triangles takes its own geometric normal. (A smooth guess
+//! would tilt the corners of boxes, and which pixels face the light is decided by these normals.)
+//! Vertex numbers refer to vertices above the face, as all known exporters write them.
 
 mod guard;
 mod import;
+mod mtl;
 pub(crate) mod options;
+mod polygon;
 pub(crate) mod read;
 
-pub use options::{ObjOptions, QuadDiagonal};
+pub use options::{Concave, ObjMaterials, ObjOptions, QuadDiagonal};
 pub use read::{load_obj, parse_obj};

@@ -1,6 +1,8 @@
 //! How an OBJ file becomes a mesh.
 
+use crate::pattern::Pattern;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 
 /// Which diagonal splits a quad, corners counted from the first; larger polygons are fanned from
 /// the same corner.
@@ -23,6 +25,31 @@ impl QuadDiagonal {
     }
 }
 
+/// What becomes of a polygon that the fan from its corner does not fit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub enum Concave {
+    /// It is cut as its outline is, and refused where that crosses itself.
+    #[default]
+    Cut,
+    /// It is fanned all the same and gains area, as many importers have it: the dissertation's
+    /// Sponza has 231 such quads.
+    Fan,
+}
+
+/// What is taken of an OBJ file's materials.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
+pub enum ObjMaterials {
+    /// Nothing: files of materials and textures need not be there.
+    Ignore,
+    /// Colours, for pictures. Every surface is opaque, and what cannot be read is a warning.
+    Color,
+    /// Colours and masks (`map_d`, `d`); masks must be there.
+    #[default]
+    All,
+    /// Nothing but names: these materials get masks that are made here.
+    Made(BTreeMap<String, Pattern>),
+}
+
 /// How an OBJ file becomes a mesh.
 #[derive(Clone, Debug, Default)]
 pub struct ObjOptions {
@@ -30,4 +57,8 @@ pub struct ObjOptions {
     pub leave_out: Vec<String>,
     /// How polygons are split.
     pub quads: QuadDiagonal,
+    /// What becomes of concave ones.
+    pub concave: Concave,
+    /// What is taken of its materials.
+    pub materials: ObjMaterials,
 }

@@ -1,6 +1,10 @@
 //! Reading the file, and what is refused of it.
 
-use super::{guard::Guard, import::import, options::ObjOptions};
+use super::{
+    guard::Guard,
+    import::import,
+    options::{ObjMaterials, ObjOptions},
+};
 use crate::{
     error::{EXTENTS, SceneError},
     limit::Limit,
@@ -39,7 +43,11 @@ pub fn parse_obj(
     path: &Path,
     options: &ObjOptions,
 ) -> Result<(Mesh, ImportReport), SceneError> {
-    let mut guard = Guard::new(bytes, &options.leave_out);
+    let mut guard = Guard::new(
+        bytes,
+        &options.leave_out,
+        options.materials != ObjMaterials::Ignore,
+    );
     let no_materials = |_: &Path| Ok(Default::default());
     let loaded = tobj::load_obj_buf(&mut guard, &tobj::LoadOptions::default(), no_materials);
     let (models, _) = loaded.map_err(|error| SceneError::ObjLine {
@@ -81,7 +89,7 @@ pub fn parse_obj(
 }
 
 /// Refuses lengths whose products leave f32. A mesh that is one point has none.
-fn check_extent(mesh: &Mesh, path: &Path) -> Result<(), SceneError> {
+pub(crate) fn check_extent(mesh: &Mesh, path: &Path) -> Result<(), SceneError> {
     let Some((low, high)) = mesh.bounds() else {
         return Ok(());
     };

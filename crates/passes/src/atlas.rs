@@ -1,0 +1,70 @@
+//! Materials and the texels of their base colours as shaders read them.
+
+use crate::error::Error;
+use skiagraph_scene::{Surfaces, texture::Source};
+use std::{collections::HashMap, sync::Arc};
+
+/// WGSL's record of a material in `scene.materials`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct MaterialRecord {
+    /// Linear red, green, blue, times the texture's.
+    pub base_color: [f32; 3],
+    /// The first of its texels in `scene.texels`, row by row; without meaning where it has none.
+    pub first_texel: u32,
+    /// Width and height of its texture; 0 without one.
+    pub size: [u32; 2],
+    /// What it is beyond its edges, for u and v: 0 repeats, 1 mirrors, 2 clamps.
+    pub wrap: [u32; 2],
+}
+
+/// All textures in one buffer.
+pub(crate) struct Atlas {
+    pub records: Vec<MaterialRecord>,
+    pub texels: Vec<u32>,
+}
+
+/// What tells textures apart.
+#[derive(PartialEq, Eq, Hash)]
+enum Key {
+    File(std::path::PathBuf),
+    Bytes(*const u8),
+}
+
+impl Atlas {
+    /// Reads every texture once.
+    ///
+    /// # Errors
+    /// One that cannot be read.
+    pub fn new(surfaces: &Surfaces) -> Result<Self, Error> {
+        let mut atlas = Self {
+            records: Vec::new(),
+            texels: Vec::new(),
+        };
+        let mut places: HashMap<Key, u32> = HashMap::new();
+        for material in &surfaces.materials {
+            let mut record = MaterialRecord {
+                base_color: material.base_color,
+                ..MaterialRecord::default()
+            };
+            if let Some(texture) = &material.texture {
+                let read = texture.texels();
+                let texels = read.map_err(|why| Error::Texture(why.to_owned()))?;
+                let key = match &texture.source {
+                    Source::File(path) => Key::File(path.clone()),
+                    Source::Bytes(bytes) => Key::Bytes(Arc::as_ptr(bytes).cast()),
+                };
+                record.first_texel = *places.entry(key).or_insert_with(|| {
+                    let first = atlas.texels.len() as u32;
+                    let words = texels.rgba.iter().copied().map(u32::from_le_bytes);
+                    atlas.texels.extend(words);
+                    first
+                });
+                record.size = texels.size;
+                record.wrap = texture.wrap.map(|wrap| wrap as u32);
+            }
+            atlas.records.push(record);
+        }
+        Ok(atlas)
+    }
+}

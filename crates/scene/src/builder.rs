@@ -1,0 +1,105 @@
+//! Puts together a mesh of the triangles of a file: welds, drops and repairs.
+
+use crate::{
+    error::FaceRef,
+    material::Material,
+    mesh::{Group, Mesh},
+    report::ImportReport,
+    weld::{UvWelder, Welder},
+};
+use glam::{DVec3, Vec2};
+
+/// A corner of a face: welded position, and what the file gives it.
+#[derive(Clone, Copy)]
+pub(crate) struct Corner {
+    pub position: u32,
+    pub normal: Option<DVec3>,
+    pub uv: Option<Vec2>,
+}
+
+/// The mesh so far.
+#[derive(Default)]
+pub(crate) struct MeshBuilder {
+    pub positions: Welder,
+    normals: Welder,
+    uvs: UvWelder,
+    mesh: Mesh,
+    pub report: ImportReport,
+}
+
+impl MeshBuilder {
+    /// Adds a triangle; `normal` stands in where it has none of its own.
+    pub fn add(
+        &mut self,
+        corners: [Corner; 3],
+        normal: impl Fn(&Self) -> Option<DVec3>,
+        group: &str,
+        material: Option<u32>,
+        face: impl Fn() -> FaceRef,
+    ) {
+        let indices = corners.map(|corner| corner.position);
+        if indices[0] == indices[1] || indices[1] == indices[2] || indices[2] == indices[0] {
+            self.report.dropped.add(face);
+            return;
+        }
+        let points = indices.map(|index| self.point(index));
+        if has_no_area(points) {
+            self.report.zero_area.add(face);
+        }
+        let own = geometric_normal(points)
+            .or_else(|| normal(self))
+            .unwrap_or(DVec3::Y);
+        let normal_indices = corners.map(|corner| {
+            let given = corner.normal.map(DVec3::try_normalize);
+            if given == Some(None) {
+                self.report.normals_replaced += 1;
+            }
+            self.normals.index(given.flatten().unwrap_or(own).as_vec3())
+        });
+        let primitive = self.mesh.triangles.len() as u32;
+        self.mesh.triangles.push(indices);
+        self.mesh.normal_indices.push(normal_indices);
+        match self.mesh.groups.last_mut() {
+            Some(last) if last.name == group => last.triangles.end = primitive + 1,
+            _ => self.mesh.groups.push(Group {
+                name: group.to_owned(),
+                triangles: primitive..primitive + 1,
+            }),
+        }
+        if let Some(material) = material {
+            let uvs = corners.map(|corner| self.uvs.index(corner.uv.unwrap_or(Vec2::ZERO)));
+            self.mesh.surfaces.uv_indices.push(uvs);
+            self.mesh.surfaces.of.push(material);
+        }
+    }
+
+    /// A welded position.
+    pub fn point(&self, index: u32) -> DVec3 {
+        self.positions.values[index as usize].as_dvec3()
+    }
+
+    /// The mesh, and what was done to it. Materials only if every triangle was given one.
+    pub fn finish(mut self, materials: Vec<Material>) -> (Mesh, ImportReport) {
+        self.mesh.positions = self.positions.values;
+        self.mesh.normals = self.normals.values;
+        self.mesh.surfaces.uvs = self.uvs.values;
+        self.mesh.surfaces.materials = materials;
+        (self.mesh, self.report)
+    }
+}
+
+/// Whether the corners lie on a line. Differences of `f32` corners are exact in `f64` (unless their
+/// exponents lie more than 29 apart); the products are compared with their rounding errors, so that
+/// no tiny area is taken for none.
+pub(crate) fn has_no_area([a, b, c]: [DVec3; 3]) -> bool {
+    let (u, v) = (b - a, c - a);
+    let equal = |p: f64, q: f64, r: f64, s: f64| {
+        let (left, right) = (p * q, r * s);
+        left == right && p.mul_add(q, -left) == r.mul_add(s, -right)
+    };
+    equal(u.y, v.z, u.z, v.y) && equal(u.z, v.x, u.x, v.z) && equal(u.x, v.y, u.y, v.x)
+}
+
+fn geometric_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
+    (b - a).cross(c - a).try_normalize()
+}

@@ -1,0 +1,154 @@
+//! Reads accessors, never beyond the buffers that they name.
+
+use gltf::accessor::{Accessor, DataType};
+use std::sync::Arc;
+
+type Bytes = [Arc<[u8]>];
+
+/// An accessor's items as numbers, `N` each; normalised integers as fractions.
+///
+/// # Errors
+/// What is wrong with it.
+pub(super) fn floats<const N: usize>(
+    accessor: &Accessor<'_>,
+    buffers: &Bytes,
+) -> Result<Vec<[f32; N]>, String> {
+    let width = accessor.dimensions().multiplicity();
+    if width < N {
+        return Err(format!("its items have {width} numbers, expected {N}"));
+    }
+    let (ty, normalized) = (accessor.data_type(), accessor.normalized());
+    let item = |bytes: &[u8]| -> [f32; N] {
+        std::array::from_fn(|at| number(&bytes[at * ty.size()..], ty, normalized))
+    };
+    let mut items: Vec<[f32; N]> = match accessor.view() {
+        Some(view) => raw(
+            &view,
+            accessor.offset(),
+            accessor.size(),
+            accessor.count(),
+            buffers,
+        )?
+        .map(item)
+        .collect(),
+        None => {
+            // Zeros that no buffer holds: a damaged count must not take memory without bound.
+            let limit = 1 << 26;
+            if accessor.count() > limit {
+                return Err(format!("{} items without a buffer", accessor.count()));
+            }
+            vec![[0.0; N]; accessor.count()]
+        }
+    };
+    let Some(sparse) = accessor.sparse() else {
+        return Ok(items);
+    };
+    let (indices, values) = (sparse.indices(), sparse.values());
+    let index_type = match indices.index_type() {
+        gltf::accessor::sparse::IndexType::U8 => DataType::U8,
+        gltf::accessor::sparse::IndexType::U16 => DataType::U16,
+        gltf::accessor::sparse::IndexType::U32 => DataType::U32,
+    };
+    let (view, count) = (indices.view(), sparse.count());
+    let places = raw(&view, indices.offset(), index_type.size(), count, buffers)?;
+    let view = values.view();
+    let values = raw(&view, values.offset(), accessor.size(), count, buffers)?;
+    let total = items.len();
+    for (place, value) in places.zip(values) {
+        let place = whole(place, index_type) as usize;
+        let slot = items
+            .get_mut(place)
+            .ok_or_else(|| format!("its sparse values name item {place}, but it has {total}"))?;
+        *slot = item(value);
+    }
+    Ok(items)
+}
+
+/// An accessor's items as indices.
+///
+/// # Errors
+/// What is wrong with it.
+pub(super) fn indices(accessor: &Accessor<'_>, buffers: &Bytes) -> Result<Vec<u32>, String> {
+    let ty = accessor.data_type();
+    if accessor.dimensions().multiplicity() != 1 || accessor.sparse().is_some() {
+        return Err("indices are single whole numbers, none of them sparse".to_owned());
+    }
+    if !matches!(ty, DataType::U8 | DataType::U16 | DataType::U32) {
+        return Err(format!("indices are unsigned whole numbers, not {ty:?}"));
+    }
+    let view = accessor
+        .view()
+        .ok_or_else(|| "indices without a buffer view".to_owned())?;
+    let items = raw(
+        &view,
+        accessor.offset(),
+        ty.size(),
+        accessor.count(),
+        buffers,
+    )?;
+    Ok(items.map(|bytes| whole(bytes, ty)).collect())
+}
+
+/// The bytes of `count` items of `size` bytes each.
+fn raw<'b>(
+    view: &gltf::buffer::View<'_>,
+    offset: usize,
+    size: usize,
+    count: usize,
+    buffers: &'b Bytes,
+) -> Result<impl Iterator<Item = &'b [u8]> + use<'b>, String> {
+    let buffer = buffers.get(view.buffer().index());
+    let end = view.offset().checked_add(view.length());
+    let bytes = buffer
+        .zip(end)
+        .and_then(|(bytes, end)| bytes.get(view.offset()..end));
+    let bytes = bytes.ok_or_else(|| {
+        format!(
+            "buffer view {} reaches beyond buffer {}",
+            view.index(),
+            view.buffer().index()
+        )
+    })?;
+    let stride = view.stride().unwrap_or(size).max(1);
+    let needed = count.checked_sub(1).map_or(Some(0), |last| {
+        last.checked_mul(stride)?
+            .checked_add(size)?
+            .checked_add(offset)
+    });
+    if !needed.is_some_and(|needed| needed <= bytes.len()) {
+        return Err(format!(
+            "{count} items of {size} bytes reach beyond buffer view {}, which has {} bytes",
+            view.index(),
+            bytes.len()
+        ));
+    }
+    let first = bytes.get(offset..).unwrap_or_default();
+    Ok((0..count).map(move |item| &first[item * stride..item * stride + size]))
+}
+
+fn whole(bytes: &[u8], ty: DataType) -> u32 {
+    match ty {
+        DataType::U8 | DataType::I8 => u32::from(bytes[0]),
+        DataType::U16 | DataType::I16 => u32::from(u16::from_le_bytes([bytes[0], bytes[1]])),
+        DataType::U32 | DataType::F32 => {
+            u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])
+        }
+    }
+}
+
+fn number(bytes: &[u8], ty: DataType, normalized: bool) -> f32 {
+    let word = whole(bytes, ty);
+    let (value, most) = match ty {
+        DataType::F32 => return f32::from_bits(word),
+        DataType::I8 => (f32::from(word as u8 as i8), 127.0),
+        DataType::I16 => (f32::from(word as u16 as i16), 32767.0),
+        DataType::U8 => (word as f32, 255.0),
+        DataType::U16 => (word as f32, 65535.0),
+        DataType::U32 => (word as f32, 4_294_967_295.0),
+    };
+    if normalized {
+        (value / most).max(-1.0)
+    } else {
+        value
+    }
+}

@@ -1,0 +1,86 @@
+//! The bytes of buffers and images: in the file itself, in data URIs, or in files beside it.
+
+use crate::{error::beginning, limit::Limit};
+use base64::{Engine, engine::general_purpose::STANDARD};
+use std::{borrow::Cow, path::Path, sync::Arc};
+
+/// Some hundred million triangles.
+pub(super) const GLTF_FILE: Limit = Limit {
+    of: "a glTF file or one of its buffers",
+    mib: 2048,
+    way_out: "split it",
+};
+
+/// The bytes of a data URI.
+///
+/// # Errors
+/// It is none of base64.
+pub(super) fn data_uri(uri: &str) -> Option<Result<Vec<u8>, String>> {
+    let rest = uri.strip_prefix("data:")?;
+    let Some((kind, text)) = rest.split_once(',') else {
+        return Some(Err("the data URI has no comma before its data".to_owned()));
+    };
+    if !kind.ends_with(";base64") {
+        let kind = beginning(kind);
+        return Some(Err(format!("the data URI is {kind:?}, expected base64")));
+    }
+    let decoded = STANDARD.decode(text.trim_end());
+    Some(decoded.map_err(|why| format!("the data URI is no base64: {why}")))
+}
+
+/// A path in a URI, whose odd characters are written as `%20`.
+pub(super) fn path_of(uri: &str) -> Cow<'_, str> {
+    if !uri.contains('%') {
+        return uri.into();
+    }
+    let bytes = uri.as_bytes();
+    let mut decoded = Vec::with_capacity(bytes.len());
+    let mut at = 0;
+    while at < bytes.len() {
+        let hex = uri.get(at + 1..at + 3).filter(|_| bytes[at] == b'%');
+        let byte = hex.and_then(|hex| u8::from_str_radix(hex, 16).ok());
+        decoded.push(byte.unwrap_or(bytes[at]));
+        at += if byte.is_some() { 3 } else { 1 };
+    }
+    String::from_utf8(decoded).map_or(uri.into(), Cow::Owned)
+}
+
+/// The bytes of all buffers of a document.
+///
+/// # Errors
+/// The buffer's place, and what is wrong with it.
+pub(super) fn read(
+    document: &gltf::Document,
+    mut blob: Option<Vec<u8>>,
+    file: &Path,
+) -> Result<Vec<Arc<[u8]>>, (String, String)> {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    document
+        .buffers()
+        .map(|buffer| {
+            let fail = |why| (format!("buffer {}", buffer.index()), why);
+            let bytes = match buffer.source() {
+                gltf::buffer::Source::Bin => blob.take().ok_or_else(|| {
+                    fail("it names no file, and the file holds no binary chunk".to_owned())
+                })?,
+                gltf::buffer::Source::Uri(uri) => match data_uri(uri) {
+                    Some(decoded) => decoded.map_err(fail)?,
+                    None => {
+                        let path = folder.join(&*path_of(uri));
+                        GLTF_FILE
+                            .read(&path)
+                            .map_err(|why| fail(format!("cannot read {}: {why}", path.display())))?
+                    }
+                },
+            };
+            if bytes.len() < buffer.length() {
+                return Err(fail(format!(
+                    "it should have {} bytes, but only {} are there: the file is cut off",
+                    buffer.length(),
+                    bytes.len()
+                )));
+            }
+            Ok(bytes.into())
+        })
+        .collect()
+}

@@ -1,0 +1,152 @@
+//! Where a masked surface is there.
+//!
+//! The rule, for all who ask: the texture coordinates at the weights of a triangle's corners are
+//! `uv_a + weight_b (uv_b - uv_a) + weight_c (uv_c - uv_a)`, each is wrapped into 0…1, multiplied
+//! by the mask's edge in texels and rounded down, at most to the last texel. The surface is there
+//! if that texel of mip 0 is opaque. Shaders compute in f32, the oracle in f64.
+
+use crate::texture::{Texels, Wrap};
+use glam::DVec2;
+
+/// A bit per texel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mask {
+    /// Width and height in texels, neither 0.
+    pub size: [u32; 2],
+    /// What it is beyond its edges, for u and v.
+    pub wrap: [Wrap; 2],
+    /// Opaque texels as bits, row by row from the top left, the lowest bit first.
+    pub opaque: Vec<u32>,
+}
+
+/// What a mask says within some distance of a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Asked {
+    /// Whether the place's own texel is opaque.
+    pub opaque: bool,
+    /// Whether another one within the distance is not as the place's own.
+    pub flips: bool,
+}
+
+/// The most texels that are looked at around a place; beyond them the mask counts as flipping.
+const MOST_LOOKED_AT: f64 = 4096.0;
+
+impl Mask {
+    /// Of what `is_opaque` says of each texel.
+    ///
+    /// # Panics
+    /// If an edge is 0.
+    pub fn new(size: [u32; 2], wrap: [Wrap; 2], is_opaque: impl Fn(u32, u32) -> bool) -> Self {
+        assert!(size[0] > 0 && size[1] > 0, "a mask without texels");
+        let texels = size[0] as usize * size[1] as usize;
+        let mut opaque = vec![0; texels.div_ceil(32)];
+        for y in 0..size[1] {
+            for x in 0..size[0] {
+                let texel = y as usize * size[0] as usize + x as usize;
+                opaque[texel / 32] |= u32::from(is_opaque(x, y)) << (texel % 32);
+            }
+        }
+        Self { size, wrap, opaque }
+    }
+
+    /// Of a texture: opaque where `opacity` of a texel is `cutoff` at least.
+    pub(crate) fn of_texels(
+        texels: &Texels,
+        wrap: [Wrap; 2],
+        opacity: impl Fn([u8; 4]) -> f32,
+        cutoff: f32,
+    ) -> Self {
+        let width = texels.size[0] as usize;
+        Self::new(texels.size, wrap, |x, y| {
+            opacity(texels.rgba[y as usize * width + x as usize]) >= cutoff
+        })
+    }
+
+    /// Whether all of it is opaque.
+    pub fn is_solid(&self) -> bool {
+        let texels = self.size[0] as usize * self.size[1] as usize;
+        let opaque: u32 = self.opaque.iter().map(|word| word.count_ones()).sum();
+        opaque as usize == texels
+    }
+
+    fn texel(&self, x: u32, y: u32) -> bool {
+        let texel = y as usize * self.size[0] as usize + x as usize;
+        self.opaque[texel / 32] >> (texel % 32) & 1 == 1
+    }
+
+    /// Asks it at texture coordinates that may be off by `error`, each on its own.
+    pub fn ask(&self, uv: DVec2, error: DVec2) -> Asked {
+        let (uv, error) = (uv.to_array(), error.to_array());
+        // Of each axis the texels from low to high, before they are wrapped.
+        let spans: [_; 2] = std::array::from_fn(|axis| {
+            let size = f64::from(self.size[axis]);
+            let low = ((uv[axis] - error[axis]) * size).floor();
+            let high = ((uv[axis] + error[axis]) * size).floor();
+            (low, high - low + 1.0)
+        });
+        let index = |axis: usize, texel: f64| {
+            let size = f64::from(self.size[axis]);
+            let at = self.wrap[axis].apply((texel + 0.5) / size) * size;
+            (at as u32).min(self.size[axis] - 1)
+        };
+        let own: [u32; 2] = std::array::from_fn(|axis| {
+            let at = self.wrap[axis].apply(uv[axis]) * f64::from(self.size[axis]);
+            (at as u32).min(self.size[axis] - 1)
+        });
+        let opaque = self.texel(own[0], own[1]);
+        let [(left, width), (top, height)] = spans;
+        let few = width * height <= MOST_LOOKED_AT;
+        let flips = !few
+            || (0..height as u32).any(|row| {
+                let y = index(1, top + f64::from(row));
+                (0..width as u32)
+                    .any(|column| self.texel(index(0, left + f64::from(column)), y) != opaque)
+            });
+        Asked { opaque, flips }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 2 × 2 texels, opaque at the top left and the bottom right.
+    fn checkers(wrap: Wrap) -> Mask {
+        Mask::new([2, 2], [wrap; 2], |x, y| x == y)
+    }
+
+    fn opaque(mask: &Mask, u: f64, v: f64) -> bool {
+        mask.ask(DVec2::new(u, v), DVec2::ZERO).opaque
+    }
+
+    #[test]
+    fn texels_are_the_nearest_ones_and_wrap() {
+        let repeat = checkers(Wrap::Repeat);
+        assert!(opaque(&repeat, 0.25, 0.25) && opaque(&repeat, 0.75, 0.75));
+        assert!(!opaque(&repeat, 0.75, 0.25));
+        // The edge belongs to the texel that it begins.
+        assert!(!opaque(&repeat, 0.5, 0.25));
+        assert!(opaque(&repeat, 1.25, -0.75));
+        assert!(!opaque(&repeat, -0.25, 0.25));
+        let mirror = checkers(Wrap::Mirror);
+        assert!(opaque(&mirror, -0.25, 0.25) && !opaque(&mirror, 1.25, 0.25));
+        assert!(opaque(&mirror, 1.75, 0.25) && opaque(&mirror, 2.25, 0.25));
+        let clamp = checkers(Wrap::Clamp);
+        assert!(opaque(&clamp, -7.0, 0.25) && opaque(&clamp, 1.0, 9.0));
+        assert!(!opaque(&clamp, 9.0, 0.25));
+        assert!(opaque(&repeat, f64::NAN, f64::INFINITY));
+    }
+
+    #[test]
+    fn it_flips_where_another_texel_is_within_the_error() {
+        let mask = checkers(Wrap::Repeat);
+        let flips = |u: f64, error: f64| mask.ask(DVec2::new(u, 0.25), DVec2::splat(error)).flips;
+        assert!(!flips(0.25, 0.24) && flips(0.25, 0.26));
+        // Around the end as well, and over more texels than there are.
+        assert!(flips(0.01, 0.02) && flips(0.25, 40.0) && flips(0.25, 1e9));
+        assert!(flips(0.25, f64::INFINITY) && flips(0.25, f64::NAN));
+        let solid = Mask::new([3, 5], [Wrap::Clamp; 2], |_, _| true);
+        assert!(solid.is_solid() && !mask.is_solid());
+        assert!(!solid.ask(DVec2::splat(0.3), DVec2::splat(0.5)).flips);
+    }
+}

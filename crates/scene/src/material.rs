@@ -1,0 +1,118 @@
+//! What the surfaces of a mesh are made of.
+
+use crate::{mask::Mask, texture::Texture};
+use glam::{DVec2, Vec2};
+use std::sync::Arc;
+
+/// A material.
+#[derive(Clone, Debug)]
+pub struct Material {
+    /// Name in the file.
+    pub name: String,
+    /// Linear red, green, blue, times the texture's.
+    pub base_color: [f32; 3],
+    /// The texture of the base colour.
+    pub texture: Option<Texture>,
+    /// Where it is there at all; everywhere without it.
+    pub mask: Option<Arc<Mask>>,
+    /// Whether its back faces are seen, too.
+    pub double_sided: bool,
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            base_color: [1.0; 3],
+            texture: None,
+            mask: None,
+            double_sided: false,
+        }
+    }
+}
+
+/// The materials of a mesh and where they lie. A mesh without materials has none of it.
+#[derive(Clone, Debug, Default)]
+pub struct Surfaces {
+    /// Texture coordinates, v down: (0, 0) is the corner of the texture's first texel.
+    pub uvs: Vec<Vec2>,
+    /// Three indices into `uvs` per triangle, or nothing.
+    pub uv_indices: Vec<[u32; 3]>,
+    /// Materials.
+    pub materials: Vec<Material>,
+    /// The material of each triangle, or nothing.
+    pub of: Vec<u32>,
+}
+
+impl Surfaces {
+    /// The material of a triangle.
+    pub fn material(&self, primitive: u32) -> Option<&Material> {
+        let material = *self.of.get(primitive as usize)?;
+        self.materials.get(material as usize)
+    }
+
+    /// Texture coordinates of a triangle's corners; all zero where the mesh has none.
+    pub fn corner_uvs(&self, primitive: u32) -> [Vec2; 3] {
+        let indices = self.uv_indices.get(primitive as usize);
+        indices.map_or([Vec2::ZERO; 3], |indices| {
+            indices.map(|index| self.uvs[index as usize])
+        })
+    }
+
+    /// The mask of a triangle that has one.
+    pub fn mask(&self, primitive: u32) -> Option<&Mask> {
+        self.material(primitive)?.mask.as_deref()
+    }
+
+    /// Whether a triangle's back face is seen, too.
+    pub fn is_double_sided(&self, primitive: u32) -> bool {
+        self.material(primitive)
+            .is_some_and(|material| material.double_sided)
+    }
+
+    /// Whether any triangle is masked or double-sided.
+    pub fn need_care(&self) -> bool {
+        let cared = |material: &Material| material.mask.is_some() || material.double_sided;
+        let mut used = self.of.iter();
+        self.materials.iter().any(cared)
+            && used.any(|of| self.materials.get(*of as usize).is_some_and(cared))
+    }
+
+    /// Linear base colour of a triangle at the weights of its corners, texture included; white
+    /// where the mesh has no materials. A texture that cannot be read counts as white.
+    pub fn base_color(&self, primitive: u32, weights: [f64; 3]) -> [f32; 3] {
+        let Some(material) = self.material(primitive) else {
+            return [1.0; 3];
+        };
+        let texels = material.texture.as_ref().map(|texture| {
+            let texels = texture.texels().ok()?;
+            Some((texels, texture.wrap))
+        });
+        let Some(Some((texels, wrap))) = texels else {
+            return material.base_color;
+        };
+        let at: DVec2 = self
+            .corner_uvs(primitive)
+            .iter()
+            .zip(weights)
+            .map(|(uv, weight)| uv.as_dvec2() * weight)
+            .sum();
+        let [width, height] = texels.size;
+        let edge = |at: f64, wrap: crate::texture::Wrap, size: u32| {
+            ((wrap.apply(at) * f64::from(size)) as u32).min(size - 1) as usize
+        };
+        let (x, y) = (edge(at.x, wrap[0], width), edge(at.y, wrap[1], height));
+        let [red, green, blue, _] = texels.rgba[y * width as usize + x];
+        let [r, g, b] = material.base_color;
+        [r * linear(red), g * linear(green), b * linear(blue)]
+    }
+}
+
+/// A channel of sRGB as light.
+fn linear(channel: u8) -> f32 {
+    let value = f32::from(channel) / 255.0;
+    match value <= 0.04045 {
+        true => value / 12.92,
+        false => ((value + 0.055) / 1.055).powf(2.4),
+    }
+}

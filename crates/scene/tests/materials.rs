@@ -1,0 +1,130 @@
+//! OBJ files with materials: masks and colours, and what is said where they are broken.
+
+use skiagraph_scene::{ImportReport, Mesh, ObjMaterials, ObjOptions, SceneError, Wrap, load_obj};
+use std::path::Path;
+use tempfile::TempDir;
+
+/// A square of two triangles with texture coordinates, in the material `leaf`.
+const LEAF: &str = "mtllib leaf.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n\
+                    vt 0 1\nusemtl leaf\nf 1/1 2/2 3/3 4/4\n";
+
+/// 2 × 2 texels: grey levels row by row from the top left, all opaque.
+fn grey(levels: [u8; 4]) -> image::RgbImage {
+    image::RgbImage::from_fn(2, 2, |x, y| image::Rgb([levels[(2 * y + x) as usize]; 3]))
+}
+
+fn folder(mtl: Option<&str>) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("leaf.obj"), LEAF).unwrap();
+    if let Some(mtl) = mtl {
+        std::fs::write(folder.path().join("leaf.mtl"), mtl).unwrap();
+    }
+    std::fs::create_dir(folder.path().join("textures")).unwrap();
+    grey([255, 0, 127, 128])
+        .save(folder.path().join("textures/mask.tga"))
+        .unwrap();
+    grey([255, 0, 0, 0])
+        .save(folder.path().join("textures/colour.png"))
+        .unwrap();
+    folder
+}
+
+fn load(folder: &Path, materials: ObjMaterials) -> Result<(Mesh, ImportReport), SceneError> {
+    let options = ObjOptions {
+        materials,
+        ..ObjOptions::default()
+    };
+    load_obj(&folder.join("leaf.obj"), &options)
+}
+
+fn error(mtl: Option<&str>) -> String {
+    let folder = folder(mtl);
+    let text = load(folder.path(), ObjMaterials::All)
+        .unwrap_err()
+        .to_string();
+    text.replace(&folder.path().display().to_string(), "DIR")
+}
+
+#[test]
+fn a_mask_is_the_texture_of_opacity() {
+    let mtl = "newmtl leaf\nKd 0.5 0.25 1\nmap_Kd textures\\colour.png\n\
+               map_d -clamp on textures\\mask.tga\n";
+    let folder = folder(Some(mtl));
+    let (mesh, report) = load(folder.path(), ObjMaterials::All).unwrap();
+    assert!(!report.has_warnings());
+    let mask = mesh.surfaces.mask(0).unwrap();
+    assert_eq!((mask.size, mask.wrap), ([2, 2], [Wrap::Clamp; 2]));
+    // 128 of 255 is half and more, 127 is not.
+    assert_eq!(mask.opaque, [0b1001]);
+    // v is 0 at the bottom of the picture.
+    let at = |u: f64, v: f64| {
+        mask.ask(glam::DVec2::new(u, 1.0 - v), glam::DVec2::ZERO)
+            .opaque
+    };
+    assert!(at(0.25, 0.75) && !at(0.75, 0.75) && !at(0.25, 0.25) && at(0.75, 0.25));
+    assert_eq!(mesh.surfaces.corner_uvs(0)[0], glam::Vec2::new(0.0, 1.0));
+    // The corner (0, 1) is white in the picture, the corner (1, 0) black.
+    assert_eq!(
+        mesh.surfaces.base_color(1, [0.1, 0.1, 0.8]),
+        [0.5, 0.25, 1.0]
+    );
+    assert_eq!(mesh.surfaces.base_color(0, [0.1, 0.8, 0.1]), [0.0; 3]);
+}
+
+#[test]
+fn opacity_alone_hides_or_does_nothing() {
+    for (mtl, hidden) in [
+        ("newmtl leaf\nd 0.4\n", true),
+        ("newmtl leaf\nd 0.6\n", false),
+        ("newmtl other\nd 0\n", false),
+    ] {
+        let folder = folder(Some(mtl));
+        let (mesh, _) = load(folder.path(), ObjMaterials::All).unwrap();
+        assert_eq!(mesh.surfaces.need_care(), hidden, "{mtl}");
+    }
+}
+
+#[test]
+fn what_is_not_wanted_need_not_be_there() {
+    let folder = folder(None);
+    let (mesh, report) = load(folder.path(), ObjMaterials::Ignore).unwrap();
+    assert!(!report.has_warnings() && mesh.surfaces.materials.is_empty());
+    let (mesh, report) = load(folder.path(), ObjMaterials::Color).unwrap();
+    assert_eq!(report.colours_missing.len(), 1);
+    assert!(report.to_string().contains("leaf.mtl"), "{report}");
+    assert_eq!(mesh.triangles.len(), 2);
+    // A mask is none of the colours.
+    std::fs::write(
+        folder.path().join("leaf.mtl"),
+        "newmtl leaf\nmap_d no.png\n",
+    )
+    .unwrap();
+    let (mesh, report) = load(folder.path(), ObjMaterials::Color).unwrap();
+    assert!(!report.has_warnings() && !mesh.surfaces.need_care());
+}
+
+#[test]
+fn broken_materials_say_where_and_what_to_do() {
+    let told = [
+        error(None),
+        error(Some("newmtl leaf\nd dim\n")),
+        error(Some("newmtl leaf\nmap_d no.png\n")),
+        error(Some("newmtl leaf\nmap_d leaf.obj\n")),
+    ];
+    insta::assert_snapshot!(told.join("\n"));
+}
+
+#[test]
+fn texture_coordinates_are_checked_like_vertices() {
+    let folder = folder(Some("newmtl leaf\n"));
+    let text = LEAF.replace("4/4", "4/5");
+    std::fs::write(folder.path().join("leaf.obj"), &text).unwrap();
+    let error = load(folder.path(), ObjMaterials::All)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("(line 11) names texture coordinates 5, but 4 pairs stand above it"),
+        "{error}"
+    );
+    assert!(load(folder.path(), ObjMaterials::Ignore).is_ok());
+}

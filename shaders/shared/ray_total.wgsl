@@ -1,0 +1,3 @@
+// The number of rays of a `Trace` pass.
+
+var<storage, read> count: u32;

@@ -47,7 +47,7 @@ fn across(place: Vec3) -> Vec2 {
 }
 
 fn checkers(edge: u32, wrap: [Wrap; 2]) -> Mask {
-    Mask::new([edge; 2], wrap, |x, y| (x + y) % 2 == 0)
+    Mask::new([edge; 2], wrap, |x, y| (x + y).is_multiple_of(2))
 }
 
 fn sheet(y: f32) -> Shape {

@@ -303,7 +303,8 @@ impl fmt::Display for FaceProblem {
             }
             Self::CannotBeCut => f.write_str(
                 "cannot be cut into triangles, for its outline crosses itself or has more than \
-                 10,000 corners: triangulate it where it was made, or have a scene file say `concave: Fan`",
+                 10,000 corners: triangulate it where it was made, or have a scene file say \
+                 `concave: Fan`",
             ),
             Self::NotACorner(text) => {
                 write!(

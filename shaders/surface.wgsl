@@ -1,7 +1,8 @@
 // Stage to find the receiver of each pixel: its position, and dot(n, l) of its interpolated normal
-// in w, 0 outside of a spot light's cone; one thread per pixel. The ray through the pixel's centre is met with the plane of the
-// pixel's primitive anew instead of interpolating rasterised attributes, whose precision is the
-// adapter's affair: the edge functions of Davidovic et al., "3D Rasterization", TUGraz 2012.
+// in w, 0 outside of a spot light's cone; one thread per pixel. The ray through the pixel's centre
+// is met with the plane of the pixel's primitive anew instead of interpolating rasterised
+// attributes, whose precision is the adapter's affair: the edge functions of Davidovic et al., "3D
+// Rasterization", TUGraz 2012.
 
 #import "shared/camera.wgsl"
 #import "shared/light.wgsl"

@@ -80,8 +80,8 @@ fn light_face(position: vec3<f32>) -> u32 {
 
 // A position as a face of the light's map sees it: x and y, of which w is the half width of the
 // map, and w; z, not to be divided by w, is the share of `range`, in 0..1 before the light. Of a
-// spot light w is the distance along the axis, of a point light along the face's. Behind the light w
-// is negative.
+// spot light w is the distance along the axis, of a point light along the face's. Behind the light
+// w is negative.
 fn light_homogeneous(position: vec3<f32>, face: u32) -> vec4<f32> {
     if light_kind == LIGHT_DIRECTIONAL {
         return light.clip_from_relative * vec4(position - light.centre.xyz, 1.0);
@@ -104,8 +104,8 @@ fn light_homogeneous(position: vec3<f32>, face: u32) -> vec4<f32> {
     return vec4(turned.xy, turned.z / light.range, turned.z);
 }
 
-// Of a place in the world, in the map's face that it lies in: x and y in -1..1 over the map, y up, z
-// in 0..1 away from the light. A spot light's x and y are infinite beside the light.
+// Of a place in the world, in the map's face that it lies in: x and y in -1..1 over the map, y up,
+// z in 0..1 away from the light. A spot light's x and y are infinite beside the light.
 fn light_clip(position: vec3<f32>) -> vec3<f32> {
     if light_kind == LIGHT_DIRECTIONAL {
         return (light.clip_from_relative * vec4(position - light.centre.xyz, 1.0)).xyz;

@@ -21,6 +21,7 @@ mod language;
 mod link;
 mod picture;
 mod plan;
+mod provided_kind;
 mod provider;
 mod request;
 mod resource;
@@ -41,7 +42,8 @@ pub use link::{
     PassId, Usage,
 };
 pub use plan::{CulledPass, MemoryEntry, OutputSummary, PassSummary, Plan, text};
-pub use provider::{Describe, Import, NoProvider, Provided, ProvidedBinding, ProvidedKind};
+pub use provided_kind::ProvidedKind;
+pub use provider::{Describe, Import, NoProvider, Provided, ProvidedBinding};
 pub use request::{Capture, PlanRequest};
 pub use resource::{
     Buffer, FRAME_BYTES, Growth, Origin, Resource, ResourceId, ResourceKind, Sampler,

@@ -1,7 +1,7 @@
 //! What a graph does not make itself: described by name for planning. (What builds it is the GPU
 //! crate's affair.)
 
-use crate::document::materials::Filter;
+use crate::{document::materials::Filter, provided_kind::ProvidedKind};
 use std::collections::BTreeMap;
 
 /// Describes what a graph does not make itself: scene buffers, camera and light uniforms,
@@ -28,24 +28,6 @@ pub struct Provided {
     pub binding: ProvidedBinding,
     /// Which of several kinds it is, where plans depend on that.
     pub kind: Option<ProvidedKind>,
-}
-
-/// The kind of something that is provided: `light.kind` is its word in expressions, and a shader's
-/// `override light_kind: u32` its number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ProvidedKind {
-    /// The words for all kinds, names as documents have them.
-    pub words: &'static [&'static str],
-    /// Which of them it is.
-    pub number: u32,
-}
-
-impl ProvidedKind {
-    /// The word; the first where there is none of this number.
-    pub fn word(&self) -> &'static str {
-        let word = self.words.get(self.number as usize);
-        word.or(self.words.first()).copied().unwrap_or_default()
-    }
 }
 
 impl Provided {

@@ -34,8 +34,8 @@ pub enum Error {
     },
     /// The hierarchy in light space is that of one direction.
     #[error(
-        "`scene.light_space_nodes` is made for a directional light, not for a {0} light: trace with \
-         `engine: Hierarchy`"
+        "`scene.light_space_nodes` is made for a directional light, not for a {0} light: trace \
+         with `engine: Hierarchy`"
     )]
     LightSpaceKind(&'static str),
     /// A texture of the mesh that cannot be read.

@@ -91,9 +91,9 @@ const OF_LIGHT: [&str; 4] = [LIGHT, LIGHT_AREA, LIGHT_SPACE_NODES, LIGHT_SPACE_P
 /// What was built stays and is shared by all graphs that are executed with the same provider, which
 /// therefore belongs to the device that it was first used with;
 /// [`set_view`](SceneProvider::set_view) changes the one camera that they all see, and the light to
-/// the first of the view's own or the scene's. wgpu binds no buffer of size zero: an array of an empty scene holds
-/// one zero item, its hierarchy one leaf around a triangle without area, which no ray hits;
-/// [`Describe::describe`] still says 0 items, so that nothing is drawn.
+/// the first of the view's own or the scene's. wgpu binds no buffer of size zero: an array of an
+/// empty scene holds one zero item, its hierarchy one leaf around a triangle without area, which no
+/// ray hits; [`Describe::describe`] still says 0 items, so that nothing is drawn.
 pub struct SceneProvider {
     scene: Arc<Scene>,
     camera: CameraUniform,

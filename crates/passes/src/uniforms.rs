@@ -49,8 +49,8 @@ impl From<&Camera> for CameraUniform {
     }
 }
 
-/// WGSL's `Light`: a light and its light space, of a directional light fitted to the scene's corners;
-/// 144 bytes.
+/// WGSL's `Light`: a light and its light space, of a directional light fitted to the scene's
+/// corners; 144 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LightUniform {

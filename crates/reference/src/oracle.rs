@@ -26,8 +26,8 @@ pub enum OracleMode {
 }
 
 impl OracleMode {
-    /// Where the receiver's shadow ray begins, the way from there to its end, and the primitive that
-    /// it passes. A light at a place is not quite reached: see [`LIGHT_GAP`].
+    /// Where the receiver's shadow ray begins, the way from there to its end, and the primitive
+    /// that it passes. A light at a place is not quite reached: see [`LIGHT_GAP`].
     pub(crate) fn ray(self, receiver: &Receiver) -> (DVec3, Towards, u32) {
         let towards = receiver.towards;
         let distance = towards.distance * (1.0 - LIGHT_GAP);

@@ -162,8 +162,8 @@ impl LightKind {
             && !(position.abs().max_element() <= FARTHEST)
         {
             return Err(format!(
-                "the light's position {position} must be finite, and no number beyond {FARTHEST:e}; \
-                 a light so far away is directional"
+                "the light's position {position} must be finite, and no number beyond \
+                 {FARTHEST:e}; a light so far away is directional"
             ));
         }
         match self {

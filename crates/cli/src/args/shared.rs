@@ -46,7 +46,8 @@ pub struct SceneArgs {
     pub look: Option<DVec3>,
     /// A light of the scene, or `all`: each view under each. Without it: the scene's first light.
     /// For an .obj, the direction in which the light travels.
-    #[arg(long, value_name = "NAME|X,Y,Z", value_parser = values::light, allow_hyphen_values = true)]
+    #[arg(long, value_name = "NAME|X,Y,Z", value_parser = values::light,
+          allow_hyphen_values = true)]
     pub light: Option<LightArgument>,
     /// Up direction, for an .obj. Without it: 0,1,0.
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]

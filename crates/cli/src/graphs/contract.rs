@@ -31,7 +31,8 @@ pub const RAY_COUNT: &str = "ray_count";
 /// Every fault of every graph together.
 pub fn load_all(names: &[String], sources: &dyn Sources) -> Result<Vec<Preset>, CliError> {
     let presets = preset::load_all(names, sources)?;
-    presets.iter().try_for_each(light_kinds::check)?;
+    let known = |preset: &Preset| light_kinds::check(&preset.name, &preset.graph);
+    presets.iter().try_for_each(known)?;
     let incomplete: Vec<String> = presets.iter().filter_map(missing_outputs).collect();
     none_or_error(incomplete).map(|()| presets)
 }

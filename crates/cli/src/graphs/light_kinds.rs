@@ -1,7 +1,6 @@
 //! Which kinds of light a method takes.
 
 use crate::error::CliError;
-use crate::graphs::preset::Preset;
 use crate::wording::did_you_mean;
 use skiagraph_graph::Graph;
 use skiagraph_passes::uniforms::LIGHT_KINDS;
@@ -27,14 +26,13 @@ pub fn takes(graph: &Graph, kind: &str) -> bool {
 ///
 /// # Errors
 /// The first such word.
-pub fn check(preset: &Preset) -> Result<(), CliError> {
+pub fn check(name: &str, graph: &Graph) -> Result<(), CliError> {
     let unknown = |word: &&str| !LIGHT_KINDS.contains(word);
-    let mut words = preset.graph.lights().map(|word| word.as_str());
+    let mut words = graph.lights().map(|word| word.as_str());
     match words.find(unknown) {
         None => Ok(()),
         Some(word) => Err(CliError::Input(format!(
-            "`{}` takes the light `{word}`, which there is not{}\n  lights are {}",
-            preset.name,
+            "`{name}` takes the light `{word}`, which there is not{}\n  lights are {}",
             did_you_mean(word, LIGHT_KINDS.into_iter()),
             LIGHT_KINDS.join(", ")
         ))),

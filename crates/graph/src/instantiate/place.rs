@@ -10,7 +10,7 @@ use crate::{
         syntax::{Attribute, Reference, Selection},
         value::{Scalar, Value},
     },
-    provider::ProvidedKind,
+    provided_kind::ProvidedKind,
     resource::{ResourceKind, SubresourceRange, Target},
     shader::reflect::Shader,
     source::span::{Located, Span},

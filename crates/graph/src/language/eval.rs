@@ -6,8 +6,8 @@ use super::{
     value::{Scalar, Value, Word},
 };
 use crate::{
-    diagnostics::reports::Reported, errors::evaluation::EvaluationError, provider::ProvidedKind,
-    source::span::Span,
+    diagnostics::reports::Reported, errors::evaluation::EvaluationError,
+    provided_kind::ProvidedKind, source::span::Span,
 };
 
 /// What names in an expression stand for at its place.

@@ -1,7 +1,7 @@
 //! Values of expressions.
 
 use super::name::Name;
-use crate::provider::ProvidedKind;
+use crate::provided_kind::ProvidedKind;
 use std::{fmt, sync::Arc};
 
 /// A number of an expression.

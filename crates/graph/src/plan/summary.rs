@@ -7,7 +7,7 @@ use crate::{
     errors::plan::OutputError,
     graph::Graph,
     link::pass::LinkedPass,
-    provider::ProvidedKind,
+    provided_kind::ProvidedKind,
     request::PlanRequest,
     resource::{ResourceKind, Target},
 };

@@ -3,10 +3,10 @@
 
 mod support;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use skiagraph_graph::{Capture, ParamValue};
 use skiagraph_reference::{Class, Oracle, OracleMode, Progress};
-use skiagraph_scene::{DirectionalLight, Scene};
+use skiagraph_scene::{DirectionalLight, Light, LightKind, PointLight, Scene, SpotLight};
 use std::sync::Arc;
 use support::graphs::{open, plan, provider, run_on, shares, values};
 
@@ -178,6 +178,37 @@ fn the_blur_of_pcf_knows_no_distance() {
     let (near, far) = (between(false), between(true));
     println!("the oracle: {near} and {far} pixels");
     assert!(far > 4 * near, "{near}, {far}");
+}
+
+/// A spot light's cone and the six faces of a point light.
+#[test]
+fn pcf_is_right_but_for_its_blur_under_lamps() {
+    let position = DVec3::new(0.6, 5.0, 0.5);
+    let spot = SpotLight {
+        position,
+        direction: DVec3::new(-0.1, -1.0, -0.1),
+        cone_degrees: 70.0,
+        radius: 0.0,
+    };
+    let point = PointLight {
+        position: DVec3::new(0.6, 1.2, 0.5),
+        radius: 0.0,
+    };
+    for kind in [LightKind::Spot(spot), LightKind::Point(point)] {
+        let mut scene = Scene::clone(&case("near_and_far"));
+        scene.lights = vec![Light {
+            name: "lamp".into(),
+            kind,
+        }];
+        let seen = see(&Arc::new(scene), "pcf", &[map(1024)]);
+        for (class, light) in [(Class::Lit, 1.0), (Class::Shadow, 0.0)] {
+            let pixels = seen.inside(class, 3);
+            let wrong = |pixel: &&usize| (seen.visibility[**pixel] - light).abs() > 0.1;
+            let wrong = pixels.iter().filter(wrong).count();
+            println!("{kind:?} {class:?}: {wrong} of {} wrong", pixels.len());
+            assert!(pixels.len() > 300 && wrong == 0, "{kind:?} {class:?}");
+        }
+    }
 }
 
 /// Comparison sampler and shader, hardware filter and shader: the same picture.

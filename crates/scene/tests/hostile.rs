@@ -320,7 +320,7 @@ fn said_of_file(path: &Path) -> String {
     let request = SceneRequest {
         obj: argument.ends_with(".obj").then(|| ObjSetup {
             view: camera.views[0].clone(),
-            light: camera.light,
+            light: camera.lights[0].clone(),
             quads: QuadDiagonal::default(),
         }),
         argument,

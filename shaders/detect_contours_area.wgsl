@@ -45,7 +45,7 @@ fn compare(receiver: vec3<f32>) -> u32 {
         if is_outside(place.xy) {
             return STATUS_UNCERTAIN;
         }
-        let asked = footprint(place.xy, params.footprint);
+        let asked = footprint(map_fit, place.xy, params.footprint);
         for (var y = asked.first.y; y <= asked.last.y; y += asked.step) {
             for (var x = asked.first.x; x <= asked.last.x; x += asked.step) {
                 let stored = textureLoad(maps, vec2(x, y), point, 0);

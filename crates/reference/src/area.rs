@@ -213,8 +213,8 @@ impl<'a> Oracle<'a> {
         ))
     }
 
-    /// Those that could stand in the light's cone; `None` if they are many, or the receiver is within
-    /// the light's own ball.
+    /// Those that could stand in the light's cone; `None` if they are many, or the receiver is
+    /// within the light's own ball.
     fn casters(
         &self,
         origin: DVec3,

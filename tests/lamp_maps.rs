@@ -149,5 +149,6 @@ fn a_spot_light_far_away_is_parallel_light() {
     });
     let differ = spot.iter().zip(&parallel).filter(|(a, b)| a != b).count();
     assert!(differ < 100, "{differ}");
-    assert!(parallel.iter().filter(|lit| **lit == 0).count() > 1000);
+    let dark = parallel.iter().filter(|lit| **lit == 0).count();
+    assert!(dark > 300, "{dark}");
 }

@@ -28,9 +28,7 @@ fn scene(seed: u64) -> Arc<Scene> {
             far: 50.0,
             light: None,
         }],
-        light: DirectionalLight {
-            direction: DVec3::new(-0.4, -1.0, 0.3),
-        },
+        lights: vec![DirectionalLight::new(DVec3::new(-0.4, -1.0, 0.3)).into()],
     })
 }
 

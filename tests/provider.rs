@@ -192,9 +192,9 @@ fn a_view_with_its_own_light_is_drawn_as_its_scene_would_be_under_that_light() {
     let viewport = [48, 32];
     let mut scene = park();
     let own = DirectionalLight::new(DVec3::new(-0.4, -0.8, 0.3));
-    scene.views[3].light = Some(own);
+    scene.views[3].light = Some(own.into());
     let under_it = Arc::new(Scene {
-        light: own,
+        lights: vec![own.into()],
         ..scene.clone()
     });
     let scene = Arc::new(scene);

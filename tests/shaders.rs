@@ -100,7 +100,11 @@ fn light_is_laid_out_as_in_rust() {
         to_light,
         max_distance,
         centre,
-        extent
+        extent,
+        position,
+        edge_cosine,
+        position_low,
+        range
     });
     assert_eq!(layout("shared/light.wgsl", "Light"), rust);
 }

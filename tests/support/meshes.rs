@@ -140,7 +140,9 @@ pub fn foliage(count: u32, size: f32, floor: f32, seed: u64) -> Mesh {
     let disk = |x: u32, y: u32| (x as f32 - 15.5).hypot(y as f32 - 15.5) < 13.0;
     let masks = [
         Mask::new([32, 32], [Wrap::Repeat; 2], disk),
-        Mask::new([5, 3], [Wrap::Mirror, Wrap::Clamp], |x, y| (x + y) % 2 == 0),
+        Mask::new([5, 3], [Wrap::Mirror, Wrap::Clamp], |x, y| {
+            (x + y).is_multiple_of(2)
+        }),
         Mask::new([1, 64], [Wrap::Clamp, Wrap::Repeat], |_, y| y % 7 < 4),
     ];
     surfaces.materials.extend(masks.map(|mask| Material {

@@ -22,9 +22,20 @@ pub(crate) fn among(point: DVec3, light: DVec3, blocks: &[Block], margin: f64) -
     )
 }
 
+/// The same under a light at a place; boxes beyond it shade nobody.
+pub(crate) fn among_at(point: DVec3, place: DVec3, blocks: &[Block], margin: f64) -> Option<bool> {
+    let way = place - point;
+    let inside = |&block: &Block| in_block_before(point, way.normalize(), way.length(), block);
+    judge(blocks.iter().filter_map(inside), margin)
+}
+
 /// Inside a box, or `None` for a point on its surface.
 pub(crate) fn in_block(point: DVec3, light: DVec3, block: Block) -> Option<f64> {
-    let to_light = -light.normalize();
+    in_block_before(point, -light.normalize(), f64::INFINITY, block)
+}
+
+/// Inside a box on the way of this length from the point along a unit vector.
+fn in_block_before(point: DVec3, to_light: DVec3, end: f64, block: Block) -> Option<f64> {
     let [low, high] = block.map(|corner| glam::Vec3::from(corner).as_dvec3());
     let beside = (point - low).min(high - point).min_element();
     if beside.abs() <= 1e-12 * (low.abs().max(high.abs()).max_element() + point.length()) {
@@ -40,7 +51,7 @@ pub(crate) fn in_block(point: DVec3, light: DVec3, block: Block) -> Option<f64> 
             (enter, leave) = (enter.max(a.min(b)), leave.min(a.max(b)));
         }
     }
-    Some((leave - enter).min(leave).min(within))
+    Some((leave - enter).min(leave).min(within).min(end - enter))
 }
 
 /// Where the way to the light passes height `y`, as x and z; `None` if it does not.

@@ -38,6 +38,8 @@ pub enum Shows {
     Both,
     /// All that face the light are lit.
     LitOnly,
+    /// All that face the light are in shadow.
+    ShadowOnly,
     /// None faces the light.
     Nothing,
 }

@@ -1,7 +1,7 @@
 //! All cases.
 
 use crate::{
-    case::HardCase, fences, light, lists, map, masked, plain, rounding, soft, solids, thin,
+    case::HardCase, fences, lamps, light, lists, map, masked, plain, rounding, soft, solids, thin,
     topology,
 };
 
@@ -11,6 +11,7 @@ pub fn cases() -> Vec<HardCase> {
         plain::CASES,
         rounding::CASES,
         light::CASES,
+        lamps::CASES,
         map::CASES,
         lists::CASES,
         fences::CASES,
@@ -32,7 +33,6 @@ pub fn case(name: &str) -> Option<HardCase> {
 mod tests {
     use super::*;
     use crate::case::Casters;
-    use glam::DVec3;
     use skiagraph_scene::{Mesh, Scene};
     use std::collections::{BTreeSet, HashMap};
 

@@ -8,6 +8,7 @@ mod answer;
 mod case;
 mod catalogue;
 mod fences;
+mod lamps;
 mod light;
 mod lists;
 mod map;

@@ -1,7 +1,7 @@
 //! What the cases are built from.
 
 use glam::{DVec3, Vec3};
-use skiagraph_scene::{DirectionalLight, Mesh, Scene, View, weld::Welder};
+use skiagraph_scene::{DirectionalLight, Light, LightKind, Mesh, Scene, View, weld::Welder};
 
 /// The lower and the upper corner of a box.
 pub(crate) type Block = [[f32; 3]; 2];
@@ -179,6 +179,11 @@ impl Shape {
     /// The scene, still without a name, seen by a camera at `eye` that looks at `target`, up being
     /// y unless that is where it looks.
     pub fn scene(self, eye: [f64; 3], target: [f64; 3], light: DVec3) -> Scene {
+        self.lit_scene(eye, target, DirectionalLight::new(light))
+    }
+
+    /// The same under any light.
+    pub fn lit_scene(self, eye: [f64; 3], target: [f64; 3], light: impl Into<LightKind>) -> Scene {
         let eye = DVec3::from(eye);
         let direction = DVec3::from(target) - eye;
         let upright = direction.normalize().y.abs() < 0.99;
@@ -195,7 +200,7 @@ impl Shape {
                 far: 100.0 * direction.length(),
                 light: None,
             }],
-            lights: vec![DirectionalLight::new(light).into()],
+            lights: vec![Light::only(light)],
         }
     }
 }

@@ -157,6 +157,7 @@ mod tests {
             classes: classes.to_vec(),
             indeterminate: (0..=last).map(|pixel| pixel == last).collect(),
             n_dot_l: vec![0.5; classes.len()],
+            base_colors: Vec::new(),
         }
     }
 

@@ -22,9 +22,9 @@ fn point(mesh: &Mesh, primitive: u32, camera: &Camera, pixel: usize) -> DVec3 {
 
 /// What is wrong with a case on a viewport, in words.
 fn complaints(case: &HardCase, viewport: [u32; 2]) -> Vec<String> {
-    let Scene {
-        mesh, views, light, ..
-    } = case.scene();
+    let scene = case.scene();
+    let light = scene.light();
+    let Scene { mesh, views, .. } = scene;
     let camera = views[0].camera(viewport);
     let oracle = Oracle::new(&mesh);
     let primitives = oracle
@@ -88,6 +88,11 @@ fn unexpected(case: &HardCase, reference: &Reference) -> Option<String> {
             let certain =
                 |i: usize| reference.classes[i] == Class::Shadow && !reference.indeterminate[i];
             lit >= enough && !(0..reference.classes.len()).any(certain)
+        }
+        Shows::ShadowOnly => {
+            let certain =
+                |i: usize| reference.classes[i] == Class::Lit && !reference.indeterminate[i];
+            shadow >= enough && !(0..reference.classes.len()).any(certain)
         }
         Shows::Nothing => lit + shadow == 0,
     };

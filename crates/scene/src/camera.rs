@@ -1,6 +1,6 @@
 //! Views and the cameras they make on a given viewport.
 
-use crate::light::DirectionalLight;
+use crate::light_kind::Light;
 use glam::{DMat4, DVec3};
 
 /// A named view of a scene: a perspective camera without a viewport.
@@ -20,8 +20,8 @@ pub struct View {
     pub near: f64,
     /// Distance of the far plane, above `near`.
     pub far: f64,
-    /// Light under which this view is drawn instead of the scene's.
-    pub light: Option<DirectionalLight>,
+    /// Light under which this view is drawn instead of the scene's lights.
+    pub light: Option<Light>,
 }
 
 /// A view on a viewport: orthonormal frame and extents, in f64.
@@ -113,7 +113,7 @@ impl View {
                 self.eye, self.fov_y_degrees, self.near, self.far
             ));
         }
-        self.light.map_or(Ok(()), |light| {
+        self.light.as_ref().map_or(Ok(()), |light| {
             let named = |reason| format!("view {name:?}: {reason}");
             light.check().map_err(named)
         })

@@ -258,7 +258,7 @@ pub enum FaceProblem {
         /// Texture coordinates above the face.
         available: usize,
     },
-    /// A polygon that intersects itself.
+    /// A polygon that intersects itself, or a concave one of too many corners.
     CannotBeCut,
     /// A corner that is not `v`, `v/vt`, `v//vn` or `v/vt/vn`.
     NotACorner(
@@ -302,8 +302,9 @@ impl fmt::Display for FaceProblem {
                 )
             }
             Self::CannotBeCut => f.write_str(
-                "cannot be cut into triangles, for its outline crosses itself: triangulate it \
-                 where it was made, or have a scene file say `concave: Fan`",
+                "cannot be cut into triangles, for its outline crosses itself or has more than \
+                 10,000 corners: triangulate it where it was made, or have a scene file say \
+                 `concave: Fan`",
             ),
             Self::NotACorner(text) => {
                 write!(

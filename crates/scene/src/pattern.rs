@@ -40,9 +40,13 @@ fn is_leaf(u: f64, v: f64) -> bool {
     let twig = around(0.5, u).abs() < 0.02;
     let leaf = |row: u32, column: u32| {
         let across = around((f64::from(column) + 0.5) / f64::from(ROWS), u);
-        let shift = if column % 2 == 0 { 0.0 } else { 0.5 };
+        let shift = if column.is_multiple_of(2) { 0.0 } else { 0.5 };
         let along = around((f64::from(row) + shift) / f64::from(ROWS), v);
-        let side = if (row + column) % 2 == 0 { 1.0 } else { -1.0 };
+        let side = if (row + column).is_multiple_of(2) {
+            1.0
+        } else {
+            -1.0
+        };
         // Turned by the angle of the Pythagorean triangle 3, 4, 5.
         let (p, q) = (
             0.8 * across + side * 0.6 * along,

@@ -44,8 +44,8 @@ impl Scene {
 
     /// The lights under which a view is drawn: its own, or all of the scene's.
     pub fn lights_of(&self, view: &View) -> Vec<Light> {
-        match view.light {
-            Some(own) => vec![own.into()],
+        match &view.light {
+            Some(own) => vec![own.clone()],
             None => self.lights.clone(),
         }
     }

@@ -14,7 +14,8 @@
 //!     )],
 //! )"#;
 //! let scene = skiagraph_scene::SceneFile::parse(text, "garden.ron")?;
-//! assert_eq!(scene.views[0].light.unwrap().direction, glam::DVec3::NEG_Y);
+//! let light = scene.views[0].light.as_ref().unwrap();
+//! assert_eq!(light.kind.directional().unwrap().direction, glam::DVec3::NEG_Y);
 //! # Ok::<(), skiagraph_scene::SceneError>(())
 //! ```
 
@@ -140,7 +141,7 @@ struct ViewText {
     near: f64,
     far: f64,
     #[serde(default, deserialize_with = "own_light")]
-    light: Option<DirectionalLight>,
+    light: Option<Light>,
 }
 
 fn y_axis() -> (f64, f64, f64) {
@@ -250,7 +251,7 @@ struct PathText {
     near: f64,
     far: f64,
     #[serde(default, deserialize_with = "own_light")]
-    light: Option<DirectionalLight>,
+    light: Option<Light>,
     #[serde(default = "thirty")]
     frames_per_second: f64,
     keys: Vec<KeyText>,
@@ -323,10 +324,8 @@ fn light<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Light>, D:
 }
 
 /// That of a view, which checks it and says whose it is.
-fn own_light<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> Result<Option<DirectionalLight>, D::Error> {
-    any_light(deserializer).map(Some)
+fn own_light<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Light>, D::Error> {
+    any_light(deserializer).map(|light| Some(light.into()))
 }
 
 fn any_light<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DirectionalLight, D::Error> {

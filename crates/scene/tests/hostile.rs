@@ -6,8 +6,8 @@ mod bounds;
 
 use bounds::bounded;
 use skiagraph_scene::{
-    Bvh, ImportReport, Limit, Mesh, ObjOptions, ObjSetup, QuadDiagonal, SceneError, SceneFile,
-    SceneLibrary, SceneRequest, obj::parse_obj,
+    Bvh, Concave, ImportReport, Limit, Mesh, ObjOptions, ObjSetup, QuadDiagonal, SceneError,
+    SceneFile, SceneLibrary, SceneRequest, obj::parse_obj,
 };
 use std::path::Path;
 
@@ -121,7 +121,13 @@ fn a_face_of_a_hundred_thousand_corners() {
         .map(|i| format!("v {i} {} 0\n", (i / 2) * (i % 2)))
         .collect();
     let corners: String = (1..=100_000).map(|i| format!(" {i}")).collect();
-    let (mesh, _) = parse(format!("{vertices}f{corners}\n")).unwrap();
+    let text = format!("{vertices}f{corners}\n");
+    assert_error(&text, "house.obj: ", "more than 10,000 corners");
+    let fanned = ObjOptions {
+        concave: Concave::Fan,
+        ..ObjOptions::default()
+    };
+    let (mesh, _) = parse_with(text.as_bytes(), &fanned).unwrap();
     assert_eq!(mesh.triangles.len(), 99_998);
     // As many corners at one point: nothing is left.
     assert_error(
@@ -320,7 +326,7 @@ fn said_of_file(path: &Path) -> String {
     let request = SceneRequest {
         obj: argument.ends_with(".obj").then(|| ObjSetup {
             view: camera.views[0].clone(),
-            light: camera.light,
+            light: camera.lights[0].clone(),
             quads: QuadDiagonal::default(),
         }),
         argument,

@@ -33,7 +33,7 @@ fn a_good_file() {
     );
     assert_eq!(scene.views[0].up, glam::DVec3::Y);
     assert_eq!(
-        scene.light().towards(glam::DVec3::ZERO).direction,
+        scene.lights[0].kind.towards(glam::DVec3::ZERO).direction,
         glam::DVec3::Y
     );
     assert_eq!(scene.views[0].light, None);
@@ -49,7 +49,12 @@ fn a_view_may_have_a_light_of_its_own() {
     let file = folder.path().join("garden.ron");
     fs::write(&file, GOOD.replace(view, &format!("{view}\n{own}"))).unwrap();
     let (scene, _) = SceneLibrary::default().load(&request(&file)).unwrap();
-    let lights = ["a", "b"].map(|name| scene.light_of(scene.view(name).unwrap()).to_light());
+    let lights = ["a", "b"].map(|name| {
+        scene
+            .light_of(scene.view(name).unwrap())
+            .towards(glam::DVec3::ZERO)
+            .direction
+    });
     assert_eq!(lights, [glam::DVec3::Y, glam::DVec3::NEG_Z]);
 }
 
@@ -101,6 +106,54 @@ fn broken_files_are_explained_with_line_and_column() {
         called \"a\"");
 }
 
+const LAMPS: &str = r#"lights: [
+        Directional(name: "sun", direction: (0, -1, 0), angle_degrees: 0.53),
+        Spot(name: "lamp", position: (1, 5, 0), direction: (0, -1, 0), cone_degrees: 60, radius: 0.2),
+        Point(name: "bulb", position: (1, 2, 3)),
+    ]"#;
+
+#[test]
+fn a_scene_may_have_several_lights() {
+    let text = GOOD.replace("light: (direction: (0, -1, 0))", LAMPS);
+    let scene = SceneFile::parse(&text, "garden.ron").unwrap();
+    let found: Vec<_> = scene
+        .lights
+        .iter()
+        .map(|light| (light.name.as_str(), light.kind.word()))
+        .collect();
+    let expected = [("sun", "directional"), ("lamp", "spot"), ("bulb", "point")];
+    assert_eq!(found, expected);
+    let bulb = scene.lights[2]
+        .kind
+        .towards(glam::DVec3::new(1.0, 2.0, 1.0));
+    assert_eq!((bulb.direction, bulb.distance), (glam::DVec3::Z, 2.0));
+}
+
+#[test]
+fn broken_lights_are_explained() {
+    let good = GOOD.replace("light: (direction: (0, -1, 0))", LAMPS);
+    let wrong = |from: &str, to: &str| {
+        assert!(good.contains(from), "{from}");
+        let error = SceneFile::parse(&good.replace(from, to), "garden.ron").unwrap_err();
+        error.to_string()
+    };
+    let without = error("light: (direction: (0, -1, 0)),", "");
+    assert_snapshot!(without, @"");
+    assert_snapshot!(error("light: (", "lights: [], light: ("), @"");
+    let both = error("light: (", &format!("{LAMPS}, light: ("));
+    assert_snapshot!(both, @"");
+    assert_snapshot!(wrong("\"bulb\"", "\"lamp\""), @"");
+    assert_snapshot!(wrong("\"bulb\"", "\"Bulb 2\""), @"");
+    assert_snapshot!(wrong("\"bulb\"", "\"all\""), @"");
+    assert_snapshot!(wrong("cone_degrees: 60", "cone_degrees: 180"), @"");
+    assert_snapshot!(wrong("cone_degrees: 60", "cone_degrees: 0"), @"");
+    assert_snapshot!(wrong("cone_degrees: 60, ", ""), @"");
+    assert_snapshot!(wrong("radius: 0.2", "radius: -1"), @"");
+    assert_snapshot!(wrong("(1, 5, 0), direction: (0, -1, 0)", "(1, 5, 0), direction: (0, 0, 0)"), @"");
+    assert_snapshot!(wrong("(1, 2, 3)", "(1, inf, 3)"), @"");
+    assert_snapshot!(wrong("Point(", "Bulb("), @"");
+}
+
 fn request(argument: impl AsRef<Path>) -> SceneRequest {
     SceneRequest {
         argument: argument.as_ref().to_string_lossy().into_owned(),
@@ -115,7 +168,7 @@ fn setup() -> ObjSetup {
         .remove(0);
     ObjSetup {
         view,
-        lights: vec![DirectionalLight::new(glam::DVec3::NEG_Y).into()],
+        light: DirectionalLight::new(glam::DVec3::NEG_Y).into(),
         quads: QuadDiagonal::FirstThird,
     }
 }

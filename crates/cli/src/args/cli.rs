@@ -123,7 +123,7 @@ pub enum Command {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::args::values::{Assignment, Size};
+    use crate::args::values::{Assignment, LightArgument, Size};
     use clap::CommandFactory;
     use glam::DVec3;
     use skiagraph_reference::OracleMode;
@@ -188,7 +188,8 @@ mod tests {
         assert_eq!(args.size, [Size([8, 4]), Size([16, 9])]);
         assert_eq!(args.map_size, [512, 1024]);
         assert_eq!(args.scene.eye, Some(DVec3::new(-1.0, 2.0, -3.0)));
-        assert_eq!(args.scene.light, Some(DVec3::new(-0.5, -1.0, 0.0)));
+        let light = LightArgument::Direction(DVec3::new(-0.5, -1.0, 0.0));
+        assert_eq!(args.scene.light, Some(light));
         assert_eq!(
             args.params,
             [Assignment {

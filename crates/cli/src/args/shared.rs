@@ -1,6 +1,6 @@
 //! Arguments that several commands share.
 
-use crate::args::values::{self, Assignment, Size, texels};
+use crate::args::values::{self, Assignment, LightArgument, Size, texels};
 use clap::Args;
 use glam::DVec3;
 
@@ -44,9 +44,10 @@ pub struct SceneArgs {
     /// Direction in which the eye looks, for an .obj.
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     pub look: Option<DVec3>,
-    /// Direction in which the light travels, for an .obj.
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
-    pub light: Option<DVec3>,
+    /// A light of the scene, or `all`: each view under each. Without it: the scene's first light.
+    /// For an .obj, the direction in which the light travels.
+    #[arg(long, value_name = "NAME|X,Y,Z", value_parser = values::light, allow_hyphen_values = true)]
+    pub light: Option<LightArgument>,
     /// Up direction, for an .obj. Without it: 0,1,0.
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     pub up: Option<DVec3>,

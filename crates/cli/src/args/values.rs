@@ -88,6 +88,23 @@ pub fn direction(text: &str) -> Result<DVec3, String> {
     }
 }
 
+/// Which light, or one of one's own.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LightArgument {
+    /// A light of the scene by its name, or `all`.
+    Name(String),
+    /// The direction in which a light travels.
+    Direction(DVec3),
+}
+
+/// A [`LightArgument`]: three numbers are a direction.
+pub fn light(text: &str) -> Result<LightArgument, String> {
+    match text.contains(',') || text.trim().parse::<f64>().is_ok() {
+        true => direction(text).map(LightArgument::Direction),
+        false => Ok(LightArgument::Name(text.to_owned())),
+    }
+}
+
 /// A number of bytes, `1536`, `512MiB`, `2.5 GiB`; MB and GB are powers of ten.
 pub fn bytes(text: &str) -> Result<u64, String> {
     let text = text.trim();

@@ -5,13 +5,14 @@ use crate::args::shared::GpuArgs;
 use crate::error::CliError;
 use crate::files::json::to_text;
 use crate::graphs::faults::{GraphFaults, warn};
+use crate::graphs::light_kinds;
 use crate::graphs::planning::{self, Capabilities};
 use crate::graphs::preset;
 use crate::measuring::device;
 use crate::records::check::{CheckReport, FileReport};
 use crate::terminal::console::{note, print};
 use skiagraph_graph::{Diagnostics, Graph, Plan, Sources};
-use skiagraph_passes::registry;
+use skiagraph_passes::{provider::LIGHT, registry};
 
 /// Loads and plans each graph and says what is wrong with it: on whatever adapter, or on the one
 /// that the arguments name.
@@ -79,7 +80,8 @@ fn text(found: &[Found]) -> Result<(), CliError> {
                 warn(graph, plan.warnings());
                 let passes = plan.passes().len();
                 let noun = if passes == 1 { "pass" } else { "passes" };
-                fine += &format!("{argument}: fine, {passes} {noun}\n");
+                let refused = refused_lights(graph, plan);
+                fine += &format!("{argument}: fine, {passes} {noun}{refused}\n");
             }
             Err(Fault::Graph(diagnostics)) => faults.add(argument, diagnostics),
             Err(Fault::Missing(message)) => missing.push(message.as_str()),
@@ -94,6 +96,15 @@ fn text(found: &[Found]) -> Result<(), CliError> {
         note(&error.to_string());
     }
     Err(CliError::Input(missing.join("\nerror: ")))
+}
+
+/// The kinds of light that a graph does not take, if it asks for a light.
+fn refused_lights(graph: &Graph, plan: &Plan) -> String {
+    let [_, refused] = light_kinds::split(graph);
+    match plan.provided().contains(&LIGHT) && !refused.is_empty() {
+        true => format!("; takes no {} light", refused.join(" or ")),
+        false => String::new(),
+    }
 }
 
 fn json(found: &[Found]) -> Result<(), CliError> {

@@ -57,7 +57,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             let library = SceneLibrary::from_environment();
             let paths = library.paths(&args.scene.scene);
             let paths = paths.map_err(|error| CliError::Input(error.to_string()))?;
-            Subject::paths(&scene.name, paths, name)?
+            Subject::paths(&scene, paths, name, &args.scene)?
         }
     };
     let viewports: Vec<[u32; 2]> = unique(&args.size).iter().map(|Size(size)| *size).collect();
@@ -65,14 +65,24 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         check_pictures(&methods, &subjects, &viewports)?;
     }
     let scene = Arc::new(scene);
-    let provider = SceneProvider::new(scene.clone());
+    let mut provider = SceneProvider::new(scene.clone());
     // Everything is planned before anything runs: nobody should wait for an hour to read that the
-    // last file has a mistake. What a provider describes is the same for every view.
+    // last file has a mistake. What a provider describes is the same for every view under a light
+    // of one kind.
     for &viewport in &viewports {
         primary.plan(&gpu, viewport, &provider)?;
     }
     let device = Capabilities::of(&gpu);
-    contract::check_plans(&methods, &viewports, &provider, Some(&device))?;
+    let mut kinds = Vec::new();
+    for subject in &subjects {
+        let light = subject.light(&scene);
+        let kind = light.word();
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
+            provider.set_light(light);
+            contract::check_plans(&methods, &viewports, &provider, Some(&device))?;
+        }
+    }
     check_folder(&args.out)?;
     let results = Results {
         schema: 1,
@@ -86,7 +96,10 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         runs: Vec::new(),
     };
     let mut fingerprint = primary.fingerprint.with_scene(&scene.mesh, &scene.lights);
-    if subjects.iter().any(|subject| subject.has_extent(&scene)) {
+    if subjects
+        .iter()
+        .any(|subject| subject.light(&scene).has_extent())
+    {
         fingerprint = fingerprint.with_text(&args.reference_samples.to_string());
     }
     let setup = ComparisonSetup {

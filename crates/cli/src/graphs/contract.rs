@@ -2,12 +2,13 @@
 
 use crate::error::CliError;
 use crate::graphs::faults::GraphFaults;
+use crate::graphs::light_kinds;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::preset::{self, Preset};
 use crate::wording::size;
 use skiagraph_gpu::{Content, Provider};
-use skiagraph_graph::{Plan, Sources};
+use skiagraph_graph::{Code, Plan, Sources};
 use skiagraph_reference::{
     Class, Graded, Reference, RightAnswer, Statistics, image::Shown, statistics::status,
 };
@@ -30,6 +31,7 @@ pub const RAY_COUNT: &str = "ray_count";
 /// Every fault of every graph together.
 pub fn load_all(names: &[String], sources: &dyn Sources) -> Result<Vec<Preset>, CliError> {
     let presets = preset::load_all(names, sources)?;
+    presets.iter().try_for_each(light_kinds::check)?;
     let incomplete: Vec<String> = presets.iter().filter_map(missing_outputs).collect();
     none_or_error(incomplete).map(|()| presets)
 }
@@ -42,7 +44,7 @@ fn none_or_error(errors: Vec<String>) -> Result<(), CliError> {
 }
 
 /// Plans all methods on all viewports for the most able adapter there is: a graph that only this
-/// one cannot run is no mistake, unless there is no other.
+/// one cannot run is no mistake, unless there is no other; nor is one that does not take the light.
 ///
 /// # Errors
 /// Every fault of every graph together, outputs that do not fit the contract; why the
@@ -68,6 +70,9 @@ pub fn check_plans(
                             Err(diagnostics) => refusals.add(&method.preset.name, &diagnostics),
                         }
                     }
+                }
+                Err(diagnostics) if diagnostics.iter().all(|found| found.code == Code::Light) => {
+                    refusals.add(&method.preset.name, &diagnostics);
                 }
                 Err(diagnostics) => faults.add(&method.preset.name, &diagnostics),
             }

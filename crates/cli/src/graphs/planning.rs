@@ -1,10 +1,11 @@
 //! Planning a graph: for which adapter, and with what scene.
 
+use crate::graphs::light_kinds;
 use glam::{DVec3, Vec3};
 use skiagraph_gpu::{Provider, device::Gpu};
 use skiagraph_graph::{Diagnostics, Graph, Plan, PlanRequest, Registry, Sources};
 use skiagraph_passes::SceneProvider;
-use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
+use skiagraph_scene::{DirectionalLight, LightKind, Mesh, PointLight, Scene, SpotLight, View};
 use std::sync::Arc;
 
 /// What an adapter can do, as far as a plan depends on it.
@@ -64,15 +65,49 @@ pub fn check(
     sources: &dyn Sources,
     adapter: Option<&Capabilities>,
 ) -> Result<(Graph, Plan), Diagnostics> {
-    let provider = placeholder(VIEWPORT);
+    let mut provider = placeholder(VIEWPORT);
+    let checked = check_under(&provider, path, registry, sources, adapter)?;
+    for light in positional() {
+        if light_kinds::takes(&checked.0, light.word()) {
+            provider.set_light(light);
+            check_under(&provider, path, registry, sources, adapter)?;
+        }
+    }
+    Ok(checked)
+}
+
+/// The same under one light.
+fn check_under(
+    provider: &SceneProvider,
+    path: &str,
+    registry: &Registry,
+    sources: &dyn Sources,
+    adapter: Option<&Capabilities>,
+) -> Result<(Graph, Plan), Diagnostics> {
     let request = match adapter {
-        Some(adapter) => adapter.clone().request(VIEWPORT, &provider),
+        Some(adapter) => adapter.clone().request(VIEWPORT, provider),
         None => PlanRequest {
             any_adapter: true,
-            ..PlanRequest::new(VIEWPORT, &provider)
+            ..PlanRequest::new(VIEWPORT, provider)
         },
     };
     Graph::check(path, registry, sources, &request)
+}
+
+/// A light of each kind besides directional ones.
+fn positional() -> [LightKind; 2] {
+    let position = DVec3::Z;
+    let spot = SpotLight {
+        position,
+        direction: DVec3::NEG_Z,
+        cone_degrees: 90.0,
+        radius: 0.0,
+    };
+    let point = PointLight {
+        position,
+        radius: 0.0,
+    };
+    [spot.into(), point.into()]
 }
 
 /// Describes all that a scene can give, of the least scene that has it.

@@ -4,6 +4,7 @@ use crate::args::commands::REFERENCE_SAMPLES;
 use crate::error::{CliError, is_fatal, with_causes};
 use crate::graphs::contract::{Judgement, Outputs, judged};
 use crate::graphs::faults::reasons;
+use crate::graphs::light_kinds;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::frame;
@@ -160,7 +161,10 @@ impl HardCaseContext<'_> {
         if !case.exceeds_cap() {
             case.verdict = Verdict::Pass;
         }
-        let can_run = |run: &&MethodRun| run.unavailable.is_none();
+        let light = scene.light().word();
+        let can_run = |run: &&MethodRun| {
+            run.unavailable.is_none() && light_kinds::takes(&run.method.preset.graph, light)
+        };
         for run in self.methods.iter().filter(can_run) {
             for variant in run.variants(case.casters) {
                 if interrupt::raised() {

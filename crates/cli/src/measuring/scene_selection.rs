@@ -1,6 +1,7 @@
 //! From the scene arguments to a loaded scene and the views to draw.
 
 use crate::args::shared::SceneArgs;
+use crate::args::values::LightArgument;
 use crate::error::CliError;
 use crate::terminal::console::note;
 use crate::wording::did_you_mean;
@@ -43,7 +44,23 @@ impl SceneSelection {
             fit_planes(&mut scene, args)?;
         }
         let views = choose(&scene, args.view.as_deref())?;
+        let views = under_lights(&scene, views, args)?;
         Ok(Self { scene, views })
+    }
+}
+
+/// Views under the lights that the arguments name.
+///
+/// # Errors
+/// The scene has no such light.
+pub fn under_lights(
+    scene: &Scene,
+    views: Vec<View>,
+    args: &SceneArgs,
+) -> Result<Vec<View>, CliError> {
+    match &args.light {
+        Some(LightArgument::Name(name)) => lit_by(scene, views, name),
+        Some(LightArgument::Direction(_)) | None => Ok(views),
     }
 }
 
@@ -68,14 +85,18 @@ fn explain(error: SceneError, args: &SceneArgs, library: &SceneLibrary) -> CliEr
 /// View and light of a bare `.obj`, once any of the flags is given; the planes that are not given
 /// are fitted later.
 fn obj_setup(args: &SceneArgs) -> Result<Option<ObjSetup>, CliError> {
-    let given = [args.eye, args.look, args.light, args.up]
+    let direction = match &args.light {
+        Some(LightArgument::Direction(direction)) => Some(*direction),
+        Some(LightArgument::Name(_)) | None => None,
+    };
+    let given = [args.eye, args.look, direction, args.up]
         .iter()
         .any(Option::is_some)
         || [args.fov, args.near, args.far].iter().any(Option::is_some);
     if !given {
         return Ok(None);
     }
-    let (Some(eye), Some(look), Some(light)) = (args.eye, args.look, args.light) else {
+    let (Some(eye), Some(look), Some(light)) = (args.eye, args.look, direction) else {
         return Err(CliError::Usage(
             "a view of your own needs all of --eye x,y,z, --look x,y,z (direction) and --light \
              x,y,z (the direction in which the light travels)"
@@ -122,6 +143,40 @@ fn fit_planes(scene: &mut Scene, args: &SceneArgs) -> Result<(), CliError> {
         view.near = view.far / NEAR_TO_FAR;
     }
     view.check().map_err(CliError::Usage)
+}
+
+/// The views under the light of that name, or under all of theirs: `VIEW@LIGHT` where that makes
+/// several of one view.
+fn lit_by(scene: &Scene, views: Vec<View>, name: &str) -> Result<Vec<View>, CliError> {
+    let mut lit = Vec::new();
+    for view in views {
+        let lights = scene.lights_of(&view);
+        let several = lights.len() > 1 && name == "all";
+        let chosen: Vec<_> = lights
+            .iter()
+            .filter(|light| name == "all" || light.name == name)
+            .collect();
+        if chosen.is_empty() {
+            let names: Vec<&str> = lights.iter().map(|light| light.name.as_str()).collect();
+            let hint = did_you_mean(name, names.iter().copied());
+            return Err(CliError::Input(format!(
+                "view `{}` of the scene `{}` has no light `{name}`{hint}\n  lights: {}, or all of \
+                 them: all",
+                view.name,
+                scene.name,
+                names.join(", ")
+            )));
+        }
+        lit.extend(chosen.into_iter().map(|light| View {
+            name: match several {
+                true => format!("{}@{}", view.name, light.name),
+                false => view.name.clone(),
+            },
+            light: Some(light.clone()),
+            ..view.clone()
+        }));
+    }
+    Ok(lit)
 }
 
 fn choose(scene: &Scene, name: Option<&str>) -> Result<Vec<View>, CliError> {

@@ -1,9 +1,11 @@
 //! What is looked at: a still view, or every frame of a camera path.
 
+use crate::args::shared::SceneArgs;
 use crate::error::CliError;
 use crate::files::fingerprint::Fingerprint;
+use crate::measuring::scene_selection::under_lights;
 use crate::wording::did_you_mean;
-use skiagraph_scene::{CameraPath, Scene, View};
+use skiagraph_scene::{CameraPath, LightKind, Scene, View};
 
 /// One place of a comparison.
 #[derive(Clone, Debug)]
@@ -31,10 +33,10 @@ impl Subject {
         }
     }
 
-    /// Whether its light is one with extent.
-    pub fn has_extent(&self, scene: &Scene) -> bool {
+    /// Its light.
+    pub fn light(&self, scene: &Scene) -> LightKind {
         let (Self::Still(view) | Self::Path(CameraPath { view, .. })) = self;
-        scene.light_of(view).has_extent()
+        scene.light_of(view)
     }
 
     /// With what it depends on.
@@ -45,27 +47,44 @@ impl Subject {
         }
     }
 
-    /// A scene's path of that name, or all of them.
+    /// A scene's path of that name, or all of them, under the lights that the arguments name.
     ///
     /// # Errors
-    /// The scene has no such path, or none at all.
-    pub fn paths(scene: &str, paths: Vec<CameraPath>, name: &str) -> Result<Vec<Self>, CliError> {
+    /// The scene has no such path or light, or no path at all.
+    pub fn paths(
+        scene: &Scene,
+        paths: Vec<CameraPath>,
+        name: &str,
+        args: &SceneArgs,
+    ) -> Result<Vec<Self>, CliError> {
         let names: Vec<&str> = paths.iter().map(|path| path.view.name.as_str()).collect();
         if names.is_empty() {
             return Err(CliError::Input(format!(
-                "the scene `{scene}` has no camera paths\n  a scene file lists them as `paths: \
+                "the scene `{}` has no camera paths\n  a scene file lists them as `paths: \
                  [(name: …, fov_y_degrees: …, near: …, far: …, keys: [(at: SECONDS, eye: …, \
-                 direction: …), …])]`"
+                 direction: …), …])]`",
+                scene.name
             )));
         }
         if name != "all" && !names.contains(&name) {
             let hint = did_you_mean(name, names.iter().copied());
             return Err(CliError::Input(format!(
-                "the scene `{scene}` has no path `{name}`{hint}\n  paths: {}, or all of them: all",
+                "the scene `{}` has no path `{name}`{hint}\n  paths: {}, or all of them: all",
+                scene.name,
                 names.join(", ")
             )));
         }
-        let asked = |path: &CameraPath| name == "all" || path.view.name == name;
-        Ok(paths.into_iter().filter(asked).map(Self::Path).collect())
+        let mut subjects = Vec::new();
+        for path in paths {
+            if name == "all" || path.view.name == name {
+                let views = under_lights(scene, vec![path.view.clone()], args)?;
+                let lit = |view| CameraPath {
+                    view,
+                    ..path.clone()
+                };
+                subjects.extend(views.into_iter().map(lit).map(Self::Path));
+            }
+        }
+        Ok(subjects)
     }
 }

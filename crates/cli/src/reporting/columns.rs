@@ -139,7 +139,7 @@ const TERMINAL: [Entry; 13] = [
 ];
 
 /// The terminal's table of answers that are graded, or judged by the shares of a light with extent.
-const GRADED: [Entry; 15] = [
+const GRADED: [Entry; 16] = [
     ("preset", "method", ""),
     (MAP_SIZE, "map", ""),
     ("answer", "answer", ""),
@@ -159,7 +159,7 @@ const GRADED: [Entry; 15] = [
 ];
 
 /// The same of a document.
-const GRADED_DOCUMENT: [Entry; 14] = [
+const GRADED_DOCUMENT: [Entry; 15] = [
     ("preset", "method", ""),
     (MAP_SIZE, "map", ""),
     ("answer", "answer", ""),

@@ -149,6 +149,10 @@ codes! {
     /// know.
     Feature = "feature",
         "Run on an adapter that has the feature, or ask `has(FEATURE)` in an `if`.";
+    /// A light of a kind that the document does not take.
+    Light = "light",
+        "Run it under a light of a kind that it takes; if its passes know others, say so in \
+         `lights`.";
     /// A material or param that nothing uses.
     Unused = "unused",
         "Remove it, or check the names of what should use it.";

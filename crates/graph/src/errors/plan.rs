@@ -42,6 +42,13 @@ pub(crate) enum OutputError {
         material: Span,
         what: String,
     },
+    #[error("`{graph}` takes no {kind} light")]
+    Light {
+        graph: String,
+        kind: &'static str,
+        takes: Vec<String>,
+        place: Span,
+    },
     #[error("the viewport has no pixels")]
     NoViewport(Span),
     #[error("the size of `{}` is not known: no shader sees it", **.0)]
@@ -71,6 +78,7 @@ impl Mistake for OutputError {
             Self::UnwrittenOutput { .. } => Code::ReadBeforeWrite,
             Self::UnreadableOutput { .. } => Code::FormatMismatch,
             Self::NoViewport(_) | Self::UnsizedBuffer(_) => Code::Size,
+            Self::Light { .. } => Code::Light,
             Self::ImportUsage { .. } => Code::Import,
             Self::Memory { .. } => Code::Memory,
             _ => Code::Output,
@@ -100,6 +108,9 @@ impl Mistake for OutputError {
                     false => "use Depth32Float or Depth16Unorm",
                 })
             }
+            Self::Light { takes, place, .. } => told
+                .at(place, "")
+                .help(format!("it takes: {}", takes.join(", "))),
             Self::NoViewport(span) => told.at(span, ""),
             Self::UnsizedBuffer(name) => told
                 .at(name.span, "")

@@ -191,6 +191,10 @@ impl Graph {
             reports.report(too_much);
             return Outcome::failed(reports, deciding);
         }
+        if let Some(error) = plan.refused_light() {
+            reports.report(error);
+            return Outcome::failed(reports, deciding);
+        }
         plan.warnings = reports.into_list();
         Outcome {
             plan: Some(plan),

@@ -4,8 +4,10 @@ use super::plan::{CulledPass, Plan};
 use crate::{
     diagnostics::{diagnostic::Diagnostic, list::Diagnostics},
     document::params::ParamValue,
+    errors::plan::OutputError,
     graph::Graph,
     link::pass::LinkedPass,
+    provider::ProvidedKind,
     request::PlanRequest,
     resource::{ResourceKind, Target},
 };
@@ -59,6 +61,46 @@ impl Plan {
             })
             .map(|resource| resource.name.as_str())
             .collect()
+    }
+
+    /// The light that live passes bind, if it is of a kind that the document does not take: of
+    /// those that there are it takes the first, unless it says otherwise.
+    pub(crate) fn refused_light(&self) -> Option<OutputError> {
+        let document = &self.graph.document;
+        let bound = self
+            .schedule()
+            .lifetimes
+            .keys()
+            .map(|id| self.resource(*id));
+        let kinds = bound.filter_map(|resource| match &resource.kind {
+            ResourceKind::Provided(provided) if is_light(&resource.name) => provided.kind,
+            _ => None,
+        });
+        let takes = |kind: &ProvidedKind| match document.lights.is_empty() {
+            true => kind.number == 0,
+            false => document
+                .lights
+                .iter()
+                .any(|word| word.as_str() == kind.word()),
+        };
+        let kind = kinds.into_iter().find(|kind| !takes(kind))?;
+        let words = document.lights.iter().map(|word| word.value.to_string());
+        let takes = match document.lights.is_empty() {
+            true => kind
+                .words
+                .iter()
+                .take(1)
+                .map(|word| (*word).to_owned())
+                .collect(),
+            false => words.collect(),
+        };
+        let place = document.lights.first().map(|word| word.span.clone());
+        Some(OutputError::Light {
+            graph: document.file.name.to_string(),
+            kind: kind.word(),
+            takes,
+            place: place.unwrap_or_else(|| self.graph.place()),
+        })
     }
 
     /// What can be read back after a frame.
@@ -139,4 +181,9 @@ impl Plan {
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.warnings
     }
+}
+
+/// `light`, and those of `lights`.
+fn is_light(name: &str) -> bool {
+    name == "light" || name.starts_with("lights.")
 }

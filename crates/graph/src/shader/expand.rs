@@ -212,3 +212,23 @@ fn quoted(rest: &str) -> Option<(&str, &str)> {
     let (path, after) = rest.trim().strip_prefix('"')?.split_once('"')?;
     (!path.is_empty()).then_some((path, after.trim()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::paths;
+
+    #[test]
+    fn an_import_names_a_file_and_what_it_stands_in_for() {
+        assert_eq!(paths(r#" "a.wgsl" "#), Some(("a.wgsl", None)));
+        assert_eq!(paths(r#" "a" instead "b" // why"#), Some(("a", Some("b"))));
+        for broken in [
+            " a",
+            r#" """#,
+            r#" "a" instead"#,
+            r#" "a" instead b"#,
+            r#" "a" "b""#,
+        ] {
+            assert_eq!(paths(broken), None, "{broken}");
+        }
+    }
+}

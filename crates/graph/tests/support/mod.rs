@@ -5,7 +5,7 @@
 
 use skiagraph_graph::{
     Code, Describe, Diagnostic, Diagnostics, Graph, NoProvider, Picture, Plan, PlanRequest,
-    Provided, ProvidedBinding, Registry, Sources,
+    Provided, ProvidedBinding, ProvidedKind, Registry, Sources,
 };
 use std::{collections::BTreeMap, sync::Arc};
 
@@ -92,6 +92,7 @@ impl Describe for Triangle {
             "camera",
             "light",
             "lights",
+            "lights.lamp",
         ];
         names.map(str::to_owned).to_vec()
     }
@@ -105,6 +106,18 @@ impl Describe for Triangle {
             "camera" => (Some(1), 64, ProvidedBinding::Uniform),
             "light" => (Some(1), 256, ProvidedBinding::Uniform),
             "lights" => (Some(3), 256, ProvidedBinding::Both),
+            "lights.lamp" => {
+                let kind = ProvidedKind {
+                    words: &["directional", "spot"],
+                    number: 1,
+                };
+                return Some(Provided {
+                    items: Some(1),
+                    stride: 256,
+                    binding: ProvidedBinding::Uniform,
+                    kind: Some(kind),
+                });
+            }
             _ => return None,
         };
         Some(Provided {

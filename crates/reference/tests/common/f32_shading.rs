@@ -4,21 +4,21 @@
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use skiagraph_reference::{BACKGROUND, OracleMode};
-use skiagraph_scene::{Bvh, Camera, DirectionalLight, Mesh};
+use skiagraph_scene::{Bvh, Camera, LIGHT_GAP, LightKind, Mesh};
 
 /// Visibility and status per pixel.
 pub fn shade(
     mesh: &Mesh,
     bvh: &Bvh,
     camera: &Camera,
-    light: &DirectionalLight,
+    light: impl Into<LightKind>,
     primitives: &[u32],
     mode: OracleMode,
 ) -> (Vec<u8>, Vec<u8>) {
     let [eye, right, up, forward] =
         [camera.eye, camera.right, camera.up, camera.forward].map(DVec3::as_vec3);
     let (half_width, half_height) = (camera.half_width as f32, camera.half_height as f32);
-    let to_light = light.to_light().as_vec3();
+    let light = light.into();
     let [width, height] = camera.viewport;
     let pixel = |index: usize| {
         let primitive = primitives[index];
@@ -36,21 +36,52 @@ pub fn shade(
         let sum = weights[0] + weights[1] + weights[2];
         let weights = weights.map(|weight| weight / sum);
         let normal: Vec3 = (0..3).map(|i| normals[i] * weights[i]).sum();
-        if normal.dot(to_light) <= 0.0 {
+        let position: Vec3 = (0..3).map(|i| corners[i] * weights[i]).sum();
+        let (to_light, distance, shines) = towards(&light, position);
+        if !shines || normal.dot(to_light) <= 0.0 {
             return (0, 1);
         }
-        let position: Vec3 = (0..3).map(|i| corners[i] * weights[i]).sum();
         let (origin, own) = match mode {
             OracleMode::Exact => (position, primitive),
             OracleMode::Offset(length) => (position + to_light * length as f32, BACKGROUND),
         };
-        let lit = !occluded(mesh, bvh, origin, to_light, own);
+        let lit = !occluded(mesh, bvh, origin, to_light, distance, own);
         (u8::from(lit), if lit { 2 } else { 3 })
     };
     (0..primitives.len()).into_par_iter().map(pixel).unzip()
 }
 
-fn occluded(mesh: &Mesh, bvh: &Bvh, origin: Vec3, direction: Vec3, own: u32) -> bool {
+/// Unit vector to the light, the length of a shadow ray, and whether the light shines there, as
+/// shaders/shared/light.wgsl has them.
+fn towards(light: &LightKind, position: Vec3) -> (Vec3, f32, bool) {
+    let Some(place) = light.position() else {
+        return (
+            light.towards(DVec3::ZERO).direction.as_vec3(),
+            f32::INFINITY,
+            true,
+        );
+    };
+    let rounded = place.as_vec3();
+    let way = (rounded - position) + (place - rounded.as_dvec3()).as_vec3();
+    let shines = match light {
+        LightKind::Spot(spot) => {
+            let against = -spot.direction.normalize().as_vec3();
+            way.dot(against) >= spot.edge_cosine() as f32 * way.length()
+        }
+        _ => true,
+    };
+    let distance = way.length() * (1.0 - LIGHT_GAP as f32);
+    (way * way.length_squared().sqrt().recip(), distance, shines)
+}
+
+fn occluded(
+    mesh: &Mesh,
+    bvh: &Bvh,
+    origin: Vec3,
+    direction: Vec3,
+    distance: f32,
+    own: u32,
+) -> bool {
     let inverse = direction.to_array().map(|c| {
         1.0 / if c.abs() < 1e-20 {
             1e-20f32.copysign(c)
@@ -83,7 +114,7 @@ fn occluded(mesh: &Mesh, bvh: &Bvh, origin: Vec3, direction: Vec3, own: u32) -> 
         }
         for slot in node.first..node.first + node.count {
             let primitive = bvh.primitives[slot as usize];
-            if primitive != own && hit(mesh, primitive, origin, direction) {
+            if primitive != own && hit(mesh, primitive, origin, direction, distance) {
                 return true;
             }
         }
@@ -93,7 +124,7 @@ fn occluded(mesh: &Mesh, bvh: &Bvh, origin: Vec3, direction: Vec3, own: u32) -> 
 
 /// Woop, Benthin, Wald 2013 in f32, without its fallback to f64 for edge functions of 0, which no
 /// GPU has.
-fn hit(mesh: &Mesh, primitive: u32, origin: Vec3, direction: Vec3) -> bool {
+fn hit(mesh: &Mesh, primitive: u32, origin: Vec3, direction: Vec3, distance: f32) -> bool {
     let d = direction.to_array();
     let z = (0..3).fold(0, |best, axis| {
         if d[axis].abs() > d[best].abs() {
@@ -114,5 +145,6 @@ fn hit(mesh: &Mesh, primitive: u32, origin: Vec3, direction: Vec3) -> bool {
         return false;
     }
     let determinant = u + v + w;
-    determinant != 0.0 && (u * a.z + v * b.z + w * c.z) / determinant > 0.0
+    let t = (u * a.z + v * b.z + w * c.z) / determinant;
+    determinant != 0.0 && t > 0.0 && t < distance
 }

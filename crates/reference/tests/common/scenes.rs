@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use skiagraph_reference::{Oracle, OracleMode, Progress, Reference, Statistics};
-use skiagraph_scene::{Camera, DirectionalLight, Mesh, View};
+use skiagraph_scene::{Camera, DirectionalLight, LightKind, Mesh, View};
 
 /// Adds a triangle with its geometric normal at every corner; positions are welded.
 pub fn add(mesh: &mut Mesh, corners: [[f32; 3]; 3]) {
@@ -71,7 +71,7 @@ pub fn light(x: f64, y: f64, z: f64) -> DirectionalLight {
 pub fn render(
     mesh: &Mesh,
     camera: &Camera,
-    light: &DirectionalLight,
+    light: impl Into<LightKind>,
     mode: OracleMode,
 ) -> Reference {
     let oracle = Oracle::new(mesh);

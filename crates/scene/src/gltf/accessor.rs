@@ -115,7 +115,7 @@ fn raw<'b>(
             .checked_add(size)?
             .checked_add(offset)
     });
-    if !needed.is_some_and(|needed| needed <= bytes.len()) {
+    if needed.is_none_or(|needed| needed > bytes.len()) {
         return Err(format!(
             "{count} items of {size} bytes reach beyond buffer view {}, which has {} bytes",
             view.index(),

@@ -7,9 +7,12 @@ use glam::{DVec2, DVec3};
 /// Share of a polygon's extent, squared, below which an area is rounding: corners are f32.
 const FLAT: f64 = 1.0 / (1u32 << 20) as f64;
 
+/// Most corners of a concave polygon: what cutting ears costs grows with their square.
+const MOST_CORNERS: usize = 10_000;
+
 /// The triangles of a polygon, as corner numbers, wound as it is: the fan from corner `apex` where
 /// that is a partition of it, as it is of every convex polygon; else what an ear cutter makes of
-/// it. `None` where the polygon intersects itself.
+/// it. `None` where the polygon intersects itself, or is too large.
 pub(super) fn cut(points: &[DVec3], apex: usize, concave: Concave) -> Option<Vec<[usize; 3]>> {
     let count = points.len();
     let fan: Vec<[usize; 3]> = (1..count - 1)
@@ -26,6 +29,9 @@ pub(super) fn cut(points: &[DVec3], apex: usize, concave: Concave) -> Option<Vec
     let least = -FLAT * extent * extent;
     if fan.iter().all(|&of| area(&flat, of) >= least) {
         return Some(fan);
+    }
+    if count > MOST_CORNERS {
+        return None;
     }
     let mut triangles = ears(&flat);
     let whole: f64 = fan.iter().map(|&of| area(&flat, of)).sum();

@@ -1,0 +1,156 @@
+//! Spot and point lights: where they are, and where they end.
+
+use crate::{
+    answer::among_at,
+    case::{HardCase, Shows},
+    shape::{Block, Shape},
+};
+use glam::DVec3;
+use skiagraph_scene::{LightKind, PointLight, SpotLight};
+
+const YARD: [Block; 4] = [
+    [[-4.0, -0.5, -4.0], [4.0, 0.0, 4.0]],
+    [[-1.0, 0.0, -0.7], [0.0, 0.7, 0.3]],
+    [[0.9, 0.0, 0.4], [1.4, 1.1, 0.9]],
+    [[-0.2, 0.0, 1.5], [0.6, 0.4, 1.9]],
+];
+const LAMP: DVec3 = DVec3::new(0.3, 2.5, 0.4);
+/// In the middle of a lid, which it lights from within.
+const WITHIN: DVec3 = DVec3::new(0.3, 2.5, 0.4);
+const LID: Block = [[0.2, 2.4, 0.3], [0.4, 2.6, 0.5]];
+const CEILING: Block = [[-2.0, 2.5, -2.0], [2.0, 2.75, 2.0]];
+/// Crosses the plane across the axis of a spot light that looks along x, before the light and
+/// behind it, beside the axis.
+const BEAM: [Block; 3] = [
+    [[-4.0, -0.5, -4.0], [4.0, 0.0, 4.0]],
+    [[-3.5, 0.5, -0.5], [0.5, 0.7, -0.2]],
+    [[0.5, 0.0, 0.6], [0.9, 0.6, 1.0]],
+];
+const BEHIND: DVec3 = DVec3::new(-2.5, 1.25, 0.2);
+const SEAM: DVec3 = DVec3::new(0.0, 1.0, 0.0);
+/// Across the edges of the cube's face that looks down, and over a corner of it.
+const ACROSS_SEAMS: [Block; 5] = [
+    [[-4.0, -0.5, -4.0], [4.0, 0.0, 4.0]],
+    [[0.5, 0.0, -0.25], [1.0, 0.5, 0.25]],
+    [[-0.25, 0.0, 0.5], [0.25, 0.75, 1.0]],
+    [[-1.25, 0.0, -1.25], [-0.75, 0.5, -0.75]],
+    [[-0.875, 0.125, 0.625], [-0.625, 0.375, 0.875]],
+];
+const NEAR_FLOOR: DVec3 = DVec3::new(0.4, 0.002, 0.6);
+const STAR: DVec3 = DVec3::new(4.0e6, 6.0e6, -3.0e6);
+
+fn point(position: DVec3) -> LightKind {
+    PointLight {
+        position,
+        radius: 0.0,
+    }
+    .into()
+}
+
+fn spot(position: DVec3, target: DVec3, cone_degrees: f64) -> LightKind {
+    SpotLight {
+        position,
+        direction: target - position,
+        cone_degrees,
+        radius: 0.0,
+    }
+    .into()
+}
+
+pub(crate) const CASES: &[HardCase] = &[
+    HardCase::closed(
+        "bulb_in_a_yard",
+        "a point light between boxes: shadows spread, and every side of it has some",
+        || {
+            Shape::default()
+                .cuboids(&YARD)
+                .lit_scene([2.7, 3.8, 3.5], [0.2, 0.1, 0.2], point(LAMP))
+        },
+    )
+    .with_answer(|p| among_at(p, LAMP, &YARD, 1e-3)),
+    HardCase::closed(
+        "edge_of_the_cone",
+        "a spot light whose cone ends in the picture: receivers on its edge, and casters",
+        || {
+            let light = spot(LAMP, DVec3::new(0.2, 0.0, 0.3), 50.0);
+            Shape::default()
+                .cuboids(&YARD)
+                .lit_scene([2.7, 3.8, 3.5], [0.2, 0.1, 0.2], light)
+        },
+    )
+    .with_answer(|p| among_at(p, LAMP, &YARD, 1e-3)),
+    HardCase::closed(
+        "light_inside_a_mesh",
+        "a light in the midst of a closed box: it lights nobody, whichever faces are culled",
+        || {
+            Shape::default().cuboids(&YARD).cuboid(LID).lit_scene(
+                [2.7, 3.8, 3.5],
+                [0.2, 0.1, 0.2],
+                point(WITHIN),
+            )
+        },
+    )
+    .with_answer(|_| Some(false))
+    .showing(Shows::ShadowOnly),
+    HardCase::closed(
+        "light_on_a_surface",
+        "a light in the face of the ceiling that it hangs from: the face does not shade it",
+        || {
+            Shape::default().cuboids(&YARD).cuboid(CEILING).lit_scene(
+                [2.9, 2.2, 3.5],
+                [0.2, 0.3, 0.2],
+                point(LAMP),
+            )
+        },
+    )
+    .with_answer(|p| among_at(p, LAMP, &YARD, 1e-3)),
+    HardCase::closed(
+        "seam_of_faces",
+        "casters and receivers where the faces of a point light's cube meet, three at a corner",
+        || {
+            Shape::default().cuboids(&ACROSS_SEAMS).lit_scene(
+                [0.3, 3.4, 2.4],
+                [0.0, 0.0, 0.1],
+                point(SEAM),
+            )
+        },
+    )
+    .with_answer(|p| among_at(p, SEAM, &ACROSS_SEAMS, 1e-3)),
+    HardCase::closed(
+        "across_the_lights_plane",
+        "a beam from behind a spot light to before it: what is behind has no place in its map",
+        || {
+            let light = spot(BEHIND, DVec3::new(1.0, 0.0, 0.0), 120.0);
+            Shape::default()
+                .cuboids(&BEAM)
+                .lit_scene([1.5, 3.2, 4.0], [0.0, 0.1, 0.0], light)
+        },
+    )
+    .with_answer(|p| among_at(p, BEHIND, &BEAM, 1e-3)),
+    HardCase::closed(
+        "light_at_the_floor",
+        "a light a hair above the floor: every ray grazes it",
+        || {
+            Shape::default().cuboids(&YARD).lit_scene(
+                [2.7, 3.8, 3.5],
+                [0.2, 0.1, 0.2],
+                point(NEAR_FLOOR),
+            )
+        },
+    )
+    .with_answer(|p| among_at(p, NEAR_FLOOR, &YARD, 1e-2))
+    // The floor's own share of the light is a thousandth of what rounding leaves of it there.
+    .indeterminate_up_to(0.05),
+    HardCase::closed(
+        "light_a_million_away",
+        "a spot light a million times the scene away, as good as directional",
+        || {
+            Shape::default().cuboids(&YARD).lit_scene(
+                [2.7, 3.8, 3.5],
+                [0.2, 0.1, 0.2],
+                spot(STAR, DVec3::ZERO, 0.01),
+            )
+        },
+    )
+    .with_answer(|p| among_at(p, STAR, &YARD, 1e-2)),
+];

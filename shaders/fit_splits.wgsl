@@ -11,7 +11,7 @@ struct Params {
     // See shared/lay_map.wgsl.
     rounding: f32,
     split: u32,
-    lambda: f32,
+    split_lambda: f32,
 }
 
 // Words of the param `split`.
@@ -77,5 +77,5 @@ fn split_plane(number: u32, splits: u32, end: f32) -> f32 {
     if params.split == SPLIT_LOGARITHMIC {
         return logarithmic_plane;
     }
-    return mix(uniform_plane, logarithmic_plane, params.lambda);
+    return mix(uniform_plane, logarithmic_plane, params.split_lambda);
 }

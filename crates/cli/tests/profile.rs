@@ -103,7 +103,7 @@ fn a_profile_says_under_what_it_was_measured_and_writes_all_its_files() {
     let bytes = |material: &Value| material["bytes"].as_u64().unwrap();
     let map = materials
         .iter()
-        .find(|material| material["name"] == "shadow_map")
+        .find(|material| material["name"] == "shadow_maps")
         .unwrap();
     assert_eq!(
         (bytes(map), &map["size"]),

@@ -271,13 +271,15 @@ impl<'a> World<'a> {
         Some(Ok(self.whole(id)))
     }
 
-    /// The kind of what a name of the scene stands for in a frame, if that is provided.
+    /// The kind of what a name of the scene stands for in a frame. A document's own material that
+    /// stands in for it is of the first kind.
     pub fn provided_kind(&mut self, name: &str, frame: FrameId) -> Option<ProvidedKind> {
         let target = self.find_scene(name, frame)?.ok()?;
-        match &self.get(target.id).kind {
-            ResourceKind::Provided(provided) => provided.kind,
-            _ => None,
+        if let ResourceKind::Provided(provided) = &self.get(target.id).kind {
+            return provided.kind;
         }
+        let kind = self.request.provider.describe(name)?.kind?;
+        Some(ProvidedKind { number: 0, ..kind })
     }
 
     /// The kind that a shader asks for by an overridable constant of that name: `light_kind`.

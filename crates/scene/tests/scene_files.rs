@@ -274,7 +274,8 @@ fn unknown_scenes_and_missing_files() {
     };
     assert_snapshot!(library.load(&request("parc")).unwrap_err(), @"no scene \"parc\": it is \
         neither the path of a .ron, .obj, .gltf or .glb file, nor the name of a .ron file in \
-        scenes, nor one of the built-in scenes avenue, bench, city, forest, park, park_soft, sponza, sponza_masked");
+        scenes, nor one of the built-in scenes avenue, bench, city, forest, park, park_soft, \
+        sponza, sponza_masked");
     assert!(matches!(
         library.load(&request("nowhere/parc.ron")),
         Err(SceneError::Read { .. })

@@ -270,6 +270,11 @@ impl Environment for At<'_, '_, '_> {
         if let Some(value) = self.world.attribute(&target, attribute) {
             return Ok(value);
         }
+        if attribute == Attribute::Kind
+            && let Some(kind) = self.world.provided_kind(&of.path(), self.place.frame)
+        {
+            return Ok(Value::kind(kind));
+        }
         let resource = self.world.get(target.id);
         let error = match (attribute, &resource.kind) {
             (Attribute::Count, ResourceKind::Buffer(_) | ResourceKind::Provided(_)) => {

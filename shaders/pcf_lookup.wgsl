@@ -7,6 +7,8 @@
 #import "shared/map_layers.wgsl"
 #import "shared/receiver.wgsl"
 
+const COMPARE_SAMPLER: u32 = 0u;
+
 struct Params {
     radius: u32,
     compare: u32,
@@ -52,7 +54,7 @@ fn sampled(place: vec2<f32>, layer: u32, depth: f32) -> f32 {
             lit += textureSampleCompareLevel(shadow_maps, nearer, at, layer, depth);
         }
     }
-    return lit / f32((2 * radius + 1) * (2 * radius + 1));
+    return saturate(lit / f32((2 * radius + 1) * (2 * radius + 1)));
 }
 
 // The same, each texel compared once: those between count whole, the outermost by what a square of
@@ -73,5 +75,6 @@ fn by_hand(place: vec2<f32>, layer: u32, depth: f32) -> f32 {
             lit += cover.x * cover.y * select(0.0, 1.0, depth <= stored);
         }
     }
-    return lit / f32(last * last);
+    // What the parts of texels add up to is rounded.
+    return saturate(lit / f32(last * last));
 }

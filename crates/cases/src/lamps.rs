@@ -72,7 +72,7 @@ pub(crate) const CASES: &[HardCase] = &[
         "edge_of_the_cone",
         "a spot light whose cone ends in the picture: receivers on its edge, and casters",
         || {
-            let light = spot(LAMP, DVec3::new(0.2, 0.0, 0.3), 50.0);
+            let light = spot(LAMP, DVec3::new(0.2, 0.0, 0.3), 80.0);
             Shape::default()
                 .cuboids(&YARD)
                 .lit_scene([2.7, 3.8, 3.5], [0.2, 0.1, 0.2], light)
@@ -148,7 +148,7 @@ pub(crate) const CASES: &[HardCase] = &[
             Shape::default().cuboids(&YARD).lit_scene(
                 [2.7, 3.8, 3.5],
                 [0.2, 0.1, 0.2],
-                spot(STAR, DVec3::ZERO, 0.01),
+                spot(STAR, DVec3::ZERO, 30.0),
             )
         },
     )

@@ -79,13 +79,8 @@ fn every_frame_is_judged_and_exact_methods_do_not_shimmer() {
         }
     }
     let csv = fs::read_to_string(folder.path().join("out/results.csv")).unwrap();
-    assert!(
-        csv.lines()
-            .next()
-            .unwrap()
-            .ends_with("worst_frame,worst_frame_wrong"),
-        "{csv}"
-    );
+    let head = csv.lines().next().unwrap();
+    assert!(head.contains(",worst_frame,worst_frame_wrong,"), "{head}");
 
     let kept = skiagraph(folder.path(), &format!("{line} --resume"));
     let told = String::from_utf8_lossy(&kept.stderr);

@@ -159,7 +159,7 @@ impl LightKind {
     /// What is wrong with it.
     pub fn check(&self) -> Result<(), String> {
         if let Some(position) = self.position()
-            && !(position.abs().max_element() <= FARTHEST)
+            && (position.is_nan() || position.abs().max_element() > FARTHEST)
         {
             return Err(format!(
                 "the light's position {position} must be finite, and no number beyond \

@@ -104,7 +104,8 @@ fn parts_are_closed_welded_and_apart() {
     let parts = are_closed(&scene.mesh);
     assert!(parts > 1_500);
     assert_eq!(Parts::new(&scene.mesh).open, vec![false; parts]);
-    are_apart(&scene.mesh, bvh);
+    // The test must have had something to do.
+    assert!(are_apart(&scene.mesh, bvh) > 1_000);
 }
 
 #[test]

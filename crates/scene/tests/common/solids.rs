@@ -87,8 +87,9 @@ pub fn are_closed(mesh: &Mesh) -> usize {
 /// Smallest distance that two parts must keep.
 pub const CLEARANCE: f64 = 0.008;
 
-/// Asserts that no two parts are nearer than [`CLEARANCE`].
-pub fn are_apart(mesh: &Mesh, bvh: &Bvh) {
+/// Asserts that no two parts are nearer than [`CLEARANCE`]; returns how many pairs of triangles
+/// came near enough to be asked.
+pub fn are_apart(mesh: &Mesh, bvh: &Bvh) -> usize {
     let component = components(mesh);
     let mut pairs = 0;
     for primitive in 0..mesh.triangles.len() as u32 {
@@ -122,10 +123,7 @@ pub fn are_apart(mesh: &Mesh, bvh: &Bvh) {
             }
         }
     }
-    assert!(
-        pairs > 1_000,
-        "the test must have had something to do: {pairs}"
-    );
+    pairs
 }
 
 /// Distance of two triangles, 0 where they meet: the nearest points lie on two edges, or on a

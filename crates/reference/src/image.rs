@@ -52,7 +52,11 @@ impl Shown for u32 {
 impl Shown for f32 {
     fn share(self) -> f32 {
         // `max` takes the number that is one.
-        self.max(0.0).min(1.0)
+        if self.is_nan() {
+            0.0
+        } else {
+            self.clamp(0.0, 1.0)
+        }
     }
 }
 

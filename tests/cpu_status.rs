@@ -38,7 +38,7 @@ fn statuses_of_a_square_above_a_floor() {
     let primitives = Oracle::new(&mesh)
         .primary(&camera, Progress::default())
         .unwrap();
-    let reference = render(&mesh, &camera, &light, OracleMode::Exact);
+    let reference = render(&mesh, &camera, light, OracleMode::Exact);
     let adjacency = Adjacency::new(&mesh);
     let mut uncertain = vec![];
     for method in METHODS {

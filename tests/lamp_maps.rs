@@ -63,7 +63,7 @@ fn point(position: DVec3) -> LightKind {
 }
 
 fn wrong(counts: &Statistics) -> u64 {
-    u64::from(counts.wrong.total - counts.wrong.in_band)
+    counts.wrong.total - counts.wrong.in_band
 }
 
 fn size(texels: u32) -> (&'static str, ParamValue) {
@@ -120,10 +120,7 @@ fn finer_maps_of_lamps_have_fewer_wrong_pixels() {
         let [coarse, fine] = counts.each_ref().map(wrong);
         println!("{lamp:?}: {coarse} at 64, {fine} at 1024");
         assert!(3 * fine < coarse, "{lamp:?}: {coarse} {fine}");
-        assert!(
-            fine * 100 < u64::from(counts[1].pixels.facing_light),
-            "{fine}"
-        );
+        assert!(fine * 100 < counts[1].pixels.facing_light, "{fine}");
     }
 }
 

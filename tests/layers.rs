@@ -249,7 +249,7 @@ fn judge(
     let reference = Oracle::new(&scene.mesh)
         .shade(
             &camera,
-            &scene.sun().unwrap(),
+            scene.sun().unwrap(),
             &primitives,
             OracleMode::Exact,
             Progress::default(),

@@ -45,7 +45,7 @@ fn rt_on_sponza_answers_as_by_the_compute_hierarchy() {
 
 /// The direction that shaders see of a light.
 fn to_light(mesh: &Mesh, direction: DVec3) -> Vec3 {
-    LightUniform::new(&DirectionalLight::new(direction), mesh).to_light
+    LightUniform::new(DirectionalLight::new(direction), mesh).to_light
 }
 
 fn both(

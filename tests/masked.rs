@@ -73,7 +73,7 @@ fn what_conservative_maps_are_certain_of_is_right() {
         let mut bench = Bench::new(&scene, VIEWPORT);
         bench.look(&scene.views[0]);
         for preset in ["crsm", "crsma", "crsma_full", "crsm_depth", "crsm_single"] {
-            let counts = bench.judge(preset, &[none.clone()]);
+            let counts = bench.judge(preset, std::slice::from_ref(&none));
             println!("{preset} seed {seed}: {counts:?}");
             assert_eq!(counts.wrong.certain, 0, "{preset}: {counts:?}");
         }

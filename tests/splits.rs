@@ -36,7 +36,7 @@ fn avenue(view: &str) -> Arc<Scene> {
 }
 
 fn wrong(counts: &Statistics) -> u64 {
-    u64::from(counts.wrong.total - counts.wrong.in_band)
+    counts.wrong.total - counts.wrong.in_band
 }
 
 /// By hand: sides that meet at (0, 2), from a top line at y = 1 of width 2 to a base line at

@@ -31,7 +31,7 @@ fn main() -> ExitCode {
         Command::Stress(args) => commands::stress::stress(args, gpu),
         Command::Check(args) => commands::check::check(args, gpu),
         Command::Graph(args) => commands::graph::graph(args),
-        Command::Presets(args) => commands::presets::presets(&args),
+        Command::Presets(args) => commands::presets::presets(args),
         Command::Show(args) => commands::show::show(args),
         Command::Scenes => commands::scenes::scenes(),
         Command::Doctor => commands::doctor::doctor(gpu),

@@ -21,7 +21,7 @@ fn a_square_throws_a_square_shadow() {
         let reference = render(
             &mesh,
             &from_above(10.0, [200, 200]),
-            &light(2.0, -1.0, 0.0),
+            light(2.0, -1.0, 0.0),
             mode,
         );
         let pixels = PixelCounts {
@@ -61,7 +61,7 @@ fn casters_are_two_sided_and_light_may_run_along_an_axis() {
             let reference = render(
                 &mesh,
                 &from_above(1.0, [100, 100]),
-                &light(0.0, -3.0, 0.0),
+                light(0.0, -3.0, 0.0),
                 mode,
             );
             assert_eq!(counts(&reference).pixels.shadow, 2500);
@@ -90,7 +90,7 @@ fn casters_without_area_throw_no_shadow() {
     let reference = render(
         &mesh,
         &from_above(1.0, [64, 64]),
-        &light(0.0, -1.0, 0.0),
+        light(0.0, -1.0, 0.0),
         OracleMode::Exact,
     );
     assert_eq!(counts(&reference).pixels.lit, 64 * 64);
@@ -102,7 +102,7 @@ fn light_along_a_surface_does_not_face_it() {
     let reference = render(
         &floor(),
         &from_above(1.0, [16, 16]),
-        &light(1.0, 0.0, 0.0),
+        light(1.0, 0.0, 0.0),
         OracleMode::Exact,
     );
     assert_eq!(counts(&reference).pixels.facing_away, 256);
@@ -122,7 +122,7 @@ fn light_along_a_surface_does_not_face_it() {
         let reference = render(
             &floor(),
             &from_above(1.0, [16, 16]),
-            &light(1.0, y, 0.0),
+            light(1.0, y, 0.0),
             OracleMode::Exact,
         );
         assert!(reference.classes.iter().all(|&c| c == class));
@@ -153,7 +153,7 @@ fn the_mode_decides_what_a_receiver_shades_itself_with() {
     let shade = |mode| {
         let reference = oracle.shade(
             &camera,
-            &light(0.0, -1.0, 0.0),
+            light(0.0, -1.0, 0.0),
             &[0; 64],
             mode,
             Progress::default(),
@@ -177,7 +177,7 @@ fn a_primitive_seen_edge_on_is_indeterminate() {
     let camera = from_above(1.0, [9, 9]);
     let reference = oracle.shade(
         &camera,
-        &light(1.0, -1.0, 0.0),
+        light(1.0, -1.0, 0.0),
         &[1; 81],
         OracleMode::Exact,
         Progress::default(),
@@ -223,7 +223,7 @@ fn wrong_input_is_an_error() {
     let camera = from_above(1.0, [4, 2]);
     let shade = |direction, primitives: &[u32], mode| {
         oracle
-            .shade(&camera, &direction, primitives, mode, Progress::default())
+            .shade(&camera, direction, primitives, mode, Progress::default())
             .err()
     };
     let down = light(0.0, -1.0, 0.0);
@@ -305,7 +305,7 @@ fn progress_is_told_and_interruption_obeyed() {
     };
     let result = oracle.shade(
         &camera,
-        &light(0.0, -1.0, 0.0),
+        light(0.0, -1.0, 0.0),
         &primitives,
         OracleMode::Exact,
         progress,
@@ -319,7 +319,7 @@ fn an_empty_mesh_is_background() {
     let reference = render(
         &mesh,
         &from_above(1.0, [5, 3]),
-        &light(0.0, -1.0, 0.0),
+        light(0.0, -1.0, 0.0),
         OracleMode::Exact,
     );
     assert_eq!(

@@ -23,7 +23,7 @@ fn area(
     let oracle = Oracle::new(mesh);
     let primitives = oracle.primary(&camera, Progress::default()).unwrap();
     let progress = Progress::default();
-    let answer = oracle.shade_area(&camera, &light, &primitives, (mode, samples), progress);
+    let answer = oracle.shade_area(&camera, light, &primitives, (mode, samples), progress);
     answer.unwrap()
 }
 
@@ -102,7 +102,7 @@ fn a_light_without_width_is_the_hard_one() {
     let direction = DVec3::new(0.31, -1.0, 0.23);
     let (soft, area) = area(&mesh, (direction, 0.0), 4, OracleMode::Exact);
     let light = DirectionalLight::new(direction);
-    let hard = common::scenes::render(&mesh, &from_above(4.0, [80, 80]), &light, OracleMode::Exact);
+    let hard = common::scenes::render(&mesh, &from_above(4.0, [80, 80]), light, OracleMode::Exact);
     assert_eq!(soft.classes, hard.classes);
     assert_eq!(area.shares, hard.shares());
     assert!(hard.classes.contains(&Class::Shadow));

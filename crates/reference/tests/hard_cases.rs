@@ -30,7 +30,7 @@ fn complaints(case: &HardCase, viewport: [u32; 2]) -> Vec<String> {
     let primitives = oracle
         .primary(&camera, Progress::default())
         .expect("nobody interrupts");
-    let reference = render(&mesh, &camera, &light, OracleMode::Exact);
+    let reference = render(&mesh, &camera, light, OracleMode::Exact);
     let count =
         |wanted: &dyn Fn(usize) -> bool| (0..primitives.len()).filter(|&i| wanted(i)).count();
     let facing = |i: usize| reference.classes[i].faces_light();

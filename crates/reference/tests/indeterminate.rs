@@ -32,7 +32,7 @@ fn a_ray_through_a_casters_edge_is_indeterminate_and_one_a_hair_away_is_not() {
     ] {
         let mut mesh = floor();
         add_rectangle(&mut mesh, [edge, 3.0], 2.0, [-3.0, 3.0]);
-        let reference = render(&mesh, &camera, &light(0.0, -1.0, 0.0), OracleMode::Exact);
+        let reference = render(&mesh, &camera, light(0.0, -1.0, 0.0), OracleMode::Exact);
         let expected: Vec<usize> = if is_indeterminate {
             (0..101).map(|row| row * 101 + 50).collect()
         } else {
@@ -64,10 +64,10 @@ fn an_edge_between_two_casters_is_determinate_unless_it_is_a_crack() {
         mesh
     };
     let down = light(0.0, -1.0, 0.0);
-    let reference = render(&joined, &camera, &down, OracleMode::Exact);
+    let reference = render(&joined, &camera, down, OracleMode::Exact);
     assert_eq!(counts(&reference).pixels.shadow, 101 * 101);
     assert_eq!(indeterminate(&reference), [0usize; 0]);
-    let reference = render(&abutting, &camera, &down, OracleMode::Exact);
+    let reference = render(&abutting, &camera, down, OracleMode::Exact);
     assert_eq!(counts(&reference).pixels.shadow, 101 * 101);
     assert_eq!(
         indeterminate(&reference),
@@ -85,10 +85,10 @@ fn coplanar_duplicates_are_indeterminate_without_an_offset_only() {
     let camera = from_above(1.0, [8, 8]);
     let down = light(0.1, -1.0, 0.0);
     assert_eq!(
-        indeterminate(&render(&mesh, &camera, &down, OracleMode::Exact)).len(),
+        indeterminate(&render(&mesh, &camera, down, OracleMode::Exact)).len(),
         64
     );
-    let offset = render(&mesh, &camera, &down, OracleMode::Offset(0.01));
+    let offset = render(&mesh, &camera, down, OracleMode::Offset(0.01));
     assert_eq!(indeterminate(&offset), [0usize; 0]);
     assert_eq!(counts(&offset).pixels.lit, 64);
 }
@@ -105,7 +105,7 @@ fn more_is_indeterminate_farther_from_the_origin() {
         }
         let mut camera = from_above(1.0, [100, 100]);
         camera.eye.x += f64::from(shift);
-        let reference = render(&mesh, &camera, &light(0.0, -1.0, 0.0), OracleMode::Exact);
+        let reference = render(&mesh, &camera, light(0.0, -1.0, 0.0), OracleMode::Exact);
         assert_eq!(counts(&reference).pixels.facing_light, 10_000);
         indeterminate(&reference).len()
     };
@@ -183,10 +183,10 @@ proptest! {
             OracleMode::Offset(1e-3 * f64::from(scale)),
         ] {
             let reference = oracle
-                .shade(&camera, &light, &primitives, mode, Progress::default())
+                .shade(&camera, light, &primitives, mode, Progress::default())
                 .expect("valid ids");
             let (visibility, status) =
-                f32_shading::shade(&mesh, &bvh, &camera, &light, &primitives, mode);
+                f32_shading::shade(&mesh, &bvh, &camera, light, &primitives, mode);
             let counts =
                 Statistics::judged(&visibility, &status, &reference).expect("valid values");
             prop_assert_eq!(counts.wrong.total, counts.wrong.in_band, "{:?}", counts);

@@ -28,7 +28,7 @@ fn frame(mesh: &Mesh, pixels: f64) -> Frame {
     let sun = light(0.8, -1.0, 0.0);
     let shaded = oracle.shade(
         &camera,
-        &sun,
+        sun,
         &primitives,
         OracleMode::Exact,
         Progress::default(),

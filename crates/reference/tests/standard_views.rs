@@ -95,7 +95,7 @@ fn f32_errs_in_few_indeterminate_pixels_only(scene: &Scene, mode: OracleMode) {
             &scene.mesh,
             &bvh,
             &camera,
-            &scene.sun().unwrap(),
+            scene.sun().unwrap(),
             &primitives,
             mode,
         );

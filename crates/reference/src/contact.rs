@@ -151,8 +151,8 @@ impl<'a> FuzzyRay<'a> {
             Some(_) => {
                 // A ray that may as well end before the caster passes all around it, too.
                 let near_end = end != f64::INFINITY && t > end - end_error;
-                let near_open_edge =
-                    near_end || (0..3).any(|i| open[i] && edges[i].abs() < thresholds[i]);
+                let near_open = |i: usize| open[i] && edges[i].abs() < thresholds[i];
+                let near_open_edge = near_end || (0..3).any(near_open);
                 Contact::Hit {
                     error,
                     near_open_edge,
@@ -166,12 +166,10 @@ impl<'a> FuzzyRay<'a> {
             }
             None => Contact::Miss,
         };
-        match masked {
-            Some(masked) if contact != Contact::Miss => {
-                contact.masked(masked.ask(edges, thresholds), error)
-            }
-            _ => contact,
-        }
+        let asked = masked.as_ref().filter(|_| contact != Contact::Miss);
+        asked.map_or(contact, |masked| {
+            contact.masked(masked.ask(edges, thresholds), error)
+        })
     }
 
     /// Distance to the caster's plane and how much displacements change it: without bound for a

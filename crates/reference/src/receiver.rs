@@ -126,10 +126,9 @@ impl Receiver {
         let error: f64 = errors.iter().sum();
         let determinate = error < INDETERMINATE;
 
-        let weights = if determinant == 0.0 {
-            [1.0 / 3.0; 3]
-        } else {
-            edges.map(|edge| edge / determinant)
+        let weights = match determinant {
+            0.0 => [1.0 / 3.0; 3],
+            _ => edges.map(|edge| edge / determinant),
         };
         let position = weighted(weights, world);
         let clamped = weights.map(|weight| weight.max(0.0));

@@ -21,7 +21,7 @@ use crate::reporting::{markdown, published, results_table};
 use crate::terminal::console::{note, print};
 use crate::terminal::interrupt;
 use skiagraph_passes::SceneProvider;
-use skiagraph_scene::SceneLibrary;
+use skiagraph_scene::{Scene, SceneLibrary, View};
 use std::sync::Arc;
 
 /// Checks everything, then runs the comparison.
@@ -51,15 +51,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         .map(|method| method.settled(features))
         .collect();
     let SceneSelection { scene, views } = SceneSelection::load(&args.scene)?;
-    let subjects = match &args.path {
-        None => views.into_iter().map(Subject::Still).collect(),
-        Some(name) => {
-            let library = SceneLibrary::from_environment();
-            let paths = library.paths(&args.scene.scene);
-            let paths = paths.map_err(|error| CliError::Input(error.to_string()))?;
-            Subject::paths(&scene, paths, name, &args.scene)?
-        }
-    };
+    let subjects = subjects(args, &scene, views)?;
     let viewports: Vec<[u32; 2]> = unique(&args.size).iter().map(|Size(size)| *size).collect();
     if args.images == Images::All {
         check_pictures(&methods, &subjects, &viewports)?;
@@ -115,6 +107,16 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     interrupt::install()?;
     let outcome = run(args, &mut comparison, &subjects, viewports.len());
     finish(args, comparison, outcome)
+}
+
+/// The views, or the camera paths that are asked for.
+fn subjects(args: &CompareArgs, scene: &Scene, views: Vec<View>) -> Result<Vec<Subject>, CliError> {
+    let Some(name) = &args.path else {
+        return Ok(views.into_iter().map(Subject::Still).collect());
+    };
+    let paths = SceneLibrary::from_environment().paths(&args.scene.scene);
+    let paths = paths.map_err(|error| CliError::Input(error.to_string()))?;
+    Subject::paths(scene, paths, name, &args.scene)
 }
 
 /// Refuses runs that would overwrite each other's pictures, before anything runs.

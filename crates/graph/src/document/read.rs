@@ -12,7 +12,7 @@ use super::{
 use crate::{
     diagnostics::{
         diagnostic::Diagnostic,
-        reports::{Mistake, Reports},
+        reports::{Mistake, Reported, Reports},
     },
     errors::{document::DocumentError, language::SyntaxFault},
     kinds::registry::Registry,
@@ -61,26 +61,14 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
         let input = input(item).and_then(|input| free(input.name.clone(), input));
         match input {
             Ok(input) => document.inputs.push(input),
-            Err(error) => {
-                let reported = reports.tell(error);
-                match item.name() {
-                    Some(name) => document.broken_materials.push((name.value, reported)),
-                    None => document.incomplete = Some(reported),
-                }
-            }
+            Err(error) => document.lacks(item.name(), reports.tell(error)),
         }
     }
     for item in &raw.materials {
         let material = material(item).and_then(|read| free(read.name().clone(), read));
         match material {
             Ok(material) => document.materials.push(material),
-            Err(error) => {
-                let reported = reports.tell(error);
-                match item.name() {
-                    Some(name) => document.broken_materials.push((name.value, reported)),
-                    None => document.incomplete = Some(reported),
-                }
-            }
+            Err(error) => document.lacks(item.name(), reports.tell(error)),
         }
     }
     let mut passes = raw.passes;
@@ -106,6 +94,16 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
         });
     }
     document
+}
+
+impl Document {
+    /// Notes what cannot be read, by its name if that can.
+    fn lacks(&mut self, name: Option<Located<String>>, reported: Reported) {
+        match name {
+            Some(name) => self.broken_materials.push((name.value, reported)),
+            None => self.incomplete = Some(reported),
+        }
+    }
 }
 
 fn keep<T>(result: Result<T, Diagnostic>, reports: &mut Reports, keep: impl FnOnce(T)) {

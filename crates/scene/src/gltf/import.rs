@@ -71,6 +71,14 @@ struct Import<'a> {
     corners: usize,
 }
 
+/// The arrays of a primitive, by vertex but for the indices.
+struct Arrays {
+    positions: Vec<[f32; 3]>,
+    normals: Option<Vec<[f32; 3]>>,
+    uvs: Option<Vec<[f32; 2]>>,
+    indices: Vec<u32>,
+}
+
 impl<'a> Import<'a> {
     fn new(path: &'a Path, buffers: &'a [Arc<[u8]>]) -> Self {
         let mut builder = MeshBuilder::default();
@@ -163,15 +171,6 @@ impl<'a> Import<'a> {
         transform: DMat4,
         group: &str,
     ) -> Result<(), String> {
-        let of = |semantic: &Semantic| {
-            let accessor = primitive.get(semantic)?;
-            Some((accessor.index(), accessor))
-        };
-        let named = |(index, why): (usize, String)| format!("accessor {index}: {why}");
-        let (index, accessor) = of(&Semantic::Positions)
-            .ok_or_else(|| "it has no POSITION, so nothing can be drawn of it".to_owned())?;
-        let positions =
-            accessor::floats::<3>(&accessor, self.buffers).map_err(|why| named((index, why)))?;
         let material = primitive
             .material()
             .index()
@@ -180,25 +179,12 @@ impl<'a> Import<'a> {
             let material = &self.materials[material];
             (material.uv_set, material.uv_transform)
         };
-        let normals = match of(&Semantic::Normals) {
-            Some((index, accessor)) => Some(
-                accessor::floats::<3>(&accessor, self.buffers)
-                    .map_err(|why| named((index, why)))?,
-            ),
-            None => None,
-        };
-        let uvs = match of(&Semantic::TexCoords(uv_set)) {
-            Some((index, accessor)) => Some(
-                accessor::floats::<2>(&accessor, self.buffers)
-                    .map_err(|why| named((index, why)))?,
-            ),
-            None => None,
-        };
-        let indices = match primitive.indices() {
-            Some(accessor) => accessor::indices(&accessor, self.buffers)
-                .map_err(|why| named((accessor.index(), why)))?,
-            None => (0..positions.len() as u32).collect(),
-        };
+        let Arrays {
+            positions,
+            normals,
+            uvs,
+            indices,
+        } = self.arrays(primitive, uv_set)?;
         let triangles = self.triangles(primitive.mode(), &indices);
         self.corners += 3 * triangles.len();
         if self.corners > MOST_CORNERS {
@@ -257,6 +243,44 @@ impl<'a> Import<'a> {
                 .add(corners, none, group, Some(material as u32), face);
         }
         Ok(())
+    }
+
+    /// What a primitive's accessors hold.
+    fn arrays(&self, primitive: &gltf::Primitive<'_>, uv_set: u32) -> Result<Arrays, String> {
+        let of = |semantic: &Semantic| {
+            let accessor = primitive.get(semantic)?;
+            Some((accessor.index(), accessor))
+        };
+        let named = |(index, why): (usize, String)| format!("accessor {index}: {why}");
+        let (index, accessor) = of(&Semantic::Positions)
+            .ok_or_else(|| "it has no POSITION, so nothing can be drawn of it".to_owned())?;
+        let positions =
+            accessor::floats::<3>(&accessor, self.buffers).map_err(|why| named((index, why)))?;
+        let normals = match of(&Semantic::Normals) {
+            Some((index, accessor)) => Some(
+                accessor::floats::<3>(&accessor, self.buffers)
+                    .map_err(|why| named((index, why)))?,
+            ),
+            None => None,
+        };
+        let uvs = match of(&Semantic::TexCoords(uv_set)) {
+            Some((index, accessor)) => Some(
+                accessor::floats::<2>(&accessor, self.buffers)
+                    .map_err(|why| named((index, why)))?,
+            ),
+            None => None,
+        };
+        let indices = match primitive.indices() {
+            Some(accessor) => accessor::indices(&accessor, self.buffers)
+                .map_err(|why| named((accessor.index(), why)))?,
+            None => (0..positions.len() as u32).collect(),
+        };
+        Ok(Arrays {
+            positions,
+            normals,
+            uvs,
+            indices,
+        })
     }
 
     /// The triangles that a mode makes of indices. Points and lines are counted.

@@ -25,7 +25,7 @@ fn shaders_are_valid() {
         // The graph assigns the bindings.
         let flags = ValidationFlags::all() - ValidationFlags::BINDINGS;
         let beyond = match file.as_str() {
-            "trace_ray_query.wgsl" => Capabilities::RAY_QUERY,
+            "trace_ray_query.wgsl" | "trace_ray_query_masked.wgsl" => Capabilities::RAY_QUERY,
             _ => Capabilities::empty(),
         };
         let mut validator = Validator::new(flags, beyond);

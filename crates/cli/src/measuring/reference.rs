@@ -114,7 +114,7 @@ impl<'a> Judge<'a> {
     /// Runs the oracle with a progress bar.
     ///
     /// # Errors
-    /// Those of [`shade`].
+    /// Those of [`right_answer`].
     pub fn new(
         oracle: Rc<Oracle<'a>>,
         camera: Camera,

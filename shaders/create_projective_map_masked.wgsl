@@ -1,4 +1,5 @@
-// As create_projective_map.wgsl, where triangles are masked: what a mask leaves out casts no shadow.
+// As create_projective_map.wgsl, where triangles are masked: what a mask leaves out casts no
+// shadow.
 
 #import "create_projective_map.wgsl"
 #import "shared/masks.wgsl"

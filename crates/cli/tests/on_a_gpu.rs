@@ -563,6 +563,9 @@ fn a_light_with_extent_is_judged_by_shares() {
     assert!(log.contains("0 of 3 runs are kept"), "{log}");
 }
 
+/// Park under a spot light, a point light and a directional one.
+const LAMPS: &str = include_str!("../../../scenes/lamps.ron");
+
 /// A graph that includes `rt` for each light.
 const EVERY_LIGHT: &str = r#"(
     format: 2,
@@ -587,11 +590,12 @@ const EVERY_LIGHT: &str = r#"(
 fn a_layer_for_each_light_is_judged_by_itself() {
     let folder = tempfile::tempdir().unwrap();
     let turned = EVERY_LIGHT.replace("lights[index]", "lights[lights.count - 1 - index]");
+    fs::write(folder.path().join("lamps.ron"), LAMPS).unwrap();
     fs::write(folder.path().join("each.ron"), EVERY_LIGHT).unwrap();
     fs::write(folder.path().join("turned.ron"), turned).unwrap();
     let compare = |rest: &str| {
         let line = format!(
-            "compare each.ron turned.ron --scene lamps --size 64x48 --frames 1 --warmup 0 \
+            "compare each.ron turned.ron --scene lamps.ron --size 64x48 --frames 1 --warmup 0 \
              --cached-frames 0 --images none --out out {rest}"
         );
         skiagraph(folder.path(), &line);
@@ -599,15 +603,14 @@ fn a_layer_for_each_light_is_judged_by_itself() {
     };
     let outside = |run: &Value| count(&run["wrong"]["total"]) - count(&run["wrong"]["in_band"]);
     let runs = compare("");
-    let views: Vec<_> = runs
-        .as_array()
-        .unwrap()
+    let runs: Vec<Value> = runs.as_array().unwrap().clone();
+    let views: Vec<String> = runs
         .iter()
-        .map(|run| &run["view"])
+        .map(|run| run["view"].as_str().unwrap().to_owned())
         .collect();
     let lights = ["lamp", "lamp", "bulb", "bulb", "moon", "moon"];
     assert_eq!(views, lights.map(|light| format!("bench@{light}")));
-    let wrong: Vec<u64> = runs.as_array().unwrap().iter().map(outside).collect();
+    let wrong: Vec<u64> = runs.iter().map(outside).collect();
     assert_eq!([wrong[0], wrong[2], wrong[4]], [0; 3]);
     // The second of three is the second from the end.
     assert!(
@@ -624,8 +627,9 @@ fn a_layer_for_each_light_is_judged_by_itself() {
 #[test]
 fn params_without_effect_are_told_once() {
     let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("lamps.ron"), LAMPS).unwrap();
     let told = |rest: &str| {
-        let line = format!("{rest} --scene lamps --size 16x16 --set fit=eye");
+        let line = format!("{rest} --scene lamps.ron --size 16x16 --set fit=eye");
         let output = skiagraph(folder.path(), &line);
         let log = String::from_utf8_lossy(&output.stderr).into_owned();
         log.matches("fit=eye has no effect on nsm under a spot light")

@@ -578,7 +578,11 @@ const EVERY_LIGHT: &str = r#"(
             graph: "rt.ron",
             name: "lit",
             repeat: "lights.count",
-            bind: {"light": "lights[index]", "visibility": "visibility[index]", "status": "status[index]"},
+            bind: {
+                "light": "lights[index]",
+                "visibility": "visibility[index]",
+                "status": "status[index]",
+            },
         ),
     ],
     outputs: ["visibility", "status"],

@@ -2,10 +2,10 @@
 // one thread per pixel. Both say light, or both shadow, in each texel asked: certain. Otherwise,
 // and outside the map: uncertain. Hertel, Hormann, Westermann 2009.
 
+#import "shared/classify.wgsl"
 #import "shared/predicates.wgsl"
 #import "shared/footprint.wgsl"
 #import "shared/map_layers.wgsl"
-#import "shared/receiver.wgsl"
 
 struct Params {
     footprint: u32,
@@ -14,23 +14,6 @@ struct Params {
 var<uniform> params: Params;
 var outer: texture_depth_2d_array;
 var inner: texture_depth_2d_array;
-var visibility: texture_storage_2d<r32uint, write>;
-var status: texture_storage_2d<r32uint, write>;
-
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
-    let pixel = thread.xy;
-    if any(pixel >= textureDimensions(primitive)) {
-        return;
-    }
-    let receiver = textureLoad(position, pixel, 0);
-    var pixel_status = initial_status(pixel, receiver);
-    if pixel_status == STATUS_UNCERTAIN {
-        pixel_status = compare(receiver.xyz);
-    }
-    textureStore(status, pixel, vec4(pixel_status));
-    textureStore(visibility, pixel, vec4(initial_visibility(pixel_status)));
-}
 
 fn compare(receiver: vec3<f32>) -> u32 {
     let layer = layer_of(receiver);

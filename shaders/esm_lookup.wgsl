@@ -3,7 +3,7 @@
 // GI 2008; the map holds logarithms: Salvi, "Rendering Filtered Shadows with Exponential Shadow
 // Maps", ShaderX6, 2008.
 
-#import "shared/filtered_map.wgsl"
+#import "shared/filtered_lookup.wgsl"
 
 struct Params {
     radius: u32,
@@ -11,33 +11,7 @@ struct Params {
 }
 
 var<uniform> params: Params;
-var depths: texture_2d<f32>;
-var trilinear: sampler;
-var nearest: sampler;
-var visibility: texture_storage_2d<r32float, write>;
 
-@compute @workgroup_size(8, 8)
-fn sampled(@builtin(global_invocation_id) thread: vec3<u32>) {
-    let look = look(thread.xy, params.radius);
-    var light = look.visibility;
-    if look.at_map {
-        let stored = textureSampleLevel(depths, trilinear, look.place, look.mip).x;
-        light = share(stored, look.depth);
-    }
-    textureStore(visibility, thread.xy, vec4(light));
-}
-
-@compute @workgroup_size(8, 8)
-fn by_hand(@builtin(global_invocation_id) thread: vec3<u32>) {
-    let look = look(thread.xy, params.radius);
-    var light = look.visibility;
-    if look.at_map {
-        let stored = filtered(depths, nearest, look).x;
-        light = share(stored, look.depth);
-    }
-    textureStore(visibility, thread.xy, vec4(light));
-}
-
-fn share(stored: f32, depth: f32) -> f32 {
-    return saturate(exp(params.exponent * (stored - depth)));
+fn share_of_light(stored: vec2<f32>, depth: f32) -> f32 {
+    return saturate(exp(params.exponent * (stored.x - depth)));
 }

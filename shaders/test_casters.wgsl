@@ -1,6 +1,7 @@
 // Stage to ask, for each receiver, the casters that are listed in its texel, by the tracer's own
 // test; one thread per pixel. What no complete list answers is left to a ray.
 
+#import "shared/answer.wgsl"
 #import "shared/camera.wgsl"
 #import "shared/receiver.wgsl"
 #import "shared/light_buffer.wgsl"
@@ -23,8 +24,6 @@ var<storage, read> lists: array<List>;
 var<storage, read> entries: array<Entry>;
 // Workgroups of fill_rays in x, y, z.
 var<storage, read_write> fill_groups: array<atomic<u32>, 3>;
-var visibility: texture_storage_2d<r32uint, write>;
-var status: texture_storage_2d<r32uint, write>;
 
 @compute @workgroup_size(8, 8)
 fn main(
@@ -46,8 +45,7 @@ fn main(
     if pixel_status == STATUS_UNCERTAIN {
         ask_rays();
     }
-    textureStore(status, pixel, vec4(pixel_status));
-    textureStore(visibility, pixel, vec4(initial_visibility(pixel_status)));
+    store_answer(pixel, pixel_status);
 }
 
 // Has the rays filled in: by one workgroup for 32 by 32 pixels.

@@ -2,7 +2,7 @@
 // one thread per pixel. Donnelly, Lauritzen, "Variance Shadow Maps", I3D 2006, equations 3 to 5;
 // the cut against bleeding is Lauritzen's, "Summed-Area Variance Shadow Maps", GPU Gems 3, 2007.
 
-#import "shared/filtered_map.wgsl"
+#import "shared/filtered_lookup.wgsl"
 
 struct Params {
     radius: u32,
@@ -11,35 +11,9 @@ struct Params {
 }
 
 var<uniform> params: Params;
-var moments: texture_2d<f32>;
-var trilinear: sampler;
-var nearest: sampler;
-var visibility: texture_storage_2d<r32float, write>;
-
-@compute @workgroup_size(8, 8)
-fn sampled(@builtin(global_invocation_id) thread: vec3<u32>) {
-    let look = look(thread.xy, params.radius);
-    var light = look.visibility;
-    if look.at_map {
-        let mean = textureSampleLevel(moments, trilinear, look.place, look.mip).xy;
-        light = upper_bound(mean, look.depth);
-    }
-    textureStore(visibility, thread.xy, vec4(light));
-}
-
-@compute @workgroup_size(8, 8)
-fn by_hand(@builtin(global_invocation_id) thread: vec3<u32>) {
-    let look = look(thread.xy, params.radius);
-    var light = look.visibility;
-    if look.at_map {
-        let mean = filtered(moments, nearest, look);
-        light = upper_bound(mean, look.depth);
-    }
-    textureStore(visibility, thread.xy, vec4(light));
-}
 
 // Chebyshev's inequality: no more than this share of the depths is as great as the receiver's.
-fn upper_bound(mean: vec2<f32>, depth: f32) -> f32 {
+fn share_of_light(mean: vec2<f32>, depth: f32) -> f32 {
     let behind = depth - mean.x;
     if behind <= 0.0 {
         return 1.0;

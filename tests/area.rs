@@ -5,37 +5,13 @@ mod support;
 use glam::{DVec3, Vec3};
 use skiagraph_graph::PassSummary;
 use skiagraph_reference::{Class, Graded, Oracle, OracleMode, Progress, RightAnswer};
-use skiagraph_scene::{DirectionalLight, LightKind, Mesh, PointLight, Scene, SpotLight, View};
+use skiagraph_scene::{DirectionalLight, LightKind, PointLight, Scene, SpotLight, View};
 use std::sync::Arc;
 use support::graphs::{plan_files, provider, run, values};
 
 const VIEWPORT: [u32; 2] = [64, 48];
 
-/// A floor under a square plate whose edges are thin, closed and front-facing outwards.
-fn mesh() -> Mesh {
-    let (mut positions, mut triangles) = (vec![], vec![]);
-    let mut quad = |corners: [Vec3; 4]| {
-        let first = positions.len() as u32;
-        positions.extend(corners);
-        triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
-    };
-    quad([(-6.0, 6.0), (6.0, 6.0), (6.0, -6.0), (-6.0, -6.0)].map(|(x, z)| Vec3::new(x, 0.0, z)));
-    for axis in 0..3 {
-        for side in [-1.0, 1.0] {
-            let (u, v) = (
-                Vec3::AXES[(axis + 1) % 3] * side,
-                Vec3::AXES[(axis + 2) % 3],
-            );
-            let face = Vec3::AXES[axis] * side;
-            quad(
-                [face - u - v, face + u - v, face + u + v, face - u + v]
-                    .map(|p| p * Vec3::new(1.2, 0.2, 1.1) + Vec3::Y * 1.5),
-            );
-        }
-    }
-    support::meshes::mesh(positions, triangles)
-}
-
+/// A thin plate above a floor.
 fn scene(light: impl Into<LightKind>) -> Arc<Scene> {
     let view = View {
         name: "main".into(),
@@ -50,7 +26,7 @@ fn scene(light: impl Into<LightKind>) -> Arc<Scene> {
     let light = skiagraph_scene::Light::only(light);
     Arc::new(Scene {
         name: "plate".into(),
-        mesh: mesh(),
+        mesh: support::meshes::box_over_floor(6.0, Vec3::new(1.2, 0.2, 1.1)),
         views: vec![view],
         lights: vec![light],
     })

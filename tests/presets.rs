@@ -18,27 +18,6 @@ const VIEWPORT: [u32; 2] = [96, 64];
 
 /// A floor, and a box that floats above it.
 fn scene() -> Arc<Scene> {
-    let mut positions = vec![];
-    let mut triangles = vec![];
-    let mut quad = |corners: [Vec3; 4]| {
-        let first = positions.len() as u32;
-        positions.extend(corners);
-        triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
-    };
-    quad([(-4.0, 4.0), (4.0, 4.0), (4.0, -4.0), (-4.0, -4.0)].map(|(x, z)| Vec3::new(x, 0.0, z)));
-    for axis in 0..3 {
-        for side in [-1.0, 1.0] {
-            let (u, v) = (
-                Vec3::AXES[(axis + 1) % 3] * side,
-                Vec3::AXES[(axis + 2) % 3],
-            );
-            let face = Vec3::AXES[axis] * side;
-            quad(
-                [face - u - v, face + u - v, face + u + v, face - u + v]
-                    .map(|p| p * Vec3::new(1.0, 0.4, 1.0) + Vec3::Y * 1.5),
-            );
-        }
-    }
     let view = View {
         name: "main".into(),
         eye: DVec3::new(0.5, 5.0, 7.0),
@@ -51,7 +30,7 @@ fn scene() -> Arc<Scene> {
     };
     Arc::new(Scene {
         name: "box".into(),
-        mesh: support::meshes::mesh(positions, triangles),
+        mesh: support::meshes::box_over_floor(4.0, Vec3::new(1.0, 0.4, 1.0)),
         views: vec![view],
         lights: vec![DirectionalLight::new(DVec3::new(-0.4, -1.0, 0.3)).into()],
     })

@@ -27,3 +27,29 @@ fn footprint(fit: MapFit, place: vec2<f32>, kind: u32) -> Footprint {
         select(1, 2, kind == FOOTPRINT_CORNERS),
     );
 }
+
+// Whether all texels that are asked let light through, and whether none does.
+struct Taps {
+    lit: bool,
+    shadowed: bool,
+}
+
+fn taps(
+    maps: texture_depth_2d_array,
+    layer: u32,
+    asked: Footprint,
+    depth: f32,
+    bias: f32,
+) -> Taps {
+    var taps = Taps(true, true);
+    for (var y = asked.first.y; y <= asked.last.y; y += asked.step) {
+        for (var x = asked.first.x; x <= asked.last.x; x += asked.step) {
+            let stored = textureLoad(maps, vec2(x, y), layer, 0);
+            // 1 is what the maps were cleared to: no caster, however far.
+            let is_lit = stored >= 1.0 || depth <= stored + bias;
+            taps.lit &= is_lit;
+            taps.shadowed &= !is_lit;
+        }
+    }
+    return taps;
+}

@@ -22,6 +22,30 @@ pub fn mesh(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Mesh {
     }
 }
 
+/// A square floor at height 0, and a box above it whose centre is at height 1.5; half edges.
+pub fn box_over_floor(floor: f32, half: Vec3) -> Mesh {
+    let (mut positions, mut triangles) = (vec![], vec![]);
+    let mut quad = |corners: [Vec3; 4]| {
+        let first = positions.len() as u32;
+        positions.extend(corners);
+        triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+    };
+    let corners = [(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)];
+    quad(corners.map(|(x, z)| Vec3::new(x, 0.0, z) * floor));
+    for axis in 0..3 {
+        for side in [-1.0, 1.0] {
+            let face = Vec3::AXES[axis] * side;
+            let (u, v) = (
+                Vec3::AXES[(axis + 1) % 3] * side,
+                Vec3::AXES[(axis + 2) % 3],
+            );
+            let corners = [face - u - v, face + u - v, face + u + v, face - u + v];
+            quad(corners.map(|p| p * half + Vec3::Y * 1.5));
+        }
+    }
+    mesh(positions, triangles)
+}
+
 /// Two meshes as one.
 pub fn joined(mut first: Mesh, second: &Mesh) -> Mesh {
     let (corners, normals) = (first.positions.len() as u32, first.normals.len() as u32);

@@ -11,7 +11,7 @@ use crate::{
     error::{FaceRef, SceneError},
     material::Material,
     mesh::Mesh,
-    obj::read::check_extent,
+    obj::read::check_read,
     report::ImportReport,
 };
 use glam::{DMat3, DMat4, DVec3, Mat4, Vec2, Vec3};
@@ -51,15 +51,7 @@ pub fn parse_gltf(bytes: &[u8], path: &Path) -> Result<(Mesh, ImportReport), Sce
     import.read_materials(&document).map_err(fail)?;
     import.read_nodes(&document).map_err(fail)?;
     let (mesh, report) = import.finish();
-    if mesh.triangles.is_empty() {
-        return Err(SceneError::NoTriangles {
-            path: path.to_owned(),
-            faces: report.faces,
-            lines: report.lines,
-            points: report.points,
-        });
-    }
-    check_extent(&mesh, path)?;
+    check_read(&mesh, &report, path)?;
     Ok((mesh, report))
 }
 

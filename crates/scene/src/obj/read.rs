@@ -76,22 +76,24 @@ pub fn parse_obj(
         });
     }
     let (mesh, report) = import(&models, &guard, options, path)?;
-    if mesh.triangles.is_empty() {
+    check_read(&mesh, &report, path)?;
+    Ok((mesh, report))
+}
+
+/// Refuses a file without triangles, and lengths whose products leave f32. A mesh that is one point
+/// has none.
+pub(crate) fn check_read(
+    mesh: &Mesh,
+    report: &ImportReport,
+    path: &Path,
+) -> Result<(), SceneError> {
+    let Some((low, high)) = mesh.bounds().filter(|_| !mesh.triangles.is_empty()) else {
         return Err(SceneError::NoTriangles {
             path: path.to_owned(),
             faces: report.faces,
             lines: report.lines,
             points: report.points,
         });
-    }
-    check_extent(&mesh, path)?;
-    Ok((mesh, report))
-}
-
-/// Refuses lengths whose products leave f32. A mesh that is one point has none.
-pub(crate) fn check_extent(mesh: &Mesh, path: &Path) -> Result<(), SceneError> {
-    let Some((low, high)) = mesh.bounds() else {
-        return Ok(());
     };
     let across = low.as_dvec3().distance(high.as_dvec3());
     let farthest = f64::from(low.abs().max(high.abs()).max_element());

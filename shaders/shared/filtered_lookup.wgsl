@@ -1,0 +1,30 @@
+// The entry points of a stage that looks a filtered map up; one thread per pixel. The importing
+// file has `fn share_of_light(stored: vec2<f32>, depth: f32) -> f32`, and a param `radius`.
+
+#import "shared/filtered_map.wgsl"
+
+var map: texture_2d<f32>;
+var trilinear: sampler;
+var nearest: sampler;
+var visibility: texture_storage_2d<r32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn sampled(@builtin(global_invocation_id) thread: vec3<u32>) {
+    let look = look(thread.xy, params.radius);
+    var share = look.visibility;
+    if look.at_map {
+        let stored = textureSampleLevel(map, trilinear, look.place, look.mip).xy;
+        share = share_of_light(stored, look.depth);
+    }
+    textureStore(visibility, thread.xy, vec4(share));
+}
+
+@compute @workgroup_size(8, 8)
+fn by_hand(@builtin(global_invocation_id) thread: vec3<u32>) {
+    let look = look(thread.xy, params.radius);
+    var share = look.visibility;
+    if look.at_map {
+        share = share_of_light(filtered(map, nearest, look), look.depth);
+    }
+    textureStore(visibility, thread.xy, vec4(share));
+}

@@ -25,7 +25,7 @@ fn compare(receiver: vec3<f32>) -> u32 {
         error.x = 2.0 * spot_texel_error(fit, receiver);
     }
     // What may lie in another texel than it seems, even one grown by the slack, is not compared.
-    if is_outside_of(fit, place.xy) || error.x > SLACK {
+    if is_outside_of(fit, place.xy) || !(error.x <= SLACK) {
         return STATUS_UNCERTAIN;
     }
     let far = place.z + error.y;

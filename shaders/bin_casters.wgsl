@@ -5,6 +5,7 @@
 
 #import "shared/groups.wgsl"
 #import "shared/light_buffer.wgsl"
+#import "shared/face_triangle.wgsl"
 
 struct Params {
     longest_list: u32,
@@ -161,14 +162,15 @@ fn caster_of_face(primitive: u32) -> Caster {
         + CLIP_ROUNDING * (2.0 + 4.0 * spread) * (1.0 + aside) * (1.0 + aside);
     let slack = SLACK + map_fit.scale * rounding;
     if !(nearest > 0.0 && slack < 0.125 * map_fit.size) {
-        let plane = DepthPlane(vec3(0.0), vec2(0.0), -1.0, least, greatest);
+        let plane = DepthPlane(vec3(0.0), vec2(0.0), -1.0, least, greatest, 0.0);
         return caster_of_whole_face(primitive, a, b, c, plane);
     }
     let p = face_texel(a);
     let q = face_texel(b);
     let r = face_texel(c);
     let triangle = LightTriangle(p, q, r, cross_2d(q.xy - p.xy, r.xy - p.xy));
-    return caster_over(primitive, triangle, DepthPlane(p, vec2(0.0), -1.0, least, greatest), slack);
+    let plane = DepthPlane(p, vec2(0.0), -1.0, least, greatest, 0.0);
+    return caster_over(primitive, triangle, plane, slack);
 }
 
 fn face_texel(seen: vec4<f32>) -> vec3<f32> {
@@ -189,17 +191,9 @@ fn caster_of_whole_face(
     c: vec4<f32>,
     plane: DepthPlane,
 ) -> Caster {
-    // Beyond one of the planes x = w, x = -w, y = w, y = -w, by more than rounding.
-    let spread = light_spread();
-    let room = 2.0 * CLIP_ROUNDING * (1.0 + spread) * light.range
-        + 8.0 * HALF_ULP * light.max_distance * spread;
-    let wide = (1.0 + 2.0 / map_fit.size) * vec3(a.w, b.w, c.w) + room;
-    let x = vec3(a.x, b.x, c.x);
-    let y = vec3(a.y, b.y, c.y);
-    let is_beside = all(x > wide) || all(-x > wide) || all(y > wide) || all(-y > wide)
-        || all(vec3(a.w, b.w, c.w) < vec3(-room));
-    let first = select(vec2(0u), vec2(1u), is_beside);
-    let last = select(vec2(u32(map_fit.size) - 1u), vec2(0u), is_beside);
+    let beside = is_beside(a, b, c);
+    let first = select(vec2(0u), vec2(1u), beside);
+    let last = select(vec2(u32(map_fit.size) - 1u), vec2(0u), beside);
     let nowhere = LightTriangle(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
     let least = depth_bits(plane.least);
     return Caster(primitive, nowhere, plane, first, last, least, vec3(3e38), SLACK);

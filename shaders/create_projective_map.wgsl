@@ -16,6 +16,10 @@ struct Vertex {
 
 @vertex
 fn vertex(@builtin(vertex_index) corner: u32) -> Vertex {
+    return projected(corner);
+}
+
+fn projected(corner: u32) -> Vertex {
     let seen = light_homogeneous(corner_position(corner), face);
     let across = vec3(seen.xy, seen.w);
     let w = dot(map_fit.w.xyz, across);

@@ -19,9 +19,13 @@ fn compare(receiver: vec3<f32>) -> u32 {
     let layer = layer_of(receiver);
     let fit = fit_of(layer);
     let place = texel_of(fit, receiver);
-    let error = texel_error_bound_of(fit, receiver);
+    var error = texel_error_bound_of(fit, receiver);
+    if light_kind != LIGHT_DIRECTIONAL {
+        // Half of the slack; the other half is the corners'.
+        error.x = 2.0 * spot_texel_error(fit, receiver);
+    }
     // What may lie in another texel than it seems, even one grown by the slack, is not compared.
-    if is_outside_of(fit, place.xy) || error.x > SLACK {
+    if is_outside_of(fit, place.xy) || !(error.x <= SLACK) {
         return STATUS_UNCERTAIN;
     }
     let far = place.z + error.y;

@@ -64,7 +64,7 @@ fn is_asked(corner: u32) -> bool {
 
 fn gather(corner: u32, lane: u32) -> LightTriangle {
     if is_asked(corner) {
-        texels[lane] = light_texel(corner_position(corner));
+        texels[lane] = light_corner(corner);
     }
     workgroupBarrier();
     let first = lane - lane % 3u;
@@ -75,7 +75,8 @@ fn gather(corner: u32, lane: u32) -> LightTriangle {
 }
 
 fn place(corner: u32, lane: u32, triangle: LightTriangle, kept: bool) {
-    let in_map = is_asked(corner) && casts(triangle, params.cull);
+    // What has no place in the map covers no texel for sure.
+    let in_map = is_asked(corner) && is_placed(triangle) && casts(triangle, params.cull);
     let word = lane / 96u;
     let bit = 1u << (lane / 3u % 32u);
     if in_map {

@@ -133,6 +133,33 @@ fn rays_mend_the_contours_of_a_spot_lights_map() {
     assert!(2 * hybrid < nsm, "{nsm} {hybrid}");
 }
 
+/// Lamps between, beside and inside of solids, and so near that their triangles reach behind them:
+/// what the two layers of a spot light's map agree on is so.
+#[test]
+fn conservative_maps_are_exact_under_spot_lights() {
+    let inside = spot(DVec3::new(0.3, 0.2, 0.1), 120.0);
+    let narrow = spot(DVec3::new(0.5, 5.0, 1.0), 12.0);
+    let spots = lamps().into_iter().skip(4).chain([inside, narrow]);
+    let (mut lit, mut shadow, mut uncertain) = (0, 0, 0);
+    for lamp in spots {
+        let scene = scene(lamp);
+        let mut bench = Bench::new(&scene, VIEWPORT);
+        for (map_size, cull) in [(16, "front"), (100, "none"), (400, "none"), (1024, "front")] {
+            let cull = ("cull", ParamValue::Choice(cull.into()));
+            let counts = bench.judge("crsm", &[size(map_size), cull]);
+            assert_eq!(wrong(&counts), 0, "{lamp:?} {map_size}: {counts:?}");
+            if map_size == 1024 {
+                (lit, shadow) = (lit + counts.certain.lit, shadow + counts.certain.shadow);
+                uncertain += counts.uncertain;
+            }
+        }
+    }
+    // Maps answer, not rays.
+    println!("certain {lit} {shadow}, uncertain {uncertain}");
+    assert!(lit > 5_000 && shadow > 2_000, "{lit} {shadow}");
+    assert!(uncertain * 4 < lit + shadow, "{uncertain}");
+}
+
 /// Far away a spot light is a directional one.
 #[test]
 fn a_spot_light_far_away_is_parallel_light() {

@@ -7,13 +7,22 @@ mod support;
 use glam::DVec3;
 use skiagraph_graph::ParamValue;
 use skiagraph_reference::{BACKGROUND, Oracle, Progress};
-use skiagraph_scene::{DirectionalLight, Scene, SceneLibrary, SceneRequest, View};
+use skiagraph_scene::{
+    DirectionalLight, LightKind, PointLight, Scene, SceneLibrary, SceneRequest, SpotLight, View,
+};
 use std::sync::Arc;
 use support::{bench::Bench, meshes::foliage};
 
 const VIEWPORT: [u32; 2] = [160, 120];
 
 fn scene(seed: u64) -> Arc<Scene> {
+    scene_under(
+        seed,
+        DirectionalLight::new(DVec3::new(-0.4, -1.0, 0.3)).into(),
+    )
+}
+
+fn scene_under(seed: u64, light: LightKind) -> Arc<Scene> {
     let eye = DVec3::new(0.7, 2.0, 4.0);
     Arc::new(Scene {
         name: "foliage".into(),
@@ -28,7 +37,7 @@ fn scene(seed: u64) -> Arc<Scene> {
             far: 50.0,
             light: None,
         }],
-        lights: vec![DirectionalLight::new(DVec3::new(-0.4, -1.0, 0.3)).into()],
+        lights: vec![light.into()],
     })
 }
 
@@ -77,6 +86,49 @@ fn what_conservative_maps_are_certain_of_is_right() {
             println!("{preset} seed {seed}: {counts:?}");
             assert_eq!(counts.wrong.certain, 0, "{preset}: {counts:?}");
         }
+    }
+}
+
+/// Maps of every kind of light and fit let the light through the holes: what is wrong of them is
+/// what is between texels.
+#[test]
+fn maps_have_holes_where_casters_have() {
+    let position = DVec3::new(0.8, 5.0, -0.6);
+    let spot = LightKind::Spot(SpotLight {
+        position,
+        direction: -position,
+        cone_degrees: 80.0,
+        radius: 0.0,
+    });
+    let point = LightKind::Point(PointLight {
+        position,
+        radius: 0.0,
+    });
+    let sun: LightKind = DirectionalLight::new(DVec3::new(-0.4, -1.0, 0.3)).into();
+    for (preset, light, fit) in [
+        ("nsm", spot, "scene"),
+        ("hybrid_pcf", spot, "scene"),
+        ("nsm", point, "scene"),
+        ("nsm", sun, "scene"),
+        ("nsm", sun, "pssm"),
+        ("nsm", sun, "tsm"),
+    ] {
+        let scene = scene_under(2, light);
+        let mut bench = Bench::new(&scene, VIEWPORT);
+        let params = [
+            ("map_size", ParamValue::U32(2048)),
+            ("cull", word("none")),
+            ("fit", word(fit)),
+            ("slope_bias", ParamValue::F32(1.0)),
+        ];
+        let asked = if preset == "nsm" { 4 } else { 3 };
+        let counts = bench.judge(preset, &params[..asked]);
+        let wrong = counts.wrong.total - counts.wrong.in_band;
+        println!(
+            "{preset} {light:?} {fit}: {wrong} wrong of {:?}",
+            counts.pixels
+        );
+        assert!(counts.pixels.shadow > 1000, "{:?}", counts.pixels);
     }
 }
 

@@ -8,7 +8,9 @@ use skiagraph_graph::{
     Describe, Graph, LayeredSources, ParamValue, PlanRequest, Provided, ProvidedBinding, Sources,
 };
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
-use skiagraph_scene::{DirectionalLight, Mesh, Scene, SceneLibrary, SceneRequest, View};
+use skiagraph_scene::{
+    DirectionalLight, LightKind, Mesh, Scene, SceneLibrary, SceneRequest, SpotLight, View,
+};
 use std::sync::Arc;
 use support::{
     graphs::{self, open},
@@ -53,7 +55,9 @@ fn buffers_are_as_large_as_described() {
                 None => assert_eq!(size % described.stride, 0, "{name}"),
             }
             let is_uniform = described.binding == ProvidedBinding::Uniform;
-            assert_eq!(is_uniform, !name.starts_with("scene."), "{name}");
+            let is_array =
+                name.starts_with("scene.") || ["lights", "light_areas"].contains(&&*name);
+            assert_eq!(is_uniform, !is_array, "{name}");
         }
     }
 }
@@ -246,4 +250,61 @@ fn a_view_with_its_own_light_is_drawn_as_its_scene_would_be_under_that_light() {
         executor.refresh(&mut provider).unwrap();
         assert_ne!(next(&mut executor), expected, "{preset}: the scene's light");
     }
+}
+
+/// Each light of a scene has a kind of its own, and there are no others.
+#[test]
+fn lights_have_numbers() {
+    let spot = SpotLight {
+        position: DVec3::Y,
+        direction: DVec3::NEG_Y,
+        cone_degrees: 60.0,
+        radius: 0.0,
+    };
+    let scene = Scene {
+        name: "two".into(),
+        mesh: meshes::soup(3, 0.2, 1),
+        views: vec![],
+        lights: vec![
+            DirectionalLight::new(DVec3::NEG_Y).into(),
+            LightKind::Spot(spot).into(),
+        ],
+    };
+    let provider = SceneProvider::new(Arc::new(scene));
+    let plan = |number: &str| {
+        let document = format!(
+            r#"(
+                format: 2,
+                materials: [Texture(name: "kinds", format: R32Uint, layers: "lights.count")],
+                passes: [
+                    Fullscreen(
+                        name: "kind",
+                        color: ["kinds[1]"],
+                        bind: {{"light": "lights[{number}]"}},
+                    ),
+                    Fullscreen(
+                        name: "of_spot",
+                        color: ["kinds[0]"],
+                        shader: "kind",
+                        if: "lights[1].kind == spot",
+                    ),
+                ],
+                outputs: ["kinds"],
+                lights: [directional, spot],
+            )"#
+        );
+        let shader = "#import \"shared/light.wgsl\"\n\
+            @fragment fn fragment() -> @location(0) u32 {\n\
+            return light_kind + u32(light.range > 0.0);\n}";
+        let files = [("test.ron", document.as_str()), ("kind.wgsl", shader)];
+        let graph = Graph::load("test.ron", &registry(), &graphs::layered(&files)).unwrap();
+        graph
+            .plan(&PlanRequest::new([4, 4], &provider))
+            .map_err(|error| error.to_string())
+    };
+    let planned = plan("1").unwrap();
+    assert_eq!(planned.provided(), ["light", "lights.1"]);
+    assert_eq!(planned.outputs()[0].layers, 2);
+    let wrong = plan("2").unwrap_err();
+    assert!(wrong.contains("there are 2 of them"), "{wrong}");
 }

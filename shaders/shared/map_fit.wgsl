@@ -75,6 +75,19 @@ fn light_spread() -> f32 {
     return (most.x + most.y + most.z) / max(light.edge_cosine, 1e-3);
 }
 
+// What rounding may move a point before a spot light by, in texels: 5 half ulps of what is summed
+// up for x, y and w, a division of 2.5 ulp, and then 4 half ulps.
+fn spot_texel_error(fit: MapFit, position: vec3<f32>) -> f32 {
+    let way = abs(light_way(position));
+    let seen = light_homogeneous(position, 0u);
+    let matrix = transpose(light.clip_from_relative);
+    let across = max(dot(abs(matrix[0].xyz), way), dot(abs(matrix[1].xyz), way)) / seen.w;
+    let along = dot(abs(matrix[3].xyz), way) / seen.w;
+    let aside = max(abs(seen.x), abs(seen.y)) / seen.w;
+    let clip = 1.5 * (across + aside * (along + 1.0)) + aside;
+    return CLIP_ROUNDING * (fit.scale * clip + fit.reach);
+}
+
 // What rounding may move a receiver and the corners of its casters by, together, in texels and in
 // depth: on the way to clip space, and from there on, 4 half ulps of all that is summed up. The map
 // may have been rounded itself; it is one for all. Of affine maps.

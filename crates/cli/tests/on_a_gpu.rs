@@ -563,6 +563,88 @@ fn a_light_with_extent_is_judged_by_shares() {
     assert!(log.contains("0 of 3 runs are kept"), "{log}");
 }
 
+/// Park under a spot light, a point light and a directional one.
+const LAMPS: &str = include_str!("../../../scenes/lamps.ron");
+
+/// A graph that includes `rt` for each light.
+const EVERY_LIGHT: &str = r#"(
+    format: 2,
+    materials: [
+        Texture(name: "visibility", format: R32Uint, layers: "lights.count"),
+        Texture(name: "status", format: R32Uint, layers: "lights.count"),
+    ],
+    passes: [
+        Include(
+            graph: "rt.ron",
+            name: "lit",
+            repeat: "lights.count",
+            bind: {
+                "light": "lights[index]",
+                "visibility": "visibility[index]",
+                "status": "status[index]",
+            },
+        ),
+    ],
+    outputs: ["visibility", "status"],
+    lights: [directional, spot, point],
+)"#;
+
+/// Spot, point and directional: each layer against its own light, whatever the others are.
+#[test]
+fn a_layer_for_each_light_is_judged_by_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let turned = EVERY_LIGHT.replace("lights[index]", "lights[lights.count - 1 - index]");
+    fs::write(folder.path().join("lamps.ron"), LAMPS).unwrap();
+    fs::write(folder.path().join("each.ron"), EVERY_LIGHT).unwrap();
+    fs::write(folder.path().join("turned.ron"), turned).unwrap();
+    let compare = |rest: &str| {
+        let line = format!(
+            "compare each.ron turned.ron --scene lamps.ron --size 64x48 --frames 1 --warmup 0 \
+             --cached-frames 0 --images none --out out {rest}"
+        );
+        skiagraph(folder.path(), &line);
+        results(&folder.path().join("out"))["runs"].clone()
+    };
+    let outside = |run: &Value| count(&run["wrong"]["total"]) - count(&run["wrong"]["in_band"]);
+    let runs = compare("");
+    let runs: Vec<Value> = runs.as_array().unwrap().clone();
+    let views: Vec<String> = runs
+        .iter()
+        .map(|run| run["view"].as_str().unwrap().to_owned())
+        .collect();
+    let lights = ["lamp", "lamp", "bulb", "bulb", "moon", "moon"];
+    assert_eq!(views, lights.map(|light| format!("bench@{light}")));
+    let wrong: Vec<u64> = runs.iter().map(outside).collect();
+    assert_eq!([wrong[0], wrong[2], wrong[4]], [0; 3]);
+    // The second of three is the second from the end.
+    assert!(
+        wrong[1] > 100 && wrong[3] == 0 && wrong[5] > 100,
+        "{wrong:?}"
+    );
+    let bulb = compare("--light bulb");
+    assert_eq!(bulb.as_array().unwrap().len(), 2);
+    assert_eq!(bulb[0]["pixels"], runs[2]["pixels"]);
+    assert_eq!(outside(&bulb[0]), 0);
+}
+
+/// A `fit` under a light that has but one.
+#[test]
+fn params_without_effect_are_told_once() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("lamps.ron"), LAMPS).unwrap();
+    let told = |rest: &str| {
+        let line = format!("{rest} --scene lamps.ron --size 16x16 --set fit=eye");
+        let output = skiagraph(folder.path(), &line);
+        let log = String::from_utf8_lossy(&output.stderr).into_owned();
+        log.matches("fit=eye has no effect on nsm under a spot light")
+            .count()
+    };
+    let compare = "compare nsm rt --frames 1 --warmup 0 --images none --out out";
+    assert_eq!(told(&format!("{compare} --light all")), 1);
+    assert_eq!(told(&format!("{compare} --light moon")), 0);
+    assert_eq!(told("run nsm --light lamp"), 1);
+}
+
 /// The park's first view under a wide light.
 fn park_with_width() -> String {
     r#"(format: 1, name: "soft", mesh: Generated("park"),

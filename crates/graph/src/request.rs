@@ -79,7 +79,7 @@ pub(crate) struct Request {
     pub grown: BTreeMap<String, u64>,
     pub limits: wgt::Limits,
     pub poison: Option<u8>,
-    params: BTreeMap<String, ParamValue>,
+    pub params: BTreeMap<String, ParamValue>,
     outputs: Option<Vec<String>>,
     captures: Vec<Capture>,
     features: wgt::Features,

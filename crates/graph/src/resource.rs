@@ -45,7 +45,7 @@ pub enum Origin {
 }
 
 /// What a resource is.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ResourceKind {
     /// A texture.
     Texture(Texture),

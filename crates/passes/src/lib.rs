@@ -32,6 +32,7 @@
 
 pub mod atlas;
 pub mod error;
+mod lights;
 pub mod presets;
 pub mod provider;
 mod ray_query;

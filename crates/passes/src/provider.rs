@@ -3,11 +3,11 @@
 use crate::{
     atlas::Atlas,
     error::Error,
-    ray_query,
-    uniforms::{CameraUniform, LIGHT_KINDS, LightAreaUniform, LightUniform},
+    lights, ray_query,
+    uniforms::{CameraUniform, LightAreaUniform, LightUniform},
 };
 use skiagraph_gpu::{Provider, ProviderError};
-use skiagraph_graph::{Describe, Provided, ProvidedBinding, ProvidedKind};
+use skiagraph_graph::{Describe, Provided, ProvidedBinding};
 use skiagraph_scene::{
     Adjacency, Bvh, BvhNode, LightKind, LightSpace, LightSpaceNode, Scene, View,
     packed_masks::mask_words,
@@ -87,6 +87,7 @@ const OF_LIGHT: [&str; 4] = [LIGHT, LIGHT_AREA, LIGHT_SPACE_NODES, LIGHT_SPACE_P
 /// | `camera` | [`CameraUniform`] |
 /// | `light` | [`LightUniform`] |
 /// | `light_area` | [`LightAreaUniform`] |
+/// | `lights`, `light_areas` | the same of all lights, arrays; `lights[2]` alone is a uniform |
 ///
 /// What was built stays and is shared by all graphs that are executed with the same provider, which
 /// therefore belongs to the device that it was first used with;
@@ -101,7 +102,11 @@ pub struct SceneProvider {
     camera_version: u64,
     camera_uploaded: u64,
     light: LightKind,
-    /// How often the light was changed.
+    /// All lights of the scene, or the view's own.
+    lights: Vec<LightKind>,
+    /// By their names, of `lights` and what is in it.
+    light_buffers: BTreeMap<String, wgpu::Buffer>,
+    /// How often a light was changed.
     light_version: u64,
     /// Words of [`MASKS`], made at once: plans ask how many there are.
     masks: Vec<u32>,
@@ -116,6 +121,8 @@ impl SceneProvider {
     pub fn new(scene: Arc<Scene>) -> Self {
         Self {
             light: scene.light(),
+            lights: lights::of(&scene),
+            light_buffers: BTreeMap::new(),
             light_version: 0,
             masks: mask_words(&scene.mesh),
             scene,
@@ -138,12 +145,34 @@ impl SceneProvider {
     pub fn set_view(&mut self, view: &View, viewport: [u32; 2]) {
         self.camera = CameraUniform::from(&view.camera(viewport));
         self.camera_version += 1;
-        self.set_light(self.scene.light_of(view));
+        let light = self.scene.light_of(view);
+        let mut lights = lights::of(&self.scene);
+        // A view may be under one of the scene's lights, or have one that is nobody else's.
+        if !lights.contains(&light) {
+            lights = vec![light];
+        }
+        if lights != self.lights {
+            self.lights = lights;
+            self.light_version += 1;
+            self.light_buffers.clear();
+        }
+        self.set_light(light);
     }
 
     /// The light.
     pub fn light(&self) -> LightKind {
         self.light
+    }
+
+    /// Which of `lights` the light is; the first, if it is none of them.
+    pub fn light_number(&self) -> usize {
+        let number = self.lights.iter().position(|light| *light == self.light);
+        number.unwrap_or_default()
+    }
+
+    /// All lights of the scene, or the view's own.
+    pub fn lights(&self) -> &[LightKind] {
+        &self.lights
     }
 
     /// Another light. A plan depends on the light's kind: what was planned under a light of another
@@ -205,11 +234,7 @@ impl SceneProvider {
             true => usage | wgpu::BufferUsages::BLAS_INPUT,
             false => usage,
         };
-        let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some(name),
-            contents: content,
-            usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
-        });
+        let buffer = buffer_of(name, content, usage, device);
         self.buffers.insert(name, buffer);
         Ok(())
     }
@@ -245,16 +270,6 @@ impl SceneProvider {
 
     fn light_uniform(&self) -> LightUniform {
         LightUniform::new(self.light, &self.scene.mesh)
-    }
-
-    fn light_kind(&self) -> ProvidedKind {
-        let number = LIGHT_KINDS
-            .iter()
-            .position(|word| *word == self.light.word());
-        ProvidedKind {
-            words: &LIGHT_KINDS,
-            number: number.unwrap_or_default() as u32,
-        }
     }
 
     fn upload_light_space(&mut self, device: &wgpu::Device) -> Result<(), Error> {
@@ -322,6 +337,19 @@ impl SceneProvider {
     }
 }
 
+fn buffer_of(
+    name: &str,
+    content: &[u8],
+    usage: wgpu::BufferUsages,
+    device: &wgpu::Device,
+) -> wgpu::Buffer {
+    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some(name),
+        contents: content,
+        usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+    })
+}
+
 /// The most bytes that a storage buffer can have and be bound whole.
 fn binding_limit(device: &wgpu::Device) -> u64 {
     let limits = device.limits();
@@ -356,7 +384,8 @@ fn light_space_words(node: &LightSpaceNode) -> [u32; 8] {
 
 impl Describe for SceneProvider {
     fn names(&self) -> Vec<String> {
-        NAMES.map(str::to_owned).to_vec()
+        let names = NAMES.into_iter().map(str::to_owned);
+        names.chain(lights::names(self.lights.len())).collect()
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {
@@ -395,11 +424,11 @@ impl Describe for SceneProvider {
             TEXELS => array(None, 4),
             CAMERA => uniform(size_of::<CameraUniform>()),
             LIGHT => uniform(size_of::<LightUniform>()).map(|light| Provided {
-                kind: Some(self.light_kind()),
+                kind: Some(lights::provided_kind(&self.light)),
                 ..light
             }),
             LIGHT_AREA => uniform(size_of::<LightAreaUniform>()),
-            _ => None,
+            name => lights::describe(name, &self.lights),
         }
     }
 }
@@ -409,6 +438,7 @@ impl Provider for SceneProvider {
         match name {
             CAMERA => self.camera_version,
             _ if OF_LIGHT.contains(&name) => self.light_version,
+            _ if lights::describe(name, &self.lights).is_some() => self.light_version,
             _ => 0,
         }
     }
@@ -420,6 +450,14 @@ impl Provider for SceneProvider {
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
         let why = |error: Error| ProviderError(error.to_string());
+        if let Some(content) = lights::content(name, &self.lights, &self.scene.mesh) {
+            let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::STORAGE;
+            let make = || buffer_of(name, &content, usage, device);
+            let buffer = self.light_buffers.entry(name.to_owned());
+            let buffer = buffer.or_insert_with(make).clone();
+            self.note(lights::list_of(name));
+            return Ok(buffer);
+        }
         let known = NAMES.into_iter().find(|&known| known == name);
         let name = known.ok_or_else(|| why(unknown(name)))?;
         let buffer = self.buffer(name, device).map_err(why)?;

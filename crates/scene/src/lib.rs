@@ -37,6 +37,7 @@ pub mod report;
 mod scene;
 #[cfg(feature = "files")]
 pub mod scene_file;
+pub mod texels;
 pub mod texture;
 #[cfg(feature = "files")]
 mod texture_file;

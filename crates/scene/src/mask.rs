@@ -52,7 +52,7 @@ impl Mask {
     /// Of a texture: opaque where `opacity` of a texel is `cutoff` at least.
     #[cfg(feature = "files")]
     pub(crate) fn of_texels(
-        texels: &crate::texture::Texels,
+        texels: &crate::texels::Texels,
         wrap: [Wrap; 2],
         opacity: impl Fn([u8; 4]) -> f32,
         cutoff: f32,

@@ -1,5 +1,6 @@
 //! Colour textures, decoded when somebody first looks at their texels.
 
+use crate::texels::Texels;
 #[cfg(feature = "files")]
 use crate::texture_file::{decode, read};
 use std::sync::{Arc, OnceLock};
@@ -64,32 +65,6 @@ impl Source {
             #[cfg(feature = "files")]
             Self::Bytes(bytes) => SourceKey::Memory(Arc::as_ptr(bytes).addr()),
         }
-    }
-}
-
-/// Decoded texels.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Texels {
-    /// Width and height.
-    pub size: [u32; 2],
-    /// Red, green, blue, alpha, row by row from the top left; the colours are sRGB.
-    pub rgba: Vec<[u8; 4]>,
-    /// Whether alpha means anything.
-    pub has_alpha: bool,
-}
-
-impl Texels {
-    /// These, if there is one for each place.
-    fn checked(self: &Arc<Self>) -> Result<Arc<Self>, String> {
-        let [width, height] = self.size;
-        let count = u64::from(width) * u64::from(height);
-        if count == 0 || count != self.rgba.len() as u64 {
-            let given = self.rgba.len();
-            return Err(format!(
-                "{width} x {height} texels, of which {given} are given"
-            ));
-        }
-        Ok(Arc::clone(self))
     }
 }
 

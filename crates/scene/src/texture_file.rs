@@ -1,6 +1,6 @@
 //! Textures of files.
 
-use crate::{limit::Limit, texture::Texels};
+use crate::{limit::Limit, texels::Texels};
 use image::{ImageFormat, ImageReader, Limits};
 use std::{io::Cursor, path::Path};
 

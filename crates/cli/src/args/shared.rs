@@ -44,8 +44,9 @@ pub struct SceneArgs {
     /// Direction in which the eye looks, for an .obj.
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     pub look: Option<DVec3>,
-    /// A light of the scene, or `all`: each view under each. Without it: the scene's first light.
-    /// For an .obj, the direction in which the light travels.
+    /// A light of the scene, or `all`: each view under each. Without it: the scene's first light,
+    /// or all of them where `compare` has a graph with a layer for each. For an .obj, the direction
+    /// in which the light travels.
     #[arg(long, value_name = "NAME|X,Y,Z", value_parser = values::light,
           allow_hyphen_values = true)]
     pub light: Option<LightArgument>,

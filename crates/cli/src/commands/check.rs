@@ -5,6 +5,7 @@ use crate::args::shared::GpuArgs;
 use crate::error::CliError;
 use crate::files::json::to_text;
 use crate::graphs::faults::{GraphFaults, warn};
+use crate::graphs::idle_params;
 use crate::graphs::light_kinds;
 use crate::graphs::planning::{self, Capabilities};
 use crate::graphs::preset;
@@ -81,7 +82,8 @@ fn text(found: &[Found]) -> Result<(), CliError> {
                 let passes = plan.passes().len();
                 let noun = if passes == 1 { "pass" } else { "passes" };
                 let refused = refused_lights(graph, plan);
-                fine += &format!("{argument}: fine, {passes} {noun}{refused}\n");
+                let idle = idle_params::under_other_lights(graph);
+                fine += &format!("{argument}: fine, {passes} {noun}{refused}{idle}\n");
             }
             Err(Fault::Graph(diagnostics)) => faults.add(argument, diagnostics),
             Err(Fault::Missing(message)) => missing.push(message.as_str()),

@@ -1,17 +1,18 @@
 //! `skiagraph compare`: every method on every view, viewport and map size, speed beside error.
 
 use crate::args::commands::{CompareArgs, Format, Images};
-use crate::args::shared::GpuArgs;
-use crate::args::values::{Size, unique};
+use crate::args::shared::{GpuArgs, SceneArgs};
+use crate::args::values::{LightArgument, Size, unique};
 use crate::error::CliError;
 use crate::files::json;
 use crate::files::write::check_folder;
+use crate::graphs::idle_params::IdleParams;
 use crate::graphs::method::{self, Method};
 use crate::graphs::planning::Capabilities;
 use crate::graphs::{contract, preset};
 use crate::measuring::comparison::{Comparison, ComparisonSetup};
 use crate::measuring::reference::PrimaryVisibility;
-use crate::measuring::scene_selection::SceneSelection;
+use crate::measuring::scene_selection::{SceneSelection, under_lights};
 use crate::measuring::subject::Subject;
 use crate::measuring::{date, device};
 use crate::pictures::run_pictures::{check_stems, reference_stem, stem};
@@ -51,21 +52,26 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         .map(|method| method.settled(features))
         .collect();
     let SceneSelection { scene, views } = SceneSelection::load(&args.scene)?;
-    let subjects = subjects(args, &scene, views)?;
     let viewports: Vec<[u32; 2]> = unique(&args.size).iter().map(|Size(size)| *size).collect();
+    let scene = Arc::new(scene);
+    let mut provider = SceneProvider::new(scene.clone());
+    let device = Capabilities::of(&gpu);
+    let is_layered = |method: &Method| contract::is_layered(method, &device, &provider);
+    let lights = match methods.iter().any(is_layered) {
+        true => every_light(&args.scene),
+        false => args.scene.clone(),
+    };
+    let subjects = subjects(args, &scene, views, &lights)?;
     if args.images == Images::All {
         check_pictures(&methods, &subjects, &viewports)?;
     }
-    let scene = Arc::new(scene);
-    let mut provider = SceneProvider::new(scene.clone());
     // Everything is planned before anything runs: nobody should wait for an hour to read that the
     // last file has a mistake. What a provider describes is the same for every view under a light
     // of one kind.
     for &viewport in &viewports {
         primary.plan(&gpu, viewport, &provider)?;
     }
-    let device = Capabilities::of(&gpu);
-    let mut kinds = Vec::new();
+    let (mut kinds, mut idle) = (Vec::new(), IdleParams::default());
     for subject in &subjects {
         let light = subject.light(&scene);
         let kind = light.word();
@@ -73,6 +79,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             kinds.push(kind);
             provider.set_light(light);
             contract::check_plans(&methods, &viewports, &provider, Some(&device))?;
+            idle.note(&methods, &device, &provider);
         }
     }
     check_folder(&args.out)?;
@@ -109,14 +116,32 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     finish(args, comparison, outcome)
 }
 
-/// The views, or the camera paths that are asked for.
-fn subjects(args: &CompareArgs, scene: &Scene, views: Vec<View>) -> Result<Vec<Subject>, CliError> {
+/// A method that answers for every light is judged under every light, unless one is named.
+fn every_light(args: &SceneArgs) -> SceneArgs {
+    let all = || LightArgument::Name("all".into());
+    SceneArgs {
+        light: args.light.clone().or_else(|| Some(all())),
+        ..args.clone()
+    }
+}
+
+/// The views, or the camera paths that are asked for, under the lights that are.
+fn subjects(
+    args: &CompareArgs,
+    scene: &Scene,
+    views: Vec<View>,
+    lights: &SceneArgs,
+) -> Result<Vec<Subject>, CliError> {
     let Some(name) = &args.path else {
+        let views = match args.scene.light == lights.light {
+            true => views,
+            false => under_lights(scene, views, lights)?,
+        };
         return Ok(views.into_iter().map(Subject::Still).collect());
     };
     let paths = SceneLibrary::from_environment().paths(&args.scene.scene);
     let paths = paths.map_err(|error| CliError::Input(error.to_string()))?;
-    Subject::paths(scene, paths, name, &args.scene)
+    Subject::paths(scene, paths, name, lights)
 }
 
 /// Refuses runs that would overwrite each other's pictures, before anything runs.

@@ -5,6 +5,7 @@ use crate::args::shared::GpuArgs;
 use crate::args::values::Save;
 use crate::error::CliError;
 use crate::files::write::check_writable;
+use crate::graphs::idle_params::IdleParams;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::{method, preset};
 use crate::measuring::scene_selection::SceneSelection;
@@ -37,12 +38,14 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let SceneSelection { scene, views } = SceneSelection::load(&args.scene)?;
     let scene = Arc::new(scene);
     let mut provider = SceneProvider::new(scene.clone());
+    let mut idle = IdleParams::default();
     for view in &views {
         provider.set_view(view, method.size.0);
         let mut request = Capabilities::of(&gpu).request(method.size.0, &provider);
         request.params = params.clone();
         request.captures = captures(&preset.graph.outputs(), saves);
         let plan = preset.plan(&request)?;
+        idle.note_of(&preset.name, &plan, provider.light());
         check_encodings(&plan, saves)?;
         let readings: Vec<Decoding> = saves
             .iter()

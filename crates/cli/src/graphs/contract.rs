@@ -7,8 +7,9 @@ use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::preset::{self, Preset, RAY_COUNT, STATUS, VISIBILITY};
 use crate::wording::size;
-use skiagraph_gpu::{Content, Provider};
+use skiagraph_gpu::Content;
 use skiagraph_graph::{Code, Plan, Sources};
+use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{
     Class, Graded, Reference, RightAnswer, Statistics, image::Shown, statistics::status,
 };
@@ -45,9 +46,10 @@ fn none_or_error(errors: Vec<String>) -> Result<(), CliError> {
 pub fn check_plans(
     methods: &[Method],
     viewports: &[[u32; 2]],
-    provider: &dyn Provider,
+    provider: &SceneProvider,
     device: Option<&Capabilities>,
 ) -> Result<(), CliError> {
+    let lights = provider.lights().len();
     let mut faults = GraphFaults::default();
     let mut mismatches = BTreeSet::new();
     // Of methods that this adapter cannot run; and whether it can run one.
@@ -56,7 +58,7 @@ pub fn check_plans(
         for method in methods {
             match method.plan(viewport, Capabilities::greatest(), provider) {
                 Ok(plan) => {
-                    mismatches.extend(mismatch(method.preset, &plan, viewport));
+                    mismatches.extend(mismatch(method.preset, &plan, viewport, lights));
                     if let Some(device) = device {
                         match method.plan(viewport, device.clone(), provider) {
                             Ok(_) => can_run_one = true,
@@ -76,6 +78,15 @@ pub fn check_plans(
         refusals.none_or_error()?;
     }
     none_or_error(mismatches.into_iter().collect())
+}
+
+/// Whether a method answers for every light at once, in a layer for each.
+pub fn is_layered(method: &Method, device: &Capabilities, provider: &SceneProvider) -> bool {
+    let plan = method.plan(method.viewport, device.clone(), provider);
+    plan.is_ok_and(|plan| {
+        let mut outputs = plan.outputs().into_iter();
+        outputs.any(|output| output.name == VISIBILITY && output.layers > 1)
+    })
 }
 
 /// What the graph lacks as a shadow preset.
@@ -103,7 +114,7 @@ const INTEGERS: &str = "R8Uint, R16Uint or R32Uint";
 const FLOATS: &str = "R8Unorm, R16Unorm, R16Float or R32Float";
 
 /// What is wrong with the outputs' sizes and formats on this viewport.
-fn mismatch(preset: &Preset, plan: &Plan, viewport: [u32; 2]) -> Option<String> {
+fn mismatch(preset: &Preset, plan: &Plan, viewport: [u32; 2], lights: usize) -> Option<String> {
     use wgpu::TextureFormat as F;
     plan.outputs().into_iter().find_map(|output| {
         let fits = match (output.name.as_str(), output.format) {
@@ -115,14 +126,19 @@ fn mismatch(preset: &Preset, plan: &Plan, viewport: [u32; 2]) -> Option<String> 
         let kind = output
             .format
             .map_or("a buffer".into(), |format| format!("{format:?}"));
-        (!fits || output.size != viewport).then(|| {
+        let fits_lights = output.layers == 1 || output.layers as usize == lights;
+        (!fits || !fits_lights || output.size != viewport).then(|| {
             let floats = match output.name.as_str() {
                 VISIBILITY => format!(" (0 or 1), {FLOATS} (0 to 1)"),
                 _ => String::new(),
             };
+            let layers = match output.layers {
+                1 => String::new(),
+                layers => format!(" and {layers} layers"),
+            };
             format!(
-                "`{}`: the output `{}` is {kind} of {}; expected {INTEGERS}{floats} of the \
-                 viewport's {}",
+                "`{}`: the output `{}` is {kind} of {}{layers}; expected {INTEGERS}{floats} of \
+                 the viewport's {}, in one layer or one for each of {lights} lights",
                 preset.name,
                 output.name,
                 size(output.size),
@@ -145,6 +161,26 @@ pub struct Outputs {
 }
 
 impl Outputs {
+    /// Those of one light, of outputs that have a layer for each.
+    ///
+    /// # Errors
+    /// Those of [`decode`](Self::decode).
+    pub fn of_light(
+        contents: BTreeMap<String, Content>,
+        light: usize,
+        reference: &Reference,
+    ) -> Result<Self, String> {
+        let of = |(name, content): (String, Content)| {
+            let mut layers = content.split();
+            let content = match layers.len() {
+                0 | 1 => content,
+                count => layers.swap_remove(light.min(count - 1)),
+            };
+            (name, content)
+        };
+        Self::decode(&contents.into_iter().map(of).collect(), reference)
+    }
+
     /// Decodes what was read. Without a status the reference says what faces the light, and the
     /// method is certain of it.
     ///

@@ -3,6 +3,7 @@
 
 pub mod contract;
 pub mod faults;
+pub mod idle_params;
 pub mod light_kinds;
 pub mod method;
 pub mod planning;

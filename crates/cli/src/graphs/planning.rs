@@ -95,7 +95,7 @@ fn check_under(
 }
 
 /// A light of each kind besides directional ones.
-fn positional() -> [LightKind; 2] {
+pub fn positional() -> [LightKind; 2] {
     let position = DVec3::Z;
     let spot = SpotLight {
         position,

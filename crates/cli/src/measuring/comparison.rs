@@ -173,6 +173,7 @@ impl<'a> Comparison<'a> {
             gpu: self.setup.gpu,
             timestamps: self.results.adapter.gpu_unavailable.is_none(),
             view: subject.name(),
+            light: self.provider.light_number(),
             fingerprint: subject.fingerprint(self.setup.fingerprint),
             judge,
             own: frames.own_counts(),

@@ -246,7 +246,8 @@ impl HardCaseContext<'_> {
         let names = preset.judged();
         let contents = frame::render(self.gpu, &preset.name, plan, provider, &names)?;
         let reference = &right.reference;
-        let (outputs, judgement) = judged(preset, Outputs::decode(&contents, reference), right)?;
+        let outputs = Outputs::of_light(contents, provider.light_number(), reference);
+        let (outputs, judgement) = judged(preset, outputs, right)?;
         let broken = |error: Error| CliError::Contract(error.to_string());
         let (visibility, status) = (strict(&outputs, right), &outputs.status);
         let whole = Statistics::judged(&visibility, status, reference).map_err(broken)?;

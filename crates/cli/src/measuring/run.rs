@@ -8,7 +8,10 @@ use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::reference::Judge;
 use crate::measuring::timing::{self, FrameMode, Times};
-use crate::measuring::{date, frame};
+use crate::measuring::{
+    date,
+    frame::{self, Contents},
+};
 use crate::pictures::run_pictures::{conditions, save_pictures, stem};
 use crate::records::results::{Answer, AreaReference, Cached, Measured, Run};
 use crate::terminal::progress::Step;
@@ -26,6 +29,8 @@ pub struct MeasureContext<'a> {
     pub timestamps: bool,
     /// Name of the view.
     pub view: &'a str,
+    /// Which of the view's lights it is under.
+    pub light: usize,
     /// Of mesh, light and view.
     pub fingerprint: Fingerprint,
     /// The right answer, and where it is from; of a path's first frame.
@@ -163,10 +168,15 @@ impl MeasureContext<'_> {
         Ok(Some(Executed {
             times,
             cached,
-            outputs: Outputs::decode(&contents, &self.judge.right.reference),
+            outputs: self.decode(contents, self.judge),
             memory,
             scene_bytes,
         }))
+    }
+
+    /// What was read, of the light that is judged.
+    pub fn decode(&self, contents: Contents, judge: &Judge) -> Result<Outputs, String> {
+        Outputs::of_light(contents, self.light, &judge.right.reference)
     }
 
     /// Bytes of what the scene gives to the plan.

@@ -217,7 +217,7 @@ impl MeasureContext<'_> {
     ) -> Result<(), CliError> {
         let judge = &path.judges[index];
         let contents = frame::contents(report.readbacks);
-        let outputs = Outputs::decode(&contents, &judge.right.reference);
+        let outputs = self.decode(contents, judge);
         let (outputs, judgement) = judged(method.preset, outputs, &judge.right)?;
         let counts = judgement.counts;
         if counts.wrong.certain > 0 && judgement.graded.is_none() {

@@ -11,7 +11,7 @@ use crate::{
     language::{
         name::wgsl_identifier,
         parser,
-        syntax::{Reference, Segment, Selection},
+        syntax::{Expr, Reference, Segment, Selection},
     },
     provided_kind::ProvidedKind,
     provider::{Provided, ProvidedBinding},
@@ -234,10 +234,47 @@ impl<'a> World<'a> {
             None => (None, &[][..]),
         };
         let is_plain = others.iter().all(|segment| segment.selection.is_none());
+        if let (Some(Selection::One(number)), true) = (last, is_plain)
+            && let Some(of_list) = self.of_list(&path, number, reference, place, reports)
+        {
+            return of_list.map(|target| (target, None));
+        }
         match self.find_scene(&path, place.frame).filter(|_| is_plain) {
             Some(target) => Ok((target?, last)),
             None => Err(self.unknown(reference, place, reports)),
         }
+    }
+
+    /// One of a list whose members have names of their own, such as `lights[1]`: it may be of
+    /// another kind than the others. `None` if it is no such list, or an own material stands in.
+    fn of_list(
+        &mut self,
+        list: &str,
+        number: &Expr,
+        reference: &Reference,
+        place: Place,
+        reports: &mut Reports,
+    ) -> Option<Result<Target, Reported>> {
+        let instance = self.frames.instance_of(place.frame);
+        if self.frames.scene(instance, list).is_some() {
+            return None;
+        }
+        let provider = self.request.provider;
+        provider.describe(&format!("{list}.0"))?;
+        let count = provider.describe(list)?.items?;
+        let number = match number.count(&mut self.at(place, None, reports)) {
+            Ok(number) => number,
+            Err(reported) => return Some(Err(reported)),
+        };
+        let found = self.find_scene(&format!("{list}.{number}"), place.frame);
+        Some(found.unwrap_or_else(|| {
+            Err(reports.report(BorderError::Range {
+                text: reference.text().to_owned(),
+                span: reference.span.clone(),
+                what: format!("there are {count} of them, counted from 0; this is [{number}]"),
+                declared: None,
+            }))
+        }))
     }
 
     /// What a name of the scene stands for in a frame.

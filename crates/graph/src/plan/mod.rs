@@ -1,6 +1,7 @@
 //! Phase 6: everything that a device needs to know, in one place.
 
 pub(crate) mod check;
+mod idle;
 pub(crate) mod items;
 pub(crate) mod make;
 pub(crate) mod memory;

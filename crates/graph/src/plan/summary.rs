@@ -30,6 +30,8 @@ pub struct OutputSummary {
     pub format: Option<wgt::TextureFormat>,
     /// Texels of a texture; `[bytes, 1]` of a buffer.
     pub size: [u32; 2],
+    /// Layers of a texture; 1 of a buffer.
+    pub layers: u32,
 }
 
 impl Plan {
@@ -124,6 +126,10 @@ impl Plan {
                 name: name.clone(),
                 format,
                 size,
+                layers: match target.part.layers.len() {
+                    layers if format.is_some() => layers as u32,
+                    _ => 1,
+                },
             }
         };
         self.readable.iter().map(summary).collect()

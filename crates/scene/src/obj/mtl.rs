@@ -10,7 +10,8 @@ use crate::{
     mask::Mask,
     material::Material,
     pattern::Pattern,
-    texture::{Source, Texels, Texture, Wrap},
+    texels::Texels,
+    texture::{Source, Texture, Wrap},
 };
 use std::{
     collections::{BTreeMap, HashMap},

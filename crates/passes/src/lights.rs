@@ -1,0 +1,88 @@
+//! All lights of a scene, each with a name of its own: `lights[2]` in documents.
+
+use crate::uniforms::{LIGHT_KINDS, LightAreaUniform, LightUniform};
+use skiagraph_graph::{Provided, ProvidedBinding, ProvidedKind};
+use skiagraph_scene::{LightKind, Mesh, Scene};
+
+/// Every light as `shared/light.wgsl` has it.
+pub(crate) const LIGHTS: &str = "lights";
+/// Every light's extent as `shared/light_area.wgsl` has it.
+pub(crate) const LIGHT_AREAS: &str = "light_areas";
+
+/// All lights of a scene; the default one of a scene that has none.
+pub(crate) fn of(scene: &Scene) -> Vec<LightKind> {
+    match &scene.lights[..] {
+        [] => vec![scene.light()],
+        lights => lights.iter().map(|light| light.kind).collect(),
+    }
+}
+
+/// The kind of a light, as plans and shaders know it.
+pub(crate) fn provided_kind(light: &LightKind) -> ProvidedKind {
+    let number = LIGHT_KINDS.iter().position(|word| *word == light.word());
+    ProvidedKind {
+        words: &LIGHT_KINDS,
+        number: number.unwrap_or_default() as u32,
+    }
+}
+
+/// Names of the lists, and of what is in them.
+pub(crate) fn names(count: usize) -> impl Iterator<Item = String> {
+    [LIGHTS, LIGHT_AREAS].into_iter().flat_map(move |list| {
+        let items = (0..count).map(move |number| format!("{list}.{number}"));
+        std::iter::once(list.to_owned()).chain(items)
+    })
+}
+
+/// What stands behind one of these names.
+pub(crate) fn describe(name: &str, lights: &[LightKind]) -> Option<Provided> {
+    let (list, number) = parse(name)?;
+    let bytes = match list {
+        LIGHTS => size_of::<LightUniform>(),
+        _ => size_of::<LightAreaUniform>(),
+    };
+    let kind = match number {
+        Some(number) => Some(provided_kind(lights.get(number)?)).filter(|_| list == LIGHTS),
+        None => None,
+    };
+    Some(Provided {
+        items: Some(number.map_or(lights.len() as u64, |_| 1)),
+        stride: bytes as u64,
+        binding: match number {
+            Some(_) => ProvidedBinding::Uniform,
+            None => ProvidedBinding::Storage,
+        },
+        kind,
+    })
+}
+
+/// The bytes of what stands behind one of these names.
+pub(crate) fn content(name: &str, lights: &[LightKind], mesh: &Mesh) -> Option<Vec<u8>> {
+    let (list, number) = parse(name)?;
+    let chosen = match number {
+        Some(number) => lights.get(number..=number)?,
+        None => lights,
+    };
+    let bytes = |light: &LightKind| match list {
+        LIGHTS => bytemuck::bytes_of(&LightUniform::new(*light, mesh)).to_vec(),
+        _ => bytemuck::bytes_of(&LightAreaUniform::from(light)).to_vec(),
+    };
+    Some(chosen.iter().flat_map(bytes).collect())
+}
+
+/// The list that one of these names is of.
+pub(crate) fn list_of(name: &str) -> &'static str {
+    match parse(name) {
+        Some((LIGHT_AREAS, _)) => LIGHT_AREAS,
+        _ => LIGHTS,
+    }
+}
+
+/// The list of a name, and which of it.
+fn parse(name: &str) -> Option<(&str, Option<usize>)> {
+    let (list, number) = match name.split_once('.') {
+        Some((list, number)) => (list, Some(number.parse().ok()?)),
+        None => (name, None),
+    };
+    matches!(list, LIGHTS | LIGHT_AREAS).then_some((list, number))
+}

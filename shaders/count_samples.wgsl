@@ -24,8 +24,5 @@ fn main() {
     let count = asked_count * turn;
     sample_count = count;
     ray_count += count;
-    let needed = count / GROUP_SIZE + select(0u, 1u, count % GROUP_SIZE != 0u);
-    sample_groups[0] = min(needed, GROUPS_PER_ROW);
-    sample_groups[1] = needed / GROUPS_PER_ROW + select(0u, 1u, needed % GROUPS_PER_ROW != 0u);
-    sample_groups[2] = 1u;
+    sample_groups = groups_for(count);
 }

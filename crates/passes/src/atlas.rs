@@ -1,8 +1,8 @@
 //! Materials and the texels of their base colours as shaders read them.
 
 use crate::error::Error;
-use skiagraph_scene::{Surfaces, texture::Source};
-use std::{collections::HashMap, sync::Arc};
+use skiagraph_scene::{Surfaces, texture::SourceKey};
+use std::collections::HashMap;
 
 /// WGSL's record of a material in `scene.materials`.
 #[repr(C)]
@@ -24,13 +24,6 @@ pub(crate) struct Atlas {
     pub texels: Vec<u32>,
 }
 
-/// What tells textures apart.
-#[derive(PartialEq, Eq, Hash)]
-enum Key {
-    File(std::path::PathBuf),
-    Bytes(*const u8),
-}
-
 impl Atlas {
     /// Reads every texture once.
     ///
@@ -41,7 +34,7 @@ impl Atlas {
             records: Vec::new(),
             texels: Vec::new(),
         };
-        let mut places: HashMap<Key, u32> = HashMap::new();
+        let mut places: HashMap<SourceKey, u32> = HashMap::new();
         for material in &surfaces.materials {
             let mut record = MaterialRecord {
                 base_color: material.base_color,
@@ -50,10 +43,7 @@ impl Atlas {
             if let Some(texture) = &material.texture {
                 let read = texture.texels();
                 let texels = read.map_err(|why| Error::Texture(why.to_owned()))?;
-                let key = match &texture.source {
-                    Source::File(path) => Key::File(path.clone()),
-                    Source::Bytes(bytes) => Key::Bytes(Arc::as_ptr(bytes).cast()),
-                };
+                let key = texture.source.key();
                 record.first_texel = *places.entry(key).or_insert_with(|| {
                     let first = atlas.texels.len() as u32;
                     let words = texels.rgba.iter().copied().map(u32::from_le_bytes);

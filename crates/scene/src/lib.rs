@@ -1,52 +1,71 @@
 //! Scenes for Skiagraph: a triangle [`Mesh`], named [`View`]s, its [`Light`]s, and the
 //! [`Bvh`] over them.
 //!
+//! Meshes and scenes of files (`.obj`, `.gltf`, `.ron`) need the feature `files`.
+//!
 //! The crate knows no GPU. World space is right-handed, units are the scene's own; positions are
 //! `f32` (what a file holds and a GPU reads), cameras and lights are `f64` so that an exact
 //! reference starts from unrounded input.
 
 pub mod adjacency;
+#[cfg(feature = "files")]
 mod builder;
 pub mod bvh;
 pub mod camera;
 pub mod error;
 pub mod generate;
+#[cfg(feature = "files")]
 pub mod gltf;
+#[cfg(feature = "files")]
 pub mod library;
 pub mod light;
 pub mod light_kind;
+#[cfg(feature = "files")]
 mod limit;
 pub mod mask;
 pub mod material;
 pub mod mesh;
+#[cfg(feature = "files")]
 pub mod obj;
 pub mod packed_masks;
 pub mod parts;
 pub mod path;
+#[cfg(feature = "files")]
 pub mod pattern;
+#[cfg(feature = "files")]
 pub mod report;
 mod scene;
+#[cfg(feature = "files")]
 pub mod scene_file;
 pub mod texture;
+#[cfg(feature = "files")]
+mod texture_file;
 pub mod weld;
 
 pub use adjacency::{Adjacency, NO_NEIGHBOUR};
 pub use bvh::{Bvh, BvhNode, LightSpace, LightSpaceNode};
 pub use camera::{Camera, View};
 pub use error::SceneError;
+#[cfg(feature = "files")]
 pub use gltf::load_gltf;
+#[cfg(feature = "files")]
 pub use library::{ObjSetup, SceneLibrary, SceneListing, SceneRequest};
 pub use light::{DirectionalLight, LightFit};
 pub use light_kind::{LIGHT_GAP, Light, LightKind, PointLight, SpotLight, Towards};
+#[cfg(feature = "files")]
 pub use limit::Limit;
 pub use mask::Mask;
 pub use material::{Material, Surfaces};
 pub use mesh::{Group, Mesh};
+#[cfg(feature = "files")]
 pub use obj::{Concave, ObjMaterials, ObjOptions, QuadDiagonal, load_obj};
 pub use parts::Parts;
 pub use path::{CameraKey, CameraPath};
+#[cfg(feature = "files")]
 pub use pattern::Pattern;
+#[cfg(feature = "files")]
 pub use report::ImportReport;
 pub use scene::Scene;
+#[cfg(feature = "files")]
 pub use scene_file::{MeshSource, SceneFile};
 pub use texture::{Texture, Wrap};

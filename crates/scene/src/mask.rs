@@ -5,7 +5,7 @@
 //! by the mask's edge in texels and rounded down, at most to the last texel. The surface is there
 //! if that texel of mip 0 is opaque. Shaders compute in f32, the oracle in f64.
 
-use crate::texture::{Texels, Wrap};
+use crate::texture::Wrap;
 use glam::DVec2;
 
 /// A bit per texel.
@@ -50,8 +50,9 @@ impl Mask {
     }
 
     /// Of a texture: opaque where `opacity` of a texel is `cutoff` at least.
+    #[cfg(feature = "files")]
     pub(crate) fn of_texels(
-        texels: &Texels,
+        texels: &crate::texture::Texels,
         wrap: [Wrap; 2],
         opacity: impl Fn([u8; 4]) -> f32,
         cutoff: f32,

@@ -1,22 +1,8 @@
 //! Colour textures, decoded when somebody first looks at their texels.
 
-use crate::limit::Limit;
-use image::{ImageFormat, ImageReader, Limits};
-use std::{
-    io::Cursor,
-    path::{Path, PathBuf},
-    sync::{Arc, OnceLock},
-};
-
-/// Room for 8192² texels of three bytes, not compressed.
-const TEXTURE_FILE: Limit = Limit {
-    of: "a texture",
-    mib: 256,
-    way_out: "scale it down",
-};
-
-/// Longest edge of a texture, texels.
-const LONGEST_EDGE: u32 = 16384;
+#[cfg(feature = "files")]
+use crate::texture_file::{decode, read};
+use std::sync::{Arc, OnceLock};
 
 /// What a texture is beyond its edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,13 +31,40 @@ impl Wrap {
     }
 }
 
-/// Where the bytes of a texture are.
+/// Where the texels of a texture are.
 #[derive(Clone, Debug)]
 pub enum Source {
+    /// The host has them.
+    Texels(Arc<Texels>),
     /// A file.
-    File(PathBuf),
+    #[cfg(feature = "files")]
+    File(std::path::PathBuf),
     /// The content of a file, as a `.glb` holds it.
+    #[cfg(feature = "files")]
     Bytes(Arc<[u8]>),
+}
+
+/// Tells texels apart without a look at them: equal where two textures have the same source.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum SourceKey {
+    /// An address.
+    Memory(usize),
+    /// A file.
+    #[cfg(feature = "files")]
+    File(std::path::PathBuf),
+}
+
+impl Source {
+    /// Which source it is, as long as it lives.
+    pub fn key(&self) -> SourceKey {
+        match self {
+            Self::Texels(texels) => SourceKey::Memory(Arc::as_ptr(texels).addr()),
+            #[cfg(feature = "files")]
+            Self::File(path) => SourceKey::File(path.clone()),
+            #[cfg(feature = "files")]
+            Self::Bytes(bytes) => SourceKey::Memory(Arc::as_ptr(bytes).addr()),
+        }
+    }
 }
 
 /// Decoded texels.
@@ -61,8 +74,23 @@ pub struct Texels {
     pub size: [u32; 2],
     /// Red, green, blue, alpha, row by row from the top left; the colours are sRGB.
     pub rgba: Vec<[u8; 4]>,
-    /// Whether the file has an alpha channel.
+    /// Whether alpha means anything.
     pub has_alpha: bool,
+}
+
+impl Texels {
+    /// These, if there is one for each place.
+    fn checked(self: &Arc<Self>) -> Result<Arc<Self>, String> {
+        let [width, height] = self.size;
+        let count = u64::from(width) * u64::from(height);
+        if count == 0 || count != self.rgba.len() as u64 {
+            let given = self.rgba.len();
+            return Err(format!(
+                "{width} x {height} texels, of which {given} are given"
+            ));
+        }
+        Ok(Arc::clone(self))
+    }
 }
 
 /// A colour texture.
@@ -74,7 +102,7 @@ pub struct Texture {
     pub source: Source,
     /// What it is beyond its edges, for u and v.
     pub wrap: [Wrap; 2],
-    texels: Arc<OnceLock<Result<Texels, String>>>,
+    texels: Arc<OnceLock<Result<Arc<Texels>, String>>>,
 }
 
 impl Texture {
@@ -89,58 +117,45 @@ impl Texture {
         }
     }
 
-    /// Its texels, decoded when first asked for: PNG, JPEG or TGA.
+    /// Its texels; those of a PNG, JPEG or TGA are decoded when first asked for.
     ///
     /// # Errors
     /// Which texture cannot be read, and why.
     pub fn texels(&self) -> Result<&Texels, &str> {
         let decoded = self.texels.get_or_init(|| {
             let texels = match &self.source {
-                Source::File(path) => read(path),
-                Source::Bytes(bytes) => decode(bytes, None),
+                Source::Texels(texels) => texels.checked(),
+                #[cfg(feature = "files")]
+                Source::File(path) => read(path).map(Arc::new),
+                #[cfg(feature = "files")]
+                Source::Bytes(bytes) => decode(bytes, None).map(Arc::new),
             };
             texels.map_err(|why| format!("{}: {why}", self.name))
         });
-        decoded.as_ref().map_err(String::as_str)
+        decoded.as_deref().map_err(String::as_str)
     }
 }
 
-fn read(path: &Path) -> Result<Texels, String> {
-    let bytes = TEXTURE_FILE.read(path).map_err(|why| why.to_string())?;
-    let tga = path
-        .extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("tga"));
-    decode(&bytes, tga.then_some(ImageFormat::Tga))
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// `format`: of a file whose first bytes do not tell.
-fn decode(bytes: &[u8], format: Option<ImageFormat>) -> Result<Texels, String> {
-    let mut reader = ImageReader::new(Cursor::new(bytes));
-    match format {
-        Some(format) => reader.set_format(format),
-        None => {
-            reader = reader
-                .with_guessed_format()
-                .map_err(|why| why.to_string())?
-        }
+    #[test]
+    fn texels_of_a_host_are_shared_and_counted() {
+        let texels = |count| {
+            Arc::new(Texels {
+                size: [2, 3],
+                rgba: vec![[7; 4]; count],
+                has_alpha: false,
+            })
+        };
+        let texture =
+            |texels| Texture::new("brick".into(), Source::Texels(texels), [Wrap::Clamp; 2]);
+        let (whole, again) = (texture(texels(6)), texture(texels(6)));
+        assert_eq!(whole.texels().unwrap().rgba.len(), 6);
+        assert_eq!(whole.source.key(), whole.clone().source.key());
+        assert_ne!(whole.source.key(), again.source.key());
+        let refused = texture(texels(5)).texels().unwrap_err().to_owned();
+        assert_eq!(refused, "brick: 2 x 3 texels, of which 5 are given");
     }
-    let mut limits = Limits::default();
-    limits.max_image_width = Some(LONGEST_EDGE);
-    limits.max_image_height = Some(LONGEST_EDGE);
-    reader.limits(limits);
-    let decoded = reader
-        .decode()
-        .map_err(|why| format!("{why}; a PNG, JPEG or TGA can be read"))?;
-    let has_alpha = decoded.color().has_alpha();
-    let picture = decoded.into_rgba8();
-    let size = [picture.width(), picture.height()];
-    if size.contains(&0) {
-        return Err("it has no texels".to_owned());
-    }
-    let rgba = picture.pixels().map(|texel| texel.0).collect();
-    Ok(Texels {
-        size,
-        rgba,
-        has_alpha,
-    })
 }

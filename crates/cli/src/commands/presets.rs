@@ -2,10 +2,9 @@
 
 use crate::args::commands::{PresetsArgs, PresetsFormat};
 use crate::error::CliError;
-use crate::graphs::contract::{RAY_COUNT, VISIBILITY};
 use crate::graphs::method::Method;
 use crate::graphs::planning::{Capabilities, placeholder};
-use crate::graphs::preset::{self, Preset};
+use crate::graphs::preset::{self, Preset, RAY_COUNT, VISIBILITY};
 use crate::measuring::guarantee;
 use crate::terminal::console::print;
 use skiagraph_graph::{Graph, Param, ParamType};

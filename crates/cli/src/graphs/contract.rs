@@ -5,7 +5,7 @@ use crate::graphs::faults::GraphFaults;
 use crate::graphs::light_kinds;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
-use crate::graphs::preset::{self, Preset};
+use crate::graphs::preset::{self, Preset, RAY_COUNT, STATUS, VISIBILITY};
 use crate::wording::size;
 use skiagraph_gpu::Content;
 use skiagraph_graph::{Code, Plan, Sources};
@@ -17,14 +17,6 @@ use std::{
     borrow::Cow,
     collections::{BTreeMap, BTreeSet},
 };
-
-/// The output from 0 in shadow to 1 in light.
-pub const VISIBILITY: &str = "visibility";
-/// The optional output with 0 background, 1 facing away, 2 certain light, 3 certain shadow, 4
-/// uncertain.
-pub const STATUS: &str = "status";
-/// The optional output with the number of rays traced in the frame.
-pub const RAY_COUNT: &str = "ray_count";
 
 /// Loads graphs and refuses those that are no shadow methods.
 ///
@@ -169,15 +161,6 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// Names to read back.
-    pub fn names(preset: &Preset) -> Vec<&'static str> {
-        let outputs = preset.graph.outputs();
-        [VISIBILITY, STATUS, RAY_COUNT]
-            .into_iter()
-            .filter(|name| outputs.contains(name))
-            .collect()
-    }
-
     /// The same of one light, of outputs that have a layer for each.
     ///
     /// # Errors

@@ -74,7 +74,8 @@ impl<'a> Method<'a> {
         Self::on(self.preset, self.params.clone(), viewport, self.features)
     }
 
-    /// The plan on a viewport for such an adapter.
+    /// The plan on a viewport for such an adapter, of the outputs that are judged: what else the
+    /// graph shows would only cost time.
     ///
     /// # Errors
     /// Everything that is wrong with it.
@@ -86,6 +87,8 @@ impl<'a> Method<'a> {
     ) -> Result<Plan, Diagnostics> {
         let mut request = capabilities.request(viewport, provider);
         request.params = self.params.clone();
+        let judged = self.preset.judged().into_iter();
+        request.outputs = Some(judged.map(str::to_owned).collect());
         self.preset.graph.plan(&request)
     }
 

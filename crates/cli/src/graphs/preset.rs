@@ -10,6 +10,14 @@ use skiagraph_graph::{FolderSources, Graph, LayeredSources, Param, Plan, PlanReq
 use skiagraph_passes::{EmbeddedSources, registry};
 use std::path::Path;
 
+/// The output from 0 in shadow to 1 in light.
+pub const VISIBILITY: &str = "visibility";
+/// The optional output with 0 background, 1 facing away, 2 certain light, 3 certain shadow, 4
+/// uncertain.
+pub const STATUS: &str = "status";
+/// The optional output with the number of rays traced in the frame.
+pub const RAY_COUNT: &str = "ray_count";
+
 /// Where graphs and shaders are read from: the working directory, then what is built in.
 pub fn sources() -> LayeredSources {
     LayeredSources(vec![
@@ -50,6 +58,14 @@ pub struct Preset {
 }
 
 impl Preset {
+    /// Names of the outputs by which a shadow method is judged, as far as the graph has them.
+    pub fn judged(&self) -> Vec<&'static str> {
+        let outputs = self.graph.outputs();
+        let mut names = vec![VISIBILITY, STATUS, RAY_COUNT];
+        names.retain(|name| outputs.contains(name));
+        names
+    }
+
     /// The param that the graph declares under this name.
     pub fn param(&self, name: &str) -> Option<&Param> {
         self.graph

@@ -243,7 +243,7 @@ impl HardCaseContext<'_> {
         let preset = method.preset;
         let plan = method.plan(self.viewport, Capabilities::of(self.gpu), provider);
         let plan = plan.map_err(|faults| CliError::Input(reasons(&faults)))?;
-        let names = Outputs::names(preset);
+        let names = preset.judged();
         let contents = frame::render(self.gpu, &preset.name, plan, provider, &names)?;
         let reference = &right.reference;
         let outputs = Outputs::of_light(contents, provider.light_number(), reference);

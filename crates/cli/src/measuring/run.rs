@@ -164,7 +164,7 @@ impl MeasureContext<'_> {
             return Ok(None);
         };
         // Only now: a readback would be timed, too.
-        let contents = frame::read(self.gpu, &mut executor, &Outputs::names(method.preset))?;
+        let contents = frame::read(self.gpu, &mut executor, &method.preset.judged())?;
         Ok(Some(Executed {
             times,
             cached,

@@ -108,7 +108,7 @@ impl MeasureContext<'_> {
             if interrupt::raised() {
                 return Err(CliError::interrupted());
             }
-            let names = Outputs::names(method.preset);
+            let names = method.preset.judged();
             let (report, wall) = match self.frame(&mut executor, view, &names, provider) {
                 Ok(done) => done,
                 Err(error) => return refused(method, error),

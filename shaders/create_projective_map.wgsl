@@ -31,5 +31,12 @@ fn projected(corner: u32) -> Vertex {
 
 @fragment
 fn fragment(vertex: Vertex) -> @builtin(frag_depth) f32 {
-    return saturate(vertex.depth);
+    return map_depth(vertex.depth);
+}
+
+// What no shadow ray reaches is no caster, 1 as where there is none: a triangle that a lamp lies in
+// is seen edge-on, and may cover any texel.
+fn map_depth(depth: f32) -> f32 {
+    let is_reached = light_kind == LIGHT_DIRECTIONAL || depth > LIGHT_GAP;
+    return select(1.0, saturate(depth), is_reached);
 }

@@ -25,5 +25,5 @@ fn fragment_masked(vertex: MaskedVertex) -> @builtin(frag_depth) f32 {
     if !is_opaque(vertex.primitive, vertex.weights.x, vertex.weights.y) {
         discard;
     }
-    return saturate(vertex.depth);
+    return map_depth(vertex.depth);
 }

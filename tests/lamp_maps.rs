@@ -160,6 +160,17 @@ fn conservative_maps_are_exact_under_spot_lights() {
     assert!(uncertain * 4 < lit + shadow, "{uncertain}");
 }
 
+/// A lamp hangs from a ceiling, in the plane of whose triangles it lies.
+#[test]
+fn what_a_spot_light_hangs_from_casts_nothing() {
+    let case = skiagraph_cases::case("spot_on_a_surface").unwrap();
+    let scene = Arc::new(case.scene());
+    let mut bench = Bench::new(&scene, VIEWPORT);
+    let counts = bench.judge("nsm", &[size(1024)]);
+    let lit = counts.pixels.lit;
+    assert!(lit > 3000 && wrong(&counts) * 50 < lit, "{counts:?}");
+}
+
 /// Far away a spot light is a directional one.
 #[test]
 fn a_spot_light_far_away_is_parallel_light() {

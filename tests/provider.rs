@@ -303,7 +303,7 @@ fn lights_have_numbers() {
             .map_err(|error| error.to_string())
     };
     let planned = plan("1").unwrap();
-    assert_eq!(planned.provided(), ["light", "lights.1"]);
+    assert_eq!(planned.provided(), ["lights.1", "light"]);
     assert_eq!(planned.outputs()[0].layers, 2);
     let wrong = plan("2").unwrap_err();
     assert!(wrong.contains("there are 2 of them"), "{wrong}");

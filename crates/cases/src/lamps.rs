@@ -105,6 +105,33 @@ pub(crate) const CASES: &[HardCase] = &[
     )
     .with_answer(|p| among_at(p, LAMP, &YARD, 1e-3)),
     HardCase::closed(
+        "spot_inside_a_mesh",
+        "a spot light in the midst of a closed box, whose faces are before it and behind it",
+        || {
+            let light = spot(WITHIN, DVec3::new(0.2, 0.0, 0.3), 100.0);
+            Shape::default().cuboids(&YARD).cuboid(LID).lit_scene(
+                [2.7, 3.8, 3.5],
+                [0.2, 0.1, 0.2],
+                light,
+            )
+        },
+    )
+    .with_answer(|_| Some(false))
+    .showing(Shows::ShadowOnly),
+    HardCase::closed(
+        "spot_on_a_surface",
+        "a spot light in the face of the ceiling that it hangs from, across its own plane",
+        || {
+            let light = spot(LAMP, DVec3::new(0.8, 0.0, 0.1), 140.0);
+            Shape::default().cuboids(&YARD).cuboid(CEILING).lit_scene(
+                [2.9, 2.2, 3.5],
+                [0.2, 0.3, 0.2],
+                light,
+            )
+        },
+    )
+    .with_answer(|p| among_at(p, LAMP, &YARD, 1e-3)),
+    HardCase::closed(
         "seam_of_faces",
         "casters and receivers where the faces of a point light's cube meet, three at a corner",
         || {

@@ -12,6 +12,7 @@ mod memory;
 mod pipelines;
 mod provider;
 mod readback;
+mod signal;
 pub mod timing;
 
 pub use error::ExecuteError;

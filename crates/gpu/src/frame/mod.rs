@@ -3,12 +3,18 @@
 mod contents;
 mod encode;
 pub(crate) mod executor;
+mod fetch;
+mod flight;
 mod growth;
 mod host;
 mod pass;
 mod poison;
 mod replan;
+mod report;
+mod state;
+mod uniform;
 mod watch;
 
-pub use executor::{Executor, Frame, FrameReport};
+pub use executor::Executor;
 pub use replan::ReplanReport;
+pub use report::{Frame, FrameReport};

@@ -110,13 +110,17 @@ fn owner_of(name: &str, file: Option<&str>) -> Option<Owner> {
     }
     let name = name.trim_start_matches(['<', '&', '*', '[', '(']);
     let name = name.trim_start_matches("mut ").trim_start_matches("dyn ");
-    let (of, _) = name.split_once("::")?;
+    // A hash may stand behind the crate's name.
+    let of = name.split([':', '[', ' ']).next()?;
     match of {
         _ if ON_BEHALF.contains(&of) => None,
         _ if of.starts_with("skiagraph") => Some(Owner::Ours),
         _ => Some(Owner::Other),
     }
 }
+
+/// What was found out of return addresses.
+type Known = HashMap<*mut c_void, Option<(Owner, String)>>;
 
 /// Who asked for an allocation, and in which function.
 fn owner(
@@ -146,14 +150,14 @@ fn owner(
 
 /// The functions among those that asked for some allocations that are these crates'.
 fn ours(stacks: &[Stack]) -> Vec<String> {
-    let mut known = HashMap::new();
+    let mut known = Known::new();
     let owners = stacks.iter().map(|stack| owner(stack, &mut known));
     let ours = owners.filter(|(owner, _)| *owner == Owner::Ours);
     ours.map(|(_, function)| function).collect()
 }
 
-/// Some of everything that a frame may have: draws, dispatches, copies, clears, the uniform `frame`,
-/// a history, passes that are skipped, a buffer that grows, a provided buffer as it was before.
+/// Some of everything that a frame may have: draws, dispatches, copies, clears, the uniform
+/// `frame`, a history, passes that are skipped, a buffer that grows, a provided buffer as it was before.
 fn everything() -> Files {
     Files::graph(
         r#"

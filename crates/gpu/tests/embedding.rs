@@ -9,8 +9,12 @@ mod support;
 
 use given::{KIND, SAMPLED, STORAGE, buffer, content, sums, sums_request};
 use host::{GPU, encoder, executor, frame, numbers, planned, request};
-use skiagraph_gpu::{ExecuteError, Executor, Frame, Provider, ProviderError, device};
-use skiagraph_graph::{Describe, Graph, NoProvider, Plan, PlanRequest, Provided, ProvidedBinding};
+use skiagraph_gpu::{
+    ExecuteError, Executor, Frame, FrameReport, Prepared, Provider, ProviderError, device,
+};
+use skiagraph_graph::{
+    Describe, Graph, NoProvider, Plan, PlanRequest, Provided, ProvidedBinding, Registry,
+};
 use support::Files;
 
 /// The host's own pass reads the outputs in the encoder in which the graph made them.
@@ -335,4 +339,75 @@ fn plans_and_executors_can_go_to_other_threads() {
     let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut Number::new()).unwrap();
     let frames = std::thread::spawn(move || numbers(&mut executor, "copy"));
     assert_eq!(frames.join().expect("encoding does not panic"), [100]);
+}
+
+/// As a host's loop does it: at most so many frames ahead of the GPU, and reports as they come.
+#[test]
+fn a_host_that_does_not_wait() {
+    const AHEAD: usize = 3;
+    let mut provider = Number::new();
+    let plan = planned(&taker(), &request(&provider));
+    let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider).unwrap();
+    let mut seen = Vec::new();
+    let mut show = |report: FrameReport| seen.push(report.index);
+    let wanted = Frame {
+        timing: true,
+        read: &["copy"],
+        ..Frame::default()
+    };
+    for _ in 0..10 {
+        if executor.under_way() >= AHEAD {
+            show(executor.finish().unwrap()); // the only call that waits
+        }
+        let mut encoder = encoder();
+        executor.encode(&mut encoder, &wanted).unwrap();
+        GPU.queue.submit([encoder.finish()]);
+        while let Some(report) = executor.poll().unwrap() {
+            show(report);
+        }
+    }
+    while executor.under_way() > 0 {
+        show(executor.finish().unwrap());
+    }
+    assert_eq!(seen, (0..10).collect::<Vec<u32>>());
+}
+
+/// A graph that is edited while it is drawn: made ready on another thread, put in when it is, and
+/// the last good one stays where it has a mistake.
+#[test]
+fn a_graph_is_made_ready_on_another_thread() {
+    let mut provider = Number::new();
+    let plan = planned(&taker(), &request(&provider));
+    let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider).unwrap();
+    assert_eq!(numbers(&mut executor, "copy"), [100]);
+    let reload = |files: Files| {
+        move || -> Result<Plan, ExecuteError> {
+            let graph = Graph::load("graph.ron", &Registry::standard(), &files)?;
+            Ok(graph.plan(&request(&Number::new()))?)
+        }
+    };
+    for (text, expected) in [
+        ("host_number[0] + 1u", Some(101)),
+        ("host_number[0] +", None),
+        ("host_number[0] + 2u", Some(102)),
+    ] {
+        let load = reload(taker().edited("take.wgsl", "host_number[0]", text));
+        let preparer = executor.preparer();
+        let making = std::thread::spawn(move || -> Result<Prepared, ExecuteError> {
+            preparer.prepare(load()?)
+        });
+        while !making.is_finished() {
+            frame(&mut executor, &["copy"]); // the graph that there is
+        }
+        let before = numbers(&mut executor, "copy");
+        match making.join().expect("preparing does not panic") {
+            Ok(prepared) => {
+                let report = executor.replace(prepared, &mut provider).unwrap();
+                assert_eq!(report.pipelines, ["take"]);
+            }
+            Err(error) => assert!(error.to_string().contains("take.wgsl"), "{error}"),
+        }
+        let now = numbers(&mut executor, "copy");
+        assert_eq!(now, expected.map_or(before, |number| vec![number]));
+    }
 }

@@ -9,6 +9,7 @@ mod growth;
 mod host;
 mod pass;
 mod poison;
+mod prepare;
 mod replan;
 mod report;
 mod state;
@@ -16,5 +17,6 @@ mod uniform;
 mod watch;
 
 pub use executor::Executor;
+pub use prepare::{Prepared, Preparer};
 pub use replan::ReplanReport;
 pub use report::{Frame, FrameReport};

@@ -157,7 +157,8 @@ fn ours(stacks: &[Stack]) -> Vec<String> {
 }
 
 /// Some of everything that a frame may have: draws, dispatches, copies, clears, the uniform
-/// `frame`, a history, passes that are skipped, a buffer that grows, a provided buffer as it was before.
+/// `frame`, a history, passes that are skipped, a buffer that grows, a provided buffer as it was
+/// before.
 fn everything() -> Files {
     Files::graph(
         r#"

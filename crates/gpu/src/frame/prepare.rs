@@ -10,8 +10,8 @@ use crate::{
 use skiagraph_graph::{Ids, Plan, step::Step};
 use std::collections::HashMap;
 
-/// What an executor has, as far as its next graph can use it: of [`Executor::preparer`], for another
-/// thread.
+/// What an executor has, as far as its next graph can use it: of [`Executor::preparer`], for
+/// another thread.
 pub struct Preparer {
     device: wgpu::Device,
     pipelines: Pipelines,

@@ -73,7 +73,6 @@ fn the_method_of_the_readme_is_complete_and_runs() {
         )
         .unwrap();
     gpu.queue.submit([encoder.finish()]);
-    executor.submitted().unwrap();
     let report = executor.finish().unwrap();
     let values = |index: usize| report.readbacks[index].content.as_u32().unwrap();
     for (visibility, status) in values(0).into_iter().zip(values(1)) {

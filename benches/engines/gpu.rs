@@ -114,7 +114,6 @@ fn frame(gpu: &Gpu, executor: &mut Executor, read: &[&str]) -> (Duration, FrameR
     executor.encode(&mut encoder, &frame).unwrap_or_else(done);
     let begin = Instant::now();
     gpu.queue.submit([encoder.finish()]);
-    executor.submitted().unwrap_or_else(done);
     executor.finish().unwrap_or_else(|why| panic!("{why}"));
     let time = begin.elapsed();
     // Read back by a frame of its own, which is not timed.
@@ -122,7 +121,6 @@ fn frame(gpu: &Gpu, executor: &mut Executor, read: &[&str]) -> (Duration, FrameR
     let frame = Frame { read, ..frame };
     executor.encode(&mut encoder, &frame).unwrap_or_else(done);
     gpu.queue.submit([encoder.finish()]);
-    executor.submitted().unwrap_or_else(done);
     let report = executor.finish().unwrap_or_else(|why| panic!("{why}"));
     (time, report)
 }

@@ -246,7 +246,6 @@ pub fn frame(gpu: &Gpu, executor: &mut Executor, read: &[&str]) -> FrameReport {
     };
     executor.encode(&mut encoder, &frame).unwrap();
     gpu.queue.submit([encoder.finish()]);
-    executor.submitted().unwrap();
     executor.finish().unwrap()
 }
 

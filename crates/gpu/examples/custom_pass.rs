@@ -104,7 +104,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     executor.encode(&mut encoder, &frame)?;
     queue.submit([encoder.finish()]);
-    executor.submitted()?;
 
     let mut ranges = Vec::new();
     for readback in executor.finish()?.readbacks {

@@ -125,6 +125,9 @@ pub enum ExecuteError {
         /// The passes of the frame.
         passes: String,
     },
+    /// A frame is waited for whose encoder was not submitted.
+    #[error("the frame that is waited for was encoded, but not submitted")]
+    NotSubmitted,
     /// Timestamps could not be taken.
     #[error("timestamps could not be taken: {0}")]
     Timing(String),

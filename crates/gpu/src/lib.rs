@@ -12,10 +12,11 @@ mod memory;
 mod pipelines;
 mod provider;
 mod readback;
+mod signal;
 pub mod timing;
 
 pub use error::ExecuteError;
-pub use frame::{Executor, Frame, FrameReport, ReplanReport};
+pub use frame::{Executor, Frame, FrameReport, Prepared, Preparer, ReplanReport};
 pub use provider::{Provider, ProviderError};
 pub use readback::{Content, Readback};
 pub use timing::{FrameTiming, PassTiming};

@@ -9,8 +9,12 @@ mod support;
 
 use given::{KIND, SAMPLED, STORAGE, buffer, content, sums, sums_request};
 use host::{GPU, encoder, executor, frame, numbers, planned, request};
-use skiagraph_gpu::{ExecuteError, Executor, Frame, Provider, ProviderError, device};
-use skiagraph_graph::{Describe, Graph, NoProvider, Plan, PlanRequest, Provided, ProvidedBinding};
+use skiagraph_gpu::{
+    ExecuteError, Executor, Frame, FrameReport, Prepared, Provider, ProviderError, device,
+};
+use skiagraph_graph::{
+    Describe, Graph, NoProvider, Plan, PlanRequest, Provided, ProvidedBinding, Registry,
+};
 use support::Files;
 
 /// The host's own pass reads the outputs in the encoder in which the graph made them.
@@ -274,24 +278,23 @@ fn lose_the_device(before: bool) {
     };
     executor.encode(&mut encoder, &read).unwrap();
     gpu.queue.submit([encoder.finish()]);
-    // `submitted` comes after the loss in one run, before it in the other.
-    if before {
-        executor.submitted().unwrap();
-    }
+    // It is asked what the frame brings before the loss in one run, after it in the other.
+    let early = before.then(|| executor.poll().unwrap()).flatten();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
 
     gpu.device.destroy();
-    if !before {
-        // It has no result of its own to wait for, so it may say nothing.
-        let submitted = executor.submitted();
+    // What was done in time may still come.
+    if early.is_none() {
+        let said =
+            std::iter::repeat_with(|| executor.poll()).find(|said| !matches!(said, Ok(None)));
         assert!(
-            matches!(submitted, Ok(()) | Err(ExecuteError::DeviceLost(_))),
-            "{submitted:?}"
+            matches!(said, Some(Ok(_) | Err(ExecuteError::DeviceLost(_)))),
+            "{said:?}"
         );
     }
     let none = &mut NoProvider;
     let results = [
-        ("encode", executor.encode(&mut encoder, &read)),
+        ("encode", executor.encode(&mut encoder, &read).map(|_| ())),
         ("import_texture", executor.import_texture("image", &late)),
         ("import_buffer", executor.import_buffer("more", &later)),
         ("finish", executor.finish().map(|_| ())),
@@ -336,4 +339,75 @@ fn plans_and_executors_can_go_to_other_threads() {
     let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut Number::new()).unwrap();
     let frames = std::thread::spawn(move || numbers(&mut executor, "copy"));
     assert_eq!(frames.join().expect("encoding does not panic"), [100]);
+}
+
+/// As a host's loop does it: at most so many frames ahead of the GPU, and reports as they come.
+#[test]
+fn a_host_that_does_not_wait() {
+    const AHEAD: usize = 3;
+    let mut provider = Number::new();
+    let plan = planned(&taker(), &request(&provider));
+    let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider).unwrap();
+    let mut seen = Vec::new();
+    let mut show = |report: FrameReport| seen.push(report.index);
+    let wanted = Frame {
+        timing: true,
+        read: &["copy"],
+        ..Frame::default()
+    };
+    for _ in 0..10 {
+        if executor.under_way() >= AHEAD {
+            show(executor.finish().unwrap()); // the only call that waits
+        }
+        let mut encoder = encoder();
+        executor.encode(&mut encoder, &wanted).unwrap();
+        GPU.queue.submit([encoder.finish()]);
+        while let Some(report) = executor.poll().unwrap() {
+            show(report);
+        }
+    }
+    while executor.under_way() > 0 {
+        show(executor.finish().unwrap());
+    }
+    assert_eq!(seen, (0..10).collect::<Vec<u32>>());
+}
+
+/// A graph that is edited while it is drawn: made ready on another thread, put in when it is, and
+/// the last good one stays where it has a mistake.
+#[test]
+fn a_graph_is_made_ready_on_another_thread() {
+    let mut provider = Number::new();
+    let plan = planned(&taker(), &request(&provider));
+    let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider).unwrap();
+    assert_eq!(numbers(&mut executor, "copy"), [100]);
+    let reload = |files: Files| {
+        move || -> Result<Plan, ExecuteError> {
+            let graph = Graph::load("graph.ron", &Registry::standard(), &files)?;
+            Ok(graph.plan(&request(&Number::new()))?)
+        }
+    };
+    for (text, expected) in [
+        ("host_number[0] + 1u", Some(101)),
+        ("host_number[0] +", None),
+        ("host_number[0] + 2u", Some(102)),
+    ] {
+        let load = reload(taker().edited("take.wgsl", "host_number[0]", text));
+        let preparer = executor.preparer();
+        let making = std::thread::spawn(move || -> Result<Prepared, ExecuteError> {
+            preparer.prepare(load()?)
+        });
+        while !making.is_finished() {
+            frame(&mut executor, &["copy"]); // the graph that there is
+        }
+        let before = numbers(&mut executor, "copy");
+        match making.join().expect("preparing does not panic") {
+            Ok(prepared) => {
+                let report = executor.replace(prepared, &mut provider).unwrap();
+                assert_eq!(report.pipelines, ["take"]);
+            }
+            Err(error) => assert!(error.to_string().contains("take.wgsl"), "{error}"),
+        }
+        let now = numbers(&mut executor, "copy");
+        assert_eq!(now, expected.map_or(before, |number| vec![number]));
+    }
 }

@@ -197,7 +197,7 @@ fn an_import_is_read_back_if_it_was_made_for_that() {
             ..Frame::default()
         };
         match executor.encode(&mut encoder(), &read) {
-            Ok(()) => assert!(is_readable),
+            Ok(_) => assert!(is_readable),
             Err(error) => {
                 assert!(!is_readable);
                 let why = "`image` cannot be read back: the host must make it with \

@@ -205,7 +205,6 @@ fn runs(plan: Plan) -> Result<bool, TestCaseError> {
         };
         executor.encode(&mut encoder, &frame).map_err(failed)?;
         GPU.queue.submit([encoder.finish()]);
-        executor.submitted().map_err(failed)?;
         let report = executor.finish().map_err(failed)?;
         prop_assert_eq!(report.readbacks.len(), read.len());
     }

@@ -23,7 +23,6 @@
 //! let mut encoder = gpu.device.create_command_encoder(&Default::default());
 //! executor.encode(&mut encoder, &Frame { read: &["visibility"], ..Frame::default() })?;
 //! gpu.queue.submit([encoder.finish()]);
-//! executor.submitted()?;
 //! let visibility = &executor.finish()?.readbacks[0];
 //! # let _ = visibility;
 //! # Ok(())

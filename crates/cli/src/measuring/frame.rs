@@ -60,7 +60,6 @@ pub fn run(
         });
     executor.encode(&mut encoder, frame)?;
     gpu.queue.submit([encoder.finish()]);
-    executor.submitted()?;
     let report = wait(gpu, executor)?;
     Ok((report, began.elapsed()))
 }

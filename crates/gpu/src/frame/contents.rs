@@ -19,6 +19,10 @@ pub(super) struct Contents {
     latest: BTreeMap<ResourceId, usize>,
     /// Of each copy of a provided resource, as it was in the frame before: what it is a copy of.
     copied: BTreeMap<ResourceId, u64>,
+    /// The provided resources that are read as they were in the frame before, and their copies.
+    host_copies: Vec<HostCopy>,
+    /// What the versions were before a frame.
+    before: Vec<u64>,
 }
 
 /// A provided resource, and the copy of it that the next frame reads.
@@ -30,6 +34,7 @@ impl Contents {
         let mut contents = Self {
             versions: vec![0; plan.resources().len()],
             clock,
+            host_copies: host_copies(plan).collect(),
             ..Self::default()
         };
         for &id in plan.schedule().lifetimes.keys() {
@@ -64,11 +69,12 @@ impl Contents {
     }
 
     /// Whether each pass of the schedule runs. A group runs if one of its passes has a reason to.
-    pub fn running(&self, plan: &Plan, passes: &[GpuPass], all: bool) -> Vec<bool> {
+    pub fn running(&self, plan: &Plan, passes: &[GpuPass], all: bool, runs: &mut Vec<bool>) {
         let conditions = &plan.schedule().conditions;
         let groups = &conditions.group;
+        runs.clear();
+        runs.resize(passes.len(), false);
         // All is what could run, not what a param forbids.
-        let mut runs = vec![false; passes.len()];
         for (&group, when) in groups.iter().zip(&conditions.when) {
             runs[group] |= all && !matches!(when, When::Never | When::Follows);
         }
@@ -78,13 +84,16 @@ impl Contents {
         while added {
             added = false;
             for at in 0..passes.len() {
-                if !runs[groups[at]] && self.has_reason(plan, &passes[at], at, &runs) {
+                if !runs[groups[at]] && self.has_reason(plan, &passes[at], at, runs) {
                     runs[groups[at]] = true;
                     added = true;
                 }
             }
         }
-        (0..passes.len()).map(|at| runs[groups[at]]).collect()
+        // A group is known by its first pass.
+        for at in 0..passes.len() {
+            runs[at] = runs[groups[at]];
+        }
     }
 
     fn has_reason(&self, plan: &Plan, pass: &GpuPass, at: usize, runs: &[bool]) -> bool {
@@ -107,15 +116,16 @@ impl Contents {
     }
 
     /// Whose turn it is in a frame in which these passes run.
-    pub fn ping_pong(&self, plan: &Plan, runs: &[bool]) -> PingPong {
+    pub fn ping_pong(&self, plan: &Plan, runs: &[bool], turn: &mut PingPong) {
         let writers = &plan.schedule().conditions.writers;
-        let versions = |(&id, &latest): (&ResourceId, &usize)| {
+        // What there is stays in its place: every frame comes here.
+        turn.retain(|id, _| self.latest.contains_key(id));
+        for (&id, &latest) in &self.latest {
             let is_written = writers[id.index()].is_some_and(|group| runs[group]);
             let current = if is_written { 1 - latest } else { latest };
             let previous = latest;
-            (id, Versions { current, previous })
-        };
-        self.latest.iter().map(versions).collect()
+            turn.insert(id, Versions { current, previous });
+        }
     }
 
     /// Notes that these passes ran.
@@ -126,7 +136,7 @@ impl Contents {
         runs: &[bool],
         ping_pong: &PingPong,
     ) {
-        let before = self.versions.clone();
+        self.before.clone_from(&self.versions);
         let conditions = &plan.schedule().conditions;
         for (_, id) in conditions.written.iter().filter(|(at, _)| runs[*at]) {
             self.touch(*id);
@@ -147,7 +157,7 @@ impl Contents {
             seen.clear();
             // Of what two allocations take turns in, the pass saw what the frame began with.
             seen.extend(inputs.iter().map(|id| match counted(plan, *id) {
-                Some(base) => before[base.index()],
+                Some(base) => self.before[base.index()],
                 None => self.versions[id.index()],
             }));
             *stale = false;
@@ -157,31 +167,27 @@ impl Contents {
         }
     }
 
-    /// The copies that have to be made before a frame's first pass: there was no frame before, so
-    /// what it reads of that is what there is now.
-    pub fn first_copies(&mut self, plan: &Plan) -> Vec<HostCopy> {
-        let copies = host_copies(plan);
-        let first: Vec<HostCopy> = copies
-            .filter(|(_, copy)| !self.copied.contains_key(copy))
-            .collect();
-        for (base, copy) in &first {
-            self.copied.insert(*copy, self.versions[base.index()]);
+    /// Calls `copy` for what has to be copied before a frame's first pass: there was no frame
+    /// before, so what it reads of that is what there is now.
+    pub fn first_copies(&mut self, mut copy: impl FnMut(HostCopy)) {
+        for &(base, of_base) in &self.host_copies {
+            self.copied.entry(of_base).or_insert_with(|| {
+                copy((base, of_base));
+                self.versions[base.index()]
+            });
         }
-        first
     }
 
-    /// The copies that have to be made behind a frame's last pass, of what is not what it was.
-    pub fn copies(&mut self, plan: &Plan) -> Vec<HostCopy> {
-        let version = |contents: &Self, base: ResourceId| contents.versions[base.index()];
-        let copies = host_copies(plan);
-        let changed: Vec<HostCopy> = copies
-            .filter(|(base, copy)| self.copied.get(copy) != Some(&version(self, *base)))
-            .collect();
-        for (base, copy) in &changed {
-            self.copied.insert(*copy, version(self, *base));
-            self.touch(*copy);
+    /// Calls `copy` for what has to be copied behind a frame's last pass: it is not what it was.
+    pub fn copies(&mut self, mut copy: impl FnMut(HostCopy)) {
+        for at in 0..self.host_copies.len() {
+            let (base, of_base) = self.host_copies[at];
+            let version = self.versions[base.index()];
+            if self.copied.insert(of_base, version) != Some(version) {
+                self.touch(of_base);
+                copy((base, of_base));
+            }
         }
-        changed
     }
 }
 

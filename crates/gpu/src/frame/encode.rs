@@ -5,6 +5,7 @@ use crate::{
     timing::timer::Timer,
 };
 use skiagraph_graph::step::{Dispatch, Draw, DrawCall, Groups, Step};
+use smallvec::SmallVec;
 
 /// Encodes the steps of a pass, under its name in captures. A single draw or dispatch bears it as
 /// the label of its render or compute pass; a debug group around that would say it twice, and costs
@@ -264,7 +265,8 @@ fn encode_draw(
         return;
     };
     let query = timer.map(|timer| timer.profiler().begin_pass_query(name, encoder));
-    let colors: Vec<_> = draw
+    // Every frame comes here: on the stack, as many as devices have.
+    let colors: SmallVec<[_; 8]> = draw
         .colors
         .iter()
         .map(|color| color_attachment(&color.target, color.resolve.as_ref(), color.clear))

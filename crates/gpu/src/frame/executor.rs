@@ -1,58 +1,34 @@
 //! A plan on a device, and its frames.
 
 use super::{
-    contents::{Contents, HostCopy},
-    encode::encode_all,
-    pass::GpuPass,
-    poison::Poison,
-    watch::Watch,
+    fetch::Fetch,
+    flight::{Flight, Flights, names},
+    report::{Frame, FrameReport},
+    state::{State, Turn},
+    uniform::FrameUniform,
 };
 use crate::{
-    error::{ExecuteError, check_device_lost, scoped, wait, with_table},
-    memory::{
-        memory::{Maker, Memory},
-        physical::PingPong,
-    },
+    error::{ExecuteError, check_device_lost, poll, wait, with_table},
+    memory::{memory::Maker, physical::PingPong},
     pipelines::pipelines::Pipelines,
     provider::Provider,
-    readback::{Pending, Readback},
-    timing::{timer::Timer, times::FrameTiming},
+    timing::timer::Timer,
 };
-use skiagraph_graph::{FRAME_BYTES, Origin, Plan, ResourceId, ResourceKind};
+use skiagraph_graph::Plan;
 use std::{
     sync::Arc,
     time::{Duration, Instant},
 };
 
-/// What a frame is asked for.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Frame<'a> {
-    /// Take GPU timestamps.
-    pub timing: bool,
-    /// Run every pass, also those of which nothing that they read has changed.
-    pub all: bool,
-    /// Outputs and captures to read back.
-    pub read: &'a [&'a str],
-    /// The time of what is shown, seconds: `frame.seconds` of the shaders.
-    pub seconds: f32,
-}
-
-/// What a frame brought.
-#[derive(Clone, Debug, Default)]
-pub struct FrameReport {
-    /// Times, if they were asked for.
-    pub timing: Option<FrameTiming>,
-    /// The passes that did not run because their run condition said so, in schedule order.
-    pub skipped: Vec<String>,
-    /// Contents, in the order in which they were asked for.
-    pub readbacks: Vec<Readback>,
-}
+/// How long it is waited for another thread that polls the device to say what is done.
+const CALLBACK: Duration = Duration::from_secs(10);
 
 /// A plan on a device.
 ///
-/// A frame is [`encode`](Self::encode), the host's submission, [`submitted`](Self::submitted), and,
-/// for times and readbacks, [`finish`](Self::finish). Every encoder that a frame was encoded into
-/// must be submitted, in order: what a skipped pass or `.previous` finds was made there.
+/// A frame is [`encode`](Self::encode), the host's submission, and, for times and readbacks,
+/// [`poll`](Self::poll) in this frame or a later one, or [`finish`](Self::finish), which waits.
+/// Every encoder that a frame was encoded into must be submitted, in order: what a skipped pass or
+/// `.previous` finds was made there.
 pub struct Executor {
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
@@ -60,27 +36,12 @@ pub struct Executor {
     pub(super) state: State,
     /// Whose turn it was in the frame that was encoded last.
     pub(super) ping_pong: PingPong,
+    turn: Turn,
     /// Frames that were encoded.
     frames: u32,
-    timer: Timer,
-    timed: bool,
-    /// The passes of the last frame, if it was timed, with the time that encoding them took. Names,
-    /// because the next plan may have other passes.
-    cpu: Vec<(Arc<str>, Duration)>,
+    pub(super) flights: Flights,
+    /// The passes that the frame that was encoded last did not run.
     skipped: Vec<Arc<str>>,
-    pending: Vec<Pending>,
-}
-
-/// A plan and what was made for it; another plan has another one.
-pub(super) struct State {
-    pub plan: Plan,
-    pub memory: Memory,
-    /// The passes of the schedule.
-    pub passes: Vec<GpuPass>,
-    pub contents: Contents,
-    pub poison: Option<Poison>,
-    /// Buffers that may grow.
-    pub watches: Vec<Watch>,
 }
 
 impl Executor {
@@ -111,12 +72,10 @@ impl Executor {
             pipelines,
             ping_pong: state.ping_pong(true),
             state,
+            turn: Turn::default(),
             frames: 0,
-            timer: Timer::new(device, queue)?,
-            timed: false,
-            cpu: Vec::new(),
+            flights: Flights::default(),
             skipped: Vec::new(),
-            pending: Vec::new(),
         };
         executor.state.bind_what_can_be(device)?;
         Ok(executor)
@@ -127,7 +86,8 @@ impl Executor {
         &self.state.plan
     }
 
-    /// Encodes a frame. The host submits the encoder and then calls [`Executor::submitted`].
+    /// Encodes a frame, which the host submits; returns its number. It never waits: any number of
+    /// frames may be under way.
     ///
     /// # Errors
     /// If an output is asked for that the plan does not have, an import is missing, the device is
@@ -137,117 +97,101 @@ impl Executor {
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         frame: &Frame<'_>,
-    ) -> Result<(), ExecuteError> {
+    ) -> Result<u32, ExecuteError> {
         check_device_lost(&self.device)?;
-        let uniform = self.frame_uniform(frame.seconds)?;
-        let state = &mut self.state;
-        let runs = state
-            .contents
-            .running(&state.plan, &state.passes, frame.all);
-        let ping_pong = state.contents.ping_pong(&state.plan, &runs);
-        state.bind(&runs, &ping_pong, &self.device)?;
-        let pending = state.pending(frame.read, &ping_pong, &self.device)?;
-        self.timed = frame.timing;
-        if self.timed {
-            self.timer.open(&self.device)?;
+        self.state.decide(frame.all, &mut self.turn);
+        let Turn { runs, ping_pong } = &self.turn;
+        self.state.bind(runs, ping_pong, &self.device)?;
+        let mut flight = self.flights.begin();
+        if let Err(error) = self.prepare(&mut flight, frame) {
+            self.flights.put_aside(flight);
+            return Err(with_table(error, self.plan()));
         }
-        self.cpu.clear();
-        self.skipped.clear();
         // From here on nothing can fail.
-        if let Some((staging, uniform)) = uniform {
-            encoder.copy_buffer_to_buffer(&staging, 0, &uniform, 0, FRAME_BYTES);
-        }
-        let copies = state.contents.first_copies(&state.plan);
-        state.copy_host(&copies, encoder);
-        for (at, pass) in state.passes.iter().enumerate() {
-            if !runs[at] {
-                self.skipped.push(pass.name.clone());
-                continue;
-            }
-            let start = frame.timing.then(Instant::now);
-            if let Some(poison) = &state.poison {
-                poison.fill(at, &ping_pong, encoder);
-            }
-            let steps = pass.steps(&ping_pong).unwrap_or_default();
-            let timer = frame.timing.then_some(&self.timer);
-            encode_all(steps, &pass.name, encoder, timer);
-            if let Some(start) = start {
-                self.cpu.push((pass.name.clone(), start.elapsed()));
-            }
-        }
-        if frame.timing {
-            self.timer.resolve(encoder);
-        }
-        pending.iter().for_each(|pending| pending.copy(encoder));
-        self.pending = pending;
-        for watch in &mut state.watches {
-            watch.copy(&state.plan, &state.memory, &ping_pong, encoder);
-        }
-        state
-            .contents
-            .ran(&state.plan, &mut state.passes, &runs, &ping_pong);
-        let copies = state.contents.copies(&state.plan);
-        state.copy_host(&copies, encoder);
-        self.ping_pong = ping_pong;
+        self.record(&mut flight, encoder);
+        let index = flight.index;
+        self.skipped.clone_from(&flight.skipped);
+        self.flights.enter(flight, encoder);
+        std::mem::swap(&mut self.ping_pong, &mut self.turn.ping_pong);
         self.frames = self.frames.wrapping_add(1);
+        Ok(index)
+    }
+
+    /// Gets ready what a frame needs besides the passes' own.
+    fn prepare(&mut self, flight: &mut Flight, frame: &Frame<'_>) -> Result<(), ExecuteError> {
+        let (state, device) = (&self.state, &self.device);
+        flight.index = self.frames;
+        if state.uniform.is_some() {
+            let values = (self.frames, frame.seconds);
+            FrameUniform::write(&mut flight.uniform, values, device)?;
+        }
+        for name in frame.read {
+            let source = (&state.plan, &state.memory, &self.turn.ping_pong);
+            let staging = &mut self.flights.staging;
+            let fetch = Fetch::new(name, &state.readables, source, staging, device)?;
+            flight.fetches.push(fetch);
+        }
+        if frame.timing && flight.timer.is_none() {
+            flight.timer = Some(Timer::new(device, &self.queue)?);
+        }
+        flight.is_timed = frame.timing;
         Ok(())
     }
 
-    /// The uniform `frame` and what it is to hold, if a live pass reads it. The host may encode
-    /// several frames before it submits the first, so each brings its own copy.
-    fn frame_uniform(
-        &mut self,
-        seconds: f32,
-    ) -> Result<Option<(wgpu::Buffer, wgpu::Buffer)>, ExecuteError> {
-        let State {
-            plan,
-            memory,
-            contents,
-            ..
-        } = &mut self.state;
-        let mut live = plan.schedule().lifetimes.keys();
-        let is_frame = |id: &&ResourceId| matches!(plan.resource(**id).kind, ResourceKind::Frame);
-        let Some(&id) = live.find(is_frame) else {
+    /// Encodes a frame that everything is ready for.
+    fn record(&mut self, flight: &mut Flight, encoder: &mut wgpu::CommandEncoder) {
+        let state = &mut self.state;
+        let Turn { runs, ping_pong } = &self.turn;
+        if let (Some(id), Some(copy)) = (state.uniform, &mut flight.uniform)
+            && let Ok(uniform) = state.memory.buffer(id, ping_pong)
+        {
+            copy.copy(uniform, encoder);
+        }
+        let memory = &state.memory;
+        let mut copy_host = |copy| State::copy_host(memory, copy, encoder);
+        state.contents.first_copies(&mut copy_host);
+        state.encode(&self.turn, flight, encoder);
+        if let Some(timer) = flight.timer.as_mut().filter(|_| flight.is_timed) {
+            timer.resolve(encoder);
+        }
+        flight.fetches.iter().for_each(|fetch| fetch.copy(encoder));
+        for watch in &mut state.watches {
+            watch.copy(&state.plan, &state.memory, ping_pong, encoder);
+        }
+        let (plan, passes) = (&state.plan, &mut state.passes);
+        state.contents.ran(plan, passes, runs, ping_pong);
+        let memory = &state.memory;
+        let mut copy_host = |copy| State::copy_host(memory, copy, encoder);
+        state.contents.copies(&mut copy_host);
+    }
+
+    /// What a frame brought that asked for times or contents, if it is done: the oldest one that
+    /// was not handed out yet. It never waits. Each such frame brings one report, in the order of
+    /// encoding, but for those whose encoders were dropped and not submitted.
+    ///
+    /// # Errors
+    /// If the device was lost, or something could not be read back or timed: that frame brings no
+    /// report.
+    pub fn poll(&mut self) -> Result<Option<FrameReport>, ExecuteError> {
+        if self.under_way() == 0 {
             return Ok(None);
-        };
-        let staging = scoped(&self.device, "frame", || {
-            self.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("frame"),
-                size: FRAME_BYTES,
-                usage: wgpu::BufferUsages::COPY_SRC,
-                mapped_at_creation: true,
-            })
-        })?;
-        let mut bytes = [0; FRAME_BYTES as usize];
-        bytes[..4].copy_from_slice(&self.frames.to_ne_bytes());
-        bytes[4..8].copy_from_slice(&seconds.to_ne_bytes());
-        match staging.get_mapped_range_mut(..) {
-            Ok(mut mapped) => mapped.copy_from_slice(&bytes),
-            Err(_) => return Err(ExecuteError::Internal("the uniform `frame` was not mapped")),
         }
-        staging.unmap();
-        contents.touch(id);
-        let uniform = memory.buffer(id, &self.ping_pong)?.clone();
-        Ok(Some((staging, uniform)))
+        poll(&self.device, wgpu::PollType::Poll)?;
+        self.flights.report(&self.device)
     }
 
-    /// Ends the timing frame and starts the readbacks, after the host has submitted the encoder.
-    ///
-    /// # Errors
-    /// If timestamps could not be taken.
-    pub fn submitted(&mut self) -> Result<(), ExecuteError> {
-        if self.timed {
-            self.timer.submitted()?;
-        }
-        self.pending.iter_mut().for_each(Pending::map);
-        self.state.watches.iter_mut().for_each(Watch::map);
-        Ok(())
+    /// How many frames have asked for times or contents that were not handed out yet. A host that
+    /// asks in every frame must ask [`poll`](Self::poll), too, or they become ever more.
+    pub fn under_way(&self) -> usize {
+        self.flights.asked()
     }
 
-    /// Waits until the submitted frame is done and hands out its times and readbacks.
+    /// Waits until all that was submitted is done, and hands out what [`poll`](Self::poll) would.
+    /// If no frame brings a report, it names the passes that were skipped in the one that was
+    /// encoded last.
     ///
     /// # Errors
-    /// If the device was lost.
+    /// Those of [`poll`](Self::poll), and [`ExecuteError::NotSubmitted`].
     pub fn finish(&mut self) -> Result<FrameReport, ExecuteError> {
         self.finish_within(None)
     }
@@ -264,133 +208,50 @@ impl Executor {
         timeout: Option<Duration>,
     ) -> Result<FrameReport, ExecuteError> {
         let began = Instant::now();
+        // One that is done is not kept waiting by those behind it.
+        if let Some(report) = self.poll()? {
+            return Ok(report);
+        }
         if !wait(&self.device, timeout)? {
-            return Err(ExecuteError::Unfinished {
-                after: began.elapsed(),
-                passes: list(&self.ran()),
-            });
+            return Err(self.unfinished(began));
         }
         // A device that was destroyed is waited for without complaint, but has no query buffers to
         // take times from.
         check_device_lost(&self.device)?;
-        let timing = self.timed.then(|| self.timer.take(&self.cpu));
-        let readbacks = std::mem::take(&mut self.pending)
-            .into_iter()
-            .map(Pending::take)
-            .collect::<Result<_, _>>()?;
-        Ok(FrameReport {
-            timing,
-            skipped: self.skipped.iter().map(|name| name.to_string()).collect(),
-            readbacks,
-        })
-    }
-
-    /// Names of the passes of the last frame.
-    fn ran(&self) -> Vec<&str> {
-        let passes = self.state.passes.iter().map(|pass| &*pass.name);
-        let ran = passes.filter(|name| self.skipped.iter().all(|skipped| **skipped != **name));
-        ran.collect()
-    }
-}
-
-impl State {
-    fn new(
-        plan: Plan,
-        pipelines: &mut Pipelines,
-        maker: &mut Maker<'_>,
-    ) -> Result<Self, ExecuteError> {
-        let refused = |error| with_table(error, &plan);
-        let memory = Memory::new(&plan, None, maker).map_err(refused)?;
-        let passes = (0..plan.schedule().passes.len())
-            .map(|at| GpuPass::new(&plan, at, None, pipelines, maker.device))
-            .collect::<Result<Vec<_>, _>>()
-            .map_err(refused)?;
-        Ok(Self {
-            poison: Poison::new(&plan, &memory, maker.device).map_err(refused)?,
-            watches: Watch::all(&plan, maker.device).map_err(refused)?,
-            contents: Contents::of(&plan, 0),
-            memory,
-            passes,
-            plan,
-        })
-    }
-
-    /// Whose turn it is in a frame in which every pass runs, or none.
-    pub fn ping_pong(&self, runs: bool) -> PingPong {
-        self.contents
-            .ping_pong(&self.plan, &vec![runs; self.passes.len()])
-    }
-
-    /// The resource of a name that a live pass uses.
-    pub fn live(&self, name: &str) -> Option<ResourceId> {
-        let mut live = self.plan.schedule().lifetimes.keys();
-        live.find(|id| self.plan.resource(**id).name == name)
-            .copied()
-    }
-
-    /// Forgets what the passes that use a resource have bound.
-    pub fn unbind(&mut self, id: ResourceId) {
-        for (pass, made) in self.plan.live().zip(&mut self.passes) {
-            if pass.accesses.iter().any(|access| access.resource == id) {
-                made.unbind();
+        let waited = Instant::now();
+        loop {
+            if let Some(report) = self.flights.report(&self.device)? {
+                return Ok(report);
             }
-        }
-    }
-
-    /// Binds the passes that run and are not bound for this state of the ping-pong.
-    fn bind(
-        &mut self,
-        runs: &[bool],
-        ping_pong: &PingPong,
-        device: &wgpu::Device,
-    ) -> Result<(), ExecuteError> {
-        for (at, made) in self.passes.iter_mut().enumerate() {
-            if !runs[at] || made.is_bound(ping_pong) {
-                continue;
-            }
-            if let Some(name) = missing_import(&self.plan, &self.memory, at) {
-                let pass = &self.plan.pass(self.plan.schedule().passes[at]).name;
-                return Err(ExecuteError::NotImported {
-                    name,
-                    pass: pass.value.clone(),
-                    place: pass.span.to_string(),
+            if self.under_way() == 0 {
+                return Ok(FrameReport {
+                    index: self.frames.wrapping_sub(1),
+                    skipped: names(&self.skipped),
+                    ..FrameReport::default()
                 });
             }
-            made.bind(&self.plan, at, &self.memory, ping_pong, device)?;
-        }
-        Ok(())
-    }
-
-    /// Binds every pass whose imports are there, as a frame in which all run will need it.
-    pub fn bind_what_can_be(&mut self, device: &wgpu::Device) -> Result<(), ExecuteError> {
-        let ready: Vec<bool> = (0..self.passes.len())
-            .map(|at| missing_import(&self.plan, &self.memory, at).is_none())
-            .collect();
-        self.bind(&ready, &self.ping_pong(true), device)
-    }
-
-    /// The readbacks of a frame; the staging buffers are made here, and there may be no memory.
-    fn pending(
-        &self,
-        names: &[&str],
-        ping_pong: &PingPong,
-        device: &wgpu::Device,
-    ) -> Result<Vec<Pending>, ExecuteError> {
-        let pending = |name: &&str| {
-            let make = || Pending::new(device, &self.plan, &self.memory, ping_pong, name);
-            scoped(device, name, make).map_err(|error| with_table(error, &self.plan))?
-        };
-        names.iter().map(pending).collect()
-    }
-
-    /// Copies what the host provides to where the next frame finds it as it was in this one.
-    fn copy_host(&self, copies: &[HostCopy], encoder: &mut wgpu::CommandEncoder) {
-        for (base, copy) in copies {
-            let none = PingPong::new();
-            let buffers = [base, copy].map(|id| self.memory.buffer(*id, &none));
-            if let [Ok(base), Ok(copy)] = buffers {
-                encoder.copy_buffer_to_buffer(base, 0, copy, 0, base.size().min(copy.size()));
+            if timeout.is_some_and(|timeout| began.elapsed() >= timeout) {
+                return Err(self.unfinished(began));
             }
+            if waited.elapsed() >= CALLBACK {
+                break;
+            }
+            // Another thread that polls the device may be about to say so.
+            std::thread::sleep(Duration::from_micros(50));
+        }
+        // The profiler never gives up a frame whose timestamps cannot be mapped.
+        self.flights.give_up_times();
+        let report = self.flights.report(&self.device)?;
+        report.ok_or(ExecuteError::NotSubmitted)
+    }
+
+    /// Names the passes of the last frame.
+    fn unfinished(&self, began: Instant) -> ExecuteError {
+        let passes = self.state.passes.iter().map(|pass| &*pass.name);
+        let ran = passes.filter(|name| self.skipped.iter().all(|skipped| **skipped != **name));
+        ExecuteError::Unfinished {
+            after: began.elapsed(),
+            passes: list(&ran.collect::<Vec<_>>()),
         }
     }
 }
@@ -401,16 +262,6 @@ pub(super) fn list(names: &[&str]) -> String {
         true => "none".to_owned(),
         false => names.join(", "),
     }
-}
-
-/// An import that a pass uses and the host has not handed over.
-fn missing_import(plan: &Plan, memory: &Memory, at: usize) -> Option<String> {
-    let mut accesses = plan.pass(plan.schedule().passes[at]).accesses.iter();
-    let missing = accesses.find(|access| {
-        plan.resource(access.resource).origin == Origin::Host
-            && memory.host(access.resource).is_none()
-    })?;
-    Some(plan.resource(missing.resource).name.clone())
 }
 
 impl std::fmt::Debug for Executor {

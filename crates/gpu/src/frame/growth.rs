@@ -20,21 +20,21 @@ impl Executor {
         &mut self,
         provider: &mut dyn Provider,
     ) -> Result<Option<ReplanReport>, ExecuteError> {
-        if !self.state.watches.iter().any(Watch::is_mapping) {
+        if !self.state.watches.iter().any(Watch::is_asked) {
             return Ok(None);
         }
         poll(&self.device, wgpu::PollType::Poll)?;
-        let mut grown = self.plan().grown().clone();
-        let mut is_new = false;
-        for watch in &mut self.state.watches {
-            if let Some(wanted) = watch.wanted() {
-                grown.insert(watch.name.clone(), wanted);
-                is_new = true;
-            }
-        }
-        if !is_new {
+        let watches = self.state.watches.iter_mut();
+        let wanted = watches.filter_map(|watch| {
+            let wanted = watch.wanted()?;
+            Some((watch.name.clone(), wanted))
+        });
+        let wanted: Vec<(String, u64)> = wanted.collect();
+        if wanted.is_empty() {
             return Ok(None);
         }
+        let mut grown = self.plan().grown().clone();
+        grown.extend(wanted);
         let larger = self.plan().with(|request| request.grown = grown);
         let report = match larger {
             Ok(plan) => self.replace_graph(plan, provider),

@@ -3,12 +3,20 @@
 mod contents;
 mod encode;
 pub(crate) mod executor;
+mod fetch;
+mod flight;
 mod growth;
 mod host;
 mod pass;
 mod poison;
+mod prepare;
 mod replan;
+mod report;
+mod state;
+mod uniform;
 mod watch;
 
-pub use executor::{Executor, Frame, FrameReport};
+pub use executor::Executor;
+pub use prepare::{Prepared, Preparer};
 pub use replan::ReplanReport;
+pub use report::{Frame, FrameReport};

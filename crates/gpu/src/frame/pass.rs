@@ -62,7 +62,7 @@ impl GpuPass {
             let uniform = before.and_then(|made| made.params[index].clone());
             let made_step = || match before {
                 Some(made) => made.pipelines[index].clone(),
-                None => pipelines.of(device, &pass.name, step),
+                None => pipelines.of(device, &pass.name, (index, step)),
             };
             let pipeline = scoped(device, &pass.name, made_step).map_err(refused)?;
             made.push(pipeline);

@@ -10,9 +10,11 @@
 
 use super::{
     contents::Contents,
-    executor::{Executor, State},
+    executor::Executor,
+    fetch::Readable,
     pass::{GpuPass, Seen},
     poison::Poison,
+    state::{State, frame_uniform},
     watch::Watch,
 };
 use crate::{
@@ -114,6 +116,8 @@ impl Executor {
         let mut state = State {
             watches: watches.map_err(|error| with_table(error, &plan))?,
             poison: poison.map_err(|error| with_table(error, &plan))?,
+            readables: Readable::all(&plan),
+            uniform: frame_uniform(&plan),
             plan,
             memory,
             passes,
@@ -137,6 +141,7 @@ impl Executor {
         let mut before = std::mem::replace(&mut self.state, state);
         Watch::take_over(&mut self.state.watches, std::mem::take(&mut before.watches));
         self.ping_pong = self.state.ping_pong(false);
+        self.flights.staging.clear();
         report.uploads = self.upload(&before.plan, &positions);
         Ok(report)
     }

@@ -1,5 +1,6 @@
-//! Counters of buffers that grow, on their way to the host: copied behind a frame, mapped after its
-//! submission, looked at when they have arrived.
+//! Counters of buffers that grow, on their way to the host: copied behind a frame, mapped when it
+//! is submitted, looked at when they have arrived. One at a time: what frames need meanwhile, the
+//! next one that is counted needs too, or it is no longer needed.
 
 use crate::{
     error::{ExecuteError, scoped},
@@ -7,9 +8,9 @@ use crate::{
         memory::{Memory, bytes},
         physical::PingPong,
     },
+    signal::{Progress, Signal},
 };
 use skiagraph_graph::{Growth, Plan, ResourceId, ResourceKind};
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 /// Bytes of a counter.
 const COUNTER: u64 = 4;
@@ -21,14 +22,9 @@ pub(super) struct Watch {
     count: u64,
     growth: Growth,
     staging: wgpu::Buffer,
-    state: State,
-}
-
-enum State {
-    Idle,
-    /// Copied in a frame that was encoded.
-    Copied,
-    Mapping(Receiver<Result<(), wgpu::BufferAsyncError>>),
+    mapped: Signal,
+    /// Whether a counter is on its way.
+    is_asked: bool,
 }
 
 impl Watch {
@@ -53,7 +49,8 @@ impl Watch {
                 count,
                 growth,
                 staging,
-                state: State::Idle,
+                mapped: Signal::default(),
+                is_asked: false,
             }))
         };
         plan.growing().into_iter().filter_map(watch).collect()
@@ -64,7 +61,9 @@ impl Watch {
     pub fn take_over(watches: &mut [Self], before: Vec<Self>) {
         for old in before {
             if let Some(watch) = watches.iter_mut().find(|watch| watch.name == old.name) {
-                (watch.staging, watch.state) = (old.staging, old.state);
+                watch.staging = old.staging;
+                watch.mapped = old.mapped;
+                watch.is_asked = old.is_asked;
             }
         }
     }
@@ -78,7 +77,7 @@ impl Watch {
         encoder: &mut wgpu::CommandEncoder,
     ) {
         let counter = &self.growth.counter;
-        if !matches!(self.state, State::Idle) {
+        if self.is_asked {
             return;
         }
         let Ok(buffer) = memory.buffer(counter.id, ping_pong) else {
@@ -86,41 +85,26 @@ impl Watch {
         };
         let part = bytes(plan.resource(counter.id), &counter.part, buffer.size());
         encoder.copy_buffer_to_buffer(buffer, part.start, &self.staging, 0, COUNTER);
-        self.state = State::Copied;
-    }
-
-    /// Starts the mapping; the frame must have been submitted.
-    pub fn map(&mut self) {
-        if !matches!(self.state, State::Copied) {
-            return;
-        }
-        let (send, receive) = channel();
-        self.staging
-            .map_async(wgpu::MapMode::Read, .., move |result| {
-                // The receiver is gone if the executor was dropped meanwhile.
-                let _ = send.send(result);
-            });
-        self.state = State::Mapping(receive);
+        self.mapped
+            .when_mapped(&self.staging, wgpu::MapMode::Read, encoder);
+        self.is_asked = true;
     }
 
     /// Whether a counter is on its way.
-    pub fn is_mapping(&self) -> bool {
-        matches!(self.state, State::Mapping(_))
+    pub fn is_asked(&self) -> bool {
+        self.is_asked
     }
 
     /// How many items the buffer should have, if it has too few and the counter has arrived.
     pub fn wanted(&mut self) -> Option<u64> {
-        let State::Mapping(receiver) = &self.state else {
+        let progress = self.mapped.progress();
+        if !self.is_asked || progress == Progress::UnderWay {
             return None;
-        };
-        match receiver.try_recv() {
-            Err(TryRecvError::Empty) => return None,
-            Ok(Ok(())) => self.state = State::Idle,
-            // The device is lost: the next frame says so.
-            Ok(Err(_)) | Err(TryRecvError::Disconnected) => {
-                self.state = State::Idle;
-                return None;
-            }
+        }
+        self.is_asked = false;
+        // Else the frame was never submitted, or the device is lost, as the next frame says.
+        if progress != Progress::Done {
+            return None;
         }
         let mapped = self.staging.get_mapped_range(..).ok()?;
         let word: Option<[u8; 4]> = mapped.get(..4).and_then(|word| word.try_into().ok());

@@ -16,9 +16,11 @@ pub(crate) struct Pipeline {
 }
 
 /// Makes pipelines; every shader is compiled once.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Pipelines {
     modules: HashMap<String, (Arc<Shader>, wgpu::ShaderModule)>,
+    /// Of passes of the next plan, by name, those of their steps that another thread has made.
+    prepared: HashMap<String, Vec<Option<Pipeline>>>,
 }
 
 /// The vertex stage of a full-screen pass: one triangle over the whole target.
@@ -28,8 +30,41 @@ const FULLSCREEN: &str =
 }";
 
 impl Pipelines {
-    /// The pipeline of a step; copies and clears have none.
-    pub fn of(&mut self, device: &wgpu::Device, label: &str, step: &Step<Ids>) -> Option<Pipeline> {
+    /// Makes the pipelines of a pass for the plan that is put in next; `steps` are those that need
+    /// one.
+    pub fn prepare<'s>(
+        &mut self,
+        device: &wgpu::Device,
+        label: &str,
+        steps: impl Iterator<Item = Option<&'s Step<Ids>>>,
+    ) {
+        let made = steps.map(|step| self.make(device, label, step?)).collect();
+        self.prepared.insert(label.to_owned(), made);
+    }
+
+    /// Forgets what was made for a plan that is there now, or was refused.
+    pub fn forget_prepared(&mut self) {
+        self.prepared.clear();
+    }
+
+    /// The pipeline of a pass's step at `index`; copies and clears have none.
+    pub fn of(
+        &mut self,
+        device: &wgpu::Device,
+        label: &str,
+        (index, step): (usize, &Step<Ids>),
+    ) -> Option<Pipeline> {
+        let prepared = self
+            .prepared
+            .get_mut(label)
+            .and_then(|made| made.get_mut(index));
+        match prepared.and_then(Option::take) {
+            Some(made) => Some(made),
+            None => self.make(device, label, step),
+        }
+    }
+
+    fn make(&mut self, device: &wgpu::Device, label: &str, step: &Step<Ids>) -> Option<Pipeline> {
         let program = step.program()?;
         let module = self.module(device, &program.shader);
         let layouts = layouts(device, label, program);

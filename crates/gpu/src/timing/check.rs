@@ -65,7 +65,6 @@ pub fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, Execut
             executor.encode(&mut encoder, &frame)?;
             let start = Instant::now();
             queue.submit([encoder.finish()]);
-            executor.submitted()?;
             let report = executor.finish()?;
             let gpu = report
                 .timing

@@ -1,17 +1,13 @@
 //! Timestamps of frames: written, and read when the GPU has written them.
 
 use super::times::{FrameTiming, PassTiming};
-use crate::{error::ExecuteError, readback::CALLBACK};
-use std::{
-    sync::Arc,
-    time::{Duration, Instant},
-};
+use crate::error::ExecuteError;
+use std::{sync::Arc, time::Duration};
 use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
 
-/// Submitted frames whose times are kept until the host asks for them.
-const MOST_PENDING: usize = 3;
-
-/// Writes and reads the timestamps of frames.
+/// Writes and reads the timestamps of one frame after the other. Frames that are under way at once
+/// have a timer each: a profiler cannot tell the queries of two that were both not submitted yet,
+/// and of more than it was made for it drops some.
 pub(crate) struct Timer {
     profiler: GpuProfiler,
     /// One query that nobody reads. Mesa 22.3's lavapipe takes the begin timestamp of a compute
@@ -19,12 +15,8 @@ pub(crate) struct Timer {
     /// begins with a timestamp.
     spare: Option<wgpu::QuerySet>,
     period: f32,
-    /// Whether a frame was encoded that was not submitted yet.
-    is_open: bool,
-    /// Frames that were submitted and not taken.
-    pending: usize,
-    /// How long it is waited for their times.
-    timeout: Duration,
+    /// Whether the mapping of the frame's timestamps was started.
+    is_ended: bool,
 }
 
 impl Timer {
@@ -39,24 +31,19 @@ impl Timer {
                 count: 1,
             })
         });
+        let settings = GpuProfilerSettings {
+            enable_debug_groups: false,
+            max_num_pending_frames: 1,
+            ..GpuProfilerSettings::default()
+        };
+        let profiler = GpuProfiler::new(device, settings)
+            .map_err(|error| ExecuteError::Timing(error.to_string()))?;
         Ok(Self {
-            profiler: profiler(device)?,
+            profiler,
             spare,
             period: queue.get_timestamp_period(),
-            is_open: false,
-            pending: 0,
-            timeout: CALLBACK,
+            is_ended: false,
         })
-    }
-
-    /// To be called before a timed frame is encoded.
-    pub fn open(&mut self, device: &wgpu::Device) -> Result<(), ExecuteError> {
-        if std::mem::replace(&mut self.is_open, true) {
-            // The host never submitted the last one, whose queries would be taken for this one's.
-            self.profiler = profiler(device)?;
-            self.pending = 0;
-        }
-        Ok(())
     }
 
     pub fn profiler(&self) -> &GpuProfiler {
@@ -74,67 +61,53 @@ impl Timer {
         self.profiler.resolve_queries(encoder);
     }
 
-    pub fn submitted(&mut self) -> Result<(), ExecuteError> {
-        if !std::mem::take(&mut self.is_open) {
-            return Ok(());
+    /// Starts the mapping of the timestamps of a frame that was submitted; false if it was started
+    /// before.
+    pub fn end_frame(&mut self) -> Result<bool, ExecuteError> {
+        if self.is_ended {
+            return Ok(false);
         }
         self.profiler
             .end_frame()
             .map_err(|error| ExecuteError::Timing(error.to_string()))?;
-        // Of more frames the profiler drops the last but one.
-        self.pending = MOST_PENDING.min(self.pending + 1);
-        Ok(())
+        self.is_ended = true;
+        Ok(true)
     }
 
-    /// The frame's times, after the device was polled; `passes` are names and CPU times in order.
-    pub fn take(&mut self, passes: &[(Arc<str>, Duration)]) -> FrameTiming {
-        // A host that submitted several frames before it asks wants the last one.
-        let (mut results, began) = (Vec::new(), Instant::now());
-        while self.pending > 0 {
-            if let Some(frame) = self.profiler.process_finished_frame(self.period) {
-                results = frame;
-                self.pending -= 1;
-            } else if began.elapsed() < self.timeout {
-                // Another thread that polls the device may be about to say that they are there.
-                std::thread::yield_now();
-            } else {
-                // The profiler never gives up a frame that cannot be mapped, and hands out none
-                // after it.
-                self.timeout = Duration::ZERO;
-                results.clear();
-                break;
-            }
-        }
-        let first = Stretch::over(results.iter());
-        let of_pass = |(name, cpu): &(Arc<str>, Duration)| {
-            let stretch = Stretch::over(results.iter().filter(|query| query.label == **name));
-            let length = stretch.and_then(Stretch::length);
-            PassTiming {
-                name: name.to_string(),
-                begin: length.and(stretch).zip(first).and_then(|(pass, first)| {
-                    let offset = Stretch {
-                        begin: first.begin,
-                        end: pass.begin,
-                    };
-                    offset.length()
-                }),
-                gpu: length,
-                cpu: *cpu,
-            }
-        };
-        FrameTiming {
-            passes: passes.iter().map(of_pass).collect(),
-        }
+    /// The frame's times, if they are mapped; `passes` are names and CPU times in order. Then the
+    /// timer is free for another frame.
+    pub fn take(&mut self, passes: &[(Arc<str>, Duration)]) -> Option<FrameTiming> {
+        let results = self.profiler.process_finished_frame(self.period)?;
+        self.is_ended = false;
+        Some(times(passes, &results))
     }
 }
 
-fn profiler(device: &wgpu::Device) -> Result<GpuProfiler, ExecuteError> {
-    let settings = GpuProfilerSettings {
-        enable_debug_groups: false,
-        max_num_pending_frames: MOST_PENDING,
-        ..GpuProfilerSettings::default()
+/// Times of a frame; without results of its queries those of the CPU.
+pub(crate) fn times(
+    passes: &[(Arc<str>, Duration)],
+    results: &[GpuTimerQueryResult],
+) -> FrameTiming {
+    let first = Stretch::over(results.iter());
+    let of_pass = |(name, cpu): &(Arc<str>, Duration)| {
+        let stretch = Stretch::over(results.iter().filter(|query| query.label == **name));
+        let length = stretch.and_then(Stretch::length);
+        PassTiming {
+            name: name.to_string(),
+            begin: length.and(stretch).zip(first).and_then(|(pass, first)| {
+                let offset = Stretch {
+                    begin: first.begin,
+                    end: pass.begin,
+                };
+                offset.length()
+            }),
+            gpu: length,
+            cpu: *cpu,
+        }
     };
-    GpuProfiler::new(device, settings).map_err(|error| ExecuteError::Timing(error.to_string()))
+    FrameTiming {
+        passes: passes.iter().map(of_pass).collect(),
+    }
 }
 
 /// From the first begin to the last end of some queries, seconds of the GPU's clock.

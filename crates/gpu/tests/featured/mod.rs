@@ -59,14 +59,10 @@ impl Running {
             seconds,
             ..Frame::default()
         };
-        let finished = self
-            .0
-            .encode(&mut encoder, &frame)
-            .and_then(|()| {
-                GPU.queue.submit([encoder.finish()]);
-                self.0.submitted()
-            })
-            .and_then(|()| self.0.finish());
+        let finished = self.0.encode(&mut encoder, &frame).and_then(|_| {
+            GPU.queue.submit([encoder.finish()]);
+            self.0.finish()
+        });
         finished.unwrap_or_else(|error| panic!("{error}"))
     }
 

@@ -56,9 +56,6 @@ pub fn submit(executor: &mut Executor, frame: &Frame<'_>) -> FrameReport {
         .encode(&mut encoder, frame)
         .unwrap_or_else(|error| panic!("{error}"));
     GPU.queue.submit([encoder.finish()]);
-    executor
-        .submitted()
-        .unwrap_or_else(|error| panic!("{error}"));
     executor.finish().unwrap_or_else(|error| panic!("{error}"))
 }
 

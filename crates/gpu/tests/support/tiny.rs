@@ -122,9 +122,6 @@ pub fn frame(executor: &mut Executor, timing: bool, read: &[&str]) -> FrameRepor
         .encode(&mut encoder, &frame)
         .unwrap_or_else(|error| panic!("{error}"));
     GPU.queue.submit([encoder.finish()]);
-    executor
-        .submitted()
-        .unwrap_or_else(|error| panic!("{error}"));
     executor.finish().unwrap_or_else(|error| panic!("{error}"))
 }
 

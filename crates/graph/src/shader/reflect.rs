@@ -33,7 +33,8 @@ pub struct Shader {
 /// Shaders of one text are one.
 impl PartialEq for Shader {
     fn eq(&self, other: &Self) -> bool {
-        self.source.text == other.source.text
+        // Most often it is the very same one, of a plan made again of one graph.
+        std::ptr::eq(self, other) || self.source.text == other.source.text
     }
 }
 

@@ -1,0 +1,294 @@
+//! Bringing outputs back to the host: asked for per frame, copied behind the frame, mapped when the
+//! host submits it.
+
+use crate::{
+    error::{ExecuteError, scoped},
+    memory::{
+        allocation::extent,
+        memory::{Memory, bytes as byte_range},
+        physical::PingPong,
+    },
+    readback::{Content, Readback},
+    signal::{Progress, Signal},
+};
+use skiagraph_graph::{Plan, Resource, ResourceKind, Target, Texture};
+use std::{ops::Range, sync::Arc};
+
+/// An output or capture of a plan, and how it is copied.
+#[derive(Debug)]
+pub(super) struct Readable {
+    name: String,
+    target: Target,
+    /// Of a texture.
+    mips: Vec<MipCopy>,
+}
+
+/// A mip of what is copied, with all layers of it that are read back.
+#[derive(Debug)]
+struct MipCopy {
+    mip: u32,
+    layer: u32,
+    size: wgpu::Extent3d,
+    /// Bytes of a row in the staging buffer.
+    row: u32,
+    /// Where it stands in the staging buffer.
+    offset: u64,
+}
+
+impl MipCopy {
+    fn bytes(&self) -> u64 {
+        let [height, layers] = [self.size.height, self.size.depth_or_array_layers].map(u64::from);
+        u64::from(self.row) * height * layers
+    }
+}
+
+impl Readable {
+    /// Those of a plan.
+    pub fn all(plan: &Plan) -> Vec<Arc<Self>> {
+        let readable = |(name, target): &(String, Target)| {
+            let mips = match &plan.resource(target.id).kind {
+                ResourceKind::Texture(texture) => mips(texture, target),
+                _ => Vec::new(),
+            };
+            Arc::new(Self {
+                name: name.clone(),
+                target: target.clone(),
+                mips,
+            })
+        };
+        plan.readable().iter().map(readable).collect()
+    }
+
+    fn source(
+        &self,
+        resource: &Resource,
+        memory: &Memory,
+        ping_pong: &PingPong,
+    ) -> Result<Source, ExecuteError> {
+        // What the graph made can be copied from; what the host made may not.
+        let refuse = |usage: &'static str| ExecuteError::NotReadable {
+            name: self.name.clone(),
+            usage,
+        };
+        let id = self.target.id;
+        if let ResourceKind::Texture(_) = &resource.kind {
+            let texture = memory.texture(id, ping_pong)?.clone();
+            if !texture.usage().contains(wgpu::TextureUsages::COPY_SRC) {
+                return Err(refuse("TextureUsages::COPY_SRC"));
+            }
+            return Ok(Source::Texture(texture));
+        }
+        let buffer = memory.buffer(id, ping_pong)?.clone();
+        if !buffer.usage().contains(wgpu::BufferUsages::COPY_SRC) {
+            return Err(refuse("BufferUsages::COPY_SRC"));
+        }
+        let bytes = byte_range(resource, &self.target.part, buffer.size());
+        Ok(Source::Buffer(buffer, bytes))
+    }
+}
+
+/// What is read back.
+enum Source {
+    Texture(wgpu::Texture),
+    /// Of a buffer these bytes.
+    Buffer(wgpu::Buffer, Range<u64>),
+}
+
+/// A readback under way.
+pub(super) struct Fetch {
+    readable: Arc<Readable>,
+    source: Source,
+    staging: Staging,
+}
+
+/// A buffer that contents come back in.
+struct Staging {
+    buffer: wgpu::Buffer,
+    mapped: Signal,
+}
+
+/// Staging buffers that wait for their next use.
+#[derive(Default)]
+pub(super) struct StagingPool(Vec<Staging>);
+
+impl StagingPool {
+    fn take(&mut self, size: u64) -> Option<Staging> {
+        let spare = self
+            .0
+            .iter()
+            .position(|spare| spare.buffer.size() == size)?;
+        Some(self.0.swap_remove(spare))
+    }
+
+    /// Gives up what another plan may have no use for.
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+}
+
+impl Fetch {
+    /// Takes a staging buffer for an output or capture, or makes one.
+    pub fn new(
+        name: &str,
+        readable: &[Arc<Readable>],
+        (plan, memory, ping_pong): (&Plan, &Memory, &PingPong),
+        pool: &mut StagingPool,
+        device: &wgpu::Device,
+    ) -> Result<Self, ExecuteError> {
+        let Some(readable) = readable.iter().find(|known| known.name == name) else {
+            let known: Vec<&str> = readable.iter().map(|known| known.name.as_str()).collect();
+            return Err(ExecuteError::NoSuchOutput {
+                name: name.to_owned(),
+                known: known.join(", "),
+            });
+        };
+        let source = readable.source(plan.resource(readable.target.id), memory, ping_pong)?;
+        let size = match &source {
+            Source::Texture(_) => readable.mips.iter().map(MipCopy::bytes).sum(),
+            Source::Buffer(_, bytes) => copied(bytes).end - copied(bytes).start,
+        };
+        let make = || {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("readback"),
+                size,
+                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let staging = match pool.take(size) {
+            Some(spare) => spare,
+            None => Staging {
+                buffer: scoped(device, name, make)?,
+                mapped: Signal::default(),
+            },
+        };
+        Ok(Self {
+            readable: readable.clone(),
+            source,
+            staging,
+        })
+    }
+
+    /// Encodes the copy into the staging buffer, which is mapped when the encoder is submitted.
+    pub fn copy(&self, encoder: &mut wgpu::CommandEncoder) {
+        let Staging { buffer, mapped } = &self.staging;
+        match &self.source {
+            Source::Texture(texture) => {
+                for copy in &self.readable.mips {
+                    copy_mip(copy, texture, buffer, encoder);
+                }
+            }
+            Source::Buffer(source, bytes) => {
+                let Range { start, end } = copied(bytes);
+                encoder.copy_buffer_to_buffer(source, start, buffer, 0, end - start);
+            }
+        }
+        mapped.when_mapped(buffer, wgpu::MapMode::Read, encoder);
+    }
+
+    /// The content, after the frame is done.
+    pub fn take(self, pool: &mut StagingPool) -> Result<Readback, ExecuteError> {
+        let Self {
+            readable,
+            source,
+            staging,
+        } = self;
+        let failed = || ExecuteError::Readback {
+            name: readable.name.clone(),
+        };
+        if staging.mapped.progress() != Progress::Done {
+            return Err(failed());
+        }
+        let mapped = staging.buffer.get_mapped_range(..).map_err(|_| failed())?;
+        let content = match source {
+            Source::Texture(texture) => unpadded(texture.format(), &readable.mips, &mapped),
+            Source::Buffer(_, asked) => {
+                let start = (asked.start - copied(&asked).start) as usize;
+                let length = (asked.end - asked.start) as usize;
+                Content::Buffer(mapped[start..][..length].to_vec())
+            }
+        };
+        drop(mapped);
+        staging.buffer.unmap();
+        pool.0.push(staging);
+        Ok(Readback {
+            name: readable.name.clone(),
+            content,
+        })
+    }
+
+    /// Gives the staging buffer of a frame back that was never submitted.
+    pub fn give_up(self, pool: &mut StagingPool) {
+        pool.0.push(self.staging);
+    }
+}
+
+fn copy_mip(
+    copy: &MipCopy,
+    texture: &wgpu::Texture,
+    staging: &wgpu::Buffer,
+    encoder: &mut wgpu::CommandEncoder,
+) {
+    let mut source = texture.as_image_copy();
+    source.mip_level = copy.mip;
+    source.origin.z = copy.layer;
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: copy.offset,
+        bytes_per_row: Some(copy.row),
+        rows_per_image: Some(copy.size.height),
+    };
+    let target = wgpu::TexelCopyBufferInfo {
+        buffer: staging,
+        layout,
+    };
+    encoder.copy_texture_to_buffer(source, target, copy.size);
+}
+
+/// The bytes that are copied for those that are asked for: items may be smaller than what can be
+/// copied.
+fn copied(bytes: &Range<u64>) -> Range<u64> {
+    let least = wgpu::COPY_BUFFER_ALIGNMENT;
+    bytes.start / least * least..bytes.end.next_multiple_of(least)
+}
+
+/// The mips of a part of a texture in a staging buffer.
+fn mips(texture: &Texture, target: &Target) -> Vec<MipCopy> {
+    let texel = texture.format.block_copy_size(None).unwrap_or(4);
+    let layers = &target.part.layers;
+    let mut offset = 0;
+    let mip = |mip: u32| {
+        let until = layers.end.min(texture.mip_layers(mip));
+        let size = extent(texture, mip, until.saturating_sub(layers.start));
+        let row = (size.width * texel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let copy = MipCopy {
+            mip,
+            layer: layers.start,
+            size,
+            row,
+            offset,
+        };
+        offset += copy.bytes();
+        copy
+    };
+    target.part.mips.clone().map(mip).collect()
+}
+
+/// What stands in a staging buffer, without the padding between rows.
+fn unpadded(format: wgpu::TextureFormat, mips: &[MipCopy], staging: &[u8]) -> Content {
+    let texel = format.block_copy_size(None).unwrap_or(4);
+    let (mut parts, mut bytes) = (Vec::new(), Vec::new());
+    for copy in mips {
+        let rows = staging[copy.offset as usize..].chunks(copy.row as usize);
+        let count = copy.size.height * copy.size.depth_or_array_layers;
+        let tight = (copy.size.width * texel) as usize;
+        rows.take(count as usize)
+            .for_each(|row| bytes.extend_from_slice(&row[..tight]));
+        let part = [copy.size.width, copy.size.height];
+        parts.extend((0..copy.size.depth_or_array_layers).map(|_| part));
+    }
+    Content::Texture {
+        format,
+        parts,
+        bytes,
+    }
+}

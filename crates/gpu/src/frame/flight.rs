@@ -1,0 +1,172 @@
+//! Frames between their encoding and their report. Any number may be under way; each has its own
+//! readbacks, its own times and its own copy of the uniform `frame`.
+
+use super::{
+    fetch::{Fetch, StagingPool},
+    report::FrameReport,
+    uniform::FrameUniform,
+};
+use crate::{
+    error::{ExecuteError, check_device_lost, poll},
+    signal::{Progress, Signal},
+    timing::{
+        timer::{Timer, times},
+        times::FrameTiming,
+    },
+};
+use std::{collections::VecDeque, sync::Arc, time::Duration};
+
+/// A frame that was encoded, with what was asked of it.
+#[derive(Default)]
+pub(super) struct Flight {
+    pub index: u32,
+    done: Signal,
+    /// Of a frame that is timed, and kept for the next one that is.
+    pub timer: Option<Timer>,
+    pub is_timed: bool,
+    /// If it is timed: the passes that run, with the time that encoding them took. Names, because
+    /// the next plan may have other passes.
+    pub cpu: Vec<(Arc<str>, Duration)>,
+    pub skipped: Vec<Arc<str>>,
+    pub fetches: Vec<Fetch>,
+    /// Kept like the timer.
+    pub uniform: Option<FrameUniform>,
+}
+
+/// The frames that are under way, and what is left of earlier ones for the next.
+#[derive(Default)]
+pub(super) struct Flights {
+    under_way: VecDeque<Flight>,
+    spare: Vec<Flight>,
+    pub staging: StagingPool,
+}
+
+impl Flight {
+    fn is_asked(&self) -> bool {
+        self.is_timed || !self.fetches.is_empty()
+    }
+
+    /// Starts the mapping of its timestamps, once the GPU is done with it, and takes them; `None`
+    /// if another thread that polls the device is about to say that they are there.
+    fn times(&mut self, device: &wgpu::Device) -> Result<Option<FrameTiming>, ExecuteError> {
+        let Some(timer) = &mut self.timer else {
+            return Ok(Some(times(&self.cpu, &[])));
+        };
+        if timer.end_frame()? {
+            poll(device, wgpu::PollType::Poll)?;
+        }
+        Ok(timer.take(&self.cpu))
+    }
+}
+
+impl Flights {
+    /// The frames that bring a report.
+    pub fn asked(&self) -> usize {
+        self.under_way
+            .iter()
+            .filter(|flight| flight.is_asked())
+            .count()
+    }
+
+    /// A frame to fill, out of what an earlier one has left.
+    pub fn begin(&mut self) -> Flight {
+        self.sweep();
+        self.spare.pop().unwrap_or_default()
+    }
+
+    /// Takes in a frame all of which is encoded.
+    pub fn enter(&mut self, flight: Flight, encoder: &wgpu::CommandEncoder) {
+        flight.done.when_done(encoder);
+        self.under_way.push_back(flight);
+    }
+
+    /// Keeps what the next frame can use of one that is over, or was never encoded.
+    pub fn put_aside(&mut self, mut flight: Flight) {
+        for fetch in flight.fetches.drain(..) {
+            fetch.give_up(&mut self.staging);
+        }
+        flight.cpu.clear();
+        flight.skipped.clear();
+        flight.is_timed = false;
+        self.spare.push(flight);
+    }
+
+    /// Puts aside the frames that are over and of which nothing was asked.
+    fn sweep(&mut self) {
+        let mut at = 0;
+        while let Some(flight) = self.under_way.get(at) {
+            if flight.is_asked() || flight.done.progress() == Progress::UnderWay {
+                at += 1;
+            } else if let Some(over) = self.under_way.remove(at) {
+                self.put_aside(over);
+            }
+        }
+    }
+
+    /// The report of the oldest frame that brings one, if it is done. Frames that were never
+    /// submitted bring none.
+    pub fn report(&mut self, device: &wgpu::Device) -> Result<Option<FrameReport>, ExecuteError> {
+        self.sweep();
+        while let Some(mut flight) = self.under_way.pop_front() {
+            match flight.done.progress() {
+                Progress::UnderWay => {
+                    self.under_way.push_front(flight);
+                    // Nobody says that what was under way on a lost device will not come.
+                    check_device_lost(device)?;
+                    return Ok(None);
+                }
+                Progress::Done => {}
+                Progress::Failed | Progress::Dropped => {
+                    // What was written into its queries is for nobody.
+                    flight.timer = None;
+                    self.put_aside(flight);
+                    check_device_lost(device)?;
+                    continue;
+                }
+            }
+            let timing = match flight.is_timed {
+                true => match flight.times(device) {
+                    Ok(Some(timing)) => Some(timing),
+                    Ok(None) => {
+                        self.under_way.push_front(flight);
+                        return Ok(None);
+                    }
+                    Err(error) => {
+                        flight.timer = None;
+                        self.put_aside(flight);
+                        return Err(error);
+                    }
+                },
+                false => None,
+            };
+            let fetched: Result<Vec<_>, _> = flight
+                .fetches
+                .drain(..)
+                .map(|fetch| fetch.take(&mut self.staging))
+                .collect();
+            let report = fetched.map(|readbacks| FrameReport {
+                index: flight.index,
+                timing,
+                skipped: names(&flight.skipped),
+                readbacks,
+            });
+            self.put_aside(flight);
+            if report.is_err() {
+                check_device_lost(device)?;
+            }
+            return report.map(Some);
+        }
+        Ok(None)
+    }
+
+    /// Takes no GPU times of the oldest frame: they have not come although the GPU is done.
+    pub fn give_up_times(&mut self) {
+        if let Some(flight) = self.under_way.iter_mut().find(|flight| flight.is_asked()) {
+            flight.timer = None;
+        }
+    }
+}
+
+pub(super) fn names(names: &[Arc<str>]) -> Vec<String> {
+    names.iter().map(|name| name.to_string()).collect()
+}

@@ -1,0 +1,100 @@
+//! The next graph, made ready on another thread: its shader modules and pipelines, which take most
+//! of the time. What stands on the memory that there is comes when it is put in.
+
+use super::{executor::Executor, replan::ReplanReport};
+use crate::{
+    error::{ExecuteError, check_device_lost, named, scoped},
+    pipelines::pipelines::{Pipelines, same_pipeline},
+    provider::Provider,
+};
+use skiagraph_graph::{Ids, Plan, step::Step};
+use std::collections::HashMap;
+
+/// What an executor has, as far as its next graph can use it: of [`Executor::preparer`], for
+/// another thread.
+pub struct Preparer {
+    device: wgpu::Device,
+    pipelines: Pipelines,
+    /// The steps of the passes that there are, which have pipelines.
+    known: HashMap<String, Vec<Step<Ids>>>,
+}
+
+/// A plan with its pipelines, for [`Executor::replace`].
+pub struct Prepared {
+    plan: Plan,
+    pipelines: Pipelines,
+}
+
+impl Preparer {
+    /// Makes the shader modules and pipelines of a plan that the executor does not have yet.
+    ///
+    /// # Errors
+    /// What the device refuses, with the pass and its place, or that it is lost.
+    pub fn prepare(self, plan: Plan) -> Result<Prepared, ExecuteError> {
+        let Self {
+            device,
+            mut pipelines,
+            known,
+        } = self;
+        check_device_lost(&device)?;
+        for pass in plan.live() {
+            let old = known.get(pass.name.as_str());
+            let is_new = |(at, step): (usize, _)| {
+                let before = old.and_then(|old| old.get(at));
+                let serves = before.is_some_and(|before| same_pipeline(before, step));
+                (!serves).then_some(step)
+            };
+            let steps = pass.steps.iter().enumerate().map(is_new);
+            scoped(&device, &pass.name, || {
+                pipelines.prepare(&device, &pass.name, steps);
+            })
+            .map_err(|error| named(error, &pass.name, &pass.name.span.to_string()))?;
+        }
+        Ok(Prepared { plan, pipelines })
+    }
+}
+
+impl Executor {
+    /// What another thread needs to [`prepare`](Preparer::prepare) the next graph while this one
+    /// is drawn.
+    pub fn preparer(&self) -> Preparer {
+        let steps =
+            |pass: &skiagraph_graph::LinkedPass| (pass.name.value.clone(), pass.steps.clone());
+        Preparer {
+            device: self.device.clone(),
+            pipelines: self.pipelines.clone(),
+            known: self.plan().live().map(steps).collect(),
+        }
+    }
+
+    /// [`replace_graph`](Self::replace_graph) with a plan whose pipelines are there. What the plan
+    /// has changed since the [`preparer`](Self::preparer) was taken is made now.
+    ///
+    /// # Errors
+    /// Those of [`replace_graph`](Self::replace_graph). The executor is as it was then.
+    pub fn replace(
+        &mut self,
+        prepared: Prepared,
+        provider: &mut dyn Provider,
+    ) -> Result<ReplanReport, ExecuteError> {
+        let Prepared { plan, pipelines } = prepared;
+        self.pipelines = pipelines;
+        let report = self.replace_graph(plan, provider);
+        self.pipelines.forget_prepared();
+        report
+    }
+}
+
+impl std::fmt::Debug for Preparer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Preparer").finish_non_exhaustive()
+    }
+}
+
+impl std::fmt::Debug for Prepared {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Prepared")
+            .field("plan", &self.plan)
+            .finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,182 @@
+//! A plan with what was made for it on a device.
+
+use super::{
+    contents::{Contents, HostCopy},
+    encode::encode_all,
+    fetch::Readable,
+    flight::Flight,
+    pass::GpuPass,
+    poison::Poison,
+    watch::Watch,
+};
+use crate::{
+    error::{ExecuteError, with_table},
+    memory::{
+        memory::{Maker, Memory},
+        physical::PingPong,
+    },
+    pipelines::pipelines::Pipelines,
+};
+use skiagraph_graph::{Origin, Plan, ResourceId, ResourceKind};
+use std::{sync::Arc, time::Instant};
+
+/// A plan and what was made for it; another plan has another one.
+pub(super) struct State {
+    pub plan: Plan,
+    pub memory: Memory,
+    /// The passes of the schedule.
+    pub passes: Vec<GpuPass>,
+    pub contents: Contents,
+    pub poison: Option<Poison>,
+    /// Buffers that may grow.
+    pub watches: Vec<Watch>,
+    /// What can be read back.
+    pub readables: Vec<Arc<Readable>>,
+    /// The uniform `frame`, if a live pass reads it.
+    pub uniform: Option<ResourceId>,
+}
+
+/// What a frame does: made anew for each, in the same memory.
+#[derive(Default)]
+pub(super) struct Turn {
+    /// Of each pass of the schedule.
+    pub runs: Vec<bool>,
+    pub ping_pong: PingPong,
+}
+
+impl State {
+    pub fn new(
+        plan: Plan,
+        pipelines: &mut Pipelines,
+        maker: &mut Maker<'_>,
+    ) -> Result<Self, ExecuteError> {
+        let refused = |error| with_table(error, &plan);
+        let memory = Memory::new(&plan, None, maker).map_err(refused)?;
+        let passes = (0..plan.schedule().passes.len())
+            .map(|at| GpuPass::new(&plan, at, None, pipelines, maker.device))
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(refused)?;
+        Ok(Self {
+            poison: Poison::new(&plan, &memory, maker.device).map_err(refused)?,
+            watches: Watch::all(&plan, maker.device).map_err(refused)?,
+            readables: Readable::all(&plan),
+            uniform: frame_uniform(&plan),
+            contents: Contents::of(&plan, 0),
+            memory,
+            passes,
+            plan,
+        })
+    }
+
+    /// Whose turn it is in a frame in which every pass runs, or none.
+    pub fn ping_pong(&self, runs: bool) -> PingPong {
+        let mut turn = PingPong::new();
+        let runs = vec![runs; self.passes.len()];
+        self.contents.ping_pong(&self.plan, &runs, &mut turn);
+        turn
+    }
+
+    /// The resource of a name that a live pass uses.
+    pub fn live(&self, name: &str) -> Option<ResourceId> {
+        let mut live = self.plan.schedule().lifetimes.keys();
+        live.find(|id| self.plan.resource(**id).name == name)
+            .copied()
+    }
+
+    /// Forgets what the passes that use a resource have bound.
+    pub fn unbind(&mut self, id: ResourceId) {
+        for (pass, made) in self.plan.live().zip(&mut self.passes) {
+            if pass.accesses.iter().any(|access| access.resource == id) {
+                made.unbind();
+            }
+        }
+    }
+
+    /// Binds the passes that run and are not bound for this state of the ping-pong.
+    pub fn bind(
+        &mut self,
+        runs: &[bool],
+        ping_pong: &PingPong,
+        device: &wgpu::Device,
+    ) -> Result<(), ExecuteError> {
+        for (at, made) in self.passes.iter_mut().enumerate() {
+            if !runs[at] || made.is_bound(ping_pong) {
+                continue;
+            }
+            if let Some(name) = missing_import(&self.plan, &self.memory, at) {
+                let pass = &self.plan.pass(self.plan.schedule().passes[at]).name;
+                return Err(ExecuteError::NotImported {
+                    name,
+                    pass: pass.value.clone(),
+                    place: pass.span.to_string(),
+                });
+            }
+            made.bind(&self.plan, at, &self.memory, ping_pong, device)?;
+        }
+        Ok(())
+    }
+
+    /// Binds every pass whose imports are there, as a frame in which all run will need it.
+    pub fn bind_what_can_be(&mut self, device: &wgpu::Device) -> Result<(), ExecuteError> {
+        let ready: Vec<bool> = (0..self.passes.len())
+            .map(|at| missing_import(&self.plan, &self.memory, at).is_none())
+            .collect();
+        self.bind(&ready, &self.ping_pong(true), device)
+    }
+
+    /// Decides which passes run in the next frame, and whose turn it is then.
+    pub fn decide(&mut self, all: bool, Turn { runs, ping_pong }: &mut Turn) {
+        // Its content is another one in every frame.
+        if let Some(uniform) = self.uniform {
+            self.contents.touch(uniform);
+        }
+        self.contents.running(&self.plan, &self.passes, all, runs);
+        self.contents.ping_pong(&self.plan, runs, ping_pong);
+    }
+
+    /// Encodes the passes that run; the others are `skipped`. Of a timed flight it takes the times.
+    pub fn encode(&self, turn: &Turn, flight: &mut Flight, encoder: &mut wgpu::CommandEncoder) {
+        let timer = flight.timer.as_ref().filter(|_| flight.is_timed);
+        for (at, pass) in self.passes.iter().enumerate() {
+            if !turn.runs[at] {
+                flight.skipped.push(pass.name.clone());
+                continue;
+            }
+            let start = timer.map(|_| Instant::now());
+            if let Some(poison) = &self.poison {
+                poison.fill(at, &turn.ping_pong, encoder);
+            }
+            let steps = pass.steps(&turn.ping_pong).unwrap_or_default();
+            encode_all(steps, &pass.name, encoder, timer);
+            if let Some(start) = start {
+                flight.cpu.push((pass.name.clone(), start.elapsed()));
+            }
+        }
+    }
+
+    /// Copies what the host provides to where the next frame finds it as it was in this one.
+    pub fn copy_host(memory: &Memory, (base, copy): HostCopy, encoder: &mut wgpu::CommandEncoder) {
+        let none = PingPong::new();
+        let buffers = [base, copy].map(|id| memory.buffer(id, &none));
+        if let [Ok(base), Ok(copy)] = buffers {
+            encoder.copy_buffer_to_buffer(base, 0, copy, 0, base.size().min(copy.size()));
+        }
+    }
+}
+
+/// The uniform `frame`, if a live pass reads it.
+pub(super) fn frame_uniform(plan: &Plan) -> Option<ResourceId> {
+    let mut live = plan.schedule().lifetimes.keys();
+    let is_frame = |id: &&ResourceId| matches!(plan.resource(**id).kind, ResourceKind::Frame);
+    live.find(is_frame).copied()
+}
+
+/// An import that a pass uses and the host has not handed over.
+fn missing_import(plan: &Plan, memory: &Memory, at: usize) -> Option<String> {
+    let mut accesses = plan.pass(plan.schedule().passes[at]).accesses.iter();
+    let missing = accesses.find(|access| {
+        plan.resource(access.resource).origin == Origin::Host
+            && memory.host(access.resource).is_none()
+    })?;
+    Some(plan.resource(missing.resource).name.clone())
+}

@@ -1,0 +1,63 @@
+//! The uniform `frame`: number and time. The host may encode several frames before it submits the
+//! first, so each frame under way has a copy of its own, from which the uniform is written in the
+//! frame's own commands.
+
+use crate::{
+    error::{ExecuteError, scoped},
+    signal::{Progress, Signal},
+};
+use skiagraph_graph::FRAME_BYTES;
+
+/// What the uniform is copied from.
+pub(super) struct FrameUniform {
+    staging: wgpu::Buffer,
+    /// Whether it is mapped again, after the frame that it was last written for.
+    mapped: Signal,
+}
+
+impl FrameUniform {
+    fn new(device: &wgpu::Device) -> Result<Self, ExecuteError> {
+        let staging = scoped(device, "frame", || {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("frame"),
+                size: FRAME_BYTES,
+                usage: wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: true,
+            })
+        })?;
+        Ok(Self {
+            staging,
+            mapped: Signal::default(),
+        })
+    }
+
+    /// Writes number and time into the copy of a frame that is over, or into a new one.
+    pub fn write(
+        used: &mut Option<Self>,
+        (index, seconds): (u32, f32),
+        device: &wgpu::Device,
+    ) -> Result<(), ExecuteError> {
+        let is_mapped = |it: &Self| it.mapped.progress() == Progress::Done;
+        let uniform = match used.take().filter(is_mapped) {
+            Some(uniform) => uniform,
+            None => Self::new(device)?,
+        };
+        let mut bytes = [0; FRAME_BYTES as usize];
+        bytes[..4].copy_from_slice(&index.to_ne_bytes());
+        bytes[4..8].copy_from_slice(&seconds.to_ne_bytes());
+        match uniform.staging.get_mapped_range_mut(..) {
+            Ok(mut mapped) => mapped.copy_from_slice(&bytes),
+            Err(_) => return Err(ExecuteError::Internal("the uniform `frame` was not mapped")),
+        }
+        *used = Some(uniform);
+        Ok(())
+    }
+
+    /// Encodes the copy into the uniform.
+    pub fn copy(&mut self, uniform: &wgpu::Buffer, encoder: &mut wgpu::CommandEncoder) {
+        self.staging.unmap();
+        encoder.copy_buffer_to_buffer(&self.staging, 0, uniform, 0, FRAME_BYTES);
+        self.mapped
+            .when_mapped(&self.staging, wgpu::MapMode::Write, encoder);
+    }
+}

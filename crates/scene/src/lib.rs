@@ -46,7 +46,7 @@ pub use mesh::{Group, Mesh};
 pub use movable::Movable;
 pub use obj::{Concave, ObjMaterials, ObjOptions, QuadDiagonal, load_obj};
 pub use parts::Parts;
-pub use path::{CameraKey, CameraPath};
+pub use path::{CameraKey, CameraPath, LightKey};
 pub use pattern::Pattern;
 pub use report::ImportReport;
 pub use scene::Scene;

@@ -77,9 +77,11 @@ fn compare(gpu: &Gpu) {
                 // Whoever comes first finds other caches.
                 for way in (0..3).map(|way| (first + way) % 3) {
                     let time = frame(gpu, |encoder| match way {
-                        0 => executor
-                            .encode(encoder, &Frame::default())
-                            .expect("the chain was encoded before"),
+                        0 => drop(
+                            executor
+                                .encode(encoder, &Frame::default())
+                                .expect("the chain was encoded before"),
+                        ),
                         1 => by_hand.encode(encoder, false),
                         _ => by_hand.encode(encoder, true),
                     });

@@ -6,7 +6,7 @@ mod support;
 use glam::{DVec2, DVec3, Vec3};
 use skiagraph_gpu::{Content, Provider};
 use skiagraph_graph::{Capture, Describe, ParamValue, PlanRequest, Provided};
-use skiagraph_passes::{SceneProvider, provider::LIGHT, uniforms::LightUniform};
+use skiagraph_passes::{SceneProvider, names::LIGHT, uniforms::LightUniform};
 use skiagraph_reference::{Oracle, OracleMode, Progress, Statistics};
 use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
 use skiagraph_tests::cpu_reference::LightSpace;

@@ -297,7 +297,10 @@ fn only_a_traced_graph_builds_a_hierarchy() {
         );
         run(plan, &mut provider, &[]);
         assert_eq!(
-            provider.built().iter().any(|name| name.contains("bvh")),
+            provider
+                .built()
+                .iter()
+                .any(|built| built.name.contains("bvh")),
             traces,
             "{preset}: {:?}",
             provider.built()
@@ -355,13 +358,6 @@ fn two_graphs_share_what_the_provider_built() {
         .map(|plan| Executor::new(&gpu.device, &gpu.queue, plan, &mut provider).unwrap())
         .collect();
     assert_eq!(executors.len(), 2);
-    let mut built = provider.built().to_vec();
-    built.sort_unstable();
-    built.dedup();
-    assert_eq!(
-        built.len(),
-        provider.built().len(),
-        "{:?}",
-        provider.built()
-    );
+    let again = provider.built().iter().find(|built| built.times > 1);
+    assert_eq!(again, None);
 }

@@ -88,6 +88,31 @@ fn every_frame_is_judged_and_exact_methods_do_not_shimmer() {
 }
 
 #[test]
+fn a_moving_light_is_followed_by_what_is_kept_and_by_the_reference() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "compare rt light_buffer nsm --path sunrise --size 64x64 --map-size 128 --warmup 1 \
+                --images none --out out";
+    let (runs, _) = results(folder.path(), line);
+    for run in &runs {
+        let frames = run["sequence"]["frames"].as_array().unwrap();
+        assert_eq!(frames.len(), 17);
+        let facing: Vec<u64> = frames.iter().map(|it| count(&it["facing_light"])).collect();
+        assert!(facing[0] > 500 && facing[0] != facing[14], "{facing:?}");
+        if run["preset"] != "nsm" {
+            let wrong = frames.iter().map(|it| count(&it["wrong_outside_band"]));
+            assert_eq!(wrong.sum::<u64>(), 0, "{}", run["preset"]);
+            continue;
+        }
+        // The map is drawn while the light moves, and kept in the two frames in which it stands.
+        for (index, frame) in frames.iter().enumerate() {
+            let skipped = frame["skipped"].to_string();
+            let is_kept = skipped.contains("create_shadow_map.draw");
+            assert_eq!(is_kept, index == 0 || index > 14, "{index}: {skipped}");
+        }
+    }
+}
+
+#[test]
 fn a_path_that_is_not_there_is_refused_with_those_that_are() {
     let folder = tempfile::tempdir().unwrap();
     let refused = |line: &str| {
@@ -98,7 +123,7 @@ fn a_path_that_is_not_there_is_refused_with_those_that_are() {
     let unknown = refused("compare nsm --path wlak");
     assert!(
         unknown.contains("`park` has no path `wlak`; did you mean `walk`?")
-            && unknown.contains("paths: walk, or all of them: all"),
+            && unknown.contains("paths: walk, sunrise, or all of them: all"),
         "{unknown}"
     );
     let none = refused("compare nsm --scene city:20000 --path walk");

@@ -52,6 +52,18 @@ pub enum Error {
         /// Number of positions.
         corners: usize,
     },
+    /// Places or normals that do not fit the mesh.
+    #[error(
+        "a deformed mesh has {} positions and {} normals, all finite, as before; given were {} and \
+         {}: for another mesh there is `set_mesh`",
+        expected[0], expected[1], given[0], given[1]
+    )]
+    Deformed {
+        /// Positions and normals of the mesh.
+        expected: [usize; 2],
+        /// Those that were given.
+        given: [usize; 2],
+    },
     /// The device cannot bind a buffer of that size.
     #[error("`{name}` needs a buffer of {bytes} bytes, but the device binds at most {limit}")]
     TooLarge {

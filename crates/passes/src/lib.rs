@@ -30,14 +30,18 @@
 //! ```
 
 pub mod atlas;
+pub mod built;
 pub mod error;
+mod hierarchies;
 mod lights;
+pub mod names;
 pub mod presets;
 pub mod provider;
 mod ray_query;
 pub mod trace;
 pub mod uniforms;
 
+pub use built::{Built, How};
 pub use error::Error;
 pub use presets::{EmbeddedSources, Preset, presets, registry};
 pub use provider::SceneProvider;

@@ -2,67 +2,27 @@
 
 use crate::{
     atlas::Atlas,
+    built::{Built, How},
     error::Error,
-    lights, ray_query,
+    hierarchies::{Hierarchies, Words},
+    lights,
+    names::*,
+    ray_query,
     uniforms::{CameraUniform, LightAreaUniform, LightUniform},
 };
+use glam::{DAffine3, Vec3};
 use skiagraph_gpu::{Provider, ProviderError};
-use skiagraph_graph::{Describe, Provided, ProvidedBinding};
+use skiagraph_graph::{Describe, Plan, Provided, ProvidedBinding};
 use skiagraph_scene::{
-    Adjacency, Bvh, BvhNode, LightKind, LightSpace, LightSpaceNode, Scene, View,
+    Adjacency, BvhNode, Camera, LightKind, LightSpace, LightSpaceNode, Mesh, Movable, Scene, View,
     packed_masks::mask_words,
 };
-use std::{collections::BTreeMap, sync::Arc};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+    time::Instant,
+};
 use wgpu::util::DeviceExt;
-
-const POSITIONS: &str = "scene.positions";
-const INDICES: &str = "scene.indices";
-const NORMALS: &str = "scene.normals";
-const NORMAL_INDICES: &str = "scene.normal_indices";
-const ADJACENCY: &str = "scene.adjacency";
-const BVH_NODES: &str = "scene.bvh_nodes";
-const BVH_PRIMITIVES: &str = "scene.bvh_primitives";
-const LIGHT_SPACE_NODES: &str = "scene.light_space_nodes";
-const LIGHT_SPACE_PRIMITIVES: &str = "scene.light_space_primitives";
-const TLAS: &str = "scene.tlas";
-/// What `shared/masks.wgsl` reads: no items in a scene where no triangle is masked or double-sided.
-pub const MASKS: &str = "scene.masks";
-const UVS: &str = "scene.uvs";
-const UV_INDICES: &str = "scene.uv_indices";
-const MATERIALS: &str = "scene.materials";
-const MATERIAL_INDICES: &str = "scene.material_indices";
-const TEXELS: &str = "scene.texels";
-/// The uniform of `shared/camera.wgsl`.
-pub const CAMERA: &str = "camera";
-/// The uniform of `shared/light.wgsl`.
-pub const LIGHT: &str = "light";
-/// The uniform of `shared/light_area.wgsl`.
-pub const LIGHT_AREA: &str = "light_area";
-
-const NAMES: [&str; 19] = [
-    POSITIONS,
-    INDICES,
-    NORMALS,
-    NORMAL_INDICES,
-    ADJACENCY,
-    BVH_NODES,
-    BVH_PRIMITIVES,
-    LIGHT_SPACE_NODES,
-    LIGHT_SPACE_PRIMITIVES,
-    TLAS,
-    MASKS,
-    UVS,
-    UV_INDICES,
-    MATERIALS,
-    MATERIAL_INDICES,
-    TEXELS,
-    CAMERA,
-    LIGHT,
-    LIGHT_AREA,
-];
-
-/// What is built anew for another light.
-const OF_LIGHT: [&str; 4] = [LIGHT, LIGHT_AREA, LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES];
 
 /// Provides one scene under one view, on one device.
 ///
@@ -90,29 +50,32 @@ const OF_LIGHT: [&str; 4] = [LIGHT, LIGHT_AREA, LIGHT_SPACE_NODES, LIGHT_SPACE_P
 /// | `lights`, `light_areas` | the same of all lights, arrays; `lights[2]` alone is a uniform |
 ///
 /// What was built stays and is shared by all graphs that are executed with the same provider, which
-/// therefore belongs to the device that it was first used with;
-/// [`set_view`](SceneProvider::set_view) changes the one camera that they all see, and the light to
-/// the first of the view's own or the scene's. wgpu binds no buffer of size zero: an array of an
-/// empty scene holds one zero item, its hierarchy one leaf around a triangle without area, which no
-/// ray hits; [`Describe::describe`] still says 0 items, so that nothing is drawn.
+/// therefore belongs to the device that it was first used with. What is set (camera, light, mesh)
+/// is seen by executors that are made from then on, and by others from their next
+/// [`refresh`](skiagraph_gpu::Executor::refresh) on, which makes anew what follows from it as far
+/// as a live pass reads it. wgpu binds no buffer of size zero: an array of an empty scene holds one
+/// zero item, its hierarchy one leaf around a triangle without area, which no ray hits;
+/// [`Describe::describe`] still says 0 items, so that nothing is drawn.
 pub struct SceneProvider {
     scene: Arc<Scene>,
     camera: CameraUniform,
-    /// How often the camera was set, and which of these is in its buffer.
-    camera_version: u64,
-    camera_uploaded: u64,
     light: LightKind,
     /// All lights of the scene, or the view's own.
     lights: Vec<LightKind>,
-    /// By their names, of `lights` and what is in it.
-    light_buffers: BTreeMap<String, wgpu::Buffer>,
-    /// How often a light was changed.
-    light_version: u64,
+    /// By their names, of `lights` and what is in it, with the versions of what is in them.
+    light_buffers: BTreeMap<String, (wgpu::Buffer, u64)>,
+    versions: Versions,
     /// Words of [`MASKS`], made at once: plans ask how many there are.
     masks: Vec<u32>,
-    buffers: BTreeMap<&'static str, wgpu::Buffer>,
-    tlas: Option<wgpu::Tlas>,
-    built: Vec<&'static str>,
+    /// Buffers with the versions of what is in them.
+    buffers: BTreeMap<&'static str, (wgpu::Buffer, u64)>,
+    /// Those of [`buffers`](Self::buffers) that no other provider gives.
+    own: BTreeSet<&'static str>,
+    tlas: Option<(wgpu::Tlas, u64)>,
+    hierarchies: Hierarchies,
+    /// Whether the mesh was deformed, so that trees are worth their memory.
+    is_deformed: bool,
+    built: Vec<Built>,
 }
 
 impl SceneProvider {
@@ -123,28 +86,27 @@ impl SceneProvider {
             light: scene.light(),
             lights: lights::of(&scene),
             light_buffers: BTreeMap::new(),
-            light_version: 0,
+            versions: Versions::new(),
             masks: mask_words(&scene.mesh),
             scene,
             camera: CameraUniform::default(),
-            camera_version: 0,
-            camera_uploaded: 0,
             buffers: BTreeMap::new(),
+            own: BTreeSet::new(),
             tlas: None,
+            hierarchies: Hierarchies::default(),
+            is_deformed: false,
             built: Vec::new(),
         }
     }
 
-    /// The scene.
+    /// The scene, with the mesh as it was set last.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
-    /// The camera and the light of executors made from now on, and of others from their next
-    /// [`refresh`](skiagraph_gpu::Executor::refresh) on.
+    /// The camera of a view, and its first light or the scene's.
     pub fn set_view(&mut self, view: &View, viewport: [u32; 2]) {
-        self.camera = CameraUniform::from(&view.camera(viewport));
-        self.camera_version += 1;
+        self.set_camera(&view.camera(viewport));
         let light = self.scene.light_of(view);
         let mut lights = lights::of(&self.scene);
         // A view may be under one of the scene's lights, or have one that is nobody else's.
@@ -153,10 +115,18 @@ impl SceneProvider {
         }
         if lights != self.lights {
             self.lights = lights;
-            self.light_version += 1;
-            self.light_buffers.clear();
+            self.versions.light = next_version();
         }
         self.set_light(light);
+    }
+
+    /// Another camera.
+    pub fn set_camera(&mut self, camera: &Camera) {
+        let camera = CameraUniform::from(camera);
+        if bytemuck::bytes_of(&camera) != bytemuck::bytes_of(&self.camera) {
+            self.camera = camera;
+            self.versions.camera = next_version();
+        }
     }
 
     /// The light.
@@ -164,7 +134,7 @@ impl SceneProvider {
         self.light
     }
 
-    /// Which of `lights` the light is; the first, if it is none of them.
+    /// Which of [`lights`](Self::lights) the light is; the first, if it is none of them.
     pub fn light_number(&self) -> usize {
         let number = self.lights.iter().position(|light| *light == self.light);
         number.unwrap_or_default()
@@ -180,37 +150,149 @@ impl SceneProvider {
     pub fn set_light(&mut self, light: LightKind) {
         if light != self.light {
             self.light = light;
-            self.light_version += 1;
-            self.buffers.retain(|name, _| !OF_LIGHT.contains(name));
+            self.versions.light = next_version();
         }
     }
 
-    /// Names of the resources that were built, in the order in which they first were.
-    pub fn built(&self) -> &[&'static str] {
+    /// Another mesh. A plan counts items: what was planned for a mesh of other counts is planned
+    /// anew ([`replace_graph`](skiagraph_gpu::Executor::replace_graph)).
+    pub fn set_mesh(&mut self, mesh: Mesh) {
+        self.masks = mask_words(&mesh);
+        Arc::make_mut(&mut self.scene).mesh = mesh;
+        self.hierarchies.forget();
+        self.versions.mesh = next_version();
+        self.versions.shape = next_version();
+    }
+
+    /// The same mesh at other places: positions and normals in the order and number of those that
+    /// are there. Their buffers are written anew in place, hierarchies are refitted (or built, the
+    /// first time, or when refitting has made them bad), adjacency and all else is kept.
+    ///
+    /// # Errors
+    /// Other numbers of positions or normals, or some that are not finite.
+    pub fn deform(&mut self, positions: Vec<Vec3>, normals: Vec<Vec3>) -> Result<(), Error> {
+        let mesh = &self.scene.mesh;
+        let expected = [mesh.positions.len(), mesh.normals.len()];
+        let given = [positions.len(), normals.len()];
+        let is_finite = |list: &[Vec3]| list.iter().all(|v| v.is_finite());
+        if given != expected || !is_finite(&positions) || !is_finite(&normals) {
+            return Err(Error::Deformed { expected, given });
+        }
+        let mesh = &mut Arc::make_mut(&mut self.scene).mesh;
+        (mesh.positions, mesh.normals) = (positions, normals);
+        self.is_deformed = true;
+        self.versions.shape = next_version();
+        Ok(())
+    }
+
+    /// The mesh that [`Movable`] was made of, each of its parts moved by a map of the same index:
+    /// [`deform`](Self::deform) of what they make of it.
+    ///
+    /// # Errors
+    /// Those of [`deform`](Self::deform).
+    pub fn set_transforms(&mut self, movable: &Movable, maps: &[DAffine3]) -> Result<(), Error> {
+        let (positions, normals) = movable.moved(maps);
+        self.deform(positions, normals)
+    }
+
+    /// One more provider of the same, which shares what was built: to be changed and
+    /// [prepared](Self::prepare) on a thread while frames are made with this one, and then given to
+    /// `refresh` in its place. What it makes anew is in memory of its own, so this one must not be
+    /// deformed any more once the other is in use.
+    pub fn branch(&self) -> Self {
+        Self {
+            scene: Arc::clone(&self.scene),
+            masks: self.masks.clone(),
+            lights: self.lights.clone(),
+            light_buffers: self.light_buffers.clone(),
+            buffers: self.buffers.clone(),
+            own: BTreeSet::new(),
+            tlas: self.tlas.clone(),
+            hierarchies: self.hierarchies.clone(),
+            built: self.built.clone(),
+            ..*self
+        }
+    }
+
+    /// Makes what a plan's live passes read and what is not there as it is now, so that `refresh`
+    /// has nothing left to make.
+    ///
+    /// # Errors
+    /// Those of [`Provider::build`].
+    pub fn prepare(
+        &mut self,
+        plan: &Plan,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<(), ProviderError> {
+        for name in plan.provided() {
+            match name {
+                TLAS => drop(self.build_acceleration_structure(name, device, queue)?),
+                // What the executor keeps of the frame before is not ours.
+                _ if self.describe(name).is_some() => drop(self.build(name, device, queue)?),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// The resources that were built, in the order in which they first were, each with what was
+    /// done and how long it took the last time.
+    pub fn built(&self) -> &[Built] {
         &self.built
     }
 
-    /// The buffer of that name, uploaded if it was not before.
-    fn buffer(&mut self, name: &'static str, device: &wgpu::Device) -> Result<wgpu::Buffer, Error> {
-        if !self.buffers.contains_key(name) {
-            self.upload_named(name, device)?;
+    /// The buffer of that name with what is in it now.
+    fn buffer(&mut self, name: &'static str, on: On) -> Result<wgpu::Buffer, Error> {
+        let version = self.versions.of(name);
+        let known = self.buffers.get(name);
+        let known = known.filter(|(_, of)| *of == version);
+        if let Some((buffer, _)) = known {
+            return Ok(buffer.clone());
         }
+        let began = Instant::now();
+        let how = self.upload_named(name, on)?;
+        self.note(name, how, began);
         let buffer = self.buffers.get(name);
-        buffer.cloned().ok_or_else(|| unknown(name))
+        let (buffer, _) = buffer.ok_or_else(|| unknown(name))?;
+        Ok(buffer.clone())
     }
 
-    fn note(&mut self, name: &'static str) {
-        if !self.built.contains(&name) {
-            self.built.push(name);
+    /// That of `lights`, of `light_areas`, or of what is in them.
+    fn light_buffer(&mut self, name: &str, content: &[u8], device: &wgpu::Device) -> wgpu::Buffer {
+        let version = self.versions.of(LIGHT);
+        if let Some((buffer, of)) = self.light_buffers.get(name)
+            && *of == version
+        {
+            return buffer.clone();
+        }
+        let began = Instant::now();
+        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::STORAGE;
+        let buffer = buffer_of(name, content, usage, device);
+        let entry = (buffer.clone(), version);
+        self.light_buffers.insert(name.to_owned(), entry);
+        self.note(lights::list_of(name), How::Made, began);
+        buffer
+    }
+
+    fn note(&mut self, name: &'static str, how: How, began: Instant) {
+        let time = began.elapsed();
+        match self.built.iter_mut().find(|built| built.name == name) {
+            Some(built) => {
+                (built.how, built.time) = (how, time);
+                built.times += 1;
+            }
+            None => self.built.push(Built {
+                name,
+                how,
+                time,
+                times: 1,
+            }),
         }
     }
 
-    fn upload(
-        &mut self,
-        name: &'static str,
-        content: &[u8],
-        device: &wgpu::Device,
-    ) -> Result<(), Error> {
+    fn upload(&mut self, name: &'static str, content: &[u8], on: On) -> Result<How, Error> {
+        let device = on.device;
         let bytes = content.len() as u64;
         let limit = binding_limit(device);
         if bytes > limit {
@@ -219,6 +301,16 @@ impl SceneProvider {
                 bytes,
                 limit,
             });
+        }
+        let version = self.versions.of(name);
+        // What another provider may give as well keeps what it has.
+        if let Some((buffer, of)) = self.buffers.get_mut(name)
+            && buffer.size() == bytes
+            && self.own.contains(name)
+        {
+            on.queue.write_buffer(buffer, 0, content);
+            *of = version;
+            return Ok(How::Rewritten);
         }
         let uniform = matches!(name, CAMERA | LIGHT | LIGHT_AREA);
         let usage = if uniform {
@@ -235,44 +327,52 @@ impl SceneProvider {
             false => usage,
         };
         let buffer = buffer_of(name, content, usage, device);
-        self.buffers.insert(name, buffer);
-        Ok(())
+        self.buffers.insert(name, (buffer, version));
+        self.own.insert(name);
+        Ok(How::Made)
     }
 
     fn upload_items<T: bytemuck::NoUninit + bytemuck::Zeroable>(
         &mut self,
         name: &'static str,
         items: &[T],
-        device: &wgpu::Device,
-    ) -> Result<(), Error> {
+        on: On,
+    ) -> Result<How, Error> {
         let dummy = [T::zeroed()];
         let items = if items.is_empty() { &dummy } else { items };
-        self.upload(name, bytemuck::cast_slice(items), device)
+        self.upload(name, bytemuck::cast_slice(items), on)
     }
 
-    fn upload_hierarchy(&mut self, device: &wgpu::Device) -> Result<(), Error> {
+    fn upload_hierarchy(&mut self, on: On) -> Result<How, Error> {
         // Beyond some four million triangles the boxes of all leaves exceed what Vulkan promises
         // to bind, and so the smallest leaves are joined.
-        let most = binding_limit(device) / size_of::<BvhNode>() as u64;
-        let mut bvh = Bvh::build(&self.scene.mesh).merged(most as usize);
-        if bvh.nodes.is_empty() {
-            bvh.nodes.push(BvhNode {
-                min: [0.0; 3],
-                first: 0,
-                max: [0.0; 3],
-                count: 1,
-            });
+        let most = binding_limit(on.device) / size_of::<BvhNode>() as u64;
+        let (mesh, keep) = (&self.scene.mesh, self.is_deformed);
+        let words = self.hierarchies.bvh(mesh, most as usize, keep);
+        self.upload_tree([BVH_NODES, BVH_PRIMITIVES], words, on)
+    }
+
+    fn upload_tree(
+        &mut self,
+        [nodes, primitives]: [&'static str; 2],
+        words: Words,
+        on: On,
+    ) -> Result<How, Error> {
+        self.upload_items(nodes, &words.nodes, on)?;
+        let version = self.versions.of(primitives);
+        match (words.primitives, self.buffers.get_mut(primitives)) {
+            (Some(items), _) => drop(self.upload_items(primitives, &items, on)?),
+            (None, Some((_, of))) => *of = version,
+            (None, None) => {}
         }
-        let nodes: Vec<[u32; 8]> = bvh.nodes.iter().map(node_words).collect();
-        self.upload_items(BVH_NODES, &nodes, device)?;
-        self.upload_items(BVH_PRIMITIVES, &bvh.primitives, device)
+        Ok(words.how)
     }
 
     fn light_uniform(&self) -> LightUniform {
         LightUniform::new(self.light, &self.scene.mesh)
     }
 
-    fn upload_light_space(&mut self, device: &wgpu::Device) -> Result<(), Error> {
+    fn upload_light_space(&mut self, on: On) -> Result<How, Error> {
         if self.light.directional().is_none() {
             return Err(Error::LightSpaceKind(self.light.word()));
         }
@@ -282,59 +382,54 @@ impl SceneProvider {
             centre: light.centre,
         };
         // As in the other hierarchy, leaves are joined where there are too many nodes to bind.
-        let most = binding_limit(device) / size_of::<LightSpaceNode>() as u64;
-        let mesh = &self.scene.mesh;
-        let built = space.build(mesh, most as usize);
-        let (mut nodes, primitives) = built.ok_or(Error::LightSpace {
-            triangles: mesh.triangles.len(),
-        })?;
-        if nodes.is_empty() {
-            nodes.push(LightSpaceNode {
-                low: [0.0; 2],
-                high: [0.0; 2],
-                farthest: [0.0; 3],
-                link: 1,
-            });
-        }
-        let nodes: Vec<[u32; 8]> = nodes.iter().map(light_space_words).collect();
-        self.upload_items(LIGHT_SPACE_NODES, &nodes, device)?;
-        self.upload_items(LIGHT_SPACE_PRIMITIVES, &primitives, device)
+        let most = binding_limit(on.device) / size_of::<LightSpaceNode>() as u64;
+        let (mesh, keep) = (&self.scene.mesh, self.is_deformed);
+        let trees = &mut self.hierarchies;
+        let words = trees.light_space(space, mesh, most as usize, keep)?;
+        self.upload_tree([LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES], words, on)
     }
 
-    fn upload_named(&mut self, name: &'static str, device: &wgpu::Device) -> Result<(), Error> {
+    fn upload_named(&mut self, name: &'static str, on: On) -> Result<How, Error> {
         let scene = Arc::clone(&self.scene);
         let mesh = &scene.mesh;
         match name {
             POSITIONS => {
                 let items: Vec<_> = mesh.positions.iter().map(|p| p.extend(1.0)).collect();
-                self.upload_items(name, &items, device)
+                self.upload_items(name, &items, on)
             }
             NORMALS => {
                 let items: Vec<_> = mesh.normals.iter().map(|n| n.extend(0.0)).collect();
-                self.upload_items(name, &items, device)
+                self.upload_items(name, &items, on)
             }
-            INDICES => self.upload_items(name, mesh.triangles.as_flattened(), device),
-            NORMAL_INDICES => self.upload_items(name, mesh.normal_indices.as_flattened(), device),
-            ADJACENCY => self.upload_items(name, &Adjacency::new(mesh).opposite, device),
+            INDICES => self.upload_items(name, mesh.triangles.as_flattened(), on),
+            NORMAL_INDICES => self.upload_items(name, mesh.normal_indices.as_flattened(), on),
+            ADJACENCY => self.upload_items(name, &Adjacency::new(mesh).opposite, on),
             MASKS => {
                 let words = std::mem::take(&mut self.masks);
-                let done = self.upload_items(name, &words, device);
+                let done = self.upload_items(name, &words, on);
                 self.masks = words;
                 done
             }
-            UVS => self.upload_items(name, &mesh.surfaces.uvs, device),
-            UV_INDICES => self.upload_items(name, mesh.surfaces.uv_indices.as_flattened(), device),
-            MATERIAL_INDICES => self.upload_items(name, &mesh.surfaces.of, device),
-            MATERIALS => self.upload_items(name, &Atlas::new(&mesh.surfaces)?.records, device),
-            TEXELS => self.upload_items(name, &Atlas::new(&mesh.surfaces)?.texels, device),
-            CAMERA => self.upload_items(name, &[self.camera], device),
-            LIGHT => self.upload_items(name, &[self.light_uniform()], device),
-            LIGHT_AREA => self.upload_items(name, &[LightAreaUniform::from(&self.light)], device),
-            BVH_NODES | BVH_PRIMITIVES => self.upload_hierarchy(device),
-            LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.upload_light_space(device),
-            _ => Ok(()),
+            UVS => self.upload_items(name, &mesh.surfaces.uvs, on),
+            UV_INDICES => self.upload_items(name, mesh.surfaces.uv_indices.as_flattened(), on),
+            MATERIAL_INDICES => self.upload_items(name, &mesh.surfaces.of, on),
+            MATERIALS => self.upload_items(name, &Atlas::new(&mesh.surfaces)?.records, on),
+            TEXELS => self.upload_items(name, &Atlas::new(&mesh.surfaces)?.texels, on),
+            CAMERA => self.upload_items(name, &[self.camera], on),
+            LIGHT => self.upload_items(name, &[self.light_uniform()], on),
+            LIGHT_AREA => self.upload_items(name, &[LightAreaUniform::from(&self.light)], on),
+            BVH_NODES | BVH_PRIMITIVES => self.upload_hierarchy(on),
+            LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.upload_light_space(on),
+            _ => Err(unknown(name)),
         }
     }
+}
+
+/// Where to.
+#[derive(Clone, Copy)]
+struct On<'a> {
+    device: &'a wgpu::Device,
+    queue: &'a wgpu::Queue,
 }
 
 fn buffer_of(
@@ -363,23 +458,6 @@ fn unknown(name: &str) -> Error {
         name: name.to_owned(),
         known: NAMES.map(str::to_owned).to_vec(),
     }
-}
-
-/// A node as the shader reads it: the floats' bits and the two counts, in the order of [`BvhNode`].
-fn node_words(node: &BvhNode) -> [u32; 8] {
-    let [low_x, low_y, low_z] = node.min.map(f32::to_bits);
-    let [high_x, high_y, high_z] = node.max.map(f32::to_bits);
-    [
-        low_x, low_y, low_z, node.first, high_x, high_y, high_z, node.count,
-    ]
-}
-
-/// The same of a node in light space.
-fn light_space_words(node: &LightSpaceNode) -> [u32; 8] {
-    let [low_x, low_y] = node.low.map(f32::to_bits);
-    let [high_x, high_y] = node.high.map(f32::to_bits);
-    let [x, y, z] = node.farthest.map(f32::to_bits);
-    [low_x, low_y, high_x, high_y, x, y, z, node.link]
 }
 
 impl Describe for SceneProvider {
@@ -435,11 +513,9 @@ impl Describe for SceneProvider {
 
 impl Provider for SceneProvider {
     fn version(&self, name: &str) -> u64 {
-        match name {
-            CAMERA => self.camera_version,
-            _ if OF_LIGHT.contains(&name) => self.light_version,
-            _ if lights::describe(name, &self.lights).is_some() => self.light_version,
-            _ => 0,
+        match lights::describe(name, &self.lights) {
+            Some(_) => self.versions.of(LIGHT),
+            None => self.versions.of(name),
         }
     }
 
@@ -451,22 +527,11 @@ impl Provider for SceneProvider {
     ) -> Result<wgpu::Buffer, ProviderError> {
         let why = |error: Error| ProviderError(error.to_string());
         if let Some(content) = lights::content(name, &self.lights, &self.scene.mesh) {
-            let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::STORAGE;
-            let make = || buffer_of(name, &content, usage, device);
-            let buffer = self.light_buffers.entry(name.to_owned());
-            let buffer = buffer.or_insert_with(make).clone();
-            self.note(lights::list_of(name));
-            return Ok(buffer);
+            return Ok(self.light_buffer(name, &content, device));
         }
         let known = NAMES.into_iter().find(|&known| known == name);
         let name = known.ok_or_else(|| why(unknown(name)))?;
-        let buffer = self.buffer(name, device).map_err(why)?;
-        if name == CAMERA && self.camera_uploaded != self.camera_version {
-            queue.write_buffer(&buffer, 0, bytemuck::bytes_of(&self.camera));
-            self.camera_uploaded = self.camera_version;
-        }
-        self.note(name);
-        Ok(buffer)
+        self.buffer(name, On { device, queue }).map_err(why)
     }
 
     fn build_acceleration_structure(
@@ -479,17 +544,20 @@ impl Provider for SceneProvider {
         if name != TLAS {
             return Err(why(unknown(name)));
         }
-        let tlas = match &self.tlas {
-            Some(tlas) => tlas.clone(),
-            None => {
-                let vertices = self.buffer(POSITIONS, device).map_err(why)?;
-                let indices = self.buffer(INDICES, device).map_err(why)?;
-                let of = [&vertices, &indices];
-                ray_query::build(&self.scene.mesh, of, device, queue).map_err(why)?
-            }
-        };
-        self.tlas = Some(tlas.clone());
-        self.note(TLAS);
+        let version = self.versions.of(TLAS);
+        if let Some((tlas, of)) = &self.tlas
+            && *of == version
+        {
+            return Ok(tlas.clone());
+        }
+        let on = On { device, queue };
+        let vertices = self.buffer(POSITIONS, on).map_err(why)?;
+        let indices = self.buffer(INDICES, on).map_err(why)?;
+        let began = Instant::now();
+        let of = [&vertices, &indices];
+        let tlas = ray_query::build(&self.scene.mesh, of, device, queue).map_err(why)?;
+        self.tlas = Some((tlas.clone(), version));
+        self.note(TLAS, How::Made, began);
         Ok(tlas)
     }
 }

@@ -1,7 +1,7 @@
 //! `Trace`: rays in, hits out, by one of several engines. The number of rays stays on the GPU.
 
 use crate::{
-    provider::{LIGHT, MASKS},
+    names::{LIGHT, MASKS},
     uniforms::LIGHT_KINDS,
 };
 use serde::Deserialize;

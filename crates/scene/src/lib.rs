@@ -25,6 +25,7 @@ mod limit;
 pub mod mask;
 pub mod material;
 pub mod mesh;
+pub mod movable;
 #[cfg(feature = "files")]
 pub mod obj;
 pub mod packed_masks;
@@ -58,10 +59,11 @@ pub use limit::Limit;
 pub use mask::Mask;
 pub use material::{Material, Surfaces};
 pub use mesh::{Group, Mesh};
+pub use movable::Movable;
 #[cfg(feature = "files")]
 pub use obj::{Concave, ObjMaterials, ObjOptions, QuadDiagonal, load_obj};
 pub use parts::Parts;
-pub use path::{CameraKey, CameraPath};
+pub use path::{CameraKey, CameraPath, LightKey};
 #[cfg(feature = "files")]
 pub use pattern::Pattern;
 #[cfg(feature = "files")]

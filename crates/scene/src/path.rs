@@ -1,13 +1,18 @@
-//! Camera paths: a view whose eye and direction move from keyframe to keyframe.
+//! Paths: a view whose eye, direction and light move from keyframe to keyframe.
 
-use crate::camera::View;
+use crate::{
+    camera::View,
+    light::DirectionalLight,
+    light_kind::{Light, LightKind, PointLight, SpotLight},
+};
 use glam::DVec3;
 
 /// The most frames that a path may have: five and a half minutes at thirty per second.
 const MOST_FRAMES: f64 = 10_000.0;
 
 /// A camera that moves. Between keyframes eye and direction follow Catmull-Rom splines (Catmull,
-/// Rom 1974, over uneven times); two keyframes make a straight line.
+/// Rom 1974, over uneven times); two keyframes make a straight line, two equal ones a camera that
+/// stands. Its light may move likewise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraPath {
     /// What stays on the way, and the name; eye and direction are those of the first keyframe.
@@ -16,6 +21,9 @@ pub struct CameraPath {
     pub frames_per_second: f64,
     /// At least two, in the order of their times.
     pub keys: Vec<CameraKey>,
+    /// Where the view's own light is, in the order of times; none of a light that stays. Before the
+    /// first and behind the last it stands.
+    pub light_keys: Vec<LightKey>,
 }
 
 /// Where the camera is at a time.
@@ -27,6 +35,18 @@ pub struct CameraKey {
     pub eye: DVec3,
     /// Viewing direction, any length but zero.
     pub direction: DVec3,
+}
+
+/// Where a light is at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightKey {
+    /// Seconds, as of the camera's keys.
+    pub at: f64,
+    /// In which a directional light travels or a spot points, any length but zero; none of a point
+    /// light.
+    pub direction: Option<DVec3>,
+    /// World space; none of a directional light.
+    pub position: Option<DVec3>,
 }
 
 impl CameraPath {
@@ -48,43 +68,69 @@ impl CameraPath {
     pub fn view(&self, frame: u32) -> View {
         let at =
             self.keys.first().map_or(0.0, |key| key.at) + f64::from(frame) / self.frames_per_second;
-        let place = |of: fn(&CameraKey) -> DVec3| self.place(at, of);
+        let times = |key: &CameraKey| key.at;
+        let place = |of: fn(&CameraKey) -> DVec3| spline(&self.keys, times, of, at);
         View {
             eye: place(|key| key.eye),
             direction: place(|key| key.direction.normalize()),
+            light: self.view.light.as_ref().map(|light| self.light(light, at)),
             ..self.view.clone()
+        }
+    }
+
+    fn light(&self, light: &Light, at: f64) -> Light {
+        if self.light_keys.is_empty() {
+            return light.clone();
+        }
+        let place = |of: fn(&LightKey) -> DVec3| spline(&self.light_keys, |key| key.at, of, at);
+        let direction = place(|key| key.direction.unwrap_or_default().normalize_or_zero());
+        let position = place(|key| key.position.unwrap_or_default());
+        let kind = match light.kind {
+            LightKind::Directional(light) => DirectionalLight { direction, ..light }.into(),
+            LightKind::Spot(light) => SpotLight {
+                direction,
+                position,
+                ..light
+            }
+            .into(),
+            LightKind::Point(light) => PointLight { position, ..light }.into(),
+        };
+        Light {
+            kind,
+            ..light.clone()
+        }
+    }
+
+    /// Whether the keys of the light are of the kind that the view's own light is.
+    fn check_light(&self) -> Result<(), String> {
+        let name = &self.view.name;
+        if let Some(late) = not_later(&self.light_keys, |key| key.at) {
+            return Err(format!("path {name:?}: light_keys: {late}"));
+        }
+        let (Some(light), Some(_)) = (&self.view.light, self.light_keys.first()) else {
+            return Ok(());
+        };
+        let (direction, position, needs) = match light.kind {
+            LightKind::Directional(_) => (true, false, "`direction` alone"),
+            LightKind::Spot(_) => (true, true, "`position` and `direction`"),
+            LightKind::Point(_) => (false, true, "`position` alone"),
+        };
+        let fits = |key: &LightKey| {
+            (key.direction.is_some(), key.position.is_some()) == (direction, position)
+        };
+        match self.light_keys.iter().find(|key| !fits(key)) {
+            None => Ok(()),
+            Some(key) => Err(format!(
+                "path {name:?}: the key of a {} light at {} s needs {needs}",
+                light.kind.word(),
+                key.at
+            )),
         }
     }
 
     /// The views of all frames.
     pub fn views(&self) -> impl Iterator<Item = View> + '_ {
         (0..self.frames()).map(|frame| self.view(frame))
-    }
-
-    fn place(&self, at: f64, of: fn(&CameraKey) -> DVec3) -> DVec3 {
-        let keys = &self.keys[..];
-        // The last key that has passed, but one that has another behind it.
-        let passed = keys.partition_point(|key| key.at <= at).max(1) - 1;
-        let from = passed.min(keys.len().saturating_sub(2));
-        let [a, b] = match keys.get(from..from + 2) {
-            Some([a, b]) => [a, b],
-            _ => return keys.first().map_or(DVec3::ZERO, of),
-        };
-        // The slope at a key is that between its neighbours.
-        let slope = |key: usize| {
-            let (before, after) = (
-                &keys[key.saturating_sub(1)],
-                &keys[(key + 1).min(keys.len() - 1)],
-            );
-            (of(after) - of(before)) / (after.at - before.at)
-        };
-        let span = b.at - a.at;
-        let t = ((at - a.at) / span).clamp(0.0, 1.0);
-        let (square, cube) = (t * t, t * t * t);
-        of(a) * (2.0 * cube - 3.0 * square + 1.0)
-            + slope(from) * (span * (cube - 2.0 * square + t))
-            + of(b) * (3.0 * square - 2.0 * cube)
-            + slope(from + 1) * (span * (cube - square))
     }
 
     /// Whether every frame makes a camera.
@@ -106,13 +152,10 @@ impl CameraPath {
                 "path {name:?}: frames_per_second is {rate}, expected more than 0"
             ));
         }
-        let later = |pair: &[CameraKey]| pair[0].at < pair[1].at && pair[1].at.is_finite();
-        if let Some(pair) = keys.windows(2).find(|pair| !later(pair)) {
-            return Err(format!(
-                "path {name:?}: a key at {} s follows one at {} s, expected a later time",
-                pair[1].at, pair[0].at
-            ));
+        if let Some(late) = not_later(keys, |key| key.at) {
+            return Err(format!("path {name:?}: {late}"));
         }
+        self.check_light()?;
         let frames = self.seconds() * rate;
         if frames.is_nan() || frames >= MOST_FRAMES {
             return Err(format!(
@@ -129,6 +172,47 @@ impl CameraPath {
         }
         Ok(())
     }
+}
+
+/// What is wrong with the order of keys.
+fn not_later<K>(keys: &[K], time: fn(&K) -> f64) -> Option<String> {
+    let mut pairs = keys.windows(2).map(|pair| [time(&pair[0]), time(&pair[1])]);
+    let late = pairs.find(|[before, after]| !(before < after && after.is_finite()))?;
+    Some(format!(
+        "a key at {} s follows one at {} s, expected a later time",
+        late[1], late[0]
+    ))
+}
+
+/// A value between keys.
+fn spline<K>(keys: &[K], time: fn(&K) -> f64, of: impl Fn(&K) -> DVec3, at: f64) -> DVec3 {
+    // The last key that has passed, but one that has another behind it.
+    let passed = keys.partition_point(|key| time(key) <= at).max(1) - 1;
+    let from = passed.min(keys.len().saturating_sub(2));
+    let [a, b] = match keys.get(from..from + 2) {
+        Some([a, b]) => [a, b],
+        _ => return keys.first().map_or(DVec3::ZERO, of),
+    };
+    // The slope at a key is that between its neighbours.
+    let slope = |key: usize| {
+        let (before, after) = (
+            &keys[key.saturating_sub(1)],
+            &keys[(key + 1).min(keys.len() - 1)],
+        );
+        (of(after) - of(before)) / (time(after) - time(before))
+    };
+    let (before, after) = (slope(from), slope(from + 1));
+    // What stands is the same to the last bit in every frame.
+    if of(a) == of(b) && before == DVec3::ZERO && after == DVec3::ZERO {
+        return of(a);
+    }
+    let span = time(b) - time(a);
+    let t = ((at - time(a)) / span).clamp(0.0, 1.0);
+    let (square, cube) = (t * t, t * t * t);
+    of(a) * (2.0 * cube - 3.0 * square + 1.0)
+        + before * (span * (cube - 2.0 * square + t))
+        + of(b) * (3.0 * square - 2.0 * cube)
+        + after * (span * (cube - square))
 }
 
 #[cfg(test)]
@@ -152,7 +236,42 @@ mod tests {
             },
             frames_per_second: 10.0,
             keys: keys.collect(),
+            light_keys: Vec::new(),
         }
+    }
+
+    #[test]
+    fn a_light_moves_past_a_camera_that_stands() {
+        let eye = DVec3::new(0.1, 0.7, 0.3);
+        let mut walk = path(&[(0.0, eye, DVec3::ONE), (0.5, eye, DVec3::ONE)]);
+        let key = |at, direction| LightKey {
+            at,
+            direction: Some(direction),
+            position: None,
+        };
+        walk.light_keys = vec![key(0.0, DVec3::X * 2.0), key(0.4, DVec3::NEG_Y)];
+        walk.check().unwrap();
+        walk.view.light = Some(DirectionalLight::new(DVec3::Z).into());
+        walk.check().unwrap();
+        let direction = |frame| {
+            let light = walk.view(frame).light.unwrap();
+            light.kind.directional().unwrap().direction
+        };
+        assert_eq!(direction(0), DVec3::X);
+        assert!((direction(2) - DVec3::new(0.5, -0.5, 0.0)).length() < 1e-12);
+        assert_eq!([direction(4), direction(5)], [DVec3::NEG_Y; 2]);
+        let first = walk.view(0);
+        for view in walk.views() {
+            assert_eq!((view.eye, view.direction), (first.eye, first.direction));
+        }
+        walk.light_keys[1].position = Some(DVec3::ONE);
+        assert_eq!(
+            walk.check().unwrap_err(),
+            "path \"walk\": the key of a directional light at 0.4 s needs `direction` alone"
+        );
+        walk.light_keys[1].at = 0.0;
+        let late = walk.check().unwrap_err();
+        assert!(late.contains("light_keys: a key at 0 s follows"), "{late}");
     }
 
     #[test]

@@ -26,7 +26,7 @@ use crate::{
     light::DirectionalLight,
     light_kind::{Light, LightKind, PointLight, SpotLight},
     obj::options::{Concave, ObjMaterials, QuadDiagonal},
-    path::{CameraKey, CameraPath},
+    path::{CameraKey, CameraPath, LightKey},
 };
 use glam::DVec3;
 use serde::{Deserialize, Deserializer, de::Error};
@@ -255,6 +255,18 @@ struct PathText {
     #[serde(default = "thirty")]
     frames_per_second: f64,
     keys: Vec<KeyText>,
+    #[serde(default)]
+    light_keys: Vec<LightKeyText>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename = "LightKey")]
+struct LightKeyText {
+    at: f64,
+    #[serde(default, deserialize_with = "given")]
+    direction: Option<(f64, f64, f64)>,
+    #[serde(default, deserialize_with = "given")]
+    position: Option<(f64, f64, f64)>,
 }
 
 fn thirty() -> f64 {
@@ -292,15 +304,26 @@ impl<'de> Deserialize<'de> for CameraPath {
             },
             frames_per_second: text.frames_per_second,
             keys,
+            light_keys: text
+                .light_keys
+                .iter()
+                .map(|key| LightKey {
+                    at: key.at,
+                    direction: key.direction.map(DVec3::from),
+                    position: key.position.map(DVec3::from),
+                })
+                .collect(),
         };
         path.check().map_err(D::Error::custom)?;
         Ok(path)
     }
 }
 
-/// A string where `None` is said by leaving it out: RON would ask for `Some("…")`.
-fn given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<String>, D::Error> {
-    String::deserialize(deserializer).map(Some)
+/// Where `None` is said by leaving it out: RON would ask for `Some(…)`.
+fn given<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<T>, D::Error> {
+    T::deserialize(deserializer).map(Some)
 }
 
 fn format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {

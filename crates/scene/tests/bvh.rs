@@ -82,7 +82,7 @@ fn fits_light_space(mesh: &Mesh, direction: Vec3, most: usize) -> bool {
         direction,
         centre: low * 0.5 + high * 0.5,
     };
-    let Some((nodes, primitives)) = space.build(mesh, most) else {
+    let Some((nodes, Bvh { primitives, .. })) = space.build(mesh, most) else {
         return false;
     };
     assert!(nodes.len() <= most);

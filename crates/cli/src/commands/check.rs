@@ -13,7 +13,7 @@ use crate::measuring::device;
 use crate::records::check::{CheckReport, FileReport};
 use crate::terminal::console::{note, print};
 use skiagraph_graph::{Diagnostics, Graph, Plan, Sources};
-use skiagraph_passes::{provider::LIGHT, registry};
+use skiagraph_passes::{names::LIGHT, registry};
 
 /// Loads and plans each graph and says what is wrong with it: on whatever adapter, or on the one
 /// that the arguments name.

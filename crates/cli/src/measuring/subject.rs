@@ -78,13 +78,27 @@ impl Subject {
         for path in paths {
             if name == "all" || path.view.name == name {
                 let views = under_lights(scene, vec![path.view.clone()], args)?;
-                let lit = |view| CameraPath {
-                    view,
-                    ..path.clone()
-                };
-                subjects.extend(views.into_iter().map(lit).map(Self::Path));
+                let lit = views.into_iter().map(|view| lit(scene, &path, view));
+                subjects.extend(
+                    lit.collect::<Result<Vec<_>, _>>()?
+                        .into_iter()
+                        .map(Self::Path),
+                );
             }
         }
         Ok(subjects)
     }
+}
+
+/// The path under the light of a view; one that moves becomes the view's own.
+fn lit(scene: &Scene, path: &CameraPath, mut view: View) -> Result<CameraPath, CliError> {
+    if !path.light_keys.is_empty() {
+        view.light = scene.lights_of(&view).into_iter().next();
+    }
+    let path = CameraPath {
+        view,
+        ..path.clone()
+    };
+    path.check().map_err(CliError::Input)?;
+    Ok(path)
 }

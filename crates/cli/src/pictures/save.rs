@@ -9,7 +9,7 @@ use crate::pictures::{buffer_csv, png};
 use crate::wording::{bytes, size, thousands};
 use skiagraph_gpu::Content;
 use skiagraph_graph::{Capture, Item, Plan};
-use skiagraph_passes::provider::{CAMERA, LIGHT};
+use skiagraph_passes::names::{CAMERA, LIGHT};
 use skiagraph_scene::View;
 use std::collections::BTreeMap;
 

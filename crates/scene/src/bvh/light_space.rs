@@ -72,17 +72,18 @@ impl LightSpace {
         (p.truncate() - d.truncate() / d.z * p.z, up)
     }
 
-    /// Builds the hierarchy of `most` nodes at most: nodes, of which the first is the root, and
-    /// primitives in leaf order. An empty mesh has none. `None` where a [`LightSpaceNode::link`]
-    /// is too small: for more than 67 million triangles, or leaves of more than 63.
-    pub fn build(&self, mesh: &Mesh, most: usize) -> Option<(Vec<LightSpaceNode>, Vec<u32>)> {
+    /// Builds the hierarchy of `most` nodes at most: nodes, of which the first is the root, and the
+    /// tree that they are of, its boxes in this space. An empty mesh has none. `None` where a
+    /// [`LightSpaceNode::link`] is too small: for more than 67 million triangles, or leaves of more
+    /// than 63.
+    pub fn build(&self, mesh: &Mesh, most: usize) -> Option<(Vec<LightSpaceNode>, Bvh)> {
         let bvh = self.tree(mesh);
         // Nothing is merged in an empty one.
         let bvh = match bvh.nodes.is_empty() {
             true => bvh,
             false => bvh.merged(most),
         };
-        Some((self.refit(&bvh, mesh)?, bvh.primitives))
+        Some((self.refit(&bvh, mesh)?, bvh))
     }
 
     fn tree(&self, mesh: &Mesh) -> Bvh {

@@ -36,7 +36,7 @@ impl Bvh {
     }
 
     /// All nodes, each before its children.
-    fn order(&self) -> Vec<u32> {
+    pub(super) fn order(&self) -> Vec<u32> {
         let mut order = vec![0];
         let mut next = 0;
         while let Some(&index) = order.get(next) {

@@ -1,0 +1,153 @@
+//! The hierarchies over a mesh: built, and fitted again when the mesh is deformed.
+
+use crate::{built::How, error::Error};
+use skiagraph_scene::{Bvh, BvhNode, LightSpace, LightSpaceNode, Mesh};
+
+/// A tree is built anew when a deformation has made rays this many times as dear as they were.
+const WORSE: f64 = 1.5;
+
+/// Trees that are worth keeping, as the mesh is deformed from time to time.
+#[derive(Clone, Default)]
+pub(crate) struct Hierarchies {
+    bvh: Option<Kept>,
+    light_space: Option<(LightSpace, Kept)>,
+}
+
+#[derive(Clone)]
+struct Kept {
+    bvh: Bvh,
+    /// Its cost when it was built.
+    cost: f64,
+}
+
+/// A hierarchy as shaders read it.
+pub(crate) struct Words {
+    pub nodes: Vec<[u32; 8]>,
+    /// `None` where they are those of the last time.
+    pub primitives: Option<Vec<u32>>,
+    pub how: How,
+}
+
+impl Hierarchies {
+    /// Of a mesh whose topology is that of the last time, or after [`forget`](Self::forget).
+    pub fn bvh(&mut self, mesh: &Mesh, most: usize, keep: bool) -> Words {
+        if let Some(Kept { bvh, cost }) = &mut self.bvh {
+            bvh.refit(mesh);
+            if bvh.cost() <= WORSE * *cost {
+                return Words {
+                    nodes: bvh.nodes.iter().map(node_words).collect(),
+                    primitives: None,
+                    how: How::Refitted,
+                };
+            }
+        }
+        let mut bvh = Bvh::build(mesh).merged(most);
+        let words = Words {
+            nodes: match bvh.nodes.is_empty() {
+                true => vec![node_words(&EMPTY)],
+                false => bvh.nodes.iter().map(node_words).collect(),
+            },
+            primitives: Some(primitives_of(&mut bvh, keep)),
+            how: How::Made,
+        };
+        self.bvh = (keep && !bvh.nodes.is_empty()).then(|| Kept::new(bvh));
+        words
+    }
+
+    /// The same along the rays to a light. Its tree is kept for rays of the same direction.
+    ///
+    /// # Errors
+    /// More triangles than its links can name.
+    pub fn light_space(
+        &mut self,
+        space: LightSpace,
+        mesh: &Mesh,
+        most: usize,
+        keep: bool,
+    ) -> Result<Words, Error> {
+        let too_large = || Error::LightSpace {
+            triangles: mesh.triangles.len(),
+        };
+        if let Some((before, Kept { bvh, cost })) = &mut self.light_space
+            && before.direction == space.direction
+        {
+            bvh.refit(mesh);
+            if bvh.cost() <= WORSE * *cost {
+                let nodes = space.refit(bvh, mesh).ok_or_else(too_large)?;
+                return Ok(Words {
+                    nodes: nodes.iter().map(light_space_words).collect(),
+                    primitives: None,
+                    how: How::Refitted,
+                });
+            }
+        }
+        let (mut nodes, mut bvh) = space.build(mesh, most).ok_or_else(too_large)?;
+        if nodes.is_empty() {
+            nodes.push(EMPTY_LIGHT_SPACE);
+        }
+        let words = Words {
+            nodes: nodes.iter().map(light_space_words).collect(),
+            primitives: Some(primitives_of(&mut bvh, keep)),
+            how: How::Made,
+        };
+        self.light_space = (keep && !bvh.nodes.is_empty()).then(|| {
+            // Its boxes are of the light's space; those of the world tell when it has become bad.
+            bvh.refit(mesh);
+            (space, Kept::new(bvh))
+        });
+        Ok(words)
+    }
+
+    /// For a mesh of another topology.
+    pub fn forget(&mut self) {
+        *self = Self::default();
+    }
+}
+
+/// A copy where the tree is kept.
+fn primitives_of(bvh: &mut Bvh, keep: bool) -> Vec<u32> {
+    match keep {
+        true => bvh.primitives.clone(),
+        false => std::mem::take(&mut bvh.primitives),
+    }
+}
+
+impl Kept {
+    fn new(bvh: Bvh) -> Self {
+        let cost = bvh.cost();
+        Self { bvh, cost }
+    }
+}
+
+/// A leaf around a triangle without area, which no ray hits.
+const EMPTY: BvhNode = BvhNode {
+    min: [0.0; 3],
+    first: 0,
+    max: [0.0; 3],
+    count: 1,
+};
+
+/// The same in light space.
+const EMPTY_LIGHT_SPACE: LightSpaceNode = LightSpaceNode {
+    low: [0.0; 2],
+    high: [0.0; 2],
+    farthest: [0.0; 3],
+    link: 1,
+};
+
+/// A node as the shader reads it: the floats' bits and the two counts, in the order of [`BvhNode`].
+fn node_words(node: &BvhNode) -> [u32; 8] {
+    let [low_x, low_y, low_z] = node.min.map(f32::to_bits);
+    let [high_x, high_y, high_z] = node.max.map(f32::to_bits);
+    [
+        low_x, low_y, low_z, node.first, high_x, high_y, high_z, node.count,
+    ]
+}
+
+/// The same of a node in light space.
+fn light_space_words(node: &LightSpaceNode) -> [u32; 8] {
+    let [low_x, low_y] = node.low.map(f32::to_bits);
+    let [high_x, high_y] = node.high.map(f32::to_bits);
+    let [x, y, z] = node.farthest.map(f32::to_bits);
+    [low_x, low_y, high_x, high_y, x, y, z, node.link]
+}

@@ -171,18 +171,18 @@ pub enum SceneError {
         /// Why it cannot be had.
         reason: String,
     },
-    /// A bare `.obj` came without the view and the light that a scene file would hold.
-    #[error("{}: an .obj file holds no view and no light: give --eye x,y,z --look x,y,z \
+    /// A mesh file came without the view and the light that a scene file would hold.
+    #[error("{}: a mesh file holds no view and no light: give --eye x,y,z --look x,y,z \
         (direction) and --light x,y,z (the direction in which the light travels); --fov DEGREES, \
         --near and --far if the defaults do not suit it", path.display())]
     ObjNeedsView {
-        /// The OBJ file.
+        /// The file.
         path: PathBuf,
     },
     /// A view was given for a scene that brings its own views.
     #[error(
         "scene {argument:?} has its own views and light: a view and a light (--eye, --look, \
-         --light …) can only be given with a bare .obj file"
+         --light …) can only be given with a mesh file"
     )]
     ViewNotWanted {
         /// What was asked for.

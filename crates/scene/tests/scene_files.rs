@@ -380,7 +380,7 @@ fn a_bare_obj_needs_a_view_and_a_light() {
     let path = folder.path().join("T.OBJ");
     fs::write(&path, TRIANGLE).unwrap();
     let library = SceneLibrary::default();
-    assert_snapshot!(library.load(&request("t.obj")).unwrap_err(), @"t.obj: an .obj file holds no \
+    assert_snapshot!(library.load(&request("t.obj")).unwrap_err(), @"t.obj: a mesh file holds no \
         view and no light: give --eye x,y,z --look x,y,z (direction) and --light x,y,z (the \
         direction in which the light travels); --fov DEGREES, --near and --far if the defaults do \
         not suit it");
@@ -413,6 +413,6 @@ fn a_bare_obj_needs_a_view_and_a_light() {
         ..request("park")
     };
     assert_snapshot!(library.load(&unwanted).unwrap_err(), @"scene \"park\" has its own views and \
-        light: a view and a light (--eye, --look, --light …) can only be given with a bare .obj \
+        light: a view and a light (--eye, --look, --light …) can only be given with a mesh \
         file");
 }

@@ -165,7 +165,7 @@ fn failures(report: &Report, command_for: CommandFor) -> String {
                 case.name,
                 thousands(case.band),
                 percent(case.band, case.pixels.facing_light),
-                case.band_cap * 100.0
+                (case.band_cap * 100.0) as f32
             );
         }
         let pairs = report.methods.iter().flat_map(|column| {

@@ -3,6 +3,7 @@
 
 use crate::records::sequence::Sequence;
 use crate::records::statistics::Spread;
+use crate::records::steady::Steady;
 use crate::wording::{size, thousands};
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{
@@ -295,6 +296,9 @@ pub struct Measured {
     /// Bytes of what the scene gave: positions, indices, hierarchy … 0 in files of older programs.
     #[serde(default)]
     pub scene_bytes: u64,
+    /// How a method that remembers came to its steady state; absent of one that does not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub steady: Option<Steady>,
     /// The frames of a camera path, of which all else are the sums and the spread; absent of a
     /// still view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -512,6 +516,7 @@ pub(crate) mod tests {
             memory_bytes: 12_582_912,
             saved_bytes: 1_048_576,
             scene_bytes: 2_000_000,
+            steady: None,
             sequence: None,
             images: gpu.then(|| Images {
                 shaded: format!("{name}-shaded.png"),

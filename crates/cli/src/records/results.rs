@@ -2,7 +2,7 @@
 //! nothing.
 
 use crate::records::sequence::Sequence;
-use crate::records::statistics::Spread;
+use crate::records::statistics::{FrameTimes, Spread};
 use crate::records::steady::Steady;
 use crate::wording::{size, thousands};
 use serde::{Deserialize, Serialize};
@@ -375,16 +375,6 @@ pub struct Pass {
     pub gpu_ms: Option<Spread>,
     /// Encoding on the CPU.
     pub cpu_ms: Spread,
-}
-
-/// Times of frames.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FrameTimes {
-    /// From the first pass's begin to the last one's end; null where timestamps cannot be had or
-    /// trusted.
-    pub gpu_ms: Option<Spread>,
-    /// From the start of encoding until the GPU was done, by the CPU's clock.
-    pub wall_ms: Spread,
 }
 
 /// A frame in which unchanged passes did not run.

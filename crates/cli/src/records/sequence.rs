@@ -1,6 +1,6 @@
 //! The frames of a camera path, in `results.json`.
 
-use crate::records::results::FrameTimes;
+use crate::records::statistics::FrameTimes;
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{Graded, Shimmer};
 

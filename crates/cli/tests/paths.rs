@@ -108,6 +108,25 @@ fn a_moving_light_is_followed_by_what_is_kept_and_by_the_reference() {
 }
 
 #[test]
+fn a_jittered_camera_is_followed_by_gbuffer_and_reference() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "compare rt light_buffer --path walk --size 64x64 --warmup 0 --images none \
+                --cached-frames 0 --out out";
+    let (plain, _) = results(folder.path(), line);
+    let (jittered, _) = results(folder.path(), &format!("{line} --jitter 8"));
+    for (plain, jittered) in plain.iter().zip(&jittered) {
+        assert_ne!(plain["pixels"], jittered["pixels"]);
+        assert_ne!(plain["fingerprint"], jittered["fingerprint"]);
+        let wrong = &jittered["wrong"];
+        assert_eq!(wrong["total"], wrong["in_band"], "{}", jittered["preset"]);
+        let band =
+            count(&jittered["band"]) as f64 / count(&jittered["pixels"]["facing_light"]) as f64;
+        assert!(band < 1e-3, "{band}");
+        assert!(jittered["sequence"]["every_pass"].is_null());
+    }
+}
+
+#[test]
 fn a_path_that_is_not_there_is_refused_with_those_that_are() {
     let folder = tempfile::tempdir().unwrap();
     let refused = |line: &str| {

@@ -105,3 +105,80 @@ fn ctrl_c_keeps_the_whole_pictures_of_the_frames_before() {
     let sizes = entries.map(|entry| entry.unwrap().metadata().unwrap().len());
     assert!(sizes.into_iter().all(|size| size == 16 * 16 * 4));
 }
+
+/// What shaders are told of a frame: number, time, and of this frame and the one before the eye,
+/// the jitter and the light.
+const TOLD: &str = r#"
+    #import "shared/camera.wgsl"
+    #import "shared/light.wgsl"
+    #import "shared/frame.wgsl"
+    var<uniform> camera_previous: Camera;
+    var<uniform> light_previous: Light;
+    struct Seen { eye: vec3<f32>, jitter_x: f32, to_light: vec3<f32>, jitter_y: f32 }
+    struct Told { index: f32, seconds: f32, now: Seen, before: Seen }
+    var<storage, read_write> told: array<Told>;
+    @compute @workgroup_size(1) fn main() {
+        let now = camera;
+        let before = camera_previous;
+        told[0] = Told(
+            f32(frame.index),
+            frame.seconds,
+            Seen(now.eye, now.jitter.x, light.to_light, now.jitter.y),
+            Seen(before.eye, before.jitter.x, light_previous.to_light, before.jitter.y),
+        );
+    }
+"#;
+
+#[test]
+fn shaders_know_number_time_jitter_and_the_frame_before() {
+    let folder = tempfile::tempdir().unwrap();
+    let document = r#"(
+        format: 2,
+        materials: [Buffer(name: "told", count: 1)],
+        passes: [Compute(name: "tell", dispatch: Groups(1, 1, 1), overwrites: ["told"])],
+        outputs: ["told"],
+    )"#;
+    fs::write(folder.path().join("tell.ron"), document).unwrap();
+    fs::write(folder.path().join("tell.wgsl"), TOLD).unwrap();
+    let told = |flags: &str| -> Vec<Vec<f32>> {
+        run(
+            folder.path(),
+            &format!("run tell.ron --size 16x16 --save told=t.bin {flags}"),
+        );
+        let frame = |index| {
+            let bytes = fs::read(folder.path().join(format!("t.000{index}.bin"))).unwrap();
+            let words = bytes.chunks_exact(4);
+            words
+                .map(|it| f32::from_le_bytes(it.try_into().unwrap()))
+                .collect()
+        };
+        (0..5).map(frame).collect()
+    };
+    // Index and seconds, padding, and eight words each of this frame and of the one before.
+    let (now, before) = (4..12, 12..20);
+    for (flags, rate) in [("--path walk", 10.0), ("--path sunrise", 10.0), ("", 30.0)] {
+        let frames = told(&format!("{flags} --frames 5 --jitter 3"));
+        for (index, frame) in frames.iter().enumerate() {
+            assert_eq!(frame[0], index as f32);
+            assert!(
+                (frame[1] - index as f32 / rate).abs() < 1e-6,
+                "{flags}: {frame:?}"
+            );
+            let earlier = &frames[index.saturating_sub(1)];
+            assert_eq!(
+                frame[before.clone()],
+                earlier[now.clone()],
+                "{flags} {index}"
+            );
+        }
+        let jitter = |index: usize| [frames[index][7], frames[index][11]];
+        assert_eq!(jitter(0), [0.0, -0.16796875]);
+        assert_eq!(jitter(1), [-0.25, 0.16796875]);
+        assert_eq!(jitter(3), jitter(0));
+        let moves = |words: std::ops::Range<usize>| frames[4][words.clone()] != frames[3][words];
+        assert_eq!(moves(4..7), flags.contains("walk"));
+        assert_eq!(moves(8..11), flags.contains("sunrise"));
+    }
+    let still = told("--frames 5");
+    assert_eq!([still[1][7], still[1][11]], [0.0; 2]);
+}

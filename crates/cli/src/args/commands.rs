@@ -26,6 +26,11 @@ pub struct CompareArgs {
     /// --cached-frames 0). --frames is of still views.
     #[arg(long, value_name = "NAME", conflicts_with = "view")]
     pub path: Option<String>,
+    /// Move the camera by a part of a pixel in each frame, in turns of so many places (Halton's
+    /// sequence), as for temporal antialiasing: `camera.jitter` of the shaders.
+    #[arg(long, value_name = "N", requires = "path",
+          value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub jitter: Option<u32>,
     /// Viewport sizes in pixels, separated by commas.
     #[arg(
         long,
@@ -175,6 +180,11 @@ pub struct RunArgs {
     /// A camera path of the scene, each frame of which is saved.
     #[arg(long, value_name = "NAME", conflicts_with = "view", requires = "save")]
     pub path: Option<String>,
+    /// Move the camera by a part of a pixel in each frame, in turns of so many places (Halton's
+    /// sequence), as for temporal antialiasing: `camera.jitter` of the shaders.
+    #[arg(long, value_name = "N", requires = "save",
+          value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub jitter: Option<u32>,
     /// Fill all memory that a frame has not written with two patterns, one after the other, and
     /// fail if an output differs: the graph then reads what no pass has written.
     #[arg(long)]

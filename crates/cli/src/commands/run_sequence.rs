@@ -5,7 +5,7 @@ use crate::args::values::Save;
 use crate::error::CliError;
 use crate::graphs::preset::Preset;
 use crate::measuring::frame;
-use crate::measuring::subject::Subject;
+use crate::measuring::subject::{Shot, Subject};
 use crate::pictures::save::{Decoding, capture, write};
 use crate::terminal::console::print;
 use crate::terminal::interrupt;
@@ -34,7 +34,7 @@ pub fn numbered(save: &Save, index: usize) -> Save {
 
 /// The views of the frames that are asked for, with how many there are in a second.
 pub struct Shots {
-    views: Vec<View>,
+    shots: Vec<Shot>,
     frames_per_second: f64,
 }
 
@@ -45,6 +45,9 @@ impl Shots {
     /// No such path, or one that has fewer frames.
     pub fn of(args: &RunArgs, scene: &Scene, views: &[View]) -> Result<Option<Self>, CliError> {
         let subject = match (&args.path, args.frames, views) {
+            (None, None, _) if args.jitter.is_some() => {
+                return Err(CliError::Usage("--jitter needs --frames or --path".into()));
+            }
             (None, None, _) => return Ok(None),
             (Some(name), ..) => Self::path(args, scene, name)?,
             (None, Some(_), [view]) => Subject::Still(view.clone()),
@@ -54,9 +57,11 @@ impl Shots {
                 ));
             }
         };
-        let of_path = subject.views();
-        let views = match (&subject, args.frames) {
-            (Subject::Still(view), Some(count)) => vec![view.clone(); count as usize],
+        let of_path = subject.shots(args.jitter);
+        let shots = match (&subject, args.frames) {
+            (Subject::Still(view), Some(count)) => {
+                Shot::numbered(vec![view.clone(); count as usize], args.jitter)
+            }
             (Subject::Path(_), Some(count)) if count as usize > of_path.len() => {
                 return Err(CliError::Input(format!(
                     "--frames {count}: the path `{}` has {}",
@@ -71,7 +76,7 @@ impl Shots {
         };
         Ok(Some(Self {
             frames_per_second: subject.frames_per_second(),
-            views,
+            shots,
         }))
     }
 
@@ -90,7 +95,7 @@ impl Shots {
 
     /// The first frame's view.
     pub fn first(&self) -> Option<&View> {
-        self.views.first()
+        self.shots.first().map(|shot| &shot.view)
     }
 
     /// Renders the frames one after the other, the first with an empty memory, and saves what is
@@ -110,15 +115,15 @@ impl Shots {
         let viewport = plan.viewport();
         let mut executor = frame::executor(gpu, plan, provider).map_err(failed)?;
         frame::grow(gpu, &mut executor, provider).map_err(failed)?;
-        let step = Step::begin(preset.name.clone(), self.views.len() as u64, "frames");
-        for (index, view) in self.views.iter().enumerate() {
+        let step = Step::begin(preset.name.clone(), self.shots.len() as u64, "frames");
+        for (index, shot) in self.shots.iter().enumerate() {
             if interrupt::raised() {
                 let kept = format!("the pictures of {} are there", frames(index as u32));
                 return Err(CliError::Interrupted { kept });
             }
-            provider.set_view(view, viewport);
+            shot.show(provider, viewport);
             let readings = saves.iter();
-            let readings = readings.map(|save| Decoding::of(executor.plan(), save, view));
+            let readings = readings.map(|save| Decoding::of(executor.plan(), save, &shot.view));
             let readings: Vec<Decoding> = readings.collect();
             let contents = self
                 .frame(gpu, &mut executor, provider, (index, saves))
@@ -133,7 +138,7 @@ impl Shots {
             step.set_done(index as u64 + 1);
         }
         step.end();
-        let last = self.views.len().saturating_sub(1);
+        let last = self.shots.len().saturating_sub(1);
         for save in saves {
             let file = |index| -> PathBuf { numbered(save, index).file };
             print(&format!(

@@ -8,6 +8,7 @@ use crate::measuring::reference::{Judge, own_counts};
 use crate::measuring::run::MeasureContext;
 use crate::measuring::steady;
 use crate::measuring::stop::{Attempt, Stop, attempt};
+use crate::measuring::subject::Shot;
 use crate::measuring::timing;
 use crate::pictures::run_pictures::{save_pictures, stem};
 use crate::records::results::{Answer, Measured};
@@ -24,7 +25,7 @@ use skiagraph_reference::{
     BlockerCounts, Graded, Progress, Shimmer, Statistics,
     shimmer::{same_receivers, shimmer},
 };
-use skiagraph_scene::{Mesh, View};
+use skiagraph_scene::Mesh;
 use std::time::Duration;
 
 fn ms(time: Duration) -> f64 {
@@ -33,8 +34,8 @@ fn ms(time: Duration) -> f64 {
 
 /// The frames of a path with their right answers.
 pub struct Path<'a> {
-    /// The camera's places.
-    pub views: Vec<View>,
+    /// From where.
+    pub shots: Vec<Shot>,
     /// The right answers.
     pub judges: Vec<Judge<'a>>,
     /// Frames per second of the path's own time.
@@ -50,7 +51,7 @@ impl<'a> Path<'a> {
     /// Ctrl-C.
     pub fn new(
         mesh: &Mesh,
-        (views, frames_per_second): (Vec<View>, f64),
+        (shots, frames_per_second): (Vec<Shot>, f64),
         judges: Vec<Judge<'a>>,
     ) -> Result<Self, CliError> {
         let progress = Progress {
@@ -62,7 +63,7 @@ impl<'a> Path<'a> {
         let same = same.collect::<Result<_, _>>();
         let same = same.map_err(|_| CliError::interrupted())?;
         Ok(Self {
-            views,
+            shots,
             judges,
             frames_per_second,
             same,
@@ -155,7 +156,7 @@ impl MeasureContext<'_> {
         } = self.begin(plan, path, provider)?;
         let mut account = Account::default();
         let names = method.preset.judged();
-        for index in 0..path.views.len() {
+        for index in 0..path.shots.len() {
             let done = self.frame(&mut executor, path, index, (&names, false), provider)?;
             self.account(method, path, index, done, &mut account)?;
             step.set_done(u64::from(self.warmup) + index as u64 + 1);
@@ -212,8 +213,8 @@ impl MeasureContext<'_> {
     /// An executor that stands still at the path's begin until it is warm, or, of a method that
     /// remembers, until it is in its steady state: so all flags give the same pictures.
     fn begin(&self, plan: Plan, path: &Path, provider: &mut SceneProvider) -> Result<Begun, Stop> {
-        if let Some(view) = path.views.first() {
-            provider.set_view(view, self.judge.right.reference.viewport);
+        if let Some(shot) = path.shots.first() {
+            shot.show(provider, self.judge.right.reference.viewport);
         }
         let mut executor = frame::executor(self.gpu, plan, provider)?;
         frame::grow(self.gpu, &mut executor, provider)?;
@@ -257,7 +258,7 @@ impl MeasureContext<'_> {
         }
         let mut timed = Vec::new();
         // The first one brings the camera back, and is no frame of the path.
-        for index in std::iter::once(0).chain(0..path.views.len()) {
+        for index in std::iter::once(0).chain(0..path.shots.len()) {
             let (report, wall) = self.frame(executor, path, index, (names, true), provider)?;
             timed.push(timed_frame(report, wall)?);
         }
@@ -292,7 +293,7 @@ impl MeasureContext<'_> {
             return Err(CliError::interrupted().into());
         }
         let viewport = self.judge.right.reference.viewport;
-        provider.set_view(&path.views[index], viewport);
+        path.shots[index].show(provider, viewport);
         executor.refresh(provider)?;
         let request = Frame {
             timing: true,

@@ -1,7 +1,8 @@
 //! What is said below tables, wherever they stand.
 
 use crate::records::results::{Measured, Run};
-use crate::wording::thousands;
+use crate::records::sequence::FrameCost;
+use crate::wording::{frames, ms, thousands};
 
 /// A band of more than one pixel in so many of those facing the light leaves too much open.
 const MAX_BAND: u128 = 1000;
@@ -65,6 +66,57 @@ fn blockers(runs: &[&Run]) -> String {
     kinds.collect::<Vec<_>>().join(", ")
 }
 
+/// What was judged of a method that remembers.
+pub fn remembering(run: &Run) -> Option<String> {
+    let measured = run.measured.as_ref()?;
+    let steady = measured.steady.as_ref()?;
+    let name = run.method_label();
+    let after = frames(steady.frames);
+    let state = match steady.period {
+        Some(1) => format!("its picture stays the same after {after}"),
+        Some(period) => format!("its picture repeats every {} after {after}", frames(period)),
+        None => format!("its picture does not repeat within {after}"),
+    };
+    Some(match steady.judged {
+        None => format!("{name} remembers, and stood at the path's begin before: {state}"),
+        Some(cycle) if cycle.pictures == 1 => {
+            format!("{name} remembers: {state}, and is judged then")
+        }
+        Some(cycle) => {
+            let mean = match cycle.rmse_mean {
+                Some(rmse) => format!("RMSE in the mean {rmse:.5}"),
+                None => format!("wrong pixels in the mean {:.1}", cycle.wrong_mean),
+            };
+            format!(
+                "{name} remembers: {state}; the counts are those of the worst of {} pictures then, \
+                 {mean}",
+                cycle.pictures
+            )
+        }
+    })
+}
+
+/// What the frames of a camera path cost, with what is kept and without.
+pub fn path_costs(run: &Run) -> Vec<String> {
+    let sequence = run.measured.as_ref().and_then(|of| of.sequence.as_ref());
+    let lines = sequence.map(|sequence| {
+        [
+            ("as it is", sequence.slowest()),
+            ("with every pass", sequence.slowest_with_every_pass()),
+        ]
+    });
+    let line = |(how, slowest): (&str, Option<(usize, FrameCost)>)| {
+        let (index, cost) = slowest?;
+        let clock = cost.gpu_ms.map_or("wall", |_| "GPU");
+        Some(format!(
+            "{} {how}: slowest frame {index}, {} ms ({clock})",
+            run.method_label(),
+            ms(cost.ms())
+        ))
+    };
+    lines.into_iter().flatten().filter_map(line).collect()
+}
+
 /// Which GPU times a run lacks on an adapter whose timestamps are true.
 pub fn times_missing(run: &Run) -> Option<String> {
     let measured = run.measured.as_ref()?;
@@ -94,7 +146,42 @@ pub fn untimed<'a>(passes: impl Iterator<Item = (&'a str, bool)>, frame: bool) -
 mod tests {
     use super::*;
     use crate::records::results::tests::sample;
+    use crate::records::steady::{Cycle, Steady};
     use skiagraph_reference::BlockerCounts;
+
+    #[test]
+    fn what_was_judged_of_a_method_that_remembers_is_said() {
+        let mut run = sample().runs.remove(0);
+        assert_eq!(remembering(&run), None);
+        let mut said = |period, judged: Option<(u32, Option<f64>)>| {
+            let cycle = |(pictures, rmse_mean)| Cycle {
+                pictures,
+                wrong_mean: 12.25,
+                rmse_mean,
+            };
+            run.measured.as_mut().unwrap().steady = Some(Steady {
+                frames: 256,
+                period,
+                judged: judged.map(cycle),
+            });
+            let said = remembering(&run).unwrap();
+            said.split_once(": ").unwrap().1.to_owned()
+        };
+        assert_eq!(
+            said(Some(1), Some((1, None))),
+            "its picture stays the same after 256 frames, and is judged then"
+        );
+        assert_eq!(
+            said(None, Some((16, None))),
+            "its picture does not repeat within 256 frames; the counts are those of the worst of \
+             16 pictures then, wrong pixels in the mean 12.2"
+        );
+        assert!(said(Some(3), Some((3, Some(0.5)))).ends_with("RMSE in the mean 0.50000"));
+        assert_eq!(
+            said(Some(3), None),
+            "its picture repeats every 3 frames after 256 frames"
+        );
+    }
 
     #[test]
     fn blockers_of_all_maps_stand_in_a_line_and_only_those_there_are() {

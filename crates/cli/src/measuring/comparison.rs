@@ -165,7 +165,11 @@ impl<'a> Comparison<'a> {
             return Ok(());
         }
         let judges = self.judges(subject, &views, viewport)?;
-        let frames = sequence::Path::new(&self.setup.scene.mesh, views, judges)?;
+        let frames = sequence::Path::new(
+            &self.setup.scene.mesh,
+            (views, subject.frames_per_second()),
+            judges,
+        )?;
         let Some(judge) = frames.judges.first() else {
             return Ok(());
         };

@@ -33,6 +33,14 @@ impl Subject {
         }
     }
 
+    /// Of its own time.
+    pub fn frames_per_second(&self) -> f64 {
+        match self {
+            Self::Still(_) => 30.0,
+            Self::Path(path) => path.frames_per_second,
+        }
+    }
+
     /// Its light.
     pub fn light(&self, scene: &Scene) -> LightKind {
         let (Self::Still(view) | Self::Path(CameraPath { view, .. })) = self;

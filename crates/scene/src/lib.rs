@@ -25,6 +25,7 @@ mod limit;
 pub mod mask;
 pub mod material;
 pub mod mesh;
+pub mod motion;
 pub mod movable;
 #[cfg(feature = "files")]
 pub mod obj;
@@ -59,6 +60,7 @@ pub use limit::Limit;
 pub use mask::Mask;
 pub use material::{Material, Surfaces};
 pub use mesh::{Group, Mesh};
+pub use motion::{Motion, PartMotion, RigidKey};
 pub use movable::Movable;
 #[cfg(feature = "files")]
 pub use obj::{Concave, ObjMaterials, ObjOptions, QuadDiagonal, load_obj};

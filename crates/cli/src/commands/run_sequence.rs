@@ -5,6 +5,7 @@ use crate::args::values::Save;
 use crate::error::CliError;
 use crate::graphs::preset::Preset;
 use crate::measuring::frame;
+use crate::measuring::shapes::Shapes;
 use crate::measuring::subject::Subject;
 use crate::pictures::save::{Decoding, capture, write};
 use crate::terminal::console::print;
@@ -35,6 +36,8 @@ pub fn numbered(save: &Save, index: usize) -> Save {
 /// The views of the frames that are asked for, with how many there are in a second.
 pub struct Shots {
     views: Vec<View>,
+    /// The mesh in each frame, where parts of it move.
+    shapes: Option<Shapes>,
     frames_per_second: f64,
 }
 
@@ -71,6 +74,7 @@ impl Shots {
         };
         Ok(Some(Self {
             frames_per_second: subject.frames_per_second(),
+            shapes: subject.shapes(scene, views.len())?,
             views,
         }))
     }
@@ -85,6 +89,13 @@ impl Shots {
             _ => Err(CliError::Usage(
                 "--save takes the pictures of one path under one light; name them".into(),
             )),
+        }
+    }
+
+    /// Gives the provider the mesh of the first frame.
+    pub fn begin(&self, provider: &mut SceneProvider) {
+        if let Some(shapes) = &self.shapes {
+            shapes.begin(provider);
         }
     }
 
@@ -117,6 +128,9 @@ impl Shots {
                 return Err(CliError::Interrupted { kept });
             }
             provider.set_view(view, viewport);
+            if let Some(shapes) = &self.shapes {
+                shapes.show(index, provider)?;
+            }
             let readings = saves.iter();
             let readings = readings.map(|save| Decoding::of(executor.plan(), save, view));
             let readings: Vec<Decoding> = readings.collect();

@@ -6,6 +6,7 @@ use crate::graphs::method::Method;
 use crate::measuring::frame;
 use crate::measuring::reference::{Judge, own_counts};
 use crate::measuring::run::MeasureContext;
+use crate::measuring::shapes::Shapes;
 use crate::measuring::steady;
 use crate::measuring::stop::{Attempt, Stop, attempt};
 use crate::measuring::timing;
@@ -24,7 +25,7 @@ use skiagraph_reference::{
     BlockerCounts, Graded, Progress, Shimmer, Statistics,
     shimmer::{same_receivers, shimmer},
 };
-use skiagraph_scene::{Mesh, View};
+use skiagraph_scene::View;
 use std::time::Duration;
 
 fn ms(time: Duration) -> f64 {
@@ -35,6 +36,8 @@ fn ms(time: Duration) -> f64 {
 pub struct Path<'a> {
     /// The camera's places.
     pub views: Vec<View>,
+    /// The mesh in each frame, where parts of it move.
+    shapes: Option<&'a Shapes>,
     /// The right answers.
     pub judges: Vec<Judge<'a>>,
     /// Frames per second of the path's own time.
@@ -49,8 +52,8 @@ impl<'a> Path<'a> {
     /// # Errors
     /// Ctrl-C.
     pub fn new(
-        mesh: &Mesh,
         (views, frames_per_second): (Vec<View>, f64),
+        shapes: Option<&'a Shapes>,
         judges: Vec<Judge<'a>>,
     ) -> Result<Self, CliError> {
         let progress = Progress {
@@ -58,15 +61,30 @@ impl<'a> Path<'a> {
             interrupted: interrupt::flag(),
         };
         let pairs = judges.windows(2);
-        let same = pairs.map(|pair| same_receivers(mesh, pair[0].seen(), pair[1].seen(), progress));
+        let same = pairs.map(|pair| same_receivers(pair[0].seen(), pair[1].seen(), progress));
         let same = same.collect::<Result<_, _>>();
         let same = same.map_err(|_| CliError::interrupted())?;
         Ok(Self {
             views,
+            shapes,
             judges,
             frames_per_second,
             same,
         })
+    }
+
+    /// Gives the provider a frame's camera, light and mesh.
+    fn show(
+        &self,
+        index: usize,
+        viewport: [u32; 2],
+        provider: &mut SceneProvider,
+    ) -> Result<(), CliError> {
+        provider.set_view(&self.views[index], viewport);
+        match self.shapes {
+            Some(shapes) => shapes.show(index, provider),
+            None => Ok(()),
+        }
     }
 
     /// When a frame is.
@@ -212,9 +230,7 @@ impl MeasureContext<'_> {
     /// An executor that stands still at the path's begin until it is warm, or, of a method that
     /// remembers, until it is in its steady state: so all flags give the same pictures.
     fn begin(&self, plan: Plan, path: &Path, provider: &mut SceneProvider) -> Result<Begun, Stop> {
-        if let Some(view) = path.views.first() {
-            provider.set_view(view, self.judge.right.reference.viewport);
-        }
+        path.show(0, self.judge.right.reference.viewport, provider)?;
         let mut executor = frame::executor(self.gpu, plan, provider)?;
         frame::grow(self.gpu, &mut executor, provider)?;
         let steady = match executor.plan().remembers() {
@@ -292,7 +308,7 @@ impl MeasureContext<'_> {
             return Err(CliError::interrupted().into());
         }
         let viewport = self.judge.right.reference.viewport;
-        provider.set_view(&path.views[index], viewport);
+        path.show(index, viewport, provider)?;
         executor.refresh(provider)?;
         let request = Frame {
             timing: true,

@@ -16,6 +16,7 @@ pub mod error;
 pub mod generate;
 #[cfg(feature = "files")]
 pub mod gltf;
+mod keys;
 #[cfg(feature = "files")]
 pub mod library;
 pub mod light;

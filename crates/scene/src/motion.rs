@@ -1,8 +1,8 @@
 //! How a part of a mesh moves on a path: rigidly from keyframe to keyframe, or swaying.
 
 use crate::{
+    keys::{not_later, spline},
     movable::Movable,
-    path::{not_later, spline},
 };
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 use std::f64::consts::TAU;

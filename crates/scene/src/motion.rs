@@ -152,3 +152,69 @@ pub fn moved(movable: &Movable, motions: &[PartMotion], at: f64) -> (Vec<Vec3>, 
     let maps: Vec<_> = maps.collect();
     movable.bent(|part, place| maps[part](place))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sway(axis: DVec3, degrees: f64) -> PartMotion {
+        PartMotion {
+            part: "tree".into(),
+            motion: Motion::Sway {
+                axis,
+                up: DVec3::Y,
+                degrees,
+                seconds: 2.0,
+            },
+        }
+    }
+
+    #[test]
+    fn a_foot_stands_and_the_derivative_is_that_of_the_bend() {
+        let map = sway(DVec3::X, 45.0).map([1.0, 5.0], 0.5);
+        let foot = DVec3::new(2.0, 1.0, 3.0);
+        assert_eq!(map(foot).0, foot);
+        let tip = map(foot + DVec3::Y * 4.0).0;
+        assert!((tip - DVec3::new(6.0, 5.0, 3.0)).length() < 1e-12, "{tip}");
+        let (place, step) = (DVec3::new(0.5, 2.5, -1.0), 1e-6);
+        for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+            let slope = (map(place + axis * step).0 - map(place).0) / step;
+            assert!((slope - map(place).1 * axis).length() < 1e-5, "{slope}");
+        }
+        // At the period's begin nothing is bent.
+        assert_eq!(sway(DVec3::X, 45.0).map([1.0, 5.0], 0.0)(place).0, place);
+    }
+
+    #[test]
+    fn a_turn_keeps_its_pivot() {
+        let key = |at, degrees| RigidKey {
+            at,
+            translation: DVec3::ZERO,
+            degrees,
+        };
+        let turn = PartMotion {
+            part: "lamp".into(),
+            motion: Motion::Rigid {
+                pivot: DVec3::X,
+                axis: DVec3::Y * 3.0,
+                keys: vec![key(0.0, 0.0), key(1.0, 90.0)],
+            },
+        };
+        turn.check().unwrap();
+        let map = turn.map([0.0; 2], 2.0);
+        assert!((map(DVec3::X).0 - DVec3::X).length() < 1e-12);
+        let turned = map(DVec3::X * 2.0).0;
+        assert!((turned - DVec3::new(1.0, 0.0, -1.0)).length() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_no_motion_is_named() {
+        let upright = sway(DVec3::Y, 5.0).check().unwrap_err();
+        assert!(
+            upright.contains("moves: \"tree\": axis [0, 1, 0]"),
+            "{upright}"
+        );
+        let flat = sway(DVec3::X, 90.0).check().unwrap_err();
+        assert!(flat.contains("degrees are 90"), "{flat}");
+    }
+}

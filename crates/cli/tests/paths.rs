@@ -127,6 +127,83 @@ fn a_jittered_camera_is_followed_by_gbuffer_and_reference() {
 }
 
 #[test]
+fn moving_parts_are_followed_by_what_is_kept_and_by_the_reference() {
+    let folder = tempfile::tempdir().unwrap();
+    // From frame to frame the lamp moves until the seventh, the tree always.
+    for (path, standing) in [("lamp", 7), ("wind", 9)] {
+        let line = format!(
+            "compare rt light_buffer nsm crsm --path {path} --size 64x64 --map-size 128 --warmup 1 \
+             --images none --out out"
+        );
+        let (runs, _) = results(folder.path(), &line);
+        assert_eq!(runs.len(), 4);
+        for run in &runs {
+            let frames = run["sequence"]["frames"].as_array().unwrap();
+            assert_eq!(frames.len(), 9);
+            let facing: Vec<u64> = frames.iter().map(|it| count(&it["facing_light"])).collect();
+            assert!(facing[0] > 500, "{facing:?}");
+            let shimmer = &run["sequence"]["shimmer"];
+            assert!(count(&shimmer["compared"]) > 2_000, "{shimmer}");
+            if run["preset"] != "nsm" {
+                let wrong = frames.iter().map(|it| count(&it["wrong_outside_band"]));
+                let wrong: Vec<u64> = wrong.collect();
+                assert_eq!(wrong, [0; 9], "{path} {}", run["preset"]);
+                assert_eq!(count(&shimmer["changed"]), 0, "{path} {}", run["preset"]);
+            }
+            // What draws the mesh runs while it moves, and no longer.
+            for (index, frame) in frames.iter().enumerate() {
+                let skipped = frame["skipped"].to_string();
+                let expected = match run["preset"].as_str() {
+                    Some("nsm") => "create_shadow_map.draw",
+                    Some("crsm") => "create_shadow_map.layer[0].select",
+                    // They keep nothing: every pass of theirs reads the mesh or the eye.
+                    _ => {
+                        assert_eq!(skipped, "null", "{path} {}", run["preset"]);
+                        continue;
+                    }
+                };
+                let is_kept = skipped.contains(expected);
+                assert_eq!(
+                    is_kept,
+                    index == 0 || index >= standing,
+                    "{path} {} {index}: {skipped}",
+                    run["preset"]
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_part_that_is_not_there_is_refused_with_those_that_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = r#"(
+        format: 1, name: "own", mesh: Generated("park"), light: (direction: (0.7, -0.4, 0.5)),
+        views: [(
+            name: "v", eye: (-10, 60, 60), direction: (0.5, -0.7, -0.6), fov_y_degrees: 60,
+            near: 1, far: 400,
+        )],
+        paths: [(
+            name: "p", fov_y_degrees: 60, near: 1, far: 400,
+            keys: [
+                (at: 0, eye: (-10, 60, 60), direction: (0.5, -0.7, -0.6)),
+                (at: 0.1, eye: (-10, 60, 60), direction: (0.5, -0.7, -0.6)),
+            ],
+            moves: [Sway(part: "tree 9", axis: (1, 0, 0), degrees: 5, seconds: 2)],
+        )],
+    )"#;
+    fs::write(folder.path().join("own.ron"), scene).unwrap();
+    let output = skiagraph(folder.path(), "compare nsm --scene own.ron --path p");
+    assert_eq!(output.status.code(), Some(1));
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        told.contains("path \"p\": moves: no part of the mesh is called \"tree 9\"; known here:")
+            && told.contains("tree 1"),
+        "{told}"
+    );
+}
+
+#[test]
 fn a_path_that_is_not_there_is_refused_with_those_that_are() {
     let folder = tempfile::tempdir().unwrap();
     let refused = |line: &str| {
@@ -137,7 +214,7 @@ fn a_path_that_is_not_there_is_refused_with_those_that_are() {
     let unknown = refused("compare nsm --path wlak");
     assert!(
         unknown.contains("`park` has no path `wlak`; did you mean `walk`?")
-            && unknown.contains("paths: walk, sunrise, or all of them: all"),
+            && unknown.contains("paths: walk, sunrise, lamp, wind, or all of them: all"),
         "{unknown}"
     );
     let none = refused("compare nsm --scene city:20000 --path walk");

@@ -24,8 +24,14 @@ fn uses() -> Files {
     materials: [Buffer(name: "list", count: "items"), Buffer(name: "sum")],
     passes: [
         Compute(name: "fill", dispatch: Over("list.count")),
-        Include(name: "first", graph: "blur.ron", set: {"radius": "handed_on"}, bind: {"into": "list"}),
-        Include(name: "again", graph: "blur.ron", set: {"radius": "computed_with * 2"}, bind: {"into": "list"}),
+        Include(
+            name: "first", graph: "blur.ron",
+            set: {"radius": "handed_on"}, bind: {"into": "list"},
+        ),
+        Include(
+            name: "again", graph: "blur.ron",
+            set: {"radius": "computed_with * 2"}, bind: {"into": "list"},
+        ),
         Compute(name: "add", run: When("more"), dispatch: Groups(1, 1, 1)),
     ],
     outputs: ["list", "sum"],

@@ -160,6 +160,7 @@ impl SceneProvider {
         self.masks = mask_words(&mesh);
         Arc::make_mut(&mut self.scene).mesh = mesh;
         self.hierarchies.forget();
+        self.is_deformed = false;
         self.versions.mesh = next_version();
         self.versions.shape = next_version();
     }

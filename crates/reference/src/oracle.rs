@@ -190,6 +190,11 @@ impl<'a> Oracle<'a> {
         Self { mesh, tree, parts }
     }
 
+    /// What it traces.
+    pub fn mesh(&self) -> &'a Mesh {
+        self.mesh
+    }
+
     /// Uses a hierarchy that was built over `mesh` before.
     ///
     /// # Errors

@@ -28,6 +28,8 @@ pub struct Shimmer {
 /// A frame as shimmer sees it.
 #[derive(Clone, Copy)]
 pub struct Seen<'a> {
+    /// As it is in this frame; all frames have the same triangles.
+    pub mesh: &'a Mesh,
     /// Where it is seen from.
     pub camera: &'a Camera,
     /// The primitive that each pixel shows, as for [`Oracle::shade`](crate::Oracle::shade).
@@ -35,23 +37,20 @@ pub struct Seen<'a> {
 }
 
 /// For each pixel of `now`, the pixel of the frame before that shows the same receiver: the one
-/// into which its place on its primitive falls, if that shows the same primitive. [`BACKGROUND`]
+/// into which its place on its primitive fell, where that was then, if that shows the same
+/// primitive. [`BACKGROUND`]
 /// where none does.
 ///
 /// # Errors
 /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Interrupted`].
-pub fn same_receivers(
-    mesh: &Mesh,
-    before: Seen,
-    now: Seen,
-    progress: Progress,
-) -> Result<Vec<u32>, Error> {
+pub fn same_receivers(before: Seen, now: Seen, progress: Progress) -> Result<Vec<u32>, Error> {
     for seen in [before, now] {
         check_pixel_count("primitives", seen.camera.viewport, seen.primitives.len())?;
     }
     let [width, _] = now.camera.viewport;
     let [width_before, _] = before.camera.viewport;
-    let count = mesh.triangles.len() as u64;
+    let triangles = [before, now].map(|seen| seen.mesh.triangles.len());
+    let count = triangles[0].min(triangles[1]) as u64;
     per_pixel(now.camera.viewport, progress, |x, y, _| {
         let primitive = now.primitives[(x + y * width) as usize];
         if primitive == BACKGROUND {
@@ -65,7 +64,8 @@ pub fn same_receivers(
                 count,
             });
         }
-        let place = hit(mesh, primitive, now.camera, [x, y])
+        let place = hit(now.mesh, primitive, now.camera, [x, y])
+            .map(|receiver| earlier(receiver, primitive, before.mesh, now.mesh))
             .and_then(|receiver| before.camera.pixel_of(receiver))
             .map(|[x, y]| x + y * width_before);
         let same = |&place: &u32| before.primitives[place as usize] == primitive;
@@ -81,6 +81,23 @@ fn hit(mesh: &Mesh, primitive: u32, camera: &Camera, [x, y]: [u32; 2]) -> Option
     let direction = camera.pixel_direction(x, y);
     let t = normal.dot(a - camera.eye) / normal.dot(direction);
     t.is_finite().then(|| camera.eye + direction * t)
+}
+
+/// Where a place on a primitive was in the frame before.
+fn earlier(place: DVec3, primitive: u32, before: &Mesh, now: &Mesh) -> DVec3 {
+    let corners = now.corners(primitive);
+    let corners_before = before.corners(primitive);
+    // What stands is where it is, without rounding.
+    if corners == corners_before {
+        return place;
+    }
+    let [a, b, c] = corners;
+    let normal = (b - a).cross(c - a);
+    let area = normal.length_squared();
+    let v = (place - a).cross(c - a).dot(normal) / area;
+    let w = (b - a).cross(place - a).dot(normal) / area;
+    let [a, b, c] = corners_before;
+    a + (b - a) * v + (c - a) * w
 }
 
 /// Counts the answers that changed: `same` is of [`same_receivers`], and of each frame there are

@@ -47,14 +47,16 @@ fn compared(mesh: &Mesh, [before, now]: [&Frame; 2], answers: [&[f32]; 2]) -> Sh
     let seen = |frame: &'_ Frame| (frame.camera, frame.primitives.clone());
     let [(camera_before, ids_before), (camera, ids)] = [seen(before), seen(now)];
     let before_seen = Seen {
+        mesh,
         camera: &camera_before,
         primitives: &ids_before,
     };
     let now_seen = Seen {
+        mesh,
         camera: &camera,
         primitives: &ids,
     };
-    let same = same_receivers(mesh, before_seen, now_seen, Progress::default()).unwrap();
+    let same = same_receivers(before_seen, now_seen, Progress::default()).unwrap();
     shimmer(&same, answers, [&before.right, &now.right]).unwrap()
 }
 
@@ -79,10 +81,11 @@ fn receivers_that_were_not_seen_before_are_not_compared() {
     let mesh = floor();
     let (before, now) = (frame(&mesh, 0.0), frame(&mesh, 10.0));
     let seen = [&before, &now].map(|frame| Seen {
+        mesh: &mesh,
         camera: &frame.camera,
         primitives: &frame.primitives,
     });
-    let same = same_receivers(&mesh, seen[0], seen[1], Progress::default()).unwrap();
+    let same = same_receivers(seen[0], seen[1], Progress::default()).unwrap();
     for (pixel, &earlier) in same.iter().enumerate() {
         let expected = match pixel % 100 {
             x if x < 90 => pixel as u32 + 10,
@@ -92,7 +95,6 @@ fn receivers_that_were_not_seen_before_are_not_compared() {
     }
     assert!(
         same_receivers(
-            &mesh,
             seen[0],
             Seen {
                 primitives: &[],
@@ -107,5 +109,5 @@ fn receivers_that_were_not_seen_before_are_not_compared() {
         primitives: &unknown,
         ..seen[1]
     };
-    assert!(same_receivers(&mesh, seen[0], unknown, Progress::default()).is_err());
+    assert!(same_receivers(seen[0], unknown, Progress::default()).is_err());
 }

@@ -16,6 +16,7 @@ pub mod error;
 pub mod generate;
 #[cfg(feature = "files")]
 pub mod gltf;
+mod keys;
 #[cfg(feature = "files")]
 pub mod library;
 pub mod light;
@@ -25,6 +26,7 @@ mod limit;
 pub mod mask;
 pub mod material;
 pub mod mesh;
+pub mod motion;
 pub mod movable;
 #[cfg(feature = "files")]
 pub mod obj;
@@ -59,6 +61,7 @@ pub use limit::Limit;
 pub use mask::Mask;
 pub use material::{Material, Surfaces};
 pub use mesh::{Group, Mesh};
+pub use motion::{Motion, PartMotion, RigidKey};
 pub use movable::Movable;
 #[cfg(feature = "files")]
 pub use obj::{Concave, ObjMaterials, ObjOptions, QuadDiagonal, load_obj};

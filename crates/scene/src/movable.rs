@@ -81,7 +81,7 @@ impl Part {
             let mut names: Vec<&str> = mesh.groups.iter().map(|it| it.name.as_str()).collect();
             names.dedup();
             return Err(format!(
-                "no part is called {name:?}; the mesh has {}",
+                "no part of the mesh is called {name:?}; known here: {}",
                 names.join(", ")
             ));
         }

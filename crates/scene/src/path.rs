@@ -1,11 +1,16 @@
-//! Paths: a view whose eye, direction and light move from keyframe to keyframe.
+//! Paths: a view whose eye, direction and light move from keyframe to keyframe, and parts of the
+//! mesh with them.
 
 use crate::{
     camera::View,
+    keys::{not_later, spline},
     light::DirectionalLight,
     light_kind::{Light, LightKind, PointLight, SpotLight},
+    mesh::Mesh,
+    motion::{PartMotion, moved},
+    movable::Movable,
 };
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 /// The most frames that a path may have: five and a half minutes at thirty per second.
 const MOST_FRAMES: f64 = 10_000.0;
@@ -24,6 +29,8 @@ pub struct CameraPath {
     /// Where the view's own light is, in the order of times; none of a light that stays. Before the
     /// first and behind the last it stands.
     pub light_keys: Vec<LightKey>,
+    /// Parts of the mesh that move, no part twice.
+    pub moves: Vec<PartMotion>,
 }
 
 /// Where the camera is at a time.
@@ -64,10 +71,35 @@ impl CameraPath {
         }
     }
 
+    /// When a frame is, by the time of the keys.
+    fn at(&self, frame: u32) -> f64 {
+        self.keys.first().map_or(0.0, |key| key.at) + f64::from(frame) / self.frames_per_second
+    }
+
+    /// The mesh cut into what moves, its parts in the order of [`moves`](Self::moves); `None` of a
+    /// path on which nothing does.
+    ///
+    /// # Errors
+    /// No such part, or one that is welded to others; both name the path.
+    pub fn movable(&self, mesh: &Mesh) -> Result<Option<Movable>, String> {
+        if self.moves.is_empty() {
+            return Ok(None);
+        }
+        let parts = self.moves.iter().map(|it| it.part.as_str());
+        let movable = Movable::new(mesh, &parts.collect::<Vec<_>>());
+        let movable =
+            movable.map_err(|reason| format!("path {:?}: moves: {reason}", self.view.name))?;
+        Ok(Some(movable))
+    }
+
+    /// Positions and normals in a frame, of what [`movable`](Self::movable) gave.
+    pub fn shape(&self, movable: &Movable, frame: u32) -> (Vec<Vec3>, Vec<Vec3>) {
+        moved(movable, &self.moves, self.at(frame))
+    }
+
     /// The view of a frame, with the path's own name.
     pub fn view(&self, frame: u32) -> View {
-        let at =
-            self.keys.first().map_or(0.0, |key| key.at) + f64::from(frame) / self.frames_per_second;
+        let at = self.at(frame);
         let times = |key: &CameraKey| key.at;
         let place = |of: fn(&CameraKey) -> DVec3| spline(&self.keys, times, of, at);
         View {
@@ -128,6 +160,22 @@ impl CameraPath {
         }
     }
 
+    fn check_moves(&self) -> Result<(), String> {
+        let name = &self.view.name;
+        for (index, it) in self.moves.iter().enumerate() {
+            if self.moves[..index]
+                .iter()
+                .any(|other| other.part == it.part)
+            {
+                let part = &it.part;
+                return Err(format!("path {name:?}: moves: {part:?} is there twice"));
+            }
+            it.check()
+                .map_err(|reason| format!("path {name:?}: {reason}"))?;
+        }
+        Ok(())
+    }
+
     /// The views of all frames.
     pub fn views(&self) -> impl Iterator<Item = View> + '_ {
         (0..self.frames()).map(|frame| self.view(frame))
@@ -156,6 +204,7 @@ impl CameraPath {
             return Err(format!("path {name:?}: {late}"));
         }
         self.check_light()?;
+        self.check_moves()?;
         let frames = self.seconds() * rate;
         if frames.is_nan() || frames >= MOST_FRAMES {
             return Err(format!(
@@ -172,47 +221,6 @@ impl CameraPath {
         }
         Ok(())
     }
-}
-
-/// What is wrong with the order of keys.
-fn not_later<K>(keys: &[K], time: fn(&K) -> f64) -> Option<String> {
-    let mut pairs = keys.windows(2).map(|pair| [time(&pair[0]), time(&pair[1])]);
-    let late = pairs.find(|[before, after]| !(before < after && after.is_finite()))?;
-    Some(format!(
-        "a key at {} s follows one at {} s, expected a later time",
-        late[1], late[0]
-    ))
-}
-
-/// A value between keys.
-fn spline<K>(keys: &[K], time: fn(&K) -> f64, of: impl Fn(&K) -> DVec3, at: f64) -> DVec3 {
-    // The last key that has passed, but one that has another behind it.
-    let passed = keys.partition_point(|key| time(key) <= at).max(1) - 1;
-    let from = passed.min(keys.len().saturating_sub(2));
-    let [a, b] = match keys.get(from..from + 2) {
-        Some([a, b]) => [a, b],
-        _ => return keys.first().map_or(DVec3::ZERO, of),
-    };
-    // The slope at a key is that between its neighbours.
-    let slope = |key: usize| {
-        let (before, after) = (
-            &keys[key.saturating_sub(1)],
-            &keys[(key + 1).min(keys.len() - 1)],
-        );
-        (of(after) - of(before)) / (time(after) - time(before))
-    };
-    let (before, after) = (slope(from), slope(from + 1));
-    // What stands is the same to the last bit in every frame.
-    if of(a) == of(b) && before == DVec3::ZERO && after == DVec3::ZERO {
-        return of(a);
-    }
-    let span = time(b) - time(a);
-    let t = ((at - time(a)) / span).clamp(0.0, 1.0);
-    let (square, cube) = (t * t, t * t * t);
-    of(a) * (2.0 * cube - 3.0 * square + 1.0)
-        + before * (span * (cube - 2.0 * square + t))
-        + of(b) * (3.0 * square - 2.0 * cube)
-        + after * (span * (cube - square))
 }
 
 #[cfg(test)]
@@ -237,6 +245,7 @@ mod tests {
             frames_per_second: 10.0,
             keys: keys.collect(),
             light_keys: Vec::new(),
+            moves: Vec::new(),
         }
     }
 

@@ -25,6 +25,7 @@ use crate::{
     generate::Generator,
     light::DirectionalLight,
     light_kind::{Light, LightKind, PointLight, SpotLight},
+    motion::{Motion, PartMotion, RigidKey},
     obj::options::{Concave, ObjMaterials, QuadDiagonal},
     path::{CameraKey, CameraPath, LightKey},
 };
@@ -257,6 +258,78 @@ struct PathText {
     keys: Vec<KeyText>,
     #[serde(default)]
     light_keys: Vec<LightKeyText>,
+    #[serde(default)]
+    moves: Vec<MotionText>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename = "moves")]
+enum MotionText {
+    Rigid {
+        part: String,
+        #[serde(default)]
+        pivot: (f64, f64, f64),
+        #[serde(default = "y_axis")]
+        axis: (f64, f64, f64),
+        keys: Vec<RigidKeyText>,
+    },
+    Sway {
+        part: String,
+        axis: (f64, f64, f64),
+        degrees: f64,
+        seconds: f64,
+    },
+}
+
+impl MotionText {
+    /// On a path with that direction up.
+    fn motion(self, up: (f64, f64, f64)) -> PartMotion {
+        let (part, motion) = match self {
+            Self::Rigid {
+                part,
+                pivot,
+                axis,
+                keys,
+            } => {
+                let keys = keys.iter().map(|key| RigidKey {
+                    at: key.at,
+                    translation: key.translation.into(),
+                    degrees: key.degrees,
+                });
+                let motion = Motion::Rigid {
+                    pivot: pivot.into(),
+                    axis: axis.into(),
+                    keys: keys.collect(),
+                };
+                (part, motion)
+            }
+            Self::Sway {
+                part,
+                axis,
+                degrees,
+                seconds,
+            } => {
+                let motion = Motion::Sway {
+                    axis: axis.into(),
+                    up: up.into(),
+                    degrees,
+                    seconds,
+                };
+                (part, motion)
+            }
+        };
+        PartMotion { part, motion }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename = "RigidKey")]
+struct RigidKeyText {
+    at: f64,
+    #[serde(default)]
+    translation: (f64, f64, f64),
+    #[serde(default)]
+    degrees: f64,
 }
 
 #[derive(Deserialize)]
@@ -312,6 +385,11 @@ impl<'de> Deserialize<'de> for CameraPath {
                     direction: key.direction.map(DVec3::from),
                     position: key.position.map(DVec3::from),
                 })
+                .collect(),
+            moves: text
+                .moves
+                .into_iter()
+                .map(|motion| motion.motion(text.up))
                 .collect(),
         };
         path.check().map_err(D::Error::custom)?;

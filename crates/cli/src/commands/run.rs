@@ -48,6 +48,9 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     }
     let scene = Arc::new(scene);
     let mut provider = SceneProvider::new(scene.clone());
+    if let Some(shots) = &shots {
+        shots.begin(&mut provider);
+    }
     let mut idle = IdleParams::default();
     for view in &views {
         provider.set_view(view, method.size.0);

@@ -5,6 +5,7 @@ use crate::args::values::Save;
 use crate::error::CliError;
 use crate::graphs::preset::Preset;
 use crate::measuring::frame;
+use crate::measuring::shapes::Shapes;
 use crate::measuring::subject::{Shot, Subject};
 use crate::pictures::save::{Decoding, capture, write};
 use crate::terminal::console::print;
@@ -35,6 +36,8 @@ pub fn numbered(save: &Save, index: usize) -> Save {
 /// The views of the frames that are asked for, with how many there are in a second.
 pub struct Shots {
     shots: Vec<Shot>,
+    /// The mesh in each frame, where parts of it move.
+    shapes: Option<Shapes>,
     frames_per_second: f64,
 }
 
@@ -76,6 +79,7 @@ impl Shots {
         };
         Ok(Some(Self {
             frames_per_second: subject.frames_per_second(),
+            shapes: subject.shapes(scene, shots.len())?,
             shots,
         }))
     }
@@ -90,6 +94,13 @@ impl Shots {
             _ => Err(CliError::Usage(
                 "--save takes the pictures of one path under one light; name them".into(),
             )),
+        }
+    }
+
+    /// Gives the provider the mesh of the first frame.
+    pub fn begin(&self, provider: &mut SceneProvider) {
+        if let Some(shapes) = &self.shapes {
+            shapes.begin(provider);
         }
     }
 
@@ -122,6 +133,9 @@ impl Shots {
                 return Err(CliError::Interrupted { kept });
             }
             shot.show(provider, viewport);
+            if let Some(shapes) = &self.shapes {
+                shapes.show(index, provider)?;
+            }
             let readings = saves.iter();
             let readings = readings.map(|save| Decoding::of(executor.plan(), save, &shot.view));
             let readings: Vec<Decoding> = readings.collect();

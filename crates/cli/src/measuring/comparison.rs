@@ -10,6 +10,7 @@ use crate::measuring::reference::{Judge, PrimaryVisibility, Tracing};
 use crate::measuring::resume::{RunKey, resume};
 use crate::measuring::run::MeasureContext;
 use crate::measuring::sequence;
+use crate::measuring::shapes::Shapes;
 use crate::measuring::subject::{Shot, Subject};
 use crate::pictures::run_pictures::save_reference;
 use crate::records::results::{Results, Run};
@@ -69,7 +70,9 @@ pub struct Comparison<'a> {
     args: &'a CompareArgs,
     setup: ComparisonSetup<'a>,
     provider: SceneProvider,
-    /// Built when the first run needs it.
+    /// Whether the provider has the mesh of a path on which parts move, not the scene's own.
+    is_moved: bool,
+    /// Of the scene's own mesh; built when the first run needs it.
     oracle: OnceCell<Rc<Oracle<'a>>>,
     /// What others have published.
     published: Vec<Row>,
@@ -105,6 +108,7 @@ impl<'a> Comparison<'a> {
             args,
             setup,
             provider,
+            is_moved: false,
             oracle: OnceCell::new(),
             published,
             states: planned.iter().map(|_| RunState::Pending).collect(),
@@ -154,6 +158,8 @@ impl<'a> Comparison<'a> {
         let Some(first) = shots.first() else {
             return Ok(());
         };
+        let shapes = subject.shapes(self.setup.scene, shots.len())?;
+        self.set_mesh(shapes.as_ref());
         first.show(&mut self.provider, viewport);
         let methods = self.setup.methods.iter();
         let methods: Vec<Method> = methods.map(|method| method.at(viewport)).collect();
@@ -164,10 +170,10 @@ impl<'a> Comparison<'a> {
         if self.states[places.clone()].iter().all(is_done) {
             return Ok(());
         }
-        let judges = self.judges(subject, &shots, viewport)?;
+        let judges = self.judges((subject, shapes.as_ref()), &shots, viewport)?;
         let frames = sequence::Path::new(
-            &self.setup.scene.mesh,
             (shots, subject.frames_per_second()),
+            shapes.as_ref(),
             judges,
         )?;
         let Some(judge) = frames.judges.first() else {
@@ -244,15 +250,29 @@ impl<'a> Comparison<'a> {
         Ok(())
     }
 
+    /// The mesh of a path's begin, or the scene's own again.
+    fn set_mesh(&mut self, shapes: Option<&Shapes>) {
+        match shapes {
+            Some(shapes) => shapes.begin(&mut self.provider),
+            None if self.is_moved => self.provider.set_mesh(self.setup.scene.mesh.clone()),
+            None => {}
+        }
+        self.is_moved = shapes.is_some();
+    }
+
     /// The right answers, with the picture of a still one.
-    fn judges(
+    fn judges<'m>(
         &mut self,
-        subject: &Subject,
+        (subject, shapes): (&Subject, Option<&'m Shapes>),
         shots: &[Shot],
         viewport: [u32; 2],
-    ) -> Result<Vec<Judge<'a>>, CliError> {
-        if let [shot] = shots {
-            let judge = self.judge(shot, viewport, &shot.view.name)?;
+    ) -> Result<Vec<Judge<'m>>, CliError>
+    where
+        'a: 'm,
+    {
+        if let ([shot], None) = (shots, shapes) {
+            let oracle = self.still_oracle();
+            let judge = self.judge(shot, viewport, &shot.view.name, oracle)?;
             if let Some(folder) = self.pictures() {
                 save_reference(folder, subject.name(), &judge.right)?;
             }
@@ -262,25 +282,39 @@ impl<'a> Comparison<'a> {
         let named = |(index, shot): (usize, &Shot)| {
             let what = format!("{} {} of {frames}", shot.view.name, index + 1);
             shot.show(&mut self.provider, viewport);
-            self.judge(shot, viewport, &what)
+            let oracle: Rc<Oracle<'m>> = match shapes {
+                Some(shapes) => {
+                    shapes.show(index, &mut self.provider)?;
+                    Rc::new(Oracle::new(shapes.mesh(index)))
+                }
+                None => self.still_oracle(),
+            };
+            self.judge(shot, viewport, &what, oracle)
         };
         shots.iter().enumerate().map(named).collect()
     }
 
-    /// The right answer.
-    fn judge(
-        &mut self,
-        shot: &Shot,
-        viewport: [u32; 2],
-        name: &str,
-    ) -> Result<Judge<'a>, CliError> {
-        let (scene, primary) = (self.setup.scene, self.setup.primary);
+    /// Of the scene's own mesh.
+    fn still_oracle(&self) -> Rc<Oracle<'a>> {
+        let scene = self.setup.scene;
         let oracle = self.oracle.get_or_init(|| {
             let step = Step::begin(format!("hierarchy of {}", scene.name), 1, "steps");
             let oracle = Oracle::new(&scene.mesh);
             step.end();
             Rc::new(oracle)
         });
+        oracle.clone()
+    }
+
+    /// The right answer.
+    fn judge<'m>(
+        &mut self,
+        shot: &Shot,
+        viewport: [u32; 2],
+        name: &str,
+        oracle: Rc<Oracle<'m>>,
+    ) -> Result<Judge<'m>, CliError> {
+        let primary = self.setup.primary;
         let what = format!("{name} {}", size(viewport));
         let step = Step::begin(format!("visible triangles, {what}"), 1, "frames");
         let ids = primary.ids(self.setup.gpu, viewport, &mut self.provider)?;
@@ -290,7 +324,7 @@ impl<'a> Comparison<'a> {
             samples: self.args.reference_samples,
         };
         let (camera, light) = (shot.camera(viewport), self.provider.light());
-        Judge::new(oracle.clone(), camera, light, ids, tracing, &what)
+        Judge::new(oracle, camera, light, ids, tracing, &what)
     }
 
     /// Where pictures go, if there are to be any.

@@ -152,6 +152,7 @@ impl<'a> Judge<'a> {
     /// What it looks at.
     pub fn seen(&self) -> Seen<'_> {
         Seen {
+            mesh: self.oracle.mesh(),
             camera: &self.camera,
             primitives: &self.primitives,
         }

@@ -6,6 +6,7 @@ use crate::graphs::method::Method;
 use crate::measuring::frame;
 use crate::measuring::reference::{Judge, own_counts};
 use crate::measuring::run::MeasureContext;
+use crate::measuring::shapes::Shapes;
 use crate::measuring::steady;
 use crate::measuring::stop::{Attempt, Stop, attempt};
 use crate::measuring::subject::Shot;
@@ -13,19 +14,18 @@ use crate::measuring::timing;
 use crate::pictures::run_pictures::{save_pictures, stem};
 use crate::records::results::{Answer, Measured};
 use crate::records::samples::TimedFrame;
-use crate::records::sequence::{FrameCost, Sequence, SequenceFrame};
+use crate::records::sequence::{FrameCost, Remade, Sequence, SequenceFrame};
 use crate::records::statistics::FrameTimes;
 use crate::records::steady::Steady;
 use crate::terminal::interrupt;
 use crate::terminal::progress::Step;
 use skiagraph_gpu::{ExecuteError, Executor, Frame, FrameReport};
 use skiagraph_graph::Plan;
-use skiagraph_passes::SceneProvider;
+use skiagraph_passes::{Built, How, SceneProvider};
 use skiagraph_reference::{
     BlockerCounts, Graded, Progress, Shimmer, Statistics,
     shimmer::{same_receivers, shimmer},
 };
-use skiagraph_scene::Mesh;
 use std::time::Duration;
 
 fn ms(time: Duration) -> f64 {
@@ -36,6 +36,8 @@ fn ms(time: Duration) -> f64 {
 pub struct Path<'a> {
     /// From where.
     pub shots: Vec<Shot>,
+    /// The mesh in each frame, where parts of it move.
+    shapes: Option<&'a Shapes>,
     /// The right answers.
     pub judges: Vec<Judge<'a>>,
     /// Frames per second of the path's own time.
@@ -50,8 +52,8 @@ impl<'a> Path<'a> {
     /// # Errors
     /// Ctrl-C.
     pub fn new(
-        mesh: &Mesh,
         (shots, frames_per_second): (Vec<Shot>, f64),
+        shapes: Option<&'a Shapes>,
         judges: Vec<Judge<'a>>,
     ) -> Result<Self, CliError> {
         let progress = Progress {
@@ -59,15 +61,30 @@ impl<'a> Path<'a> {
             interrupted: interrupt::flag(),
         };
         let pairs = judges.windows(2);
-        let same = pairs.map(|pair| same_receivers(mesh, pair[0].seen(), pair[1].seen(), progress));
+        let same = pairs.map(|pair| same_receivers(pair[0].seen(), pair[1].seen(), progress));
         let same = same.collect::<Result<_, _>>();
         let same = same.map_err(|_| CliError::interrupted())?;
         Ok(Self {
             shots,
+            shapes,
             judges,
             frames_per_second,
             same,
         })
+    }
+
+    /// Gives the provider a frame's camera, light and mesh.
+    fn show(
+        &self,
+        index: usize,
+        viewport: [u32; 2],
+        provider: &mut SceneProvider,
+    ) -> Result<(), CliError> {
+        self.shots[index].show(provider, viewport);
+        match self.shapes {
+            Some(shapes) => shapes.show(index, provider),
+            None => Ok(()),
+        }
     }
 
     /// When a frame is.
@@ -91,6 +108,33 @@ struct Begun {
     memory: (u64, u64),
     scene_bytes: u64,
     steady: Option<Steady>,
+}
+
+/// A frame that was run.
+struct Done {
+    report: FrameReport,
+    wall: Duration,
+    remade: Vec<Remade>,
+}
+
+/// What was made between two moments.
+fn remade(before: &[Built], now: &[Built]) -> Vec<Remade> {
+    let times = |of: &Built| {
+        let known = before.iter().find(|known| known.name == of.name);
+        known.map_or(0, |known| known.times)
+    };
+    let made = now.iter().filter(|built| built.times > times(built));
+    let remade = made.map(|built| Remade {
+        name: built.name.to_owned(),
+        how: match built.how {
+            How::Made => "made",
+            How::Rewritten => "rewritten",
+            How::Refitted => "refitted",
+        }
+        .to_owned(),
+        ms: ms(built.time),
+    });
+    remade.collect()
 }
 
 /// A frame's times.
@@ -213,9 +257,7 @@ impl MeasureContext<'_> {
     /// An executor that stands still at the path's begin until it is warm, or, of a method that
     /// remembers, until it is in its steady state: so all flags give the same pictures.
     fn begin(&self, plan: Plan, path: &Path, provider: &mut SceneProvider) -> Result<Begun, Stop> {
-        if let Some(shot) = path.shots.first() {
-            shot.show(provider, self.judge.right.reference.viewport);
-        }
+        path.show(0, self.judge.right.reference.viewport, provider)?;
         let mut executor = frame::executor(self.gpu, plan, provider)?;
         frame::grow(self.gpu, &mut executor, provider)?;
         let steady = match executor.plan().remembers() {
@@ -259,8 +301,8 @@ impl MeasureContext<'_> {
         let mut timed = Vec::new();
         // The first one brings the camera back, and is no frame of the path.
         for index in std::iter::once(0).chain(0..path.shots.len()) {
-            let (report, wall) = self.frame(executor, path, index, (names, true), provider)?;
-            timed.push(timed_frame(report, wall)?);
+            let done = self.frame(executor, path, index, (names, true), provider)?;
+            timed.push(timed_frame(done.report, done.wall)?);
         }
         let timed = timed.split_off(1);
         for (frame, timed) in account.frames.iter_mut().zip(&timed) {
@@ -288,23 +330,29 @@ impl MeasureContext<'_> {
         index: usize,
         (read, all): (&[&str], bool),
         provider: &mut SceneProvider,
-    ) -> Result<(FrameReport, Duration), Stop> {
+    ) -> Result<Done, Stop> {
         if interrupt::raised() {
             return Err(CliError::interrupted().into());
         }
         let viewport = self.judge.right.reference.viewport;
-        path.shots[index].show(provider, viewport);
+        path.show(index, viewport, provider)?;
+        let before = provider.built().to_vec();
         executor.refresh(provider)?;
+        let remade = remade(&before, provider.built());
         let request = Frame {
             timing: true,
             all,
             read,
             seconds: path.seconds(index),
         };
-        let done = frame::run(self.gpu, executor, &request)?;
+        let (report, wall) = frame::run(self.gpu, executor, &request)?;
         // As a host does it: between frames, by what has arrived.
         executor.grow(provider)?;
-        Ok(done)
+        Ok(Done {
+            report,
+            wall,
+            remade,
+        })
     }
 
     fn account(
@@ -312,9 +360,14 @@ impl MeasureContext<'_> {
         method: &Method,
         path: &Path,
         index: usize,
-        (mut report, wall): (FrameReport, Duration),
+        done: Done,
         account: &mut Account,
     ) -> Result<(), Stop> {
+        let Done {
+            mut report,
+            wall,
+            remade,
+        } = done;
         let judge = &path.judges[index];
         let contents = frame::contents(std::mem::take(&mut report.readbacks));
         let timed = timed_frame(report, wall)?;
@@ -343,6 +396,7 @@ impl MeasureContext<'_> {
             wall_ms: ms(wall),
             shimmer: changed,
             skipped: timed.skipped.clone(),
+            remade,
             every_pass: None,
         });
         account.timed.push(timed);

@@ -4,6 +4,7 @@ use crate::args::shared::SceneArgs;
 use crate::error::CliError;
 use crate::files::fingerprint::Fingerprint;
 use crate::measuring::scene_selection::under_lights;
+use crate::measuring::shapes::Shapes;
 use crate::wording::did_you_mean;
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{Camera, CameraPath, LightKind, Scene, View};
@@ -70,6 +71,17 @@ impl Subject {
             Self::Path(path) => path.views().collect(),
         };
         Shot::numbered(views, jitter)
+    }
+
+    /// The mesh of its first frames; `None` where it stands.
+    ///
+    /// # Errors
+    /// A part that the mesh has not, or that is welded to others.
+    pub fn shapes(&self, scene: &Scene, frames: usize) -> Result<Option<Shapes>, CliError> {
+        match self {
+            Self::Still(_) => Ok(None),
+            Self::Path(path) => Shapes::of(path, &scene.mesh, frames),
+        }
     }
 
     /// Of its own time.

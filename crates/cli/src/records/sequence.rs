@@ -3,6 +3,7 @@
 use crate::records::statistics::FrameTimes;
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{Graded, Shimmer};
+use std::collections::BTreeMap;
 
 /// What a method did in each frame of a path. The run's own counts are the sums over all frames,
 /// its times the spread over them.
@@ -42,9 +43,23 @@ pub struct SequenceFrame {
     /// Passes that did not run, as nothing that they read had changed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub skipped: Vec<String>,
+    /// What of the scene was made anew before it, for something has changed that it follows from.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub remade: Vec<Remade>,
     /// Its times when every pass runs: what it costs without what is kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub every_pass: Option<FrameCost>,
+}
+
+/// A resource of the scene that was made anew before a frame.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Remade {
+    /// Its name.
+    pub name: String,
+    /// `made`, `rewritten` in the memory that it had, or `refitted`, of a hierarchy.
+    pub how: String,
+    /// What that took on the CPU, uploads included; not part of the frame's times.
+    pub ms: f64,
 }
 
 /// The times of one frame.
@@ -92,6 +107,24 @@ impl Sequence {
     /// The frame that takes the longest with every pass run.
     pub fn slowest_with_every_pass(&self) -> Option<(usize, FrameCost)> {
         slowest(self.frames.iter().filter_map(|frame| frame.every_pass))
+    }
+}
+
+impl Sequence {
+    /// What of the scene itself was made anew, each with how, in how many frames, and the median of
+    /// what that took in ms.
+    pub fn remade<'s>(&'s self) -> Vec<(&'s str, &'s str, usize, f64)> {
+        let all = self.frames.iter().flat_map(|frame| &frame.remade);
+        let all = all.filter(|remade| remade.name.starts_with("scene."));
+        let mut times: BTreeMap<(&str, &str), Vec<f64>> = BTreeMap::new();
+        for Remade { name, how, ms } in all {
+            times.entry((name, how)).or_default().push(*ms);
+        }
+        let median = |((name, how), mut times): ((&'s str, &'s str), Vec<f64>)| {
+            times.sort_by(f64::total_cmp);
+            (name, how, times.len(), times[times.len() / 2])
+        };
+        times.into_iter().map(median).collect()
     }
 }
 

@@ -1,7 +1,7 @@
 //! What is said below tables, wherever they stand.
 
 use crate::records::results::{Measured, Run};
-use crate::records::sequence::FrameCost;
+use crate::records::sequence::{FrameCost, Sequence};
 use crate::wording::{frames, ms, thousands};
 
 /// A band of more than one pixel in so many of those facing the light leaves too much open.
@@ -114,7 +114,25 @@ pub fn path_costs(run: &Run) -> Vec<String> {
             ms(cost.ms())
         ))
     };
-    lines.into_iter().flatten().filter_map(line).collect()
+    let mut lines: Vec<String> = lines.into_iter().flatten().filter_map(line).collect();
+    lines.extend(sequence.and_then(|sequence| remade(run, sequence)));
+    lines
+}
+
+/// What of the scene followed from what moves.
+fn remade(run: &Run, sequence: &Sequence) -> Option<String> {
+    let all = sequence.frames.len();
+    let remade = sequence
+        .remade()
+        .into_iter()
+        .map(|(name, how, count, time)| {
+            format!("{name} {how} in {count} of {all}, {} ms each", ms(time))
+        });
+    let remade: Vec<String> = remade.collect();
+    (!remade.is_empty()).then(|| {
+        let label = run.method_label();
+        format!("{label} between frames, on the CPU: {}", remade.join("; "))
+    })
 }
 
 /// Which GPU times a run lacks on an adapter whose timestamps are true.

@@ -1,0 +1,220 @@
+//! How a part of a mesh moves on a path: rigidly from keyframe to keyframe, or swaying.
+
+use crate::{
+    keys::{not_later, spline},
+    movable::Movable,
+};
+use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
+use std::f64::consts::TAU;
+
+/// A part, by the name of its groups, with its motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartMotion {
+    /// OBJ groups and objects, glTF nodes, parts of a generated mesh.
+    pub part: String,
+    /// What it does.
+    pub motion: Motion,
+}
+
+/// A motion over a path's seconds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Motion {
+    /// Turned about an axis and shifted, by the same splines that the camera follows.
+    Rigid {
+        /// Stays where it is while the part turns, world space.
+        pivot: DVec3,
+        /// Of the turn, any length but zero.
+        axis: DVec3,
+        /// At least one, in the order of times. Before the first and behind the last it stands.
+        keys: Vec<RigidKey>,
+    },
+    /// Bent as by wind: what is at height h of a part as high as H is shifted by
+    /// `H (h / H)² tan(a)`, where the angle a swings as a sine. The foot stands.
+    Sway {
+        /// The direction in which it leans, any length but zero.
+        axis: DVec3,
+        /// The direction in which it grows: the path's own `up`.
+        up: DVec3,
+        /// The greatest angle, below 90.
+        degrees: f64,
+        /// From one lean to the same again.
+        seconds: f64,
+    },
+}
+
+/// Where a part is at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidKey {
+    /// Seconds, as of the camera's keys.
+    pub at: f64,
+    /// From where it rests.
+    pub translation: DVec3,
+    /// Turn about the axis through the pivot, before it is shifted.
+    pub degrees: f64,
+}
+
+impl PartMotion {
+    /// Whether it is a motion.
+    ///
+    /// # Errors
+    /// What is wrong with it, naming the part.
+    pub fn check(&self) -> Result<(), String> {
+        let wrong = |what: String| Err(format!("moves: {:?}: {what}", self.part));
+        let is_axis = |axis: DVec3| axis.is_finite() && axis.length_squared() > 0.0;
+        match &self.motion {
+            Motion::Rigid { axis, .. } if !is_axis(*axis) => {
+                wrong(format!("axis {axis} must be finite and longer than 0"))
+            }
+            Motion::Rigid { keys, .. } if keys.is_empty() => {
+                wrong("it has none of the keys, of which it needs one at least".into())
+            }
+            Motion::Rigid { pivot, keys, .. } => {
+                let is_finite = |key: &RigidKey| {
+                    key.at.is_finite() && key.translation.is_finite() && key.degrees.is_finite()
+                };
+                match not_later(keys, |key| key.at) {
+                    Some(late) => wrong(late),
+                    None if !pivot.is_finite() || !keys.iter().all(is_finite) => {
+                        wrong("pivot and keys must be finite".into())
+                    }
+                    None => Ok(()),
+                }
+            }
+            Motion::Sway { axis, up, .. }
+                if !is_axis(*axis) || axis.cross(*up).length_squared() == 0.0 =>
+            {
+                wrong(format!(
+                    "axis {axis} must be finite, longer than 0 and not along {up}, which is up"
+                ))
+            }
+            Motion::Sway { degrees, .. } if degrees.is_nan() || degrees.abs() >= 90.0 => {
+                wrong(format!("degrees are {degrees}, expected less than 90"))
+            }
+            Motion::Sway { seconds, .. } if !(seconds.is_finite() && *seconds > 0.0) => {
+                wrong(format!("seconds are {seconds}, expected more than 0"))
+            }
+            Motion::Sway { .. } => Ok(()),
+        }
+    }
+
+    /// The map of its part, which lies between two heights, at a time: of a place at rest, the
+    /// place now and the map's derivative there.
+    fn map(&self, [low, high]: [f64; 2], at: f64) -> Box<dyn Fn(DVec3) -> (DVec3, DMat3)> {
+        match &self.motion {
+            Motion::Rigid { pivot, axis, keys } => {
+                let degrees = spline(keys, |key| key.at, |key| DVec3::X * key.degrees, at).x;
+                let shift = spline(keys, |key| key.at, |key| key.translation, at);
+                let turn = DQuat::from_axis_angle(axis.normalize(), degrees.to_radians());
+                let map = DAffine3::from_translation(*pivot + shift)
+                    * DAffine3::from_quat(turn)
+                    * DAffine3::from_translation(-*pivot);
+                // A part at rest is where it was to the last bit.
+                let map = match degrees == 0.0 {
+                    true => DAffine3::from_translation(shift),
+                    false => map,
+                };
+                Box::new(move |place| (map.transform_point3(place), map.matrix3))
+            }
+            Motion::Sway {
+                axis,
+                up,
+                degrees,
+                seconds,
+            } => {
+                let (axis, up) = (axis.normalize(), up.normalize());
+                let lean = (degrees.to_radians() * (TAU * at / seconds).sin()).tan();
+                let height = (high - low).max(f64::MIN_POSITIVE);
+                Box::new(move |place| {
+                    let share = (place.dot(up) - low) / height;
+                    let slope = axis * (2.0 * share * lean);
+                    let bent = DMat3::from_cols(slope * up.x, slope * up.y, slope * up.z);
+                    (
+                        place + axis * (height * share * share * lean),
+                        DMat3::IDENTITY + bent,
+                    )
+                })
+            }
+        }
+    }
+
+    fn up(&self) -> DVec3 {
+        match &self.motion {
+            Motion::Rigid { .. } => DVec3::ZERO,
+            Motion::Sway { up, .. } => up.normalize(),
+        }
+    }
+}
+
+/// Positions and normals of a mesh whose parts are those of the motions, in their order, at a time.
+pub fn moved(movable: &Movable, motions: &[PartMotion], at: f64) -> (Vec<Vec3>, Vec<Vec3>) {
+    let parts = motions.iter().enumerate();
+    let maps = parts.map(|(part, motion)| motion.map(movable.span(part, motion.up()), at));
+    let maps: Vec<_> = maps.collect();
+    movable.bent(|part, place| maps[part](place))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sway(axis: DVec3, degrees: f64) -> PartMotion {
+        PartMotion {
+            part: "tree".into(),
+            motion: Motion::Sway {
+                axis,
+                up: DVec3::Y,
+                degrees,
+                seconds: 2.0,
+            },
+        }
+    }
+
+    #[test]
+    fn a_foot_stands_and_the_derivative_is_that_of_the_bend() {
+        let map = sway(DVec3::X, 45.0).map([1.0, 5.0], 0.5);
+        let foot = DVec3::new(2.0, 1.0, 3.0);
+        assert_eq!(map(foot).0, foot);
+        let tip = map(foot + DVec3::Y * 4.0).0;
+        assert!((tip - DVec3::new(6.0, 5.0, 3.0)).length() < 1e-12, "{tip}");
+        let (place, step) = (DVec3::new(0.5, 2.5, -1.0), 1e-6);
+        for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+            let slope = (map(place + axis * step).0 - map(place).0) / step;
+            assert!((slope - map(place).1 * axis).length() < 1e-5, "{slope}");
+        }
+        // At the period's begin nothing is bent.
+        assert_eq!(sway(DVec3::X, 45.0).map([1.0, 5.0], 0.0)(place).0, place);
+    }
+
+    #[test]
+    fn a_turn_keeps_its_pivot() {
+        let key = |at, degrees| RigidKey {
+            at,
+            translation: DVec3::ZERO,
+            degrees,
+        };
+        let turn = PartMotion {
+            part: "lamp".into(),
+            motion: Motion::Rigid {
+                pivot: DVec3::X,
+                axis: DVec3::Y * 3.0,
+                keys: vec![key(0.0, 0.0), key(1.0, 90.0)],
+            },
+        };
+        turn.check().unwrap();
+        let map = turn.map([0.0; 2], 2.0);
+        assert!((map(DVec3::X).0 - DVec3::X).length() < 1e-12);
+        let turned = map(DVec3::X * 2.0).0;
+        assert!((turned - DVec3::new(1.0, 0.0, -1.0)).length() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_no_motion_is_named() {
+        let upright = sway(DVec3::Y, 5.0).check().unwrap_err();
+        assert!(
+            upright.contains("moves: \"tree\": axis [0, 1, 0]"),
+            "{upright}"
+        );
+        let flat = sway(DVec3::X, 90.0).check().unwrap_err();
+        assert!(flat.contains("degrees are 90"), "{flat}");
+    }
+}

@@ -94,7 +94,9 @@ fn camera_is_laid_out_as_in_rust() {
         up,
         half_height,
         forward,
-        depth_scale
+        depth_scale,
+        jitter,
+        jitter_clip
     });
     assert_eq!(layout("shared/camera.wgsl", "Camera"), rust);
 }

@@ -15,6 +15,10 @@ struct Camera {
     forward: vec3<f32>,
     // far / (far - near): clip z per unit of distance.
     depth_scale: f32,
+    // Where the ray of a pixel goes through it: from its centre, in pixels, y down; and the same in
+    // clip space, y up.
+    jitter: vec2<f32>,
+    jitter_clip: vec2<f32>,
 }
 
 var<uniform> camera: Camera;
@@ -27,17 +31,17 @@ fn relative_to_eye(position: vec3<f32>) -> vec3<f32> {
 fn camera_clip(relative: vec3<f32>) -> vec4<f32> {
     let distance = dot(camera.forward, relative);
     return vec4(
-        dot(camera.right, relative) / camera.half_width,
-        dot(camera.up, relative) / camera.half_height,
+        dot(camera.right, relative) / camera.half_width - camera.jitter_clip.x * distance,
+        dot(camera.up, relative) / camera.half_height - camera.jitter_clip.y * distance,
         (distance - camera.near) * camera.depth_scale,
         distance,
     );
 }
 
-// Direction from the eye through the centre of `pixel` (y down); its component along `forward` is
-// 1.
+// Direction from the eye through the centre of `pixel` (y down), or what the jitter makes of it;
+// its component along `forward` is 1.
 fn pixel_direction(pixel: vec2<u32>, viewport: vec2<u32>) -> vec3<f32> {
-    let across = (vec2<f32>(pixel) + 0.5) / vec2<f32>(viewport) * 2.0 - 1.0;
+    let across = (vec2<f32>(pixel) + 0.5 + camera.jitter) / vec2<f32>(viewport) * 2.0 - 1.0;
     return camera.forward
         + camera.right * (across.x * camera.half_width)
         - camera.up * (across.y * camera.half_height);

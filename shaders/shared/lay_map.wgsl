@@ -58,8 +58,12 @@ fn fit_end(wanted: f32) -> f32 {
 // up, bit 2 the farther end.
 fn frustum_corner(corner: u32, begin: f32, end: f32) -> vec3<f32> {
     let distance = select(end, begin, (corner & 4u) == 0u);
-    let side = select(vec2(-1.0), vec2(1.0), vec2((corner & 1u) != 0u, (corner & 2u) != 0u))
-        * vec2(camera.half_width, camera.half_height);
+    let corner_clip = select(
+        vec2(-1.0),
+        vec2(1.0),
+        vec2((corner & 1u) != 0u, (corner & 2u) != 0u),
+    );
+    let side = (corner_clip + camera.jitter_clip) * vec2(camera.half_width, camera.half_height);
     let way = camera.forward + side.x * camera.right + side.y * camera.up;
     return camera.eye + distance * way;
 }

@@ -1,30 +1,10 @@
 //! `compare --path`: every frame of a camera path, judged. Needs an adapter.
 
+mod support;
+
 use serde_json::Value;
-use std::{
-    fs,
-    path::Path,
-    process::{Command, Output},
-};
-
-fn skiagraph(folder: &Path, line: &str) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_skiagraph"))
-        .args(line.split_whitespace())
-        .current_dir(folder)
-        .env("NO_COLOR", "1")
-        .output()
-        .expect("the program was built for this test")
-}
-
-fn results(folder: &Path, line: &str) -> (Vec<Value>, String) {
-    let output = skiagraph(folder, line);
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{line}: {told}");
-    let text = fs::read_to_string(folder.join("out/results.json")).unwrap();
-    let results: Value = serde_json::from_str(&text).unwrap();
-    let table = String::from_utf8_lossy(&output.stdout).into_owned();
-    (results["runs"].as_array().unwrap().clone(), table)
-}
+use std::fs;
+use support::{results, skiagraph};
 
 fn count(value: &Value) -> u64 {
     value
@@ -65,6 +45,17 @@ fn every_frame_is_judged_and_exact_methods_do_not_shimmer() {
             );
             let skipped = frames[5]["skipped"].to_string();
             assert!(skipped.contains("create_shadow_map.draw"), "{skipped}");
+            for frame in frames {
+                let wall = frame["every_pass"]["wall_ms"].as_f64();
+                assert!(wall.is_some_and(|ms| ms > 0.0), "{frame}");
+            }
+            assert!(sequence["every_pass"]["wall_ms"]["median"].is_f64());
+            for line in ["as it is: slowest frame", "with every pass: slowest frame"] {
+                assert!(
+                    table.contains(&format!("nsm 128 {line}")),
+                    "{line}: {table}"
+                );
+            }
         } else {
             assert_eq!(
                 (changed, sum("wrong_outside_band")),
@@ -81,6 +72,10 @@ fn every_frame_is_judged_and_exact_methods_do_not_shimmer() {
     let csv = fs::read_to_string(folder.path().join("out/results.csv")).unwrap();
     let head = csv.lines().next().unwrap();
     assert!(head.contains(",worst_frame,worst_frame_wrong,"), "{head}");
+    assert!(
+        head.contains(",slowest_frame,slowest_frame_ms,every_pass_gpu_ms,"),
+        "{head}"
+    );
 
     let kept = skiagraph(folder.path(), &format!("{line} --resume"));
     let told = String::from_utf8_lossy(&kept.stderr);
@@ -109,6 +104,25 @@ fn a_moving_light_is_followed_by_what_is_kept_and_by_the_reference() {
             let is_kept = skipped.contains("create_shadow_map.draw");
             assert_eq!(is_kept, index == 0 || index > 14, "{index}: {skipped}");
         }
+    }
+}
+
+#[test]
+fn a_jittered_camera_is_followed_by_gbuffer_and_reference() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "compare rt light_buffer --path walk --size 64x64 --warmup 0 --images none \
+                --cached-frames 0 --out out";
+    let (plain, _) = results(folder.path(), line);
+    let (jittered, _) = results(folder.path(), &format!("{line} --jitter 8"));
+    for (plain, jittered) in plain.iter().zip(&jittered) {
+        assert_ne!(plain["pixels"], jittered["pixels"]);
+        assert_ne!(plain["fingerprint"], jittered["fingerprint"]);
+        let wrong = &jittered["wrong"];
+        assert_eq!(wrong["total"], wrong["in_band"], "{}", jittered["preset"]);
+        let band =
+            count(&jittered["band"]) as f64 / count(&jittered["pixels"]["facing_light"]) as f64;
+        assert!(band < 1e-3, "{band}");
+        assert!(jittered["sequence"]["every_pass"].is_null());
     }
 }
 

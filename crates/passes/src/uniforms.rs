@@ -1,10 +1,10 @@
 //! What shaders know of the camera and the light. The structs of `shaders/shared/camera.wgsl` and
 //! `light.wgsl` are laid out alike; a test compares both with what naga makes of them.
 
-use glam::{DMat4, DVec3, Mat3, Mat4, Vec3};
+use glam::{DMat4, DVec3, Mat3, Mat4, Vec2, Vec3};
 use skiagraph_scene::{Camera, DirectionalLight, LightKind, Mesh, SpotLight};
 
-/// WGSL's `Camera`: a perspective camera, 80 bytes.
+/// WGSL's `Camera`: a perspective camera, 96 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct CameraUniform {
@@ -29,6 +29,10 @@ pub struct CameraUniform {
     pub forward: Vec3,
     /// far / (far − near): clip z per unit of distance beyond the near plane.
     pub depth_scale: f32,
+    /// Where the ray of a pixel goes through it: from its centre, in pixels, y down.
+    pub jitter: Vec2,
+    /// The same in clip space, y up.
+    pub jitter_clip: Vec2,
 }
 
 impl From<&Camera> for CameraUniform {
@@ -45,6 +49,8 @@ impl From<&Camera> for CameraUniform {
             half_height: camera.half_height as f32,
             forward: camera.forward.as_vec3(),
             depth_scale: (camera.far / (camera.far - camera.near)) as f32,
+            jitter: camera.jitter.as_vec2(),
+            jitter_clip: camera.jitter_clip().as_vec2(),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Views and the cameras they make on a given viewport.
 
 use crate::light_kind::Light;
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec2, DVec3};
 
 /// A named view of a scene: a perspective camera without a viewport.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +45,9 @@ pub struct Camera {
     pub far: f64,
     /// Viewport width and height in pixels.
     pub viewport: [u32; 2],
+    /// Where the ray of a pixel goes through it: from its centre, in pixels, y down; 0 but for a
+    /// picture that is one of several to be blended.
+    pub jitter: DVec2,
 }
 
 impl View {
@@ -65,6 +68,7 @@ impl View {
             near: self.near,
             far: self.far,
             viewport,
+            jitter: DVec2::ZERO,
         }
     }
 
@@ -121,11 +125,30 @@ impl View {
 }
 
 impl Camera {
-    /// Direction from the eye through the centre of pixel (`x`, `y`), y down; its component along
-    /// `forward` is 1.
+    /// The same camera with the [`jitter`](Self::jitter) of a frame of which `count` are blended:
+    /// points of the Halton sequence of bases 2 and 3 (Halton 1964), in 256ths of a pixel, so that
+    /// f32 holds them exactly.
+    pub fn jittered(self, frame: u32, count: u32) -> Self {
+        let point = frame % count.max(1) + 1;
+        let place = |base| ((radical_inverse(point, base) - 0.5) * 256.0).round() / 256.0;
+        Self {
+            jitter: DVec2::new(place(2), place(3)),
+            ..self
+        }
+    }
+
+    /// [`jitter`](Self::jitter) in clip space, y up.
+    pub fn jitter_clip(&self) -> DVec2 {
+        let [width, height] = self.viewport.map(f64::from);
+        self.jitter * DVec2::new(2.0 / width, -2.0 / height)
+    }
+
+    /// Direction from the eye through the centre of pixel (`x`, `y`), y down, or what the jitter
+    /// makes of it; its component along `forward` is 1.
     pub fn pixel_direction(&self, x: u32, y: u32) -> DVec3 {
-        let ndc_x = (f64::from(x) + 0.5) / f64::from(self.viewport[0]) * 2.0 - 1.0;
-        let ndc_y = 1.0 - (f64::from(y) + 0.5) / f64::from(self.viewport[1]) * 2.0;
+        let across = (f64::from(x) + 0.5 + self.jitter.x) / f64::from(self.viewport[0]);
+        let down = (f64::from(y) + 0.5 + self.jitter.y) / f64::from(self.viewport[1]);
+        let (ndc_x, ndc_y) = (across * 2.0 - 1.0, 1.0 - down * 2.0);
         self.forward + self.right * (ndc_x * self.half_width) + self.up * (ndc_y * self.half_height)
     }
 
@@ -136,8 +159,8 @@ impl Camera {
         let across = self.right.dot(relative) / (distance * self.half_width);
         let up = self.up.dot(relative) / (distance * self.half_height);
         let [width, height] = self.viewport;
-        let x = ((across + 1.0) * 0.5 * f64::from(width)).floor();
-        let y = ((1.0 - up) * 0.5 * f64::from(height)).floor();
+        let x = ((across + 1.0) * 0.5 * f64::from(width) - self.jitter.x).floor();
+        let y = ((1.0 - up) * 0.5 * f64::from(height) - self.jitter.y).floor();
         let inside = distance > 0.0
             && (0.0..f64::from(width)).contains(&x)
             && (0.0..f64::from(height)).contains(&y);
@@ -172,8 +195,23 @@ impl Camera {
             self.near * range,
             0.0,
         ]);
-        projection * rotation * DMat4::from_translation(-self.eye)
+        let camera = projection * rotation * DMat4::from_translation(-self.eye);
+        match self.jitter == DVec2::ZERO {
+            true => camera,
+            false => DMat4::from_translation(-self.jitter_clip().extend(0.0)) * camera,
+        }
     }
+}
+
+/// The digits of a number mirrored at the point: the first of them counts most.
+fn radical_inverse(mut number: u32, base: u32) -> f64 {
+    let (mut inverse, mut digit) = (0.0, 1.0);
+    while number > 0 {
+        digit /= f64::from(base);
+        inverse += f64::from(number % base) * digit;
+        number /= base;
+    }
+    inverse
 }
 
 #[cfg(test)]
@@ -206,6 +244,28 @@ mod tests {
         let beside = camera.eye + camera.forward + camera.right * (camera.half_width * 1.01);
         assert_eq!(camera.pixel_of(beside), None);
         assert_eq!(camera.pixel_of(camera.eye), None);
+    }
+
+    #[test]
+    fn jitter_moves_all_rays_alike_and_stays_within_the_pixel() {
+        let frames: Vec<Camera> = (0..9).map(|frame| camera().jittered(frame, 8)).collect();
+        let jitters: Vec<DVec2> = frames.iter().map(|camera| camera.jitter).collect();
+        let third = (256.0f64 / 3.0 - 128.0).round() / 256.0;
+        assert_eq!(jitters[0], DVec2::new(0.0, third));
+        assert_eq!(jitters[1].x, -0.25);
+        assert_eq!(jitters[8], jitters[0]);
+        for (index, camera) in frames[..8].iter().enumerate() {
+            assert!(!jitters[..index].contains(&camera.jitter));
+            assert!(camera.jitter.abs().max_element() <= 0.5);
+            for (x, y) in [(0, 0), (39, 19), (13, 7)] {
+                let point = camera.eye + camera.pixel_direction(x, y) * 50.0;
+                assert_eq!(camera.pixel_of(point), Some([x, y]));
+                let clip = camera.view_projection().project_point3(point);
+                let centre = DVec2::new((clip.x + 1.0) * 20.0, (1.0 - clip.y) * 10.0);
+                let pixel = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
+                assert!((centre - pixel).abs().max_element() < 1e-9, "{centre}");
+            }
+        }
     }
 
     #[test]

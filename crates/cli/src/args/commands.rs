@@ -22,9 +22,15 @@ pub struct CompareArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     /// A camera path of the scene, or `all`: every frame is judged, and shimmer is counted, with
-    /// what a method keeps from frame to frame. --frames and --cached-frames are of still views.
+    /// what a method keeps from frame to frame, and timed, also with every pass run (but with
+    /// --cached-frames 0). --frames is of still views.
     #[arg(long, value_name = "NAME", conflicts_with = "view")]
     pub path: Option<String>,
+    /// Move the camera by a part of a pixel in each frame, in turns of so many places (Halton's
+    /// sequence), as for temporal antialiasing: `camera.jitter` of the shaders.
+    #[arg(long, value_name = "N", requires = "path",
+          value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub jitter: Option<u32>,
     /// Viewport sizes in pixels, separated by commas.
     #[arg(
         long,
@@ -166,6 +172,19 @@ pub struct RunArgs {
     /// .bin raw bytes, .csv the words of a buffer. May be repeated.
     #[arg(long, value_name = "MATERIAL[@PASS]=FILE")]
     pub save: Vec<Save>,
+    /// Render so many frames one after the other and save each: `--save visibility=v.png` writes
+    /// v.0000.png, v.0001.png … Along a path: not all of it, but so many frames.
+    #[arg(long, value_name = "N", requires = "save",
+          value_parser = frames(1), allow_negative_numbers = true)]
+    pub frames: Option<u32>,
+    /// A camera path of the scene, each frame of which is saved.
+    #[arg(long, value_name = "NAME", conflicts_with = "view", requires = "save")]
+    pub path: Option<String>,
+    /// Move the camera by a part of a pixel in each frame, in turns of so many places (Halton's
+    /// sequence), as for temporal antialiasing: `camera.jitter` of the shaders.
+    #[arg(long, value_name = "N", requires = "save",
+          value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub jitter: Option<u32>,
     /// Fill all memory that a frame has not written with two patterns, one after the other, and
     /// fail if an output differs: the graph then reads what no pass has written.
     #[arg(long)]

@@ -101,6 +101,9 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     {
         fingerprint = fingerprint.with_text(&args.reference_samples.to_string());
     }
+    if let Some(count) = args.jitter {
+        fingerprint = fingerprint.with_text(&format!("jitter {count}"));
+    }
     let setup = ComparisonSetup {
         gpu: &gpu,
         scene: &scene,

@@ -8,6 +8,7 @@ pub mod graph;
 pub mod presets;
 pub mod profile;
 pub mod run;
+pub mod run_sequence;
 pub mod scenes;
 pub mod show;
 pub mod stress;

@@ -1,8 +1,9 @@
-//! `skiagraph run`: one frame of one graph, and any of its materials as a file.
+//! `skiagraph run`: one frame of one graph, or several, and any of its materials as files.
 
 use crate::args::commands::RunArgs;
 use crate::args::shared::GpuArgs;
 use crate::args::values::Save;
+use crate::commands::run_sequence::{Shots, numbered};
 use crate::error::CliError;
 use crate::files::write::check_writable;
 use crate::graphs::idle_params::IdleParams;
@@ -17,7 +18,7 @@ use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use std::{collections::BTreeSet, sync::Arc};
 
-/// Plans, renders one frame, says what ran, and saves what was asked for.
+/// Plans, renders a frame, or those of a sequence, says what ran, and saves what was asked for.
 ///
 /// # Errors
 /// A faulty graph, a scene that cannot be loaded, no GPU, a file that cannot be written.
@@ -30,12 +31,21 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         ));
     }
     let name = |save: &Save| capture(save).name();
-    let files = saves
+    let is_sequence = args.frames.is_some() || args.path.is_some();
+    let files: Vec<Save> = match is_sequence {
+        true => saves.iter().map(|save| numbered(save, 0)).collect(),
+        false => saves.clone(),
+    };
+    let files = files
         .iter()
         .map(|save| (format!("--save {}", name(save)), save.file.as_path()));
     check_writable(&files.collect::<Vec<_>>())?;
     let gpu = device::open(gpu, [&preset.graph])?;
-    let SceneSelection { scene, views } = SceneSelection::load(&args.scene)?;
+    let SceneSelection { scene, mut views } = SceneSelection::load(&args.scene)?;
+    let shots = Shots::of(args, &scene, &views)?;
+    if let Some(first) = shots.as_ref().and_then(Shots::first) {
+        views = vec![first.clone()];
+    }
     let scene = Arc::new(scene);
     let mut provider = SceneProvider::new(scene.clone());
     let mut idle = IdleParams::default();
@@ -62,6 +72,13 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         let poisoned = args
             .poison
             .then(|| poison::check(&gpu, &plan, &mut provider, preset));
+        if let Some(shots) = &shots {
+            shots.record(&gpu, (preset, plan), &mut provider, saves)?;
+            if let Some(verdict) = poisoned {
+                print(&verdict?)?;
+            }
+            continue;
+        }
         let names: BTreeSet<String> = saves.iter().map(name).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let contents = frame::render(&gpu, &preset.name, plan, &mut provider, &names)?;

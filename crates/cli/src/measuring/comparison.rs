@@ -10,7 +10,7 @@ use crate::measuring::reference::{Judge, PrimaryVisibility, Tracing};
 use crate::measuring::resume::{RunKey, resume};
 use crate::measuring::run::MeasureContext;
 use crate::measuring::sequence;
-use crate::measuring::subject::Subject;
+use crate::measuring::subject::{Shot, Subject};
 use crate::pictures::run_pictures::save_reference;
 use crate::records::results::{Results, Run};
 use crate::reporting::published::attach;
@@ -21,7 +21,7 @@ use crate::wording::size;
 use skiagraph_gpu::device::Gpu;
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::Oracle;
-use skiagraph_scene::{Scene, View};
+use skiagraph_scene::Scene;
 use std::{cell::OnceCell, ops::Range, path::Path, rc::Rc};
 
 /// What a comparison is of.
@@ -150,11 +150,11 @@ impl<'a> Comparison<'a> {
         let places = self.places(subject, viewport);
         let subjects = self.setup.subjects;
         let (subject, viewport) = (&subjects[subject], self.setup.viewports[viewport]);
-        let views = subject.views();
-        let Some(first) = views.first() else {
+        let shots = subject.shots(self.args.jitter);
+        let Some(first) = shots.first() else {
             return Ok(());
         };
-        self.provider.set_view(first, viewport);
+        first.show(&mut self.provider, viewport);
         let methods = self.setup.methods.iter();
         let methods: Vec<Method> = methods.map(|method| method.at(viewport)).collect();
         for (place, method) in places.clone().zip(&methods) {
@@ -164,8 +164,12 @@ impl<'a> Comparison<'a> {
         if self.states[places.clone()].iter().all(is_done) {
             return Ok(());
         }
-        let judges = self.judges(subject, &views, viewport)?;
-        let frames = sequence::Path::new(&self.setup.scene.mesh, views, judges)?;
+        let judges = self.judges(subject, &shots, viewport)?;
+        let frames = sequence::Path::new(
+            &self.setup.scene.mesh,
+            (shots, subject.frames_per_second()),
+            judges,
+        )?;
         let Some(judge) = frames.judges.first() else {
             return Ok(());
         };
@@ -179,7 +183,7 @@ impl<'a> Comparison<'a> {
             own: frames.own_counts(),
             frames: match subject {
                 Subject::Still(_) => self.args.frames.into(),
-                Subject::Path(_) => frames.views.len() as u64,
+                Subject::Path(_) => frames.shots.len() as u64,
             },
             warmup: self.args.warmup,
             cached_frames: self.results.cached_frames,
@@ -244,29 +248,29 @@ impl<'a> Comparison<'a> {
     fn judges(
         &mut self,
         subject: &Subject,
-        views: &[View],
+        shots: &[Shot],
         viewport: [u32; 2],
     ) -> Result<Vec<Judge<'a>>, CliError> {
-        if let [view] = views {
-            let judge = self.judge(view, viewport, &view.name)?;
+        if let [shot] = shots {
+            let judge = self.judge(shot, viewport, &shot.view.name)?;
             if let Some(folder) = self.pictures() {
                 save_reference(folder, subject.name(), &judge.right)?;
             }
             return Ok(vec![judge]);
         }
-        let frames = views.len();
-        let named = |(index, view): (usize, &View)| {
-            let what = format!("{} {} of {frames}", view.name, index + 1);
-            self.provider.set_view(view, viewport);
-            self.judge(view, viewport, &what)
+        let frames = shots.len();
+        let named = |(index, shot): (usize, &Shot)| {
+            let what = format!("{} {} of {frames}", shot.view.name, index + 1);
+            shot.show(&mut self.provider, viewport);
+            self.judge(shot, viewport, &what)
         };
-        views.iter().enumerate().map(named).collect()
+        shots.iter().enumerate().map(named).collect()
     }
 
     /// The right answer.
     fn judge(
         &mut self,
-        view: &View,
+        shot: &Shot,
         viewport: [u32; 2],
         name: &str,
     ) -> Result<Judge<'a>, CliError> {
@@ -285,7 +289,7 @@ impl<'a> Comparison<'a> {
             mode: self.args.oracle,
             samples: self.args.reference_samples,
         };
-        let (camera, light) = (view.camera(viewport), self.provider.light());
+        let (camera, light) = (shot.camera(viewport), self.provider.light());
         Judge::new(oracle.clone(), camera, light, ids, tracing, &what)
     }
 

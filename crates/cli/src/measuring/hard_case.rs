@@ -10,6 +10,8 @@ use crate::graphs::planning::Capabilities;
 use crate::measuring::frame;
 use crate::measuring::guarantee::{self, WITHOUT_CULLING};
 use crate::measuring::reference::{PrimaryVisibility, Tracing, own_counts, right_answer};
+use crate::measuring::steady;
+use crate::measuring::stop::Stop;
 use crate::pictures::run_pictures::{save_pictures, save_reference, stem};
 use crate::records::stress::{Case, Casters, Cell, Column, Counts, Guarantee, Verdict};
 use crate::terminal::interrupt;
@@ -233,7 +235,7 @@ impl HardCaseContext<'_> {
         )
     }
 
-    /// One frame of a method, counted.
+    /// One frame of a method, counted; of one that remembers, the worst of its steady state.
     fn count(
         &self,
         method: &Method,
@@ -244,10 +246,26 @@ impl HardCaseContext<'_> {
         let plan = method.plan(self.viewport, Capabilities::of(self.gpu), provider);
         let plan = plan.map_err(|faults| CliError::Input(reasons(&faults)))?;
         let names = preset.judged();
-        let contents = frame::render(self.gpu, &preset.name, plan, provider, &names)?;
-        let reference = &right.reference;
-        let outputs = Outputs::of_light(contents, provider.light_number(), reference);
-        let (outputs, judgement) = judged(preset, outputs, right)?;
+        let (reference, light) = (&right.reference, provider.light_number());
+        let judge = |contents| judged(preset, Outputs::of_light(contents, light, reference), right);
+        let (outputs, judgement) = match plan.remembers() {
+            true => {
+                let executor = frame::executor(self.gpu, plan, provider);
+                let worst = executor.map_err(Stop::from).and_then(|mut executor| {
+                    frame::grow(self.gpu, &mut executor, provider)?;
+                    let mut steady = steady::settle(self.gpu, &mut executor)?;
+                    steady::judge(self.gpu, &mut executor, &names, &mut steady, judge)
+                });
+                worst.map_err(|stop| stop.of(&preset.name))?
+            }
+            false => judge(frame::render(
+                self.gpu,
+                &preset.name,
+                plan,
+                provider,
+                &names,
+            )?)?,
+        };
         let broken = |error: Error| CliError::Contract(error.to_string());
         let (visibility, status) = (strict(&outputs, right), &outputs.status);
         let whole = Statistics::judged(&visibility, status, reference).map_err(broken)?;

@@ -14,5 +14,7 @@ pub mod resume;
 pub mod run;
 pub mod scene_selection;
 pub mod sequence;
+pub mod steady;
+pub mod stop;
 pub mod subject;
 pub mod timing;

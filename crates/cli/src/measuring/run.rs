@@ -1,12 +1,14 @@
 //! One run: a method on one view, executed, timed, judged and pictured.
 
-use crate::error::{CliError, explain, is_fatal};
+use crate::error::CliError;
 use crate::files::fingerprint::Fingerprint;
 use crate::graphs::contract::{Judgement, Outputs, judged};
 use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::reference::Judge;
+use crate::measuring::steady;
+use crate::measuring::stop::{Attempt, Stop, attempt};
 use crate::measuring::timing::{self, FrameMode, Times};
 use crate::measuring::{
     date,
@@ -14,6 +16,7 @@ use crate::measuring::{
 };
 use crate::pictures::run_pictures::{conditions, save_pictures, stem};
 use crate::records::results::{Answer, AreaReference, Cached, Measured, Run};
+use crate::records::steady::Steady;
 use crate::terminal::progress::Step;
 use skiagraph_gpu::{ExecuteError, Provider, device::Gpu};
 use skiagraph_graph::Plan;
@@ -51,23 +54,11 @@ pub struct MeasureContext<'a> {
 struct Executed {
     times: Times,
     cached: Option<Cached>,
-    outputs: Result<Outputs, String>,
+    outputs: Outputs,
+    judgement: Judgement,
+    steady: Option<Steady>,
     memory: (u64, u64),
     scene_bytes: u64,
-}
-
-/// What came of running a method: measurements, or why the device refuses.
-pub type Attempt = Result<Result<Measured, String>, CliError>;
-
-/// A method that the device refuses; an error where the device itself is of no more use.
-///
-/// # Errors
-/// Ctrl-C, a lost device.
-pub fn refused(method: &Method, error: ExecuteError) -> Attempt {
-    match is_fatal(&error) {
-        true => Err(frame::failed(&method.preset.name, error)),
-        false => Ok(Err(explain(&error))),
-    }
 }
 
 impl MeasureContext<'_> {
@@ -121,11 +112,9 @@ impl MeasureContext<'_> {
         provider: &mut dyn Provider,
         step: &Step,
     ) -> Attempt {
-        match self.execute(method, plan, provider, step) {
-            Ok(Some(executed)) => self.judge(method, executed).map(Ok),
-            Ok(None) => Err(CliError::interrupted()),
-            Err(error) => refused(method, error),
-        }
+        let executed = self.execute(method, plan, provider, step);
+        let measured = executed.and_then(|executed| Ok(self.judge(method, executed)?));
+        attempt(method, measured)
     }
 
     /// A run that says why there are no measurements.
@@ -136,19 +125,31 @@ impl MeasureContext<'_> {
         }
     }
 
-    /// Runs and times the frames; `None` if Ctrl-C came first.
+    /// Runs, times and judges frames. A method that remembers is judged first, in its steady state:
+    /// what is timed behind that does not change what it shows.
     fn execute(
         &self,
         method: &Method,
         plan: Plan,
         provider: &mut dyn Provider,
         step: &Step,
-    ) -> Result<Option<Executed>, ExecuteError> {
+    ) -> Result<Executed, Stop> {
         let mut executor = frame::executor(self.gpu, plan, provider)?;
         frame::grow(self.gpu, &mut executor, provider)?;
         let plan = executor.plan();
         let memory = (plan.memory_bytes(), plan.saved_bytes());
         let scene_bytes = self.scene_bytes(plan, provider)?;
+        let names = method.preset.judged();
+        let judge = |contents| {
+            let outputs = self.decode(contents, self.judge);
+            judged(method.preset, outputs, &self.judge.right)
+        };
+        let mut settled = None;
+        if executor.plan().remembers() {
+            let mut steady = steady::settle(self.gpu, &mut executor)?;
+            let worst = steady::judge(self.gpu, &mut executor, &names, &mut steady, judge)?;
+            settled = Some((worst, steady));
+        }
         let count = [self.warmup, self.frames as u32];
         let set_done = |frames| step.set_done(frames);
         let times = timing::times(
@@ -158,20 +159,23 @@ impl MeasureContext<'_> {
             count,
             set_done,
         )?;
-        let Some(times) = times else { return Ok(None) };
+        let times = times.ok_or_else(CliError::interrupted)?;
         let cached = timing::cached(self.gpu, &mut executor, self.cached_frames)?;
-        let Some(cached) = cached else {
-            return Ok(None);
+        let cached = cached.ok_or_else(CliError::interrupted)?;
+        let ((outputs, judgement), steady) = match settled {
+            Some((worst, steady)) => (worst, Some(steady)),
+            // Only now: a readback would be timed, too.
+            None => (judge(frame::read(self.gpu, &mut executor, &names)?)?, None),
         };
-        // Only now: a readback would be timed, too.
-        let contents = frame::read(self.gpu, &mut executor, &method.preset.judged())?;
-        Ok(Some(Executed {
+        Ok(Executed {
             times,
             cached,
-            outputs: self.decode(contents, self.judge),
+            outputs,
+            judgement,
+            steady,
             memory,
             scene_bytes,
-        }))
+        })
     }
 
     /// What was read, of the light that is judged.
@@ -207,11 +211,12 @@ impl MeasureContext<'_> {
             mut times,
             mut cached,
             outputs,
+            judgement,
+            steady,
             memory: (memory_bytes, saved_bytes),
             scene_bytes,
         } = executed;
         let right = &self.judge.right;
-        let (outputs, judgement) = judged(method.preset, outputs, right)?;
         let Judgement { counts, graded } = &judgement;
         let blockers = match counts.wrong.certain {
             0 => None,
@@ -249,6 +254,7 @@ impl MeasureContext<'_> {
             memory_bytes,
             saved_bytes,
             scene_bytes,
+            steady,
             sequence: None,
             images: images.transpose()?,
         })

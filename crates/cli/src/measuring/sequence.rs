@@ -5,12 +5,17 @@ use crate::graphs::contract::{Judgement, Outputs, judged};
 use crate::graphs::method::Method;
 use crate::measuring::frame;
 use crate::measuring::reference::{Judge, own_counts};
-use crate::measuring::run::{Attempt, MeasureContext, refused};
+use crate::measuring::run::MeasureContext;
+use crate::measuring::steady;
+use crate::measuring::stop::{Attempt, Stop, attempt};
+use crate::measuring::subject::Shot;
 use crate::measuring::timing;
 use crate::pictures::run_pictures::{save_pictures, stem};
 use crate::records::results::{Answer, Measured};
 use crate::records::samples::TimedFrame;
-use crate::records::sequence::{Sequence, SequenceFrame};
+use crate::records::sequence::{FrameCost, Sequence, SequenceFrame};
+use crate::records::statistics::FrameTimes;
+use crate::records::steady::Steady;
 use crate::terminal::interrupt;
 use crate::terminal::progress::Step;
 use skiagraph_gpu::{ExecuteError, Executor, Frame, FrameReport};
@@ -20,7 +25,7 @@ use skiagraph_reference::{
     BlockerCounts, Graded, Progress, Shimmer, Statistics,
     shimmer::{same_receivers, shimmer},
 };
-use skiagraph_scene::{Mesh, View};
+use skiagraph_scene::Mesh;
 use std::time::Duration;
 
 fn ms(time: Duration) -> f64 {
@@ -29,10 +34,12 @@ fn ms(time: Duration) -> f64 {
 
 /// The frames of a path with their right answers.
 pub struct Path<'a> {
-    /// The camera's places.
-    pub views: Vec<View>,
+    /// From where.
+    pub shots: Vec<Shot>,
     /// The right answers.
     pub judges: Vec<Judge<'a>>,
+    /// Frames per second of the path's own time.
+    frames_per_second: f64,
     /// For each frame but the first, where each pixel's receiver was in the frame before.
     same: Vec<Vec<u32>>,
 }
@@ -42,7 +49,11 @@ impl<'a> Path<'a> {
     ///
     /// # Errors
     /// Ctrl-C.
-    pub fn new(mesh: &Mesh, views: Vec<View>, judges: Vec<Judge<'a>>) -> Result<Self, CliError> {
+    pub fn new(
+        mesh: &Mesh,
+        (shots, frames_per_second): (Vec<Shot>, f64),
+        judges: Vec<Judge<'a>>,
+    ) -> Result<Self, CliError> {
         let progress = Progress {
             rows_done: &|_| (),
             interrupted: interrupt::flag(),
@@ -52,10 +63,16 @@ impl<'a> Path<'a> {
         let same = same.collect::<Result<_, _>>();
         let same = same.map_err(|_| CliError::interrupted())?;
         Ok(Self {
-            views,
+            shots,
             judges,
+            frames_per_second,
             same,
         })
+    }
+
+    /// When a frame is.
+    fn seconds(&self, index: usize) -> f32 {
+        (index as f64 / self.frames_per_second) as f32
     }
 
     /// The reference's pixels of all frames together.
@@ -66,6 +83,27 @@ impl<'a> Path<'a> {
         }
         all
     }
+}
+
+/// A method that stands at a path's begin.
+struct Begun {
+    executor: Executor,
+    memory: (u64, u64),
+    scene_bytes: u64,
+    steady: Option<Steady>,
+}
+
+/// A frame's times.
+fn timed_frame(report: FrameReport, wall: Duration) -> Result<TimedFrame, ExecuteError> {
+    let timing = report.timing.ok_or(ExecuteError::Internal(
+        "a timed frame came back without times",
+    ))?;
+    Ok(TimedFrame {
+        began: Duration::ZERO,
+        timing,
+        wall,
+        skipped: report.skipped,
+    })
 }
 
 /// What is known of the frames so far.
@@ -99,32 +137,36 @@ impl MeasureContext<'_> {
         provider: &mut SceneProvider,
         step: &Step,
     ) -> Attempt {
-        let (memory, scene_bytes, mut executor) = match self.begin(plan, path, provider) {
-            Ok(begun) => begun,
-            Err(error) => return refused(method, error),
-        };
+        attempt(method, self.followed(method, plan, path, provider, step))
+    }
+
+    fn followed(
+        &self,
+        method: &Method,
+        plan: Plan,
+        path: &Path,
+        provider: &mut SceneProvider,
+        step: &Step,
+    ) -> Result<Measured, Stop> {
+        let Begun {
+            mut executor,
+            memory,
+            scene_bytes,
+            steady,
+        } = self.begin(plan, path, provider)?;
         let mut account = Account::default();
-        for (index, view) in path.views.iter().enumerate() {
-            if interrupt::raised() {
-                return Err(CliError::interrupted());
-            }
-            let names = method.preset.judged();
-            let (report, wall) = match self.frame(&mut executor, view, &names, provider) {
-                Ok(done) => done,
-                Err(error) => return refused(method, error),
-            };
-            self.account(method, path, index, (report, wall), &mut account)?;
+        let names = method.preset.judged();
+        for index in 0..path.shots.len() {
+            let done = self.frame(&mut executor, path, index, (&names, false), provider)?;
+            self.account(method, path, index, done, &mut account)?;
             step.set_done(u64::from(self.warmup) + index as u64 + 1);
         }
+        let every_pass = self.every_pass(&mut executor, path, &names, provider, &mut account)?;
         let times = timing::of(account.timed);
         let mut times = times.ok_or_else(CliError::interrupted)?;
         if !self.timestamps {
             times.frame.gpu_ms = None;
             times.passes.iter_mut().for_each(|pass| pass.gpu_ms = None);
-            account
-                .frames
-                .iter_mut()
-                .for_each(|frame| frame.gpu_ms = None);
         }
         let images = match (self.pictures, &account.worst) {
             (Some(folder), Some((index, outputs, judgement))) => {
@@ -139,7 +181,7 @@ impl MeasureContext<'_> {
             all += frame.shimmer.unwrap_or_default();
         }
         let counts = account.counts;
-        Ok(Ok(Measured {
+        Ok(Measured {
             certain: counts.certain,
             uncertain: counts.uncertain,
             split: counts.split,
@@ -159,47 +201,105 @@ impl MeasureContext<'_> {
             saved_bytes: memory.1,
             scene_bytes,
             images,
+            steady,
             sequence: Some(Sequence {
                 frames: account.frames,
                 shimmer: all,
+                every_pass,
             }),
-        }))
+        })
     }
 
-    /// An executor that stands still at the path's begin until it is warm.
-    fn begin(
-        &self,
-        plan: Plan,
-        path: &Path,
-        provider: &mut SceneProvider,
-    ) -> Result<((u64, u64), u64, Executor), ExecuteError> {
-        if let Some(view) = path.views.first() {
-            provider.set_view(view, self.judge.right.reference.viewport);
+    /// An executor that stands still at the path's begin until it is warm, or, of a method that
+    /// remembers, until it is in its steady state: so all flags give the same pictures.
+    fn begin(&self, plan: Plan, path: &Path, provider: &mut SceneProvider) -> Result<Begun, Stop> {
+        if let Some(shot) = path.shots.first() {
+            shot.show(provider, self.judge.right.reference.viewport);
         }
         let mut executor = frame::executor(self.gpu, plan, provider)?;
         frame::grow(self.gpu, &mut executor, provider)?;
-        for _ in 0..self.warmup {
-            frame::run(self.gpu, &mut executor, &Frame::default())?;
-        }
+        let steady = match executor.plan().remembers() {
+            true => Some(steady::settle(self.gpu, &mut executor)?),
+            false => {
+                self.stand(&mut executor, self.warmup)?;
+                None
+            }
+        };
         let plan = executor.plan();
-        let memory = (plan.memory_bytes(), plan.saved_bytes());
-        let scene_bytes = self.scene_bytes(plan, provider)?;
-        Ok((memory, scene_bytes, executor))
+        Ok(Begun {
+            memory: (plan.memory_bytes(), plan.saved_bytes()),
+            scene_bytes: self.scene_bytes(plan, provider)?,
+            executor,
+            steady,
+        })
+    }
+
+    /// Frames that nobody looks at.
+    fn stand(&self, executor: &mut Executor, frames: u32) -> Result<(), ExecuteError> {
+        (0..frames).try_for_each(|_| {
+            frame::run(self.gpu, executor, &Frame::default())?;
+            Ok(())
+        })
+    }
+
+    /// The path once more with every pass run in every frame, where some were skipped: its pictures
+    /// have been judged by then, and what it keeps may change.
+    fn every_pass(
+        &self,
+        executor: &mut Executor,
+        path: &Path,
+        names: &[&str],
+        provider: &mut SceneProvider,
+        account: &mut Account,
+    ) -> Result<Option<FrameTimes>, Stop> {
+        let skips = account.frames.iter().any(|frame| !frame.skipped.is_empty());
+        if !skips || self.cached_frames == 0 {
+            return Ok(None);
+        }
+        let mut timed = Vec::new();
+        // The first one brings the camera back, and is no frame of the path.
+        for index in std::iter::once(0).chain(0..path.shots.len()) {
+            let (report, wall) = self.frame(executor, path, index, (names, true), provider)?;
+            timed.push(timed_frame(report, wall)?);
+        }
+        let timed = timed.split_off(1);
+        for (frame, timed) in account.frames.iter_mut().zip(&timed) {
+            frame.every_pass = Some(FrameCost {
+                gpu_ms: self.gpu_ms(timed),
+                wall_ms: ms(timed.wall),
+            });
+        }
+        let times = timing::of(timed).ok_or_else(CliError::interrupted)?;
+        Ok(Some(FrameTimes {
+            gpu_ms: times.frame.gpu_ms.filter(|_| self.timestamps),
+            ..times.frame
+        }))
+    }
+
+    /// The GPU's time of a frame, if it can be trusted.
+    fn gpu_ms(&self, frame: &TimedFrame) -> Option<f64> {
+        frame.timing.gpu().filter(|_| self.timestamps).map(ms)
     }
 
     fn frame(
         &self,
         executor: &mut Executor,
-        view: &View,
-        read: &[&str],
+        path: &Path,
+        index: usize,
+        (read, all): (&[&str], bool),
         provider: &mut SceneProvider,
-    ) -> Result<(FrameReport, Duration), ExecuteError> {
-        provider.set_view(view, self.judge.right.reference.viewport);
+    ) -> Result<(FrameReport, Duration), Stop> {
+        if interrupt::raised() {
+            return Err(CliError::interrupted().into());
+        }
+        let viewport = self.judge.right.reference.viewport;
+        path.shots[index].show(provider, viewport);
         executor.refresh(provider)?;
         let request = Frame {
             timing: true,
+            all,
             read,
-            ..Frame::default()
+            seconds: path.seconds(index),
         };
         let done = frame::run(self.gpu, executor, &request)?;
         // As a host does it: between frames, by what has arrived.
@@ -212,11 +312,12 @@ impl MeasureContext<'_> {
         method: &Method,
         path: &Path,
         index: usize,
-        (report, wall): (FrameReport, Duration),
+        (mut report, wall): (FrameReport, Duration),
         account: &mut Account,
-    ) -> Result<(), CliError> {
+    ) -> Result<(), Stop> {
         let judge = &path.judges[index];
-        let contents = frame::contents(report.readbacks);
+        let contents = frame::contents(std::mem::take(&mut report.readbacks));
+        let timed = timed_frame(report, wall)?;
         let outputs = self.decode(contents, judge);
         let (outputs, judgement) = judged(method.preset, outputs, &judge.right)?;
         let counts = judgement.counts;
@@ -232,28 +333,19 @@ impl MeasureContext<'_> {
                 Some(counts.map_err(|error| CliError::Input(format!("no shimmer: {error}")))?)
             }
         };
-        let Some(timing) = report.timing else {
-            return Err(CliError::Input(
-                "a timed frame came back without times".into(),
-            ));
-        };
         account.frames.push(SequenceFrame {
             facing_light: counts.pixels.facing_light,
             wrong: counts.wrong.total,
             wrong_outside_band: counts.wrong.total - counts.wrong.in_band,
             graded: judgement.graded,
             rays: outputs.rays,
-            gpu_ms: timing.gpu().map(ms),
+            gpu_ms: self.gpu_ms(&timed),
             wall_ms: ms(wall),
             shimmer: changed,
-            skipped: report.skipped.clone(),
+            skipped: timed.skipped.clone(),
+            every_pass: None,
         });
-        account.timed.push(TimedFrame {
-            began: Duration::ZERO,
-            timing,
-            wall,
-            skipped: report.skipped,
-        });
+        account.timed.push(timed);
         account.counts += counts;
         if let Some(rays) = outputs.rays {
             account.rays = Some(account.rays.unwrap_or(0) + rays);

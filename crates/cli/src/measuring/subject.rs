@@ -5,7 +5,45 @@ use crate::error::CliError;
 use crate::files::fingerprint::Fingerprint;
 use crate::measuring::scene_selection::under_lights;
 use crate::wording::did_you_mean;
-use skiagraph_scene::{CameraPath, LightKind, Scene, View};
+use skiagraph_passes::SceneProvider;
+use skiagraph_scene::{Camera, CameraPath, LightKind, Scene, View};
+
+/// One frame: from where, and with which jitter.
+#[derive(Clone, Debug)]
+pub struct Shot {
+    /// The view.
+    pub view: View,
+    /// Number of the frame, and how many have a jitter of their own.
+    jitter: Option<(u32, u32)>,
+}
+
+impl Shot {
+    /// Frames one after the other.
+    pub fn numbered(views: Vec<View>, jitter: Option<u32>) -> Vec<Self> {
+        let shot = |(view, frame)| Self {
+            view,
+            jitter: jitter.map(|count| (frame, count)),
+        };
+        views.into_iter().zip(0..).map(shot).collect()
+    }
+
+    /// Its camera.
+    pub fn camera(&self, viewport: [u32; 2]) -> Camera {
+        let camera = self.view.camera(viewport);
+        match self.jitter {
+            Some((frame, count)) => camera.jittered(frame, count),
+            None => camera,
+        }
+    }
+
+    /// Hands its camera and light to a provider.
+    pub fn show(&self, provider: &mut SceneProvider, viewport: [u32; 2]) {
+        provider.set_view(&self.view, viewport);
+        if self.jitter.is_some() {
+            provider.set_camera(&self.camera(viewport));
+        }
+    }
+}
 
 /// One place of a comparison.
 #[derive(Clone, Debug)]
@@ -25,11 +63,20 @@ impl Subject {
         }
     }
 
-    /// The views of its frames.
-    pub fn views(&self) -> Vec<View> {
-        match self {
+    /// Its frames; of a path with `jitter`, each with that of as many that are blended.
+    pub fn shots(&self, jitter: Option<u32>) -> Vec<Shot> {
+        let views = match self {
             Self::Still(view) => vec![view.clone()],
             Self::Path(path) => path.views().collect(),
+        };
+        Shot::numbered(views, jitter)
+    }
+
+    /// Of its own time.
+    pub fn frames_per_second(&self) -> f64 {
+        match self {
+            Self::Still(_) => 30.0,
+            Self::Path(path) => path.frames_per_second,
         }
     }
 

@@ -1,9 +1,9 @@
 //! Many frames of a graph, timed.
 
 use crate::measuring::frame;
-use crate::records::results::{Cached, FrameTimes, Pass};
+use crate::records::results::{Cached, Pass};
 use crate::records::samples::{PassSamples, Samples, TimedFrame};
-use crate::records::statistics::Spread;
+use crate::records::statistics::{FrameTimes, Spread};
 use crate::terminal::interrupt;
 use skiagraph_gpu::{ExecuteError, Executor, Frame, device::Gpu};
 use std::time::Instant;

@@ -9,4 +9,5 @@ pub mod results;
 pub mod samples;
 pub mod sequence;
 pub mod statistics;
+pub mod steady;
 pub mod stress;

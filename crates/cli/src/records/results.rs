@@ -2,7 +2,8 @@
 //! nothing.
 
 use crate::records::sequence::Sequence;
-use crate::records::statistics::Spread;
+use crate::records::statistics::{FrameTimes, Spread};
+use crate::records::steady::Steady;
 use crate::wording::{size, thousands};
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{
@@ -295,6 +296,9 @@ pub struct Measured {
     /// Bytes of what the scene gave: positions, indices, hierarchy … 0 in files of older programs.
     #[serde(default)]
     pub scene_bytes: u64,
+    /// How a method that remembers came to its steady state; absent of one that does not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub steady: Option<Steady>,
     /// The frames of a camera path, of which all else are the sums and the spread; absent of a
     /// still view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -371,16 +375,6 @@ pub struct Pass {
     pub gpu_ms: Option<Spread>,
     /// Encoding on the CPU.
     pub cpu_ms: Spread,
-}
-
-/// Times of frames.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FrameTimes {
-    /// From the first pass's begin to the last one's end; null where timestamps cannot be had or
-    /// trusted.
-    pub gpu_ms: Option<Spread>,
-    /// From the start of encoding until the GPU was done, by the CPU's clock.
-    pub wall_ms: Spread,
 }
 
 /// A frame in which unchanged passes did not run.
@@ -512,6 +506,7 @@ pub(crate) mod tests {
             memory_bytes: 12_582_912,
             saved_bytes: 1_048_576,
             scene_bytes: 2_000_000,
+            steady: None,
             sequence: None,
             images: gpu.then(|| Images {
                 shaded: format!("{name}-shaded.png"),

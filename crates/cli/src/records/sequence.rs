@@ -1,5 +1,6 @@
 //! The frames of a camera path, in `results.json`.
 
+use crate::records::statistics::FrameTimes;
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{Graded, Shimmer};
 
@@ -11,6 +12,10 @@ pub struct Sequence {
     pub frames: Vec<SequenceFrame>,
     /// Answers that changed though the right ones did not, all frames together.
     pub shimmer: Shimmer,
+    /// The spread over the path of the frames' times with every pass run; absent where no frame
+    /// skips one, and with `--cached-frames 0`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub every_pass: Option<FrameTimes>,
 }
 
 /// One frame of a path.
@@ -37,6 +42,35 @@ pub struct SequenceFrame {
     /// Passes that did not run, as nothing that they read had changed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub skipped: Vec<String>,
+    /// Its times when every pass runs: what it costs without what is kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub every_pass: Option<FrameCost>,
+}
+
+/// The times of one frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrameCost {
+    /// From the first pass's begin to the last one's end; null where it cannot be had or trusted.
+    pub gpu_ms: Option<f64>,
+    /// From the start of encoding until the outputs were read back.
+    pub wall_ms: f64,
+}
+
+impl FrameCost {
+    /// The GPU's time, or that of the wall where there is none.
+    pub fn ms(self) -> f64 {
+        self.gpu_ms.unwrap_or(self.wall_ms)
+    }
+}
+
+impl SequenceFrame {
+    /// Its times as it is, with what is kept.
+    pub fn cost(&self) -> FrameCost {
+        FrameCost {
+            gpu_ms: self.gpu_ms,
+            wall_ms: self.wall_ms,
+        }
+    }
 }
 
 impl Sequence {
@@ -49,4 +83,23 @@ impl Sequence {
             false => worst,
         })
     }
+
+    /// The frame that takes the longest as it is, the first of equal ones, with its index.
+    pub fn slowest(&self) -> Option<(usize, FrameCost)> {
+        slowest(self.frames.iter().map(SequenceFrame::cost))
+    }
+
+    /// The frame that takes the longest with every pass run.
+    pub fn slowest_with_every_pass(&self) -> Option<(usize, FrameCost)> {
+        slowest(self.frames.iter().filter_map(|frame| frame.every_pass))
+    }
+}
+
+fn slowest(frames: impl Iterator<Item = FrameCost>) -> Option<(usize, FrameCost)> {
+    frames
+        .enumerate()
+        .reduce(|worst, other| match other.1.ms() > worst.1.ms() {
+            true => other,
+            false => worst,
+        })
 }

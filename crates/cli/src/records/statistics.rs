@@ -14,6 +14,16 @@ pub struct Spread {
     pub p95: f64,
 }
 
+/// Times of frames.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrameTimes {
+    /// From the first pass's begin to the last one's end; null where timestamps cannot be had or
+    /// trusted.
+    pub gpu_ms: Option<Spread>,
+    /// From the start of encoding until the GPU was done, by the CPU's clock.
+    pub wall_ms: Spread,
+}
+
 impl Spread {
     /// Of some samples; `None` if there are none.
     pub fn of(samples: &[Duration]) -> Option<Self> {

@@ -2,7 +2,9 @@
 //! is defined once; a table says in which order it shows which figures, and under which heads.
 
 use crate::records::results::{AreaReference, Measured, Part, Results, Run};
+use crate::records::sequence::Sequence;
 use crate::records::statistics::Spread;
+use crate::records::steady::Steady;
 use crate::wording::{ms, thousands};
 use Source::{Always, Measure};
 use Value::{Count, OfPicture, Real, Share, Text, Time, Unknown};
@@ -104,6 +106,18 @@ const CSV: &[Figure] = &[
     ("nan", Measure(|of| graded(of, |by| Count(by.invalid.nan)))),
     ("infinite", Measure(|of| graded(of, |by| Count(by.invalid.infinite)))),
     ("outside", Measure(|of| graded(of, |by| Count(by.invalid.outside)))),
+    ("steady_frames", Measure(|of| steady(of, |by| Some(by.frames)))),
+    ("steady_period", Measure(|of| steady(of, |by| by.period))),
+    ("slowest_frame", Measure(|of| path(of, |by| Some(Count(by.slowest()?.0 as u64))))),
+    ("slowest_frame_ms", Measure(|of| path(of, |by| Some(Time(by.slowest()?.1.ms()))))),
+    ("every_pass_gpu_ms",
+        Measure(|of| path(of, |by| Some(median(by.every_pass.as_ref()?.gpu_ms))))),
+    ("every_pass_wall_ms",
+        Measure(|of| path(of, |by| Some(median(Some(by.every_pass.as_ref()?.wall_ms)))))),
+    ("every_pass_slowest_frame",
+        Measure(|of| path(of, |by| Some(Count(by.slowest_with_every_pass()?.0 as u64))))),
+    ("every_pass_slowest_frame_ms",
+        Measure(|of| path(of, |by| Some(Time(by.slowest_with_every_pass()?.1.ms()))))),
 ];
 
 /// Figures that only tables show.
@@ -278,6 +292,21 @@ fn worst(measured: &Measured) -> Option<(u64, Part)> {
         of: frame.facing_light,
     };
     Some((index as u64, part))
+}
+
+/// How a method that remembers came to its steady state.
+fn steady(measured: &Measured, figure: fn(&Steady) -> Option<u32>) -> Value {
+    let figure = measured.steady.as_ref().and_then(figure);
+    figure.map_or(Unknown, |count| Count(count.into()))
+}
+
+/// A figure of a camera path.
+fn path(measured: &Measured, figure: fn(&Sequence) -> Option<Value>) -> Value {
+    measured
+        .sequence
+        .as_ref()
+        .and_then(figure)
+        .unwrap_or(Unknown)
 }
 
 /// A figure of how far shares are off; pixels that are right or wrong have none.

@@ -5,7 +5,9 @@ use crate::args::values::PublishedFile;
 use crate::records::results::{Measured, Results, Run, step};
 use crate::reporting::columns::{self, Column, STEPS};
 use crate::reporting::graded::{area_reference, by_answer, graded};
-use crate::reporting::notes::{band_warning, certain_wrong, times_missing};
+use crate::reporting::notes::{
+    band_warning, certain_wrong, path_costs, remembering, times_missing,
+};
 use crate::wording::{command_line, frames, ms, share, thousands};
 use std::{collections::BTreeSet, env};
 
@@ -103,6 +105,8 @@ pub fn viewport(results: &Results, runs: &[Run]) -> String {
     let mut notes: Vec<String> = band_warning(first).into_iter().collect();
     notes.extend(certain_wrong(runs));
     notes.extend(graded(runs));
+    notes.extend(runs.iter().filter_map(remembering));
+    notes.extend(runs.iter().flat_map(path_costs));
     if results.adapter.gpu_unavailable.is_none() {
         notes.extend(runs.iter().filter_map(times_missing));
     }

@@ -1,7 +1,8 @@
 //! What is said below tables, wherever they stand.
 
 use crate::records::results::{Measured, Run};
-use crate::wording::thousands;
+use crate::records::sequence::FrameCost;
+use crate::wording::{frames, ms, thousands};
 
 /// A band of more than one pixel in so many of those facing the light leaves too much open.
 const MAX_BAND: u128 = 1000;
@@ -63,6 +64,57 @@ fn blockers(runs: &[&Run]) -> String {
         any.then(|| format!("{what} {}", text.join(" / ")))
     });
     kinds.collect::<Vec<_>>().join(", ")
+}
+
+/// What was judged of a method that remembers.
+pub fn remembering(run: &Run) -> Option<String> {
+    let measured = run.measured.as_ref()?;
+    let steady = measured.steady.as_ref()?;
+    let name = run.method_label();
+    let after = frames(steady.frames);
+    let state = match steady.period {
+        Some(1) => format!("its picture stays the same after {after}"),
+        Some(period) => format!("its picture repeats every {} after {after}", frames(period)),
+        None => format!("its picture does not repeat within {after}"),
+    };
+    Some(match steady.judged {
+        None => format!("{name} remembers, and stood at the path's begin before: {state}"),
+        Some(cycle) if cycle.pictures == 1 => {
+            format!("{name} remembers: {state}, and is judged then")
+        }
+        Some(cycle) => {
+            let mean = match cycle.rmse_mean {
+                Some(rmse) => format!("RMSE in the mean {rmse:.5}"),
+                None => format!("wrong pixels in the mean {:.1}", cycle.wrong_mean),
+            };
+            format!(
+                "{name} remembers: {state}; the counts are those of the worst of {} pictures then, \
+                 {mean}",
+                cycle.pictures
+            )
+        }
+    })
+}
+
+/// What the frames of a camera path cost, with what is kept and without.
+pub fn path_costs(run: &Run) -> Vec<String> {
+    let sequence = run.measured.as_ref().and_then(|of| of.sequence.as_ref());
+    let lines = sequence.map(|sequence| {
+        [
+            ("as it is", sequence.slowest()),
+            ("with every pass", sequence.slowest_with_every_pass()),
+        ]
+    });
+    let line = |(how, slowest): (&str, Option<(usize, FrameCost)>)| {
+        let (index, cost) = slowest?;
+        let clock = cost.gpu_ms.map_or("wall", |_| "GPU");
+        Some(format!(
+            "{} {how}: slowest frame {index}, {} ms ({clock})",
+            run.method_label(),
+            ms(cost.ms())
+        ))
+    };
+    lines.into_iter().flatten().filter_map(line).collect()
 }
 
 /// Which GPU times a run lacks on an adapter whose timestamps are true.

@@ -4,7 +4,9 @@ use crate::records::results::{Results, Run};
 use crate::records::statistics::Spread;
 use crate::reporting::columns::{self, Column, are_paths};
 use crate::reporting::graded::{area_reference, by_answer, graded};
-use crate::reporting::notes::{band_warning, certain_wrong, times_missing};
+use crate::reporting::notes::{
+    band_warning, certain_wrong, path_costs, remembering, times_missing,
+};
 use crate::reporting::table::table;
 use crate::wording::{frames, ms, percent, size, thousands};
 
@@ -114,9 +116,16 @@ fn passes(runs: &[Run]) -> String {
         let whole = ("whole frame", measured.frame.gpu_ms, None);
         let cached = measured.cached.as_ref();
         let cached = cached.map(|cached| ("cached frame", cached.frame.gpu_ms, None));
+        let every = measured
+            .sequence
+            .as_ref()
+            .and_then(|of| of.every_pass.as_ref());
+        let every = every.map(|times| ("with every pass", times.gpu_ms, None));
         let passes = measured.passes.iter();
         let passes = passes.map(|pass| (pass.name.as_str(), pass.gpu_ms, Some(pass.cpu_ms)));
-        for (index, (name, gpu, cpu)) in passes.chain([whole]).chain(cached).enumerate() {
+        for (index, (name, gpu, cpu)) in
+            passes.chain([whole]).chain(cached).chain(every).enumerate()
+        {
             let gpu = |pick: fn(Spread) -> f64| gpu.map_or("–".into(), |spread| ms(pick(spread)));
             rows.push(vec![
                 // The eye finds groups by their first line.
@@ -138,6 +147,8 @@ fn passes(runs: &[Run]) -> String {
 fn footnotes(results: &Results, runs: &[Run]) -> Vec<String> {
     let mut notes = certain_wrong(runs);
     notes.extend(graded(runs));
+    notes.extend(runs.iter().filter_map(remembering));
+    notes.extend(runs.iter().flat_map(path_costs));
     match &results.adapter.gpu_unavailable {
         Some(reason) => notes.push(format!("No GPU times: {reason}")),
         None => notes.extend(runs.iter().filter_map(times_missing)),

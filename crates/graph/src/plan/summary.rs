@@ -9,7 +9,7 @@ use crate::{
     link::pass::LinkedPass,
     provided_kind::ProvidedKind,
     request::PlanRequest,
-    resource::{ResourceKind, Target},
+    resource::{Origin, ResourceKind, Target},
 };
 
 /// A live pass.
@@ -63,6 +63,18 @@ impl Plan {
             })
             .map(|resource| resource.name.as_str())
             .collect()
+    }
+
+    /// Whether what a frame shows may hang on those before it though the host changes nothing: live
+    /// passes read what the graph left in the frame before, or the frame's number.
+    pub fn remembers(&self) -> bool {
+        let used = self.schedule().lifetimes.keys();
+        used.map(|id| self.resource(*id))
+            .any(|resource| match (&resource.kind, resource.origin) {
+                (ResourceKind::Frame, _) => true,
+                (ResourceKind::Provided(_), _) => false,
+                (_, origin) => matches!(origin, Origin::Previous(_)),
+            })
     }
 
     /// The light that live passes bind, if it is of a kind that the document does not take: of

@@ -1,0 +1,175 @@
+//! `skiagraph run --frames`: a numbered sequence of pictures.
+
+use crate::args::commands::RunArgs;
+use crate::args::values::Save;
+use crate::error::CliError;
+use crate::graphs::preset::Preset;
+use crate::measuring::frame;
+use crate::measuring::subject::{Shot, Subject};
+use crate::pictures::save::{Decoding, capture, write};
+use crate::terminal::console::print;
+use crate::terminal::interrupt;
+use crate::terminal::progress::Step;
+use crate::wording::frames;
+use skiagraph_gpu::{Executor, Frame, device::Gpu};
+use skiagraph_graph::Plan;
+use skiagraph_passes::SceneProvider;
+use skiagraph_scene::{CameraPath, Scene, SceneLibrary, View};
+use std::path::PathBuf;
+
+/// The file of a frame: `visibility.0003.png` of `visibility.png`.
+pub fn numbered(save: &Save, index: usize) -> Save {
+    let file = &save.file;
+    let mut name = file.file_stem().unwrap_or_default().to_owned();
+    name.push(format!(".{index:04}"));
+    if let Some(extension) = file.extension() {
+        name.push(".");
+        name.push(extension);
+    }
+    Save {
+        file: file.with_file_name(name),
+        ..save.clone()
+    }
+}
+
+/// The views of the frames that are asked for, with how many there are in a second.
+pub struct Shots {
+    shots: Vec<Shot>,
+    frames_per_second: f64,
+}
+
+impl Shots {
+    /// Of each path that is asked for, or of each view; none without `--frames` and `--path`.
+    ///
+    /// # Errors
+    /// No such path, or one that has fewer frames.
+    pub fn of(args: &RunArgs, scene: &Scene, views: &[View]) -> Result<Option<Self>, CliError> {
+        let subject = match (&args.path, args.frames, views) {
+            (None, None, _) if args.jitter.is_some() => {
+                return Err(CliError::Usage("--jitter needs --frames or --path".into()));
+            }
+            (None, None, _) => return Ok(None),
+            (Some(name), ..) => Self::path(args, scene, name)?,
+            (None, Some(_), [view]) => Subject::Still(view.clone()),
+            (None, Some(_), _) => {
+                return Err(CliError::Usage(
+                    "--frames is of one view under one light".into(),
+                ));
+            }
+        };
+        let of_path = subject.shots(args.jitter);
+        let shots = match (&subject, args.frames) {
+            (Subject::Still(view), Some(count)) => {
+                Shot::numbered(vec![view.clone(); count as usize], args.jitter)
+            }
+            (Subject::Path(_), Some(count)) if count as usize > of_path.len() => {
+                return Err(CliError::Input(format!(
+                    "--frames {count}: the path `{}` has {}",
+                    subject.name(),
+                    frames(of_path.len() as u32)
+                )));
+            }
+            (_, count) => {
+                let count = count.map_or(of_path.len(), |count| count as usize);
+                of_path.into_iter().take(count).collect()
+            }
+        };
+        Ok(Some(Self {
+            frames_per_second: subject.frames_per_second(),
+            shots,
+        }))
+    }
+
+    fn path(args: &RunArgs, scene: &Scene, name: &str) -> Result<Subject, CliError> {
+        let paths: Result<Vec<CameraPath>, _> =
+            SceneLibrary::from_environment().paths(&args.scene.scene);
+        let paths = paths.map_err(|error| CliError::Input(error.to_string()))?;
+        let mut subjects = Subject::paths(scene, paths, name, &args.scene)?;
+        match subjects.len() {
+            1 => Ok(subjects.remove(0)),
+            _ => Err(CliError::Usage(
+                "--save takes the pictures of one path under one light; name them".into(),
+            )),
+        }
+    }
+
+    /// The first frame's view.
+    pub fn first(&self) -> Option<&View> {
+        self.shots.first().map(|shot| &shot.view)
+    }
+
+    /// Renders the frames one after the other, the first with an empty memory, and saves what is
+    /// asked for of each: every file whole, those of the frames before an interrupt stay.
+    ///
+    /// # Errors
+    /// Ctrl-C, those of the executor, a file that cannot be written.
+    pub fn record(
+        &self,
+        gpu: &Gpu,
+        (preset, plan): (&Preset, Plan),
+        provider: &mut SceneProvider,
+        saves: &[Save],
+    ) -> Result<(), CliError> {
+        interrupt::install()?;
+        let failed = |error| frame::failed(&preset.name, error);
+        let viewport = plan.viewport();
+        let mut executor = frame::executor(gpu, plan, provider).map_err(failed)?;
+        frame::grow(gpu, &mut executor, provider).map_err(failed)?;
+        let step = Step::begin(preset.name.clone(), self.shots.len() as u64, "frames");
+        for (index, shot) in self.shots.iter().enumerate() {
+            if interrupt::raised() {
+                let kept = format!("the pictures of {} are there", frames(index as u32));
+                return Err(CliError::Interrupted { kept });
+            }
+            shot.show(provider, viewport);
+            let readings = saves.iter();
+            let readings = readings.map(|save| Decoding::of(executor.plan(), save, &shot.view));
+            let readings: Vec<Decoding> = readings.collect();
+            let contents = self
+                .frame(gpu, &mut executor, provider, (index, saves))
+                .map_err(failed)?;
+            for (save, reading) in saves.iter().zip(readings) {
+                let name = capture(save).name();
+                let content = contents.get(&name).ok_or_else(|| {
+                    CliError::Input(format!("`{}` has no `{name}` to save", preset.name))
+                })?;
+                write(&numbered(save, index), content, &reading)?;
+            }
+            step.set_done(index as u64 + 1);
+        }
+        step.end();
+        let last = self.shots.len().saturating_sub(1);
+        for save in saves {
+            let file = |index| -> PathBuf { numbered(save, index).file };
+            print(&format!(
+                "  saved {}: {} to {}\n",
+                capture(save).name(),
+                file(0).display(),
+                file(last).display()
+            ))?;
+        }
+        Ok(())
+    }
+
+    fn frame(
+        &self,
+        gpu: &Gpu,
+        executor: &mut Executor,
+        provider: &mut SceneProvider,
+        (index, saves): (usize, &[Save]),
+    ) -> Result<frame::Contents, skiagraph_gpu::ExecuteError> {
+        executor.refresh(provider)?;
+        let mut names: Vec<String> = saves.iter().map(|save| capture(save).name()).collect();
+        names.sort();
+        names.dedup();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let request = Frame {
+            read: &names,
+            seconds: (index as f64 / self.frames_per_second) as f32,
+            ..Frame::default()
+        };
+        let (report, _) = frame::run(gpu, executor, &request)?;
+        executor.grow(provider)?;
+        Ok(frame::contents(report.readbacks))
+    }
+}

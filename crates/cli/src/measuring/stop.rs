@@ -1,0 +1,52 @@
+//! Why a method's frames ended early.
+
+use crate::error::{CliError, explain, is_fatal};
+use crate::graphs::method::Method;
+use crate::measuring::frame;
+use crate::records::results::Measured;
+use skiagraph_gpu::ExecuteError;
+
+/// Why a method's frames ended early.
+pub enum Stop {
+    /// The device refuses it, or is lost.
+    Refused(Box<ExecuteError>),
+    /// All else.
+    Failed(CliError),
+}
+
+impl Stop {
+    /// As an error that ends what was to come of `graph`.
+    pub fn of(self, graph: &str) -> CliError {
+        match self {
+            Self::Refused(error) => frame::failed(graph, *error),
+            Self::Failed(error) => error,
+        }
+    }
+}
+
+impl From<ExecuteError> for Stop {
+    fn from(error: ExecuteError) -> Self {
+        Self::Refused(Box::new(error))
+    }
+}
+
+impl From<CliError> for Stop {
+    fn from(error: CliError) -> Self {
+        Self::Failed(error)
+    }
+}
+
+/// What came of running a method: measurements, or why the device refuses.
+pub type Attempt = Result<Result<Measured, String>, CliError>;
+
+/// Tells a method that the device refuses from a device that is of no more use.
+///
+/// # Errors
+/// Ctrl-C, a lost device, and what else ends more than this method.
+pub fn attempt(method: &Method, came: Result<Measured, Stop>) -> Attempt {
+    match came {
+        Ok(measured) => Ok(Ok(measured)),
+        Err(Stop::Refused(error)) if !is_fatal(&error) => Ok(Err(explain(&error))),
+        Err(stop) => Err(stop.of(&method.preset.name)),
+    }
+}

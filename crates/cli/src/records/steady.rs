@@ -1,0 +1,27 @@
+//! The steady state of a method that remembers, in `results.json`.
+
+use serde::{Deserialize, Serialize};
+
+/// How long a view stood still until a method that remembers showed the same again and again.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Steady {
+    /// Frames until then, the first of them with an empty memory.
+    pub frames: u32,
+    /// Its picture repeats after so many frames; null if it did not within `frames`.
+    pub period: Option<u32>,
+    /// What was judged in this state; absent where a camera path begins in it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub judged: Option<Cycle>,
+}
+
+/// Pictures of the steady state, of which a run's counts are those of the worst.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Cycle {
+    /// How many: those of one period, or as many as the longest that was looked for.
+    pub pictures: u32,
+    /// Wrong pixels of a picture in the mean, in-band ones included.
+    pub wrong_mean: f64,
+    /// Root mean square error of a picture in the mean, where the answer or the light is graded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rmse_mean: Option<f64>,
+}

@@ -1,0 +1,39 @@
+//! The program run in a folder, and what it leaves there.
+
+use serde_json::Value;
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+/// Runs the program with the words of a line.
+pub fn skiagraph(folder: &Path, line: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+        .args(line.split_whitespace())
+        .current_dir(folder)
+        .env("NO_COLOR", "1")
+        .output()
+        .expect("the program was built for this test")
+}
+
+/// The runs in `out` of a comparison that succeeds, and its table.
+#[allow(dead_code, reason = "not every test compares")]
+pub fn results(folder: &Path, line: &str) -> (Vec<Value>, String) {
+    let output = skiagraph(folder, line);
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{line}: {told}");
+    let text = fs::read_to_string(folder.join("out/results.json")).unwrap();
+    let results: Value = serde_json::from_str(&text).unwrap();
+    let table = String::from_utf8_lossy(&output.stdout).into_owned();
+    (results["runs"].as_array().unwrap().clone(), table)
+}
+
+/// Copies a method that traces a quarter of its pixels in each frame, `temporal.ron`, to a folder.
+#[allow(dead_code, reason = "not every test needs it")]
+pub fn temporal(folder: &Path) {
+    let from = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/foreign/temporal");
+    for file in ["temporal.ron", "choose.wgsl"] {
+        fs::copy(Path::new(from).join(file), folder.join(file)).unwrap();
+    }
+}

@@ -361,3 +361,35 @@ fn two_graphs_share_what_the_provider_built() {
     let again = provider.built().iter().find(|built| built.times > 1);
     assert_eq!(again, None);
 }
+
+#[test]
+fn a_param_that_only_uniforms_hold_needs_no_other_plan() {
+    let scene = scene();
+    let provider = provider(&scene, &scene.views[0], VIEWPORT);
+    let mut written = Vec::new();
+    for preset in presets::presets() {
+        let path = format!("pipelines/{}.ron", preset.name);
+        let mut plan = plan(&path, &provider, VIEWPORT, |request| {
+            request.any_adapter = true
+        });
+        let params: Vec<String> = plan
+            .graph()
+            .params()
+            .iter()
+            .map(|param| param.name.value.clone())
+            .collect();
+        for name in params {
+            let Some(ParamValue::F32(value)) = plan.param(&name) else {
+                continue;
+            };
+            let other = ParamValue::F32(value * 0.5 + 0.25);
+            if plan.is_in_uniforms(&name, &other) {
+                let changed = plan.set_in_uniforms(&name, other.clone());
+                let what = format!("{}: {name}", preset.name);
+                assert!(plan.is_same_with(&name, other), "{what}");
+                written.extend((!changed.is_empty()).then_some(what));
+            }
+        }
+    }
+    assert!(written.contains(&"nsm: bias".to_owned()), "{written:?}");
+}

@@ -153,13 +153,15 @@ impl GpuPass {
         self.variants = std::mem::take(&mut old.variants);
     }
 
-    /// The params of each step with their bytes.
-    pub fn uploads<'a>(
-        &'a self,
-        pass: &'a LinkedPass,
-    ) -> impl Iterator<Item = (&'a wgpu::Buffer, &'a [u8])> {
-        let steps = self.params.iter().zip(&pass.steps);
-        steps.filter_map(|(buffer, step)| Some((buffer.as_ref()?, step.params()?)))
+    /// Writes the params of each step, which make it a pass with other params; its name.
+    pub fn upload(&mut self, queue: &wgpu::Queue, pass: &LinkedPass) -> String {
+        for (buffer, step) in self.params.iter().zip(&pass.steps) {
+            if let (Some(buffer), Some(bytes)) = (buffer, step.params()) {
+                queue.write_buffer(buffer, 0, bytes);
+            }
+        }
+        self.seen.stale = true;
+        pass.name.value.clone()
     }
 }
 

@@ -54,10 +54,10 @@ impl Executor {
         self.replace_graph(plan, provider)
     }
 
-    /// Another value of a param. The graph is planned anew; from what comes out otherwise than
-    /// before follows what it costs:
+    /// Another value of a param. One that only `var<uniform> params` reads costs an upload. For all
+    /// others the graph is planned anew; from what comes out otherwise than before follows what it
+    /// costs:
     ///
-    /// - a param that only `var<uniform> params` reads: an upload;
     /// - one that is an `override` constant, a culling mode, a depth bias or the like: new
     ///   pipelines of these passes;
     /// - one that sizes, counts or `repeat`s something, or that an `if` reads: new resources and
@@ -66,15 +66,30 @@ impl Executor {
     ///
     /// # Errors
     /// If there is no such param, its value is out of range, or the graph cannot be planned with
-    /// it. The executor is as it was then.
+    /// it; if what the provider has changed cannot be had. The executor is as it was then.
     pub fn set_param(
         &mut self,
         name: &str,
         value: ParamValue,
         provider: &mut dyn Provider,
     ) -> Result<ReplanReport, ExecuteError> {
-        let plan = self.plan().with_param(name, value)?;
-        self.replace_graph(plan, provider)
+        if !self.plan().is_in_uniforms(name, &value) {
+            let plan = self.plan().with_param(name, value)?;
+            return self.replace_graph(plan, provider);
+        }
+        check_device_lost(&self.device)?;
+        self.refresh(provider)?;
+        let state = &mut self.state;
+        let changed = state.plan.set_in_uniforms(name, value);
+        let (plan, passes) = (&state.plan, &mut state.passes);
+        let upload = |position: usize| {
+            let pass = plan.pass(plan.schedule().passes[position]);
+            passes[position].upload(&self.queue, pass)
+        };
+        Ok(ReplanReport {
+            uploads: changed.into_iter().map(upload).collect(),
+            ..ReplanReport::default()
+        })
     }
 
     /// Another plan: of the same graph, of one that was loaded again, or of any other. Pipelines,
@@ -160,11 +175,7 @@ impl Executor {
             if pass.steps.iter().map(bytes).eq(old.steps.iter().map(bytes)) {
                 continue;
             }
-            for (buffer, bytes) in made.uploads(pass) {
-                self.queue.write_buffer(buffer, 0, bytes);
-            }
-            made.seen.stale = true;
-            uploads.push(pass.name.value.clone());
+            uploads.push(made.upload(&self.queue, pass));
         }
         uploads
     }

@@ -4,7 +4,7 @@ use super::{
     code::Code,
     diagnostic::{Diagnostic, Severity},
 };
-use std::fmt::Display;
+use std::{collections::BTreeSet, fmt::Display};
 
 /// With so many mistakes nobody misses those further down.
 const ENOUGH: usize = 1000;
@@ -43,6 +43,9 @@ pub(crate) struct Reports {
     /// What the adapter is asked for beyond its limits is told as a warning: it is not known which
     /// adapter that will be.
     pub any_adapter: bool,
+    /// Params of the root document that the plan depends on: what was found with another value
+    /// might be something else.
+    pub depends_on: BTreeSet<String>,
 }
 
 impl Reports {
@@ -93,6 +96,15 @@ impl Reports {
     /// What was reported so far.
     pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
         self.list.iter()
+    }
+
+    /// Notes that what follows depends on these params of the root document.
+    pub fn depend_on<'n>(&mut self, params: impl Iterator<Item = &'n String>) {
+        for param in params {
+            if !self.depends_on.contains(param) {
+                self.depends_on.insert(param.clone());
+            }
+        }
     }
 
     /// Errors and warnings.

@@ -210,7 +210,11 @@ impl<'a> Builder<'a, '_> {
                 });
                 continue;
             }
-            let value = expr.value(&mut self.world.at(*at, None, self.reports));
+            let params = &self.world.frames.document(at.frame).params;
+            let value = match params.forwarded(expr) {
+                Some(value) => value,
+                None => expr.value(&mut self.world.at(*at, None, self.reports)),
+            };
             let expr = Located::new((*expr).clone(), expr.span.clone());
             set.insert(name.value.clone(), (expr, value));
         }

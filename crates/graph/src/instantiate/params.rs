@@ -38,6 +38,15 @@ pub(crate) struct BoundParam {
     pub roots: BTreeSet<String>,
 }
 
+impl BoundParam {
+    fn in_expression(&self) -> Result<Value, Reported> {
+        let value = self.value.as_ref();
+        value
+            .map(|value| self.param.value(value))
+            .map_err(|reported| *reported)
+    }
+}
+
 impl Params {
     pub fn bound(&self, name: &str) -> Option<&BoundParam> {
         self.list
@@ -56,15 +65,16 @@ impl Params {
         self.list.iter().map(|bound| bound.param.name.as_str())
     }
 
-    /// The value of a param in an expression.
-    pub fn value(&self, name: &str) -> Option<Result<Value, Reported>> {
+    /// The value of a param in an expression, on which whatever is asked for then depends.
+    pub fn value(&self, name: &str, reports: &mut Reports) -> Option<Result<Value, Reported>> {
         let bound = self.bound(name)?;
-        let value = bound.value.as_ref();
-        Some(
-            value
-                .map(|value| bound.param.value(value))
-                .map_err(|reported| *reported),
-        )
+        reports.depend_on(bound.roots.iter());
+        Some(bound.in_expression())
+    }
+
+    /// The value of a param that is handed on as it is: nothing depends on it yet.
+    pub fn forwarded(&self, expr: &Expr) -> Option<Result<Value, Reported>> {
+        Some(self.bound(expr.as_param()?)?.in_expression())
     }
 
     /// The params of the root document that an expression depends on.
@@ -110,7 +120,7 @@ impl Environment for ParamsAlone<'_> {
     }
 
     fn param(&mut self, name: &str, span: &Span) -> Result<Value, Reported> {
-        match self.params.value(name) {
+        match self.params.value(name, self.reports) {
             Some(value) => value,
             None => {
                 let known = self.reports.known(self.params.names());
@@ -120,7 +130,7 @@ impl Environment for ParamsAlone<'_> {
     }
 
     fn word_or_param(&mut self, name: &Name) -> Option<Value> {
-        self.params.value(name)?.ok()
+        self.params.value(name, self.reports)?.ok()
     }
 
     fn index(&mut self, of: Option<&Name>, span: &Span) -> Result<u32, Reported> {

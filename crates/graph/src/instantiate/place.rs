@@ -238,7 +238,7 @@ impl Environment for At<'_, '_, '_> {
 
     fn param(&mut self, name: &str, span: &Span) -> Result<Value, Reported> {
         let instance = self.world.frames.document(self.place.frame);
-        if let Some(value) = instance.params.value(name) {
+        if let Some(value) = instance.params.value(name, self.reports) {
             return value;
         }
         if let Some(reported) = instance.document.broken_params {
@@ -251,7 +251,7 @@ impl Environment for At<'_, '_, '_> {
 
     fn word_or_param(&mut self, name: &Name) -> Option<Value> {
         let instance = self.world.frames.document(self.place.frame);
-        instance.params.value(name)?.ok()
+        instance.params.value(name, self.reports)?.ok()
     }
 
     fn index(&mut self, of: Option<&Name>, span: &Span) -> Result<u32, Reported> {

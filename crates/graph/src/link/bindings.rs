@@ -110,7 +110,7 @@ impl Linker<'_, '_> {
         } else if size > most {
             "is too large for the adapter"
         } else {
-            return self.params_block(global, size, members).map(Block);
+            return self.params_block(global, size, members);
         };
         Err(self.report(LinkError::ParamsUniform {
             what,

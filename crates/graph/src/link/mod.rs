@@ -7,7 +7,7 @@ mod capture;
 mod dispatch;
 mod layouts;
 pub(crate) mod linker;
-mod params;
+pub(crate) mod params;
 pub(crate) mod pass;
 mod programs;
 mod textures;

@@ -1,9 +1,9 @@
 //! Params on their way into shaders: the `params` uniform and overridable constants.
 
-use super::linker::Linker;
+use super::{linker::Linker, pass::Block};
 use crate::{
     diagnostics::reports::Reported,
-    document::params::{ParamType, ParamValue},
+    document::params::{Param, ParamType, ParamValue},
     errors::link::LinkError,
     kinds::step::Program,
     language::{
@@ -36,10 +36,23 @@ impl ScalarClass {
 enum Asked<'e> {
     /// What the entry or a group around it says, with its expression.
     Set(Value, &'e Expr),
-    /// A param of the document.
-    Param(crate::document::params::Param, ParamValue),
+    /// A param of the document; which one of the root document it is, unchanged.
+    Param(Param, ParamValue, Option<String>),
     /// The number of the repetition.
     Index(u32),
+}
+
+/// What a uniform holds of a param's value.
+pub(crate) fn words(param: &Param, value: &ParamValue) -> (ScalarClass, Vec<u32>) {
+    match value {
+        ParamValue::F32(value) => (ScalarClass::Float, vec![value.to_bits()]),
+        ParamValue::I32(value) => (ScalarClass::Sint, vec![value.cast_unsigned()]),
+        ParamValue::Vec(values) => {
+            let words = values.iter().map(|value| value.to_bits());
+            (ScalarClass::Float, words.collect())
+        }
+        other => (ScalarClass::Uint, vec![param.as_u32(other).unwrap_or(0)]),
+    }
 }
 
 /// The type of params whose values a member of this type holds.
@@ -81,7 +94,7 @@ impl<'a> Linker<'a, '_> {
             bound
                 .value
                 .clone()
-                .map(|value| Asked::Param(bound.param.clone(), value)),
+                .map(|value| Asked::Param(bound.param.clone(), value, bound.root.clone())),
         )
     }
 
@@ -102,7 +115,10 @@ impl<'a> Linker<'a, '_> {
                 continue;
             }
             let value = match self.asked(name).transpose()? {
-                Some(asked) => self.number(name, &asked, shader, &span)?,
+                Some(asked) => {
+                    self.decides(name);
+                    self.number(name, &asked, shader, &span)?
+                }
                 None => self.kind(name),
             };
             match value {
@@ -115,6 +131,17 @@ impl<'a> Linker<'a, '_> {
             }
         }
         Ok(constants)
+    }
+
+    /// Notes that the plan depends on a param that a shader asks for.
+    fn decides(&mut self, name: &str) {
+        let Some(place) = self.scope.place else {
+            return;
+        };
+        let params = &self.world.frames.document(place.frame).params;
+        if let Some(bound) = params.spelt(name) {
+            self.reports.depend_on(bound.roots.iter());
+        }
     }
 
     /// The kind of what is provided, under which the plan is made.
@@ -134,7 +161,7 @@ impl<'a> Linker<'a, '_> {
     ) -> Result<Option<f64>, Reported> {
         let (value, found, place) = match asked {
             Asked::Index(index) => return Ok(Some(f64::from(*index))),
-            Asked::Param(param, value) => (param.value(value), value.to_string(), span),
+            Asked::Param(param, value, _) => (param.value(value), value.to_string(), span),
             Asked::Set(value, expr) => (value.clone(), value.to_string(), &expr.span),
         };
         let class = shader.override_class(name);
@@ -145,7 +172,7 @@ impl<'a> Linker<'a, '_> {
             (Value::Word(_), Asked::Set(_, expr), Some(ScalarClass::Uint)) => {
                 Some(f64::from(self.word(name, &value, expr, shader)?))
             }
-            (Value::Word(_), Asked::Param(param, value), Some(ScalarClass::Uint)) => {
+            (Value::Word(_), Asked::Param(param, value, _), Some(ScalarClass::Uint)) => {
                 param.as_u32(value).map(f64::from)
             }
             (Value::Scalar(scalar), _, Some(class)) => class.word(*scalar).map(|_| scalar.number()),
@@ -214,28 +241,32 @@ impl<'a> Linker<'a, '_> {
         global: &Global,
         size: u64,
         members: &[Member],
-    ) -> Result<Vec<u8>, Reported> {
-        // What does not fit into memory is no uniform; it was refused before.
-        let mut bytes = vec![0u8; usize::try_from(size).unwrap_or(0)];
+    ) -> Result<Block, Reported> {
+        let mut block = Block {
+            // What does not fit into memory is no uniform; it was refused before.
+            bytes: vec![0u8; usize::try_from(size).unwrap_or(0)],
+            params: Vec::new(),
+        };
         let mut wrong = None;
         for member in members {
+            let offset = usize::try_from(member.offset).unwrap_or(0);
             match self.member(global, member) {
-                Ok(words) => {
-                    for (index, word) in words.iter().enumerate() {
-                        let at = usize::try_from(member.offset).unwrap_or(0) + index * 4;
-                        if let Some(place) = bytes.get_mut(at..at + 4) {
-                            place.copy_from_slice(&word.to_le_bytes());
-                        }
-                    }
+                Ok((words, root)) => {
+                    block.write(offset, &words);
+                    block.params.extend(root.map(|root| (root, offset)));
                 }
                 Err(reported) => wrong = Some(reported),
             }
         }
-        wrong.map_or(Ok(bytes), Err)
+        wrong.map_or(Ok(block), Err)
     }
 
-    /// The words of a member of `params`.
-    fn member(&mut self, global: &Global, member: &Member) -> Result<Vec<u32>, Reported> {
+    /// The words of a member of `params`; the param of the root document that it is, unchanged.
+    fn member(
+        &mut self,
+        global: &Global,
+        member: &Member,
+    ) -> Result<(Vec<u32>, Option<String>), Reported> {
         let Some(asked) = self.asked(&member.name).transpose()? else {
             let place = self.scope.place.unwrap_or_else(|| self.world.root());
             let params = &self.world.frames.document(place.frame).params;
@@ -247,33 +278,25 @@ impl<'a> Linker<'a, '_> {
                 ty: member.vector.and_then(param_of),
             }));
         };
-        let (param, value) = match asked {
-            Asked::Set(value, expr) => return self.set_member(global, member, &value, expr),
+        let (param, value, root) = match asked {
+            Asked::Set(value, expr) => {
+                let words = self.set_member(global, member, &value, expr)?;
+                return Ok((words, None));
+            }
             Asked::Index(index) => {
                 let fits = matches!(member.vector, Some((ScalarClass::Uint, 1)));
                 let wrong = || LinkError::IndexMember(global.span.clone());
                 return match fits {
-                    true => Ok(vec![index]),
+                    true => Ok((vec![index], None)),
                     false => Err(self.report(wrong())),
                 };
             }
-            Asked::Param(param, value) => (param, value),
+            Asked::Param(param, value, root) => (param, value, root),
         };
-        let (expected, words): ((ScalarClass, u32), Vec<u32>) = match &value {
-            ParamValue::F32(value) => ((ScalarClass::Float, 1), vec![value.to_bits()]),
-            ParamValue::I32(value) => ((ScalarClass::Sint, 1), vec![value.cast_unsigned()]),
-            ParamValue::Vec(values) => {
-                let width = values.len() as u32;
-                let words = values.iter().map(|value| value.to_bits()).collect();
-                ((ScalarClass::Float, width), words)
-            }
-            other => (
-                (ScalarClass::Uint, 1),
-                vec![param.as_u32(other).unwrap_or(0)],
-            ),
-        };
+        let (scalar, words) = words(&param, &value);
+        let expected = (scalar, words.len() as u32);
         if member.vector == Some(expected) {
-            return Ok(words);
+            return Ok((words, root));
         }
         Err(self.report(LinkError::MemberType {
             param: Box::new(param),

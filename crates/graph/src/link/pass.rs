@@ -155,12 +155,31 @@ pub enum BindTarget {
 
 /// The bytes of a `params` uniform. Two of one size are equal: other bytes are an upload, not
 /// another binding.
-#[derive(Clone, Debug)]
-pub struct Block(pub Vec<u8>);
+#[derive(Clone, Debug, Default)]
+pub struct Block {
+    /// What the shader reads.
+    pub bytes: Vec<u8>,
+    /// Members that are params of the root document, unchanged: their names and offsets in bytes.
+    pub(crate) params: Vec<(String, usize)>,
+}
+
+impl Block {
+    /// Writes words at an offset; whether others stood there. What would lie beyond the end is left
+    /// out.
+    pub(crate) fn write(&mut self, offset: usize, words: &[u32]) -> bool {
+        let words = words.iter().flat_map(|word| word.to_le_bytes());
+        let mut changed = false;
+        for (place, byte) in self.bytes.iter_mut().skip(offset).zip(words) {
+            changed |= *place != byte;
+            *place = byte;
+        }
+        changed
+    }
+}
 
 impl PartialEq for Block {
     fn eq(&self, other: &Self) -> bool {
-        self.0.len() == other.0.len()
+        self.bytes.len() == other.bytes.len()
     }
 }
 
@@ -169,7 +188,21 @@ impl Step<Ids> {
     pub fn params(&self) -> Option<&[u8]> {
         let bindings = &self.program()?.bindings;
         bindings.iter().find_map(|binding| match &binding.target {
-            BindTarget::Params(block) => Some(&block.0[..]),
+            BindTarget::Params(block) => Some(&block.bytes[..]),
+            _ => None,
+        })
+    }
+
+    /// The uniform `params` of the program.
+    pub(crate) fn block_mut(&mut self) -> Option<&mut Block> {
+        let program = match self {
+            Self::Draw(draw) => &mut draw.program,
+            Self::Dispatch(dispatch) => &mut dispatch.program,
+            Self::Copy { .. } | Self::Clear { .. } => return None,
+        };
+        let mut bindings = program.bindings.iter_mut();
+        bindings.find_map(|binding| match &mut binding.target {
+            BindTarget::Params(block) => Some(block),
             _ => None,
         })
     }

@@ -186,6 +186,7 @@ impl Graph {
             readable: scheduled.readable,
             culled: scheduled.culled,
             warnings: Vec::new(),
+            depends_on: std::mem::take(&mut reports.depends_on),
         };
         if let Some(too_much) = plan.check_memory(request.memory_limit) {
             reports.report(too_much);

@@ -13,6 +13,7 @@ pub(crate) mod plan;
 pub(crate) mod readable;
 pub(crate) mod summary;
 pub mod text;
+mod uniforms;
 mod usages;
 
 pub use memory::MemoryEntry;

@@ -15,7 +15,7 @@ use crate::{
     request::Request,
     resource::{Resource, ResourceId, Target},
 };
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A graph that is ready to be allocated: live passes in order, every resource with its size and
 /// uses.
@@ -30,6 +30,9 @@ pub struct Plan {
     pub(super) readable: Vec<(String, Target)>,
     pub(super) culled: Vec<CulledPass>,
     pub(super) warnings: Vec<Diagnostic>,
+    /// The params of the root document that it depends on; of others, passes' uniforms alone hold
+    /// the values.
+    pub(super) depends_on: BTreeSet<String>,
 }
 
 /// A pass that does not run.

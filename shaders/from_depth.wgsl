@@ -9,7 +9,7 @@
 #import "shared/unprojection.wgsl"
 
 struct Params {
-    normals: u32,
+    unsigned: u32,
     depth_steps: f32,
     snapping: f32,
 }
@@ -39,7 +39,7 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
     let place = (relative + unprojection.origin_low) + unprojection.origin;
 
     var away = textureLoad(normal, pixel, 0).xyz;
-    if params.normals == NORMALS_UNSIGNED {
+    if params.unsigned != 0u {
         away = 2.0 * away - 1.0;
     }
     let length_squared = dot(away, away);

@@ -1,7 +1,7 @@
 //! The camera of a host, as the matrices that it draws with.
 
 use crate::uniforms::{CameraUniform, UnprojectionUniform};
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec2, DVec3};
 use skiagraph_scene::Camera;
 
 /// Which end of the depth buffer is near.
@@ -193,6 +193,7 @@ impl Frustum {
             near: self.near,
             far: self.far,
             viewport: [1, 1],
+            jitter: DVec2::ZERO,
         }
     }
 }

@@ -117,7 +117,7 @@ fn read(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
 ) -> Result<Vec<u8>, GpuMeshError> {
-    let (buffer, offset, size) = (slice.buffer(), slice.offset(), slice.size().get());
+    let (buffer, offset, size) = (slice.buffer(), slice.offset(), slice.size());
     if !buffer.usage().contains(wgpu::BufferUsages::COPY_SRC) {
         return Err(GpuMeshError::Usage(what));
     }

@@ -31,7 +31,10 @@ pub fn gather(
 ) -> Result {
     let mut casters: Vec<_> = casters.iter().collect();
     casters.sort_by_key(|(entity, ..)| *entity);
-    let of: Vec<_> = casters.iter().map(|(entity, mesh, _)| (*entity, mesh.0.id())).collect();
+    let of: Vec<_> = casters
+        .iter()
+        .map(|(entity, mesh, _)| (*entity, mesh.0.id()))
+        .collect();
     if of != gathered.of || gathered.parts.is_none() {
         let solids = casters.iter().map(|(_, mesh, _)| {
             let mesh = meshes.get(&mesh.0).ok_or("a caster's mesh is not loaded")?;

@@ -35,7 +35,9 @@ struct Ball;
 struct Progress(f32);
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let file = std::env::args().nth(1).unwrap_or_else(|| "bevy.png".to_owned());
+    let file = std::env::args()
+        .nth(1)
+        .unwrap_or_else(|| "bevy.png".to_owned());
     let mut app = App::new();
     app.add_plugins(
         DefaultPlugins
@@ -60,7 +62,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for frame in 0..FRAMES {
         app.world_mut().resource_mut::<Progress>().0 = frame as f32 / (FRAMES - 1) as f32;
         if frame + 1 == FRAMES {
-            let target = app.world_mut().query::<&RenderTarget>().single(app.world())?.clone();
+            let target = app
+                .world_mut()
+                .query::<&RenderTarget>()
+                .single(app.world())?
+                .clone();
             let seen = Arc::clone(&seen);
             let mut screenshot = app.world_mut().spawn(Screenshot(target));
             screenshot.observe(move |captured: On<ScreenshotCaptured>| {
@@ -143,8 +149,19 @@ fn set_up(
             Transform::from_xyz(1.8 * number as f32 - 3.6, 1.2, -1.5),
         ));
     }
-    let ball = meshes.add(Sphere::new(0.5).mesh().ico(6).unwrap_or_else(|_| Sphere::new(0.5).into()));
-    commands.spawn((Ball, Caster, Mesh3d(ball), MeshMaterial3d(red), Transform::default()));
+    let ball = meshes.add(
+        Sphere::new(0.5)
+            .mesh()
+            .ico(6)
+            .unwrap_or_else(|_| Sphere::new(0.5).into()),
+    );
+    commands.spawn((
+        Ball,
+        Caster,
+        Mesh3d(ball),
+        MeshMaterial3d(red),
+        Transform::default(),
+    ));
 
     commands.spawn((
         DirectionalLight {

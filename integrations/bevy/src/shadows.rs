@@ -23,7 +23,7 @@ const DOCUMENT: &str = r#"(
     format: 2,
     extends: "light_buffer.ron",
     inputs: [Texture(name: "depth"), Texture(name: "normal")],
-    passes: [Change(pass: "gbuffer", graph: "shared/from_depth.ron", set: {"normals": "unsigned"})],
+    passes: [Change(pass: "gbuffer", graph: "shared/from_depth.ron", set: {"unsigned": true})],
 )"#;
 
 struct Document;
@@ -77,7 +77,10 @@ pub fn encode(
     let (Some(parts), Some(image)) = (&casters.parts, images.get(&visibility.0)) else {
         return Ok(()); // nothing is loaded yet
     };
-    let mut shadows = shadows.0.lock().map_err(|_| "a frame before this one panicked")?;
+    let mut shadows = shadows
+        .0
+        .lock()
+        .map_err(|_| "a frame before this one panicked")?;
     let running = match &mut *shadows {
         Some(running) => running,
         None => shadows.insert(Running::new(&device, &queue, parts, &prepass)?),
@@ -147,7 +150,10 @@ impl Running {
             self.maps.clone_from(&casters.maps);
         }
         if is_another {
-            let plan = self.executor.plan().with(|request| request.provider = &self.provider)?;
+            let plan = self
+                .executor
+                .plan()
+                .with(|request| request.provider = &self.provider)?;
             self.executor.replace_graph(plan, &mut self.provider)?;
         }
         self.executor.refresh(&mut self.provider)?;

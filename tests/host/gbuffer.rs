@@ -7,13 +7,32 @@ use skiagraph_scene::Mesh;
 use wgpu::util::DeviceExt;
 
 const SHADER: &str = r"
-struct Corner { @builtin(position) place: vec4<f32>, @location(0) normal: vec3<f32>, @location(1) @interpolate(flat) primitive: u32 }
+struct Corner {
+    @builtin(position) place: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(1) @interpolate(flat) primitive: u32,
+}
+
+struct Seen {
+    @location(0) normal: vec4<f32>,
+    @location(1) primitive: u32,
+}
+
 @group(0) @binding(0) var<uniform> clip_from_world: mat4x4<f32>;
-@vertex fn vertex(@builtin(vertex_index) index: u32, @location(0) place: vec3<f32>, @location(1) normal: vec3<f32>) -> Corner {
+
+@vertex
+fn vertex(
+    @builtin(vertex_index) index: u32,
+    @location(0) place: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+) -> Corner {
     return Corner(clip_from_world * vec4(place, 1.0), normal, index / 3u);
 }
-struct Seen { @location(0) normal: vec4<f32>, @location(1) primitive: u32 }
-@fragment fn fragment(corner: Corner) -> Seen { return Seen(vec4(normalize(corner.normal), 0.0), corner.primitive); }
+
+@fragment
+fn fragment(corner: Corner) -> Seen {
+    return Seen(vec4(normalize(corner.normal), 0.0), corner.primitive);
+}
 ";
 
 /// What such a host has drawn.

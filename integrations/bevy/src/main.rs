@@ -6,7 +6,7 @@ use bevy::{
     camera::RenderTarget,
     core_pipeline::{
         prepass::{DepthPrepass, NormalPrepass},
-        tonemapping::Tonemapping,
+        tonemapping::{DebandDither, Tonemapping},
     },
     light::CascadeShadowConfig,
     prelude::*,
@@ -165,7 +165,7 @@ fn set_up(
 
     commands.spawn((
         DirectionalLight {
-            illuminance: 9_000.0,
+            illuminance: 5_500.0,
             // Bevy asks for the shadow of such lights only; its own maps end before the first pixel.
             shadow_maps_enabled: true,
             ..default()
@@ -186,6 +186,7 @@ fn set_up(
         Transform::from_xyz(3.5, 4.0, 7.0).looking_at(Vec3::new(0.0, 0.6, -0.8), Vec3::Y),
         Msaa::Off,
         Tonemapping::None,
+        DebandDither::Disabled,
         DepthPrepass,
         NormalPrepass,
     ));

@@ -384,14 +384,8 @@ fn the_document_for_a_hosts_depth_is_right() {
         .unwrap_or_else(|error| panic!("{error}"));
     assert!(graph.warnings().is_empty(), "{:?}", graph.warnings());
     let provided = plan.provided();
-    assert!(
-        provided.iter().any(|name| *name == "unprojection"),
-        "{provided:?}"
-    );
-    assert!(
-        !provided.iter().any(|name| *name == "scene.normals"),
-        "{provided:?}"
-    );
+    assert!(provided.contains(&"unprojection"), "{provided:?}");
+    assert!(!provided.contains(&"scene.normals"), "{provided:?}");
 }
 
 /// Every answer is right where the receiver was put, which is before its own surface, and so near

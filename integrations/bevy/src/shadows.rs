@@ -61,8 +61,7 @@ pub fn encode(
     casters: Res<Casters>,
     visibility: Res<Visibility>,
     images: Res<RenderAssets<GpuImage>>,
-    device: Res<RenderDevice>,
-    queue: Res<RenderQueue>,
+    on: (Res<RenderDevice>, Res<RenderQueue>),
     shadows: Res<Shadows>,
     mut context: RenderContext,
 ) -> Result {
@@ -83,7 +82,7 @@ pub fn encode(
         .map_err(|_| "a frame before this one panicked")?;
     let running = match &mut *shadows {
         Some(running) => running,
-        None => shadows.insert(Running::new(&device, &queue, parts, &prepass)?),
+        None => shadows.insert(Running::new(&on.0, &on.1, parts, &prepass)?),
     };
     running.follow(&casters, parts, view)?;
     let Running { executor, .. } = running;

@@ -173,6 +173,30 @@ fn the_program_of_the_document_has_exact_shadows() {
     assert!(lines <= 50, "{lines} lines");
 }
 
+#[test]
+fn a_light_and_a_camera_that_are_none_are_errors() {
+    let gpu = open();
+    let stone = meshes::potato(2, 0.2, 1);
+    let down = DirectionalLight::new(DVec3::NEG_Y);
+    let nowhere = DirectionalLight::new(DVec3::ZERO);
+    let blind = View {
+        fov_y_degrees: f64::NAN,
+        ..view(0.0)
+    };
+    for (light, view, expected) in [
+        (nowhere, view(0.0), "the light's direction"),
+        (down, blind, "the camera has numbers"),
+    ] {
+        let mut host = SceneProvider::of_mesh(stone.clone(), light);
+        host.set_camera(&view.camera(VIEWPORT));
+        let plan = graphs::plan("pipelines/light_buffer.ron", &host, VIEWPORT, |_| {});
+        let error = Executor::new(&gpu.device, &gpu.queue, plan, &mut host)
+            .err()
+            .unwrap();
+        assert!(error.to_string().contains(expected), "{error}");
+    }
+}
+
 /// Of a texture of u32.
 fn texels(gpu: &Gpu, mut encoder: wgpu::CommandEncoder, texture: &wgpu::Texture) -> Vec<u32> {
     let (width, height) = (texture.width(), texture.height());

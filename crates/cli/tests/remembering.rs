@@ -5,7 +5,7 @@ mod support;
 
 use serde_json::Value;
 use std::path::Path;
-use support::{results, temporal};
+use support::{results, skiagraph, temporal};
 
 /// What must not depend on how much is timed.
 fn figures(folder: &Path, line: &str) -> (Value, String) {
@@ -106,4 +106,14 @@ fn a_picture_that_cycles_is_judged_by_its_worst_and_its_mean() {
     let found = run["steady"]["judged"]["wrong_mean"].as_f64().unwrap();
     assert!((found - mean).abs() < 1e-6, "{found} for {mean}");
     assert!(table.contains("repeats every 3 frames"), "{table}");
+}
+
+#[test]
+fn stress_judges_its_steady_state_too() {
+    let folder = tempfile::tempdir().unwrap();
+    temporal(folder.path());
+    let line = "stress temporal.ron --exact temporal.ron --case box_on_floor --size 48x48";
+    let output = skiagraph(folder.path(), line);
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{told}");
 }

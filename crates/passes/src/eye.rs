@@ -1,6 +1,9 @@
 //! The camera of a host, as the matrices that it draws with.
 
-use crate::uniforms::{CameraUniform, UnprojectionUniform};
+use crate::{
+    error::Error,
+    uniforms::{CameraUniform, UnprojectionUniform},
+};
 use glam::{DMat4, DVec2, DVec3};
 use skiagraph_scene::Camera;
 
@@ -90,6 +93,17 @@ impl Eye {
             camera: CameraUniform::from(&frustum.camera(origin)),
             unprojection,
         })
+    }
+}
+
+impl Eye {
+    /// Itself, unless its camera was none.
+    pub(crate) fn finite(&self) -> Result<&Self, Error> {
+        let numbers: &[f32] = bytemuck::cast_slice(std::slice::from_ref(&self.camera));
+        match numbers.iter().all(|number| number.is_finite()) {
+            true => Ok(self),
+            false => Err(Error::Camera(self.camera)),
+        }
     }
 }
 

@@ -421,9 +421,12 @@ impl SceneProvider {
             MATERIAL_INDICES => self.upload_items(name, &mesh.surfaces.of, on),
             MATERIALS => self.upload_items(name, &Atlas::new(&mesh.surfaces)?.records, on),
             TEXELS => self.upload_items(name, &Atlas::new(&mesh.surfaces)?.texels, on),
-            CAMERA => self.upload_items(name, &[self.eye.camera], on),
-            UNPROJECTION => self.upload_items(name, &[self.eye.unprojection], on),
-            LIGHT => self.upload_items(name, &[self.light_uniform()], on),
+            CAMERA => self.upload_items(name, &[self.eye.finite()?.camera], on),
+            UNPROJECTION => self.upload_items(name, &[self.eye.finite()?.unprojection], on),
+            LIGHT => {
+                self.light.check().map_err(Error::Light)?;
+                self.upload_items(name, &[self.light_uniform()], on)
+            }
             LIGHT_AREA => self.upload_items(name, &[LightAreaUniform::from(&self.light)], on),
             BVH_NODES | BVH_PRIMITIVES => self.upload_hierarchy(on),
             LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.upload_light_space(on),

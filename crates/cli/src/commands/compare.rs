@@ -4,6 +4,7 @@ use crate::args::commands::{CompareArgs, Format, Images};
 use crate::args::shared::{GpuArgs, SceneArgs};
 use crate::args::values::{LightArgument, Size, unique};
 use crate::error::CliError;
+use crate::files::fingerprint::Fingerprint;
 use crate::files::json;
 use crate::files::write::check_folder;
 use crate::graphs::idle_params::IdleParams;
@@ -94,16 +95,6 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         cached_frames: args.cached_frames.unwrap_or(args.frames),
         runs: Vec::new(),
     };
-    let mut fingerprint = primary.fingerprint.with_scene(&scene.mesh, &scene.lights);
-    if subjects
-        .iter()
-        .any(|subject| subject.light(&scene).has_extent())
-    {
-        fingerprint = fingerprint.with_text(&args.reference_samples.to_string());
-    }
-    if let Some(count) = args.jitter {
-        fingerprint = fingerprint.with_text(&format!("jitter {count}"));
-    }
     let setup = ComparisonSetup {
         gpu: &gpu,
         scene: &scene,
@@ -111,12 +102,30 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         viewports: &viewports,
         methods: &methods,
         primary: &primary,
-        fingerprint,
+        fingerprint: fingerprint(args, &scene, &subjects, &primary),
     };
     let mut comparison = Comparison::new(args, setup, provider, published, results)?;
     interrupt::install()?;
     let outcome = run(args, &mut comparison, &subjects, viewports.len());
     finish(args, comparison, outcome)
+}
+
+/// Of all that every run depends on.
+fn fingerprint(
+    args: &CompareArgs,
+    scene: &Scene,
+    subjects: &[Subject],
+    primary: &PrimaryVisibility,
+) -> Fingerprint {
+    let mut of = primary.fingerprint.with_scene(&scene.mesh, &scene.lights);
+    let has_extent = |subject: &Subject| subject.light(scene).has_extent();
+    if subjects.iter().any(has_extent) {
+        of = of.with_text(&args.reference_samples.to_string());
+    }
+    match args.jitter {
+        Some(count) => of.with_text(&format!("jitter {count}")),
+        None => of,
+    }
 }
 
 /// A method that answers for every light is judged under every light, unless one is named.

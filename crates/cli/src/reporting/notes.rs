@@ -146,7 +146,42 @@ pub fn untimed<'a>(passes: impl Iterator<Item = (&'a str, bool)>, frame: bool) -
 mod tests {
     use super::*;
     use crate::records::results::tests::sample;
+    use crate::records::steady::{Cycle, Steady};
     use skiagraph_reference::BlockerCounts;
+
+    #[test]
+    fn what_was_judged_of_a_method_that_remembers_is_said() {
+        let mut run = sample().runs.remove(0);
+        assert_eq!(remembering(&run), None);
+        let mut said = |period, judged: Option<(u32, Option<f64>)>| {
+            let cycle = |(pictures, rmse_mean)| Cycle {
+                pictures,
+                wrong_mean: 12.25,
+                rmse_mean,
+            };
+            run.measured.as_mut().unwrap().steady = Some(Steady {
+                frames: 256,
+                period,
+                judged: judged.map(cycle),
+            });
+            let said = remembering(&run).unwrap();
+            said.split_once(": ").unwrap().1.to_owned()
+        };
+        assert_eq!(
+            said(Some(1), Some((1, None))),
+            "its picture stays the same after 256 frames, and is judged then"
+        );
+        assert_eq!(
+            said(None, Some((16, None))),
+            "its picture does not repeat within 256 frames; the counts are those of the worst of \
+             16 pictures then, wrong pixels in the mean 12.2"
+        );
+        assert!(said(Some(3), Some((3, Some(0.5)))).ends_with("RMSE in the mean 0.50000"));
+        assert_eq!(
+            said(Some(3), None),
+            "its picture repeats every 3 frames after 256 frames"
+        );
+    }
 
     #[test]
     fn blockers_of_all_maps_stand_in_a_line_and_only_those_there_are() {

@@ -99,6 +99,8 @@ fn the_rust_of_the_documents_is_code_that_runs() {
         "crates/gpu/examples/embed.rs",
         "crates/gpu/examples/custom_pass.rs",
         "crates/gpu/tests/embedding.rs",
+        "crates/passes/examples/preset/shadows.rs",
+        "tests/host.rs",
     ]
     .map(|path| bare(&read(path)));
     for (document, least) in [("README.md", 2), ("docs/embedding.md", 15)] {

@@ -6,7 +6,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use skiagraph_graph::Sources;
 use skiagraph_passes::{
     EmbeddedSources,
-    uniforms::{CameraUniform, LightAreaUniform, LightUniform},
+    uniforms::{CameraUniform, LightAreaUniform, LightUniform, UnprojectionUniform},
 };
 use skiagraph_scene::LightSpaceNode;
 use std::mem::offset_of;
@@ -99,6 +99,18 @@ fn camera_is_laid_out_as_in_rust() {
         jitter_clip
     });
     assert_eq!(layout("shared/camera.wgsl", "Camera"), rust);
+}
+
+#[test]
+fn unprojection_is_laid_out_as_in_rust() {
+    let rust = rust_layout!(UnprojectionUniform {
+        relative_from_clip,
+        origin,
+        is_reversed,
+        origin_low,
+        padding
+    });
+    assert_eq!(layout("shared/unprojection.wgsl", "Unprojection"), rust);
 }
 
 #[test]

@@ -2,6 +2,8 @@
 // used, and the values of `status`.
 
 const NO_PRIMITIVE: u32 = 0xffffffffu;
+// Of a receiver of which only the depth is known.
+const UNKNOWN_PRIMITIVE: u32 = 0xfffffffeu;
 const NO_PIXEL: u32 = 0xffffffffu;
 
 const STATUS_BACKGROUND: u32 = 0u;

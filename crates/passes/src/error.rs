@@ -52,6 +52,18 @@ pub enum Error {
         /// Number of positions.
         corners: usize,
     },
+    /// A light that shines nowhere.
+    #[error("{0}")]
+    Light(
+        /// What is wrong with it.
+        String,
+    ),
+    /// A camera that sees nothing.
+    #[error("the camera has numbers that are infinite or none: {0:?}")]
+    Camera(
+        /// As shaders would have it.
+        crate::uniforms::CameraUniform,
+    ),
     /// Places or normals that do not fit the mesh.
     #[error(
         "a deformed mesh has {} positions and {} normals, all finite, as before; given were {} and \

@@ -32,7 +32,9 @@
 pub mod atlas;
 pub mod built;
 pub mod error;
+pub mod eye;
 mod hierarchies;
+pub mod host;
 mod lights;
 pub mod names;
 pub mod presets;
@@ -43,6 +45,8 @@ pub mod uniforms;
 
 pub use built::{Built, How};
 pub use error::Error;
+pub use eye::{Depth, Eye, EyeError};
+pub use host::{GpuMesh, GpuMeshError};
 pub use presets::{EmbeddedSources, Preset, presets, registry};
 pub use provider::SceneProvider;
 pub use trace::{Direction, Engine, Trace};

@@ -21,12 +21,14 @@ pub(crate) const MATERIAL_INDICES: &str = "scene.material_indices";
 pub(crate) const TEXELS: &str = "scene.texels";
 /// The uniform of `shared/camera.wgsl`.
 pub const CAMERA: &str = "camera";
+/// The uniform of `shared/unprojection.wgsl`.
+pub const UNPROJECTION: &str = "unprojection";
 /// The uniform of `shared/light.wgsl`.
 pub const LIGHT: &str = "light";
 /// The uniform of `shared/light_area.wgsl`.
 pub const LIGHT_AREA: &str = "light_area";
 
-pub(crate) const NAMES: [&str; 19] = [
+pub(crate) const NAMES: [&str; 20] = [
     POSITIONS,
     INDICES,
     NORMALS,
@@ -44,6 +46,7 @@ pub(crate) const NAMES: [&str; 19] = [
     MATERIAL_INDICES,
     TEXELS,
     CAMERA,
+    UNPROJECTION,
     LIGHT,
     LIGHT_AREA,
 ];
@@ -79,7 +82,7 @@ impl Versions {
     /// That of a resource: the latest of what it is made of.
     pub fn of(&self, name: &str) -> u64 {
         match name {
-            CAMERA => self.camera,
+            CAMERA | UNPROJECTION => self.camera,
             LIGHT_AREA => self.light,
             LIGHT | LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.light.max(self.shape),
             POSITIONS | NORMALS | BVH_NODES | BVH_PRIMITIVES | TLAS => self.shape,

@@ -4,11 +4,12 @@ use crate::{
     atlas::Atlas,
     built::{Built, How},
     error::Error,
+    eye::Eye,
     hierarchies::{Hierarchies, Words},
     lights,
     names::*,
     ray_query,
-    uniforms::{CameraUniform, LightAreaUniform, LightUniform},
+    uniforms::{CameraUniform, LightAreaUniform, LightUniform, UnprojectionUniform},
 };
 use glam::{DAffine3, Vec3};
 use skiagraph_gpu::{Provider, ProviderError};
@@ -45,6 +46,7 @@ use wgpu::util::DeviceExt;
 /// | `scene.material_indices` | `array<u32>`, one per primitive |
 /// | `scene.texels` | `array<u32>`, the base colours' textures, sRGB and alpha, red lowest |
 /// | `camera` | [`CameraUniform`] |
+/// | `unprojection` | [`UnprojectionUniform`] |
 /// | `light` | [`LightUniform`] |
 /// | `light_area` | [`LightAreaUniform`] |
 /// | `lights`, `light_areas` | the same of all lights, arrays; `lights[2]` alone is a uniform |
@@ -58,7 +60,7 @@ use wgpu::util::DeviceExt;
 /// [`Describe::describe`] still says 0 items, so that nothing is drawn.
 pub struct SceneProvider {
     scene: Arc<Scene>,
-    camera: CameraUniform,
+    eye: Eye,
     light: LightKind,
     /// All lights of the scene, or the view's own.
     lights: Vec<LightKind>,
@@ -89,7 +91,7 @@ impl SceneProvider {
             versions: Versions::new(),
             masks: mask_words(&scene.mesh),
             scene,
-            camera: CameraUniform::default(),
+            eye: Eye::default(),
             buffers: BTreeMap::new(),
             own: BTreeSet::new(),
             tlas: None,
@@ -122,9 +124,13 @@ impl SceneProvider {
 
     /// Another camera.
     pub fn set_camera(&mut self, camera: &Camera) {
-        let camera = CameraUniform::from(camera);
-        if bytemuck::bytes_of(&camera) != bytemuck::bytes_of(&self.camera) {
-            self.camera = camera;
+        self.set_eye(&Eye::from(camera));
+    }
+
+    /// Another camera, by its matrices.
+    pub fn set_eye(&mut self, eye: &Eye) {
+        if *eye != self.eye {
+            self.eye = *eye;
             self.versions.camera = next_version();
         }
     }
@@ -313,7 +319,7 @@ impl SceneProvider {
             *of = version;
             return Ok(How::Rewritten);
         }
-        let uniform = matches!(name, CAMERA | LIGHT | LIGHT_AREA);
+        let uniform = matches!(name, CAMERA | UNPROJECTION | LIGHT | LIGHT_AREA);
         let usage = if uniform {
             wgpu::BufferUsages::UNIFORM
         } else {
@@ -416,8 +422,12 @@ impl SceneProvider {
             MATERIAL_INDICES => self.upload_items(name, &mesh.surfaces.of, on),
             MATERIALS => self.upload_items(name, &Atlas::new(&mesh.surfaces)?.records, on),
             TEXELS => self.upload_items(name, &Atlas::new(&mesh.surfaces)?.texels, on),
-            CAMERA => self.upload_items(name, &[self.camera], on),
-            LIGHT => self.upload_items(name, &[self.light_uniform()], on),
+            CAMERA => self.upload_items(name, &[self.eye.finite()?.camera], on),
+            UNPROJECTION => self.upload_items(name, &[self.eye.finite()?.unprojection], on),
+            LIGHT => {
+                self.light.check().map_err(Error::Light)?;
+                self.upload_items(name, &[self.light_uniform()], on)
+            }
             LIGHT_AREA => self.upload_items(name, &[LightAreaUniform::from(&self.light)], on),
             BVH_NODES | BVH_PRIMITIVES => self.upload_hierarchy(on),
             LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.upload_light_space(on),
@@ -502,6 +512,7 @@ impl Describe for SceneProvider {
             // Known only once the textures are read.
             TEXELS => array(None, 4),
             CAMERA => uniform(size_of::<CameraUniform>()),
+            UNPROJECTION => uniform(size_of::<UnprojectionUniform>()),
             LIGHT => uniform(size_of::<LightUniform>()).map(|light| Provided {
                 kind: Some(lights::provided_kind(&self.light)),
                 ..light

@@ -55,6 +55,22 @@ impl From<&Camera> for CameraUniform {
     }
 }
 
+/// WGSL's `Unprojection`: how places come back from a depth buffer, 96 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct UnprojectionUniform {
+    /// From clip space to the world relative to `origin`, to be divided by w.
+    pub relative_from_clip: Mat4,
+    /// The eye, rounded to f32.
+    pub origin: Vec3,
+    /// 1 if depth 1 is near, else 0.
+    pub is_reversed: u32,
+    /// What rounding the eye left over.
+    pub origin_low: Vec3,
+    /// Unused.
+    pub padding: f32,
+}
+
 /// WGSL's `Light`: a light and its light space, of a directional light fitted to the scene's
 /// corners; 144 bytes.
 #[repr(C)]

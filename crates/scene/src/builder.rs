@@ -2,6 +2,7 @@
 
 use crate::{
     error::FaceRef,
+    indexed::geometric_normal,
     material::Material,
     mesh::{Group, Mesh},
     report::ImportReport,
@@ -98,8 +99,4 @@ pub(crate) fn has_no_area([a, b, c]: [DVec3; 3]) -> bool {
         left == right && p.mul_add(q, -left) == r.mul_add(s, -right)
     };
     equal(u.y, v.z, u.z, v.y) && equal(u.z, v.x, u.x, v.z) && equal(u.x, v.y, u.y, v.x)
-}
-
-fn geometric_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
-    (b - a).cross(c - a).try_normalize()
 }

@@ -16,6 +16,7 @@ pub mod error;
 pub mod generate;
 #[cfg(feature = "files")]
 pub mod gltf;
+pub mod indexed;
 mod keys;
 #[cfg(feature = "files")]
 pub mod library;
@@ -52,6 +53,7 @@ pub use camera::{Camera, View};
 pub use error::SceneError;
 #[cfg(feature = "files")]
 pub use gltf::load_gltf;
+pub use indexed::{Indexed, IndexedError};
 #[cfg(feature = "files")]
 pub use library::{ObjSetup, SceneLibrary, SceneListing, SceneRequest};
 pub use light::{DirectionalLight, LightFit};

@@ -45,6 +45,24 @@ pub struct Surfaces {
 }
 
 impl Surfaces {
+    /// Those of another mesh behind these; a plain one for its triangles if it has none.
+    pub(crate) fn append(&mut self, other: &Self, triangles: usize) {
+        let [uv, material] = [self.uvs.len(), self.materials.len()].map(|count| count as u32);
+        self.uvs.extend(&other.uvs);
+        if other.uv_indices.is_empty() {
+            self.uvs.push(Vec2::ZERO);
+            self.uv_indices.extend(vec![[uv; 3]; triangles]);
+        }
+        let moved = |corners: &[u32; 3]| corners.map(|index| uv + index);
+        self.uv_indices.extend(other.uv_indices.iter().map(moved));
+        if other.of.is_empty() {
+            self.materials.push(Material::default());
+            self.of.extend(vec![material; triangles]);
+        }
+        self.materials.extend(other.materials.iter().cloned());
+        self.of.extend(other.of.iter().map(|of| material + of));
+    }
+
     /// The material of a triangle.
     pub fn material(&self, primitive: u32) -> Option<&Material> {
         let material = *self.of.get(primitive as usize)?;

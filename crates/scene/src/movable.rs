@@ -1,6 +1,6 @@
 //! Parts of a mesh that move by themselves: rigidly, or bent.
 
-use crate::mesh::Mesh;
+use crate::mesh::{Group, Mesh};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use std::collections::{BTreeMap, HashSet};
 
@@ -31,6 +31,21 @@ impl Movable {
         let parts = parts.iter().map(|name| Part::cut(&mut rest, name));
         let parts = parts.collect::<Result<_, _>>()?;
         Ok(Self { rest, parts })
+    }
+
+    /// Several meshes as one, each a part in a space of its own, such as the instances of one mesh:
+    /// the n-th is moved by the n-th map. What has no material gets a plain one if another has one.
+    pub fn joined(meshes: &[&Mesh]) -> Self {
+        let mut rest = Mesh::default();
+        let has_materials = meshes.iter().any(|mesh| !mesh.surfaces.of.is_empty());
+        let parts = meshes.iter().map(|mesh| {
+            if has_materials {
+                rest.surfaces.append(&mesh.surfaces, mesh.triangles.len());
+            }
+            Part::append(&mut rest, mesh)
+        });
+        let parts = parts.collect();
+        Self { rest, parts }
     }
 
     /// Positions and normals after each part was moved by the map of its index; parts without one
@@ -74,6 +89,35 @@ impl Movable {
 }
 
 impl Part {
+    fn append(rest: &mut Mesh, mesh: &Mesh) -> Self {
+        let [first, first_position] =
+            [rest.triangles.len(), rest.positions.len()].map(|n| n as u32);
+        rest.positions.extend(&mesh.positions);
+        let moved = |triangle: &[u32; 3]| triangle.map(|index| first_position + index);
+        rest.triangles.extend(mesh.triangles.iter().map(moved));
+        for group in &mesh.groups {
+            rest.groups.push(Group {
+                name: group.name.clone(),
+                triangles: first + group.triangles.start..first + group.triangles.end,
+            });
+        }
+        let mut own = BTreeMap::new();
+        for (corners, triangle) in mesh.normal_indices.iter().zip(&mesh.triangles) {
+            let own = [0, 1, 2].map(|corner| {
+                let (normal, position) = (corners[corner], first_position + triangle[corner]);
+                *own.entry((normal, position)).or_insert_with(|| {
+                    rest.normals.push(mesh.normals[normal as usize]);
+                    rest.normals.len() as u32 - 1
+                })
+            });
+            rest.normal_indices.push(own);
+        }
+        Self {
+            positions: (first_position..rest.positions.len() as u32).collect(),
+            normals: at_positions(&own),
+        }
+    }
+
     fn cut(mesh: &mut Mesh, name: &str) -> Result<Self, String> {
         let groups = mesh.groups.iter().filter(|group| group.name == name);
         let inside: HashSet<u32> = groups.flat_map(|group| group.triangles.clone()).collect();
@@ -115,12 +159,17 @@ impl Part {
                 });
             }
         }
-        let normals = own
-            .iter()
-            .map(|(&(_, position), &normal)| (normal, position));
         Ok(Self {
             positions,
-            normals: normals.collect(),
+            normals: at_positions(&own),
         })
     }
+}
+
+/// New normals, each with the position at which it stands.
+fn at_positions(own: &BTreeMap<(u32, u32), u32>) -> Vec<(u32, u32)> {
+    let normals = own.iter();
+    normals
+        .map(|(&(_, position), &normal)| (normal, position))
+        .collect()
 }

@@ -1,0 +1,50 @@
+use glam::{DAffine3, DVec3};
+use skiagraph_gpu::{Executor, Frame};
+use skiagraph_graph::{Graph, PlanRequest};
+use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
+use skiagraph_scene::{Camera, DirectionalLight, Mesh, Movable};
+use wgpu::{CommandEncoder, Device, Queue, TextureView};
+
+type Failed = Box<dyn std::error::Error>;
+
+pub struct Shadows {
+    parts: Movable,
+    provider: SceneProvider,
+    executor: Executor,
+}
+
+impl Shadows {
+    /// Of these meshes, for pictures of so many pixels.
+    pub fn new(on: (&Device, &Queue), size: [u32; 2], of: &[&Mesh]) -> Result<Self, Failed> {
+        let parts = Movable::joined(of);
+        let light = DirectionalLight::new(DVec3::NEG_Y);
+        let mut provider = SceneProvider::of_mesh(parts.rest.clone(), light);
+        let graph = Graph::load("pipelines/light_buffer.ron", &registry(), &EmbeddedSources)?;
+        let mut request = PlanRequest::new(size, &provider);
+        request.limits = on.0.limits();
+        request.features = on.0.features();
+        let plan = graph.plan(&request)?;
+        Ok(Self {
+            executor: Executor::new(on.0, on.1, plan, &mut provider)?,
+            parts,
+            provider,
+        })
+    }
+
+    /// Whether each pixel sees the light, 1 or 0; `places` has a map for each mesh.
+    pub fn frame(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        camera: &Camera,
+        light: DVec3,
+        places: &[DAffine3],
+    ) -> Result<TextureView, Failed> {
+        self.provider.set_camera(camera);
+        self.provider.set_light(DirectionalLight::new(light).into());
+        self.provider.set_transforms(&self.parts, places)?;
+        self.executor.refresh(&mut self.provider)?;
+        self.executor.encode(encoder, &Frame::default())?;
+        let visibility = self.executor.output_view("visibility");
+        visibility.ok_or_else(|| "the preset has no visibility".into())
+    }
+}

@@ -1,0 +1,340 @@
+//! The camera of a host, as the matrices that it draws with.
+
+use crate::{
+    error::Error,
+    uniforms::{CameraUniform, UnprojectionUniform},
+};
+use glam::{DMat4, DVec2, DVec3};
+use skiagraph_scene::Camera;
+
+/// Which end of the depth buffer is near.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Depth {
+    /// 0 is near, 1 is far.
+    Standard,
+    /// 1 is near, 0 is far.
+    Reversed,
+}
+
+/// How many times as far off as the near plane the far plane is taken to be where it is infinite.
+const FARTHEST: f64 = 65536.0;
+
+/// A camera by its matrices: perspective or orthographic, symmetric or not, jittered, with a far
+/// plane or without.
+///
+/// What is reconstructed from a depth buffer (`shared/from_depth.ron`) is right for any of them.
+/// Fits to the eye's frustum (`fit: eye`, `pssm`) are laid over a symmetric one that holds it; one
+/// without a far plane counts as ending at 65,536 times its near plane. `shared/gbuffer.ron` draws
+/// that symmetric frustum, too.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Eye {
+    pub(crate) camera: CameraUniform,
+    pub(crate) unprojection: UnprojectionUniform,
+}
+
+/// Matrices that are no camera's.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EyeError {
+    /// One has entries that are infinite or no numbers.
+    #[error("the {0} matrix has entries that are not finite")]
+    NotFinite(
+        /// `view` or `projection`.
+        &'static str,
+    ),
+    /// One cannot be inverted.
+    #[error("the {0} matrix is singular")]
+    Singular(
+        /// `view` or `projection`.
+        &'static str,
+    ),
+    /// The numbers of the frustum do not fit f32, or its near plane is behind the eye.
+    #[error("the frustum of the projection is none that f32 can hold: near {near}, far {far}")]
+    Frustum {
+        /// Distance of the near plane.
+        near: f64,
+        /// Distance of the far plane.
+        far: f64,
+    },
+    /// Depth grows the other way.
+    #[error("the depth of the projection is not {0:?}: its near plane is beyond its far plane")]
+    Depth(Depth),
+}
+
+impl Eye {
+    /// Of a camera's matrices for column vectors, as glam and shaders have them: `view` from the
+    /// world to the eye, `projection` (with its jitter) from the eye to wgpu's clip space.
+    ///
+    /// # Errors
+    /// Matrices that are no camera's.
+    pub fn new(view: DMat4, projection: DMat4, depth: Depth) -> Result<Self, EyeError> {
+        for (name, matrix) in [("view", view), ("projection", projection)] {
+            if !matrix.is_finite() {
+                return Err(EyeError::NotFinite(name));
+            }
+            if !matrix.inverse().is_finite() {
+                return Err(EyeError::Singular(name));
+            }
+        }
+        // Relative to the eye, so that far from the origin nothing is lost.
+        let origin = view.inverse().project_point3(DVec3::ZERO);
+        let view = view * DMat4::from_translation(origin);
+        let relative_from_clip = (projection * view).inverse();
+        let frustum = Frustum::new(&relative_from_clip, depth)?;
+        let rounded = origin.as_vec3();
+        let unprojection = UnprojectionUniform {
+            relative_from_clip: relative_from_clip.as_mat4(),
+            origin: rounded,
+            is_reversed: u32::from(depth == Depth::Reversed),
+            origin_low: (origin - rounded.as_dvec3()).as_vec3(),
+            padding: 0.0,
+        };
+        Ok(Self {
+            camera: CameraUniform::from(&frustum.camera(origin)),
+            unprojection,
+        })
+    }
+}
+
+impl Eye {
+    /// Itself, unless its camera was none.
+    pub(crate) fn finite(&self) -> Result<&Self, Error> {
+        let numbers: &[f32] = bytemuck::cast_slice(std::slice::from_ref(&self.camera));
+        match numbers.iter().all(|number| number.is_finite()) {
+            true => Ok(self),
+            false => Err(Error::Camera(self.camera)),
+        }
+    }
+}
+
+impl From<&Camera> for Eye {
+    fn from(camera: &Camera) -> Self {
+        let uniform = CameraUniform::from(camera);
+        let at_origin = Camera {
+            eye: DVec3::ZERO,
+            ..*camera
+        };
+        let matrix = at_origin.view_projection().inverse();
+        Self {
+            camera: uniform,
+            unprojection: UnprojectionUniform {
+                relative_from_clip: matrix.as_mat4(),
+                origin: uniform.eye,
+                is_reversed: 0,
+                origin_low: uniform.eye_low,
+                padding: 0.0,
+            },
+        }
+    }
+}
+
+/// Relative to the eye.
+struct Frustum {
+    apex: DVec3,
+    axes: [DVec3; 3],
+    half: [f64; 2],
+    near: f64,
+    far: f64,
+}
+
+impl Frustum {
+    fn new(relative_from_clip: &DMat4, depth: Depth) -> Result<Self, EyeError> {
+        let near_depth = f64::from(u8::from(depth == Depth::Reversed));
+        let at =
+            |x: f64, y: f64, depth: f64| relative_from_clip * DVec3::new(x, y, depth).extend(1.0);
+        let point = |x, y, depth| {
+            let at = at(x, y, depth);
+            at.truncate() / at.w
+        };
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
+        let near_corners = corners.map(|(x, y)| point(x, y, near_depth));
+        let [low, right, up, _] = near_corners;
+        let (right, up) = ((right - low).normalize_or_zero(), up - low);
+        let up = up.reject_from_normalized(right).normalize_or_zero();
+        let middle = point(0.0, 0.0, 0.5);
+        let centre = point(0.0, 0.0, near_depth);
+        let across = right.cross(up);
+        let forward = across * across.dot(middle - centre).signum();
+        let end = at(0.0, 0.0, 1.0 - near_depth);
+        let along = |point: DVec3| forward.dot(point);
+        let (mut near, mut far) = (along(centre), f64::INFINITY);
+        if end.w.abs() > 1e-12 * end.truncate().length() {
+            far = along(end.truncate() / end.w);
+        }
+        let begin = at(0.0, 0.0, near_depth).w;
+        let is_parallel = (begin - end.w).abs() <= 1e-9 * begin.abs();
+        let mut apex = DVec3::ZERO;
+        if is_parallel {
+            // A pyramid that has the box in it: its apex is as far before the box as that is deep.
+            let length = far - near;
+            apex = forward * (near - length);
+            (near, far) = (length, 2.0 * length);
+        } else if far.is_infinite() {
+            far = FARTHEST * near;
+        }
+        if !is_parallel && near > 0.0 && far < near {
+            return Err(EyeError::Depth(depth));
+        }
+        let half = [right, up].map(|axis| {
+            let reach = near_corners.map(|corner| axis.dot(corner - apex).abs());
+            reach.into_iter().fold(0.0, f64::max) / near
+        });
+        let numbers = [near, far, half[0], half[1], 1.0 / near];
+        let is_held = numbers
+            .iter()
+            .all(|&it| it > 0.0 && (it as f32).is_finite());
+        if !(near < far && is_held && forward.is_finite()) {
+            return Err(EyeError::Frustum { near, far });
+        }
+        Ok(Self {
+            apex,
+            axes: [right, up, forward],
+            half,
+            near,
+            far,
+        })
+    }
+
+    fn camera(&self, origin: DVec3) -> Camera {
+        let [right, up, forward] = self.axes;
+        Camera {
+            eye: origin + self.apex,
+            right,
+            up,
+            forward,
+            half_width: self.half[0],
+            half_height: self.half[1],
+            near: self.near,
+            far: self.far,
+            viewport: [1, 1],
+            jitter: DVec2::ZERO,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dcamera::rh::{proj::directx as proj, view::look_to_mat4};
+
+    fn view() -> DMat4 {
+        look_to_mat4(
+            DVec3::new(5.0, 6.0, 7.0),
+            DVec3::new(1.0, -2.0, 3.0),
+            DVec3::Y,
+        )
+    }
+
+    /// An eye, its matrix, and points of its frustum, corners and middle.
+    fn seen(projection: DMat4, depth: Depth) -> (Eye, DMat4) {
+        let eye = Eye::new(view(), projection, depth).unwrap();
+        (eye, projection * view())
+    }
+
+    #[test]
+    fn a_point_comes_back_from_its_depth() {
+        let jitter = DMat4::from_translation(DVec3::new(0.003, -0.002, 0.0));
+        let infinite = proj::perspective_infinite_reverse(1.0, 1.5, 0.1);
+        for (projection, depth) in [
+            (proj::perspective(1.0, 1.5, 0.1, 90.0), Depth::Standard),
+            (infinite, Depth::Reversed),
+            (jitter * infinite, Depth::Reversed),
+            (
+                proj::orthographic(-9.0, 9.0, -6.0, 6.0, -20.0, 60.0),
+                Depth::Standard,
+            ),
+            (
+                proj::orthographic(-9.0, 9.0, -6.0, 6.0, 60.0, -20.0),
+                Depth::Reversed,
+            ),
+        ] {
+            let (eye, matrix) = seen(projection, depth);
+            let point = DVec3::new(6.0, 3.0, 12.0);
+            let clip = matrix.project_point3(point);
+            let back = eye
+                .unprojection
+                .relative_from_clip
+                .as_dmat4()
+                .project_point3(clip);
+            let origin =
+                eye.unprojection.origin.as_dvec3() + eye.unprojection.origin_low.as_dvec3();
+            assert!((origin + back).distance(point) < 1e-4, "{projection}");
+
+            // The frustum of the camera has what is seen in it.
+            let camera = eye.camera;
+            let from = (point.as_vec3() - camera.eye) - camera.eye_low;
+            let distance = from.dot(camera.forward);
+            assert!(
+                camera.near <= distance && distance <= camera.far,
+                "{projection}"
+            );
+            let ndc = [
+                from.dot(camera.right) / (distance * camera.half_width),
+                from.dot(camera.up) / (distance * camera.half_height),
+            ];
+            assert!(ndc.iter().all(|x| x.abs() <= 1.0), "{ndc:?}");
+        }
+    }
+
+    #[test]
+    fn a_cameras_eye_is_that_of_its_matrices() {
+        let view_of = skiagraph_scene::View {
+            name: String::new(),
+            eye: DVec3::new(5.0, 6.0, 7.0),
+            direction: DVec3::new(1.0, -2.0, 3.0),
+            up: DVec3::Y,
+            fov_y_degrees: 50.0,
+            near: 0.5,
+            far: 80.0,
+            light: None,
+        };
+        let own = Eye::from(&view_of.camera([30, 20]));
+        let projection = proj::perspective(50_f64.to_radians(), 1.5, 0.5, 80.0);
+        let (given, _) = seen(projection, Depth::Standard);
+        let is_near = |a: f32, b: f32| (a - b).abs() <= 1e-5 * (1.0 + b.abs());
+        let numbers = |eye: &Eye| -> Vec<f32> {
+            [
+                bytemuck::bytes_of(&eye.camera),
+                bytemuck::bytes_of(&eye.unprojection),
+            ]
+            .concat()
+            .as_chunks()
+            .0
+            .iter()
+            .map(|&bytes| f32::from_ne_bytes(bytes))
+            .collect()
+        };
+        let pairs = numbers(&own).into_iter().zip(numbers(&given));
+        assert!(
+            pairs.into_iter().all(|(a, b)| is_near(a, b)),
+            "{own:?} {given:?}"
+        );
+    }
+
+    #[test]
+    fn matrices_that_are_no_cameras_are_refused() {
+        let projection = proj::perspective(1.0, 1.5, 0.1, 90.0);
+        let error = |view, projection, depth| Eye::new(view, projection, depth).unwrap_err();
+        assert_eq!(
+            error(DMat4::ZERO, projection, Depth::Standard),
+            EyeError::Singular("view")
+        );
+        assert_eq!(
+            error(view(), DMat4::ZERO, Depth::Standard),
+            EyeError::Singular("projection")
+        );
+        assert_eq!(
+            error(view() * f64::NAN, projection, Depth::Standard),
+            EyeError::NotFinite("view")
+        );
+        assert_eq!(
+            error(view(), projection, Depth::Reversed),
+            EyeError::Depth(Depth::Reversed)
+        );
+        let flat = proj::orthographic(-1e300, 1e300, -1.0, 1.0, 0.0, 1.0);
+        assert!(matches!(
+            error(view(), flat, Depth::Standard),
+            EyeError::Frustum { .. } | EyeError::Singular(_)
+        ));
+    }
+}

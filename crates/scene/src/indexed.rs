@@ -1,0 +1,184 @@
+//! Meshes that a program has in memory.
+
+use crate::{
+    mesh::{Group, Mesh},
+    weld::Welder,
+};
+use glam::{DVec3, Vec3};
+
+/// A triangle mesh as programs have them: not welded, one normal for each position.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Indexed<'a> {
+    /// World space, or that of an instance.
+    pub positions: &'a [[f32; 3]],
+    /// One for each position, of any length but 0; none at all for faces that are flat.
+    pub normals: &'a [[f32; 3]],
+    /// Three for each triangle, counter-clockwise seen from outside.
+    pub indices: &'a [u32],
+}
+
+/// Why an [`Indexed`] mesh is none.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum IndexedError {
+    /// The last triangle lacks corners.
+    #[error("{0} indices are no triangles: they are not divisible by 3")]
+    Corners(
+        /// Number of indices.
+        usize,
+    ),
+    /// Positions and normals do not go together.
+    #[error("there are {normals} normals for {positions} positions: give one each, or none")]
+    Normals {
+        /// Number of normals.
+        normals: usize,
+        /// Number of positions.
+        positions: usize,
+    },
+    /// An index beyond the positions.
+    #[error("index {at} is {index}, but there are only {positions} positions")]
+    Index {
+        /// Which of the indices.
+        at: usize,
+        /// What it is.
+        index: u32,
+        /// Number of positions.
+        positions: usize,
+    },
+    /// A coordinate that is infinite or not a number.
+    #[error("{what} {at} is not finite: {value:?}")]
+    NotFinite {
+        /// `position` or `normal`.
+        what: &'static str,
+        /// Which one.
+        at: usize,
+        /// What it is.
+        value: [f32; 3],
+    },
+}
+
+impl Mesh {
+    /// Welds a mesh of a program. Triangles keep their order; those that have a corner twice are
+    /// left out, and a normal without length is that of the triangle.
+    ///
+    /// # Errors
+    /// Indices and coordinates that are none.
+    pub fn indexed(from: &Indexed) -> Result<Self, IndexedError> {
+        check(from)?;
+        let (mut positions, mut normals) = (Welder::default(), Welder::default());
+        let at: Vec<u32> = from
+            .positions
+            .iter()
+            .map(|&p| positions.index(p.into()))
+            .collect();
+        let mut mesh = Self::default();
+        for corners in from.indices.as_chunks::<3>().0 {
+            let triangle = corners.map(|corner| at[corner as usize]);
+            if triangle[0] == triangle[1]
+                || triangle[1] == triangle[2]
+                || triangle[2] == triangle[0]
+            {
+                continue;
+            }
+            let points = triangle.map(|index| positions.values[index as usize].as_dvec3());
+            let flat = geometric_normal(points).unwrap_or(DVec3::Y);
+            mesh.normal_indices.push(corners.map(|corner| {
+                let own = from.normals.get(corner as usize);
+                let own = own.and_then(|&own| Vec3::from(own).as_dvec3().try_normalize());
+                normals.index(own.unwrap_or(flat).as_vec3())
+            }));
+            mesh.triangles.push(triangle);
+        }
+        mesh.groups.push(Group {
+            name: String::new(),
+            triangles: 0..mesh.triangles.len() as u32,
+        });
+        (mesh.positions, mesh.normals) = (positions.values, normals.values);
+        Ok(mesh)
+    }
+}
+
+fn check(from: &Indexed) -> Result<(), IndexedError> {
+    let positions = from.positions.len();
+    if !from.indices.len().is_multiple_of(3) {
+        return Err(IndexedError::Corners(from.indices.len()));
+    }
+    let normals = from.normals.len();
+    if normals != 0 && normals != positions {
+        return Err(IndexedError::Normals { normals, positions });
+    }
+    let mut indices = from.indices.iter().enumerate();
+    if let Some((at, &index)) = indices.find(|(_, index)| **index as usize >= positions) {
+        return Err(IndexedError::Index {
+            at,
+            index,
+            positions,
+        });
+    }
+    for (what, list) in [("position", from.positions), ("normal", from.normals)] {
+        let mut values = list.iter().enumerate();
+        if let Some((at, &value)) = values.find(|(_, it)| !it.iter().all(|x| x.is_finite())) {
+            return Err(IndexedError::NotFinite { what, at, value });
+        }
+    }
+    Ok(())
+}
+
+pub(crate) fn geometric_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
+    (b - a).cross(c - a).try_normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CORNERS: [[f32; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-0.0; 3]];
+
+    fn indexed(indices: &[u32]) -> Result<Mesh, IndexedError> {
+        Mesh::indexed(&Indexed {
+            positions: &CORNERS,
+            normals: &[],
+            indices,
+        })
+    }
+
+    #[test]
+    fn equal_positions_are_one_and_triangles_keep_their_order() {
+        let mesh = indexed(&[1, 2, 3, 0, 3, 1, 0, 2, 1]).unwrap();
+        assert_eq!(mesh.positions.len(), 3);
+        assert_eq!(mesh.triangles, [[1, 2, 0], [0, 2, 1]]);
+        assert_eq!(mesh.normals, [Vec3::Z, Vec3::NEG_Z]);
+        assert_eq!(mesh.normal_indices, [[0; 3], [1; 3]]);
+    }
+
+    #[test]
+    fn normals_are_made_unit_length_or_the_faces() {
+        let mesh = Mesh::indexed(&Indexed {
+            positions: &CORNERS,
+            normals: &[[3.0, 0.0, 0.0], [0.0; 3], [0.0, 2.0, 0.0], [1.0; 3]],
+            indices: &[0, 1, 2],
+        });
+        let mesh = mesh.unwrap();
+        assert_eq!(mesh.normals, [Vec3::X, Vec3::Z, Vec3::Y]);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named() {
+        let said = |mesh: Result<Mesh, IndexedError>| mesh.unwrap_err().to_string();
+        assert!(said(indexed(&[0, 1])).contains("2 indices"));
+        let beyond = said(indexed(&[0, 1, 2, 0, 4, 1]));
+        assert_eq!(beyond, "index 4 is 4, but there are only 4 positions");
+        for (normals, positions, expected) in [
+            (vec![[1.0; 3]; 2], CORNERS, "2 normals for 4 positions"),
+            (vec![[f32::NAN; 3]; 4], CORNERS, "normal 0 is not finite"),
+            (vec![], [[f32::INFINITY; 3]; 4], "position 0 is not finite"),
+        ] {
+            let said = said(Mesh::indexed(&Indexed {
+                positions: &positions,
+                normals: &normals,
+                indices: &[0, 1, 2],
+            }));
+            assert!(said.contains(expected), "{said}");
+        }
+    }
+}

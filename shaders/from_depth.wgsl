@@ -1,0 +1,73 @@
+// Stage to find the receiver of each pixel from a host's depth and normals; one thread per pixel.
+// Nobody knows the receiver's primitive, so it is put before its surface instead: nearer to the eye
+// by what its depth may be off, and along its normal by what the arithmetic here may. What is seen
+// from its front does not shade itself then.
+
+#import "shared/light.wgsl"
+#import "shared/ids.wgsl"
+#import "shared/predicates.wgsl"
+#import "shared/unprojection.wgsl"
+
+struct Params {
+    unsigned: u32,
+    depth_steps: f32,
+    snapping: f32,
+}
+
+var<uniform> params: Params;
+var depth: texture_depth_2d;
+var normal: texture_2d<f32>;
+var primitive: texture_storage_2d<r32uint, write>;
+var position: texture_storage_2d<rgba32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
+    let pixel = thread.xy;
+    let viewport = textureDimensions(depth);
+    if any(pixel >= viewport) {
+        return;
+    }
+    let seen = textureLoad(depth, pixel, 0);
+    if seen == farthest_depth() {
+        textureStore(primitive, pixel, vec4(NO_PRIMITIVE));
+        textureStore(position, pixel, vec4(0.0));
+        return;
+    }
+    let slope = slope_along(pixel, vec2(1u, 0u), seen) + slope_along(pixel, vec2(0u, 1u), seen);
+    let error = 2.0 * HALF_ULP * params.depth_steps * abs(seen) + params.snapping * slope;
+    let relative = relative_at_depth(pixel, viewport, nearer_depth(seen, error));
+    let place = (relative + unprojection.origin_low) + unprojection.origin;
+
+    var away = textureLoad(normal, pixel, 0).xyz;
+    if params.unsigned != 0u {
+        away = 2.0 * away - 1.0;
+    }
+    let length_squared = dot(away, away);
+    away *= inverseSqrt(max(length_squared, 1e-37));
+    let rounding = 4.0 * HALF_ULP * (length(place) + 2.0 * length(relative));
+    let receiver = place + rounding * away;
+    var n_dot_l = 0.0;
+    if length_squared > 0.0 && light_shines_on(receiver) {
+        n_dot_l = dot(away, to_light_from(receiver));
+    }
+    textureStore(primitive, pixel, vec4(UNKNOWN_PRIMITIVE));
+    textureStore(position, pixel, vec4(receiver, n_dot_l));
+}
+
+// How much the depth changes from pixel to pixel: on the side where it changes less, since the
+// other one may be beyond the surface's edge.
+fn slope_along(pixel: vec2<u32>, step: vec2<u32>, seen: f32) -> f32 {
+    let last = textureDimensions(depth) - 1u;
+    // Numbers are unsigned: before the first pixel one wraps around.
+    let before = pixel - step;
+    let after = pixel + step;
+    var slope = 3.0e38;
+    if all(before <= last) {
+        slope = abs(seen - textureLoad(depth, before, 0));
+    }
+    if all(after <= last) {
+        slope = min(slope, abs(seen - textureLoad(depth, after, 0)));
+    }
+    // A picture of one pixel has no neighbours.
+    return select(slope, 0.0, slope == 3.0e38);
+}

@@ -6,14 +6,16 @@
 
 mod support;
 
-use glam::{DVec3, Vec3};
+use glam::{DAffine3, DVec3, Vec3};
+use skiagraph_gpu::Executor;
 use skiagraph_graph::ParamValue;
-use skiagraph_scene::{Mesh, Scene};
+use skiagraph_passes::SceneProvider;
+use skiagraph_scene::{Mesh, Movable, Scene};
 use std::sync::Arc;
 use support::{
     bench::Bench,
     brute::{Hit, MISS, Ray},
-    graphs::{RAY_QUERY, open, trace_by},
+    graphs::{self, RAY_QUERY, frame, open, plan, trace_by, values},
     meshes,
     random::Random,
     scenes::load,
@@ -73,6 +75,45 @@ fn rt_on_sponza_answers_alike() {
 #[ignore = "a suite of its own: an adapter with ray queries"]
 fn rt_on_park_answers_alike() {
     rt_answers_alike(&load("park"), [512, 384]);
+}
+
+#[test]
+#[ignore = "a suite of its own: an adapter with ray queries"]
+fn a_deformed_mesh_has_a_structure_of_its_own() {
+    let (scene, viewport) = (load("park"), [192, 144]);
+    let movable = Movable::new(&scene.mesh, &["tree 1"]).unwrap();
+    let scene = Arc::new(Scene {
+        mesh: movable.rest.clone(),
+        ..(*scene).clone()
+    });
+    let view = scene
+        .views
+        .iter()
+        .find(|view| view.name == "trees_side")
+        .unwrap();
+    let gpu = open();
+    let start = |provider: &mut SceneProvider| {
+        let plan = plan("pipelines/rt.ron", provider, viewport, |request| {
+            request.features = gpu.device.features();
+            let engine = ParamValue::Choice("ray_query".to_owned());
+            request.params.insert("engine".to_owned(), engine);
+        });
+        Executor::new(&gpu.device, &gpu.queue, plan, provider).unwrap()
+    };
+    let visible = |executor: &mut Executor| {
+        let report = frame(&gpu, executor, &["visibility"]);
+        values(&report, "visibility")
+    };
+    let mut provider = graphs::provider(&scene, view, viewport);
+    let mut executor = start(&mut provider);
+    let before = visible(&mut executor);
+    let shift = DAffine3::from_translation(DVec3::new(3.0, 1.0, -2.0));
+    provider.set_transforms(&movable, &[shift]).unwrap();
+    executor.refresh(&mut provider).unwrap();
+    let after = visible(&mut executor);
+    let mut anew = graphs::provider(provider.scene(), view, viewport);
+    assert_eq!(after, visible(&mut start(&mut anew)));
+    assert_ne!(after, before);
 }
 
 #[test]

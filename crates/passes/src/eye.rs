@@ -48,7 +48,7 @@ pub enum EyeError {
         /// `view` or `projection`.
         &'static str,
     ),
-    /// The numbers of the frustum do not fit f32, or its near plane is behind the eye.
+    /// The numbers of the frustum do not fit f32.
     #[error("the frustum of the projection is none that f32 can hold: near {near}, far {far}")]
     Frustum {
         /// Distance of the near plane.
@@ -57,7 +57,7 @@ pub enum EyeError {
         far: f64,
     },
     /// Depth grows the other way.
-    #[error("the depth of the projection is not {0:?}: its near plane is beyond its far plane")]
+    #[error("the depth of the projection is not {0:?}: its near plane is not before the eye")]
     Depth(Depth),
 }
 
@@ -172,7 +172,8 @@ impl Frustum {
         } else if far.is_infinite() {
             far = FARTHEST * near;
         }
-        if !is_parallel && near > 0.0 && far < near {
+        // Of an infinite far plane that is taken for the near one it is no number.
+        if !is_parallel && (near <= 0.0 || near.is_nan() || far < near) {
             return Err(EyeError::Depth(depth));
         }
         let half = [right, up].map(|axis| {
@@ -220,7 +221,7 @@ mod tests {
     fn view() -> DMat4 {
         look_to_mat4(
             DVec3::new(5.0, 6.0, 7.0),
-            DVec3::new(1.0, -2.0, 3.0),
+            DVec3::new(1.0, -2.0, 3.0).normalize(),
             DVec3::Y,
         )
     }
@@ -330,6 +331,11 @@ mod tests {
         assert_eq!(
             error(view(), projection, Depth::Reversed),
             EyeError::Depth(Depth::Reversed)
+        );
+        let infinite = proj::perspective_infinite_reverse(1.0, 1.5, 0.1);
+        assert_eq!(
+            error(view(), infinite, Depth::Standard),
+            EyeError::Depth(Depth::Standard)
         );
         let flat = proj::orthographic(-1e300, 1e300, -1.0, 1.0, 0.0, 1.0);
         assert!(matches!(

@@ -37,7 +37,7 @@ enum Asked<'e> {
     /// What the entry or a group around it says, with its expression.
     Set(Value, &'e Expr),
     /// A param of the document; which one of the root document it is, unchanged.
-    Param(Param, ParamValue, Option<String>),
+    Param(Box<Param>, ParamValue, Option<String>),
     /// The number of the repetition.
     Index(u32),
 }
@@ -94,7 +94,7 @@ impl<'a> Linker<'a, '_> {
             bound
                 .value
                 .clone()
-                .map(|value| Asked::Param(bound.param.clone(), value, bound.root.clone())),
+                .map(|value| Asked::Param(bound.param.clone().into(), value, bound.root.clone())),
         )
     }
 
@@ -299,7 +299,7 @@ impl<'a> Linker<'a, '_> {
             return Ok((words, root));
         }
         Err(self.report(LinkError::MemberType {
-            param: Box::new(param),
+            param,
             member: member.name.clone(),
             scalar: expected.0,
             width: expected.1,

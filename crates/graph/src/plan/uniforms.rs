@@ -48,7 +48,9 @@ impl Plan {
 fn set(block: &mut Block, name: &str, words: &[u32]) -> bool {
     let offsets = block.params.iter().filter(|(param, _)| param == name);
     let offsets: Vec<usize> = offsets.map(|(_, offset)| *offset).collect();
-    offsets.into_iter().fold(false, |changed, offset| {
-        block.write(offset, words) || changed
-    })
+    let mut changed = false;
+    for offset in offsets {
+        changed |= block.write(offset, words);
+    }
+    changed
 }

@@ -46,7 +46,8 @@ pub type Attempt = Result<Result<Measured, String>, CliError>;
 pub fn attempt(method: &Method, came: Result<Measured, Stop>) -> Attempt {
     match came {
         Ok(measured) => Ok(Ok(measured)),
-        Err(Stop::Refused(error)) if !is_fatal(&error) => Ok(Err(explain(&error))),
+        // The box is an error, too, but not the one that is asked for.
+        Err(Stop::Refused(error)) if !is_fatal(&*error) => Ok(Err(explain(&*error))),
         Err(stop) => Err(stop.of(&method.preset.name)),
     }
 }

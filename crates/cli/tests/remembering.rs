@@ -14,7 +14,7 @@ fn figures(folder: &Path, line: &str) -> (Value, String) {
     let run = &mut runs[0];
     let mut frames = run["sequence"]["frames"].take();
     for frame in frames.as_array_mut().into_iter().flatten() {
-        for time in ["gpu_ms", "wall_ms", "every_pass"] {
+        for time in ["gpu_ms", "wall_ms", "every_pass", "remade"] {
             frame.as_object_mut().unwrap().remove(time);
         }
     }

@@ -164,7 +164,7 @@ impl LightUniform {
 
     fn directional(light: &DirectionalLight, mesh: &Mesh) -> Self {
         let (min, max) = mesh.bounds().unwrap_or((Vec3::ZERO, Vec3::ZERO));
-        let fit = light.fit(mesh.corner_positions());
+        let fit = light.fit(mesh.used_positions());
         let (min, max) = (min.as_dvec3(), max.as_dvec3());
         let centre = ((min + max) * 0.5).as_vec3();
         let to_relative = DMat4::from_translation(centre.as_dvec3());

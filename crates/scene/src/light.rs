@@ -130,7 +130,7 @@ impl DirectionalLight {
 
 /// The corners of the convex hull, counter-clockwise (Andrew's monotone chain).
 fn convex_hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
-    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     points.dedup();
     let mut hull: Vec<DVec2> = Vec::new();
     for half in 0..2 {

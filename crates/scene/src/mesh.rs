@@ -56,6 +56,16 @@ impl Mesh {
         corners.map(|&index| self.positions[index as usize])
     }
 
+    /// Each position that a triangle uses, once.
+    pub fn used_positions(&self) -> impl Iterator<Item = Vec3> {
+        let mut is_used = vec![false; self.positions.len()];
+        for &index in self.triangles.iter().flatten() {
+            is_used[index as usize] = true;
+        }
+        let all = self.positions.iter().zip(is_used);
+        all.filter(|(_, is_used)| *is_used).map(|(place, _)| *place)
+    }
+
     /// Smallest box around all positions that a triangle uses, or `None` for an empty mesh.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let mut used = self.corner_positions();

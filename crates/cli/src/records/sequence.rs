@@ -111,11 +111,10 @@ impl Sequence {
 }
 
 impl Sequence {
-    /// What of the scene itself was made anew, each with how, in how many frames, and the median of
-    /// what that took in ms.
+    /// What of the scene was made anew and took a tenth of a millisecond or more, each with how, in
+    /// how many frames, and the median of what that took in ms.
     pub fn remade<'s>(&'s self) -> Vec<(&'s str, &'s str, usize, f64)> {
         let all = self.frames.iter().flat_map(|frame| &frame.remade);
-        let all = all.filter(|remade| remade.name.starts_with("scene."));
         let mut times: BTreeMap<(&str, &str), Vec<f64>> = BTreeMap::new();
         for Remade { name, how, ms } in all {
             times.entry((name, how)).or_default().push(*ms);
@@ -124,7 +123,8 @@ impl Sequence {
             times.sort_by(f64::total_cmp);
             (name, how, times.len(), times[times.len() / 2])
         };
-        times.into_iter().map(median).collect()
+        let all = times.into_iter().map(median);
+        all.filter(|(.., ms)| *ms >= 0.1).collect()
     }
 }
 

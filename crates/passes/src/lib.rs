@@ -30,6 +30,7 @@
 //! ```
 
 pub mod atlas;
+mod buffers;
 pub mod built;
 pub mod error;
 pub mod eye;

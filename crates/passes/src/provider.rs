@@ -2,6 +2,7 @@
 
 use crate::{
     atlas::Atlas,
+    buffers::{Buffers, On, binding_limit, buffer_of},
     built::{Built, How},
     error::Error,
     eye::Eye,
@@ -18,12 +19,7 @@ use skiagraph_scene::{
     Adjacency, BvhNode, Camera, LightKind, LightSpace, LightSpaceNode, Mesh, Movable, Scene, View,
     packed_masks::mask_words,
 };
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    sync::Arc,
-    time::Instant,
-};
-use wgpu::util::DeviceExt;
+use std::{collections::BTreeMap, sync::Arc, time::Instant};
 
 /// Provides one scene under one view, on one device.
 ///
@@ -69,10 +65,7 @@ pub struct SceneProvider {
     versions: Versions,
     /// Words of [`MASKS`], made at once: plans ask how many there are.
     masks: Vec<u32>,
-    /// Buffers with the versions of what is in them.
-    buffers: BTreeMap<&'static str, (wgpu::Buffer, u64)>,
-    /// Those of [`buffers`](Self::buffers) that no other provider gives.
-    own: BTreeSet<&'static str>,
+    buffers: Buffers,
     tlas: Option<(wgpu::Tlas, u64)>,
     hierarchies: Hierarchies,
     /// Whether the mesh was deformed, so that trees are worth their memory.
@@ -92,8 +85,7 @@ impl SceneProvider {
             masks: mask_words(&scene.mesh),
             scene,
             eye: Eye::default(),
-            buffers: BTreeMap::new(),
-            own: BTreeSet::new(),
+            buffers: Buffers::default(),
             tlas: None,
             hierarchies: Hierarchies::default(),
             is_deformed: false,
@@ -212,8 +204,7 @@ impl SceneProvider {
             masks: self.masks.clone(),
             lights: self.lights.clone(),
             light_buffers: self.light_buffers.clone(),
-            buffers: self.buffers.clone(),
-            own: BTreeSet::new(),
+            buffers: self.buffers.shared(),
             tlas: self.tlas.clone(),
             hierarchies: self.hierarchies.clone(),
             built: self.built.clone(),
@@ -252,17 +243,14 @@ impl SceneProvider {
     /// The buffer of that name with what is in it now.
     fn buffer(&mut self, name: &'static str, on: On) -> Result<wgpu::Buffer, Error> {
         let version = self.versions.of(name);
-        let known = self.buffers.get(name);
-        let known = known.filter(|(_, of)| *of == version);
-        if let Some((buffer, _)) = known {
+        if let Some(buffer) = self.buffers.of(name, version) {
             return Ok(buffer.clone());
         }
         let began = Instant::now();
         let how = self.upload_named(name, on)?;
         self.note(name, how, began);
-        let buffer = self.buffers.get(name);
-        let (buffer, _) = buffer.ok_or_else(|| unknown(name))?;
-        Ok(buffer.clone())
+        let buffer = self.buffers.of(name, version);
+        buffer.cloned().ok_or_else(|| unknown(name))
     }
 
     /// That of `lights`, of `light_areas`, or of what is in them.
@@ -298,56 +286,14 @@ impl SceneProvider {
         }
     }
 
-    fn upload(&mut self, name: &'static str, content: &[u8], on: On) -> Result<How, Error> {
-        let device = on.device;
-        let bytes = content.len() as u64;
-        let limit = binding_limit(device);
-        if bytes > limit {
-            return Err(Error::TooLarge {
-                name: name.to_owned(),
-                bytes,
-                limit,
-            });
-        }
-        let version = self.versions.of(name);
-        // What another provider may give as well keeps what it has.
-        if let Some((buffer, of)) = self.buffers.get_mut(name)
-            && buffer.size() == bytes
-            && self.own.contains(name)
-        {
-            on.queue.write_buffer(buffer, 0, content);
-            *of = version;
-            return Ok(How::Rewritten);
-        }
-        let uniform = matches!(name, CAMERA | UNPROJECTION | LIGHT | LIGHT_AREA);
-        let usage = if uniform {
-            wgpu::BufferUsages::UNIFORM
-        } else {
-            wgpu::BufferUsages::STORAGE
-        };
-        let is_mesh = matches!(name, POSITIONS | INDICES);
-        let queries = device
-            .features()
-            .contains(wgpu::Features::EXPERIMENTAL_RAY_QUERY);
-        let usage = match is_mesh && queries {
-            true => usage | wgpu::BufferUsages::BLAS_INPUT,
-            false => usage,
-        };
-        let buffer = buffer_of(name, content, usage, device);
-        self.buffers.insert(name, (buffer, version));
-        self.own.insert(name);
-        Ok(How::Made)
-    }
-
     fn upload_items<T: bytemuck::NoUninit + bytemuck::Zeroable>(
         &mut self,
         name: &'static str,
         items: &[T],
         on: On,
     ) -> Result<How, Error> {
-        let dummy = [T::zeroed()];
-        let items = if items.is_empty() { &dummy } else { items };
-        self.upload(name, bytemuck::cast_slice(items), on)
+        let version = self.versions.of(name);
+        self.buffers.write(name, items, version, on)
     }
 
     fn upload_hierarchy(&mut self, on: On) -> Result<How, Error> {
@@ -367,10 +313,9 @@ impl SceneProvider {
     ) -> Result<How, Error> {
         self.upload_items(nodes, &words.nodes, on)?;
         let version = self.versions.of(primitives);
-        match (words.primitives, self.buffers.get_mut(primitives)) {
-            (Some(items), _) => drop(self.upload_items(primitives, &items, on)?),
-            (None, Some((_, of))) => *of = version,
-            (None, None) => {}
+        match words.primitives {
+            Some(items) => drop(self.upload_items(primitives, &items, on)?),
+            None => self.buffers.still_hold(primitives, version),
         }
         Ok(words.how)
     }
@@ -434,34 +379,6 @@ impl SceneProvider {
             _ => Err(unknown(name)),
         }
     }
-}
-
-/// Where to.
-#[derive(Clone, Copy)]
-struct On<'a> {
-    device: &'a wgpu::Device,
-    queue: &'a wgpu::Queue,
-}
-
-fn buffer_of(
-    name: &str,
-    content: &[u8],
-    usage: wgpu::BufferUsages,
-    device: &wgpu::Device,
-) -> wgpu::Buffer {
-    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some(name),
-        contents: content,
-        usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
-    })
-}
-
-/// The most bytes that a storage buffer can have and be bound whole.
-fn binding_limit(device: &wgpu::Device) -> u64 {
-    let limits = device.limits();
-    limits
-        .max_buffer_size
-        .min(limits.max_storage_buffer_binding_size)
 }
 
 fn unknown(name: &str) -> Error {

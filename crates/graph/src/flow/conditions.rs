@@ -4,7 +4,7 @@ use super::work::Work;
 use crate::{
     diagnostics::reports::Reports,
     errors::flow::OrderError,
-    instantiate::build::Run,
+    instantiate::flat::Run,
     link::pass::{Access, LinkedPass, PassId},
     resource::{Origin, ResourceId},
 };

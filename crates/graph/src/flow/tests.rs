@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     diagnostics::{code::Code, diagnostic::Diagnostic, reports::Reports},
-    instantiate::build::Run,
+    instantiate::flat::Run,
     link::pass::{Access, LinkedPass, PassId, Usage},
     resource::{Buffer, Origin, Resource, ResourceId, ResourceKind, SubresourceRange, Target},
     source::span::{Located, SourceFile},

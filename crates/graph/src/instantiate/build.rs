@@ -1,6 +1,7 @@
 //! Walks the entries of documents: conditions, repetitions, groups.
 
 use super::{
+    flat::{Border, Deciding, Flat, FlatPass, Inherited, Run},
     frames::{FrameId, Instance, InstanceId, Meaning, Names, Place},
     params::Params,
     state::Declared,
@@ -11,7 +12,7 @@ use crate::{
     document::{
         materials::{Input, InputKind},
         raw::Broken,
-        typed::{Document, Entry, Pass, Run as RunEntry, What},
+        typed::{Document, Entry, Run as RunEntry, What},
     },
     errors::instantiate::BorderError,
     graph::Graph,
@@ -21,97 +22,15 @@ use crate::{
     },
     provider::Import,
     request::PlanRequest,
-    resource::{Buffer, Origin, Resource, ResourceKind, Sampler, Target, Texture},
+    resource::{Buffer, Origin, Resource, ResourceKind, Sampler, Texture},
     source::span::Located,
 };
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    sync::Arc,
-};
+use std::{collections::BTreeMap, sync::Arc};
 
 /// Most passes (groups and includes among them), and most materials, of a graph. A guard against
 /// documents that double with each include: what is above takes memory and time that nobody means
 /// to spend.
 const MOST: usize = 16_384;
-
-/// In which frames a pass runs.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Run {
-    /// In every frame.
-    Always,
-    /// In the first frame after planning.
-    Once,
-    /// In frames where something that it reads has changed.
-    OnChange,
-    /// In frames where an expression is true; equal texts are equal conditions.
-    When(String),
-}
-
-impl std::fmt::Display for Run {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::When(condition) => write!(f, "When({condition:?})"),
-            other => write!(f, "{other:?}"),
-        }
-    }
-}
-
-/// A graph with nothing nested any more.
-pub(crate) struct Flat<'a> {
-    pub world: World<'a>,
-    pub passes: Vec<FlatPass<'a>>,
-    /// How many passes stand above the first entry with a mistake that was reported.
-    pub first_broken: Option<usize>,
-    pub borders: Vec<Border>,
-    pub deciding: Deciding,
-}
-
-/// A pass with its place in the graph.
-pub(crate) struct FlatPass<'a> {
-    pub name: Located<String>,
-    pub entry: &'a Entry,
-    pub pass: &'a Pass,
-    pub place: Place,
-    pub run: Run,
-    /// The value of the expression in [`Run::When`]; true without one.
-    pub enabled: bool,
-    /// What groups around it say of its shader's globals.
-    pub bind: Vec<Inherited<'a, Reference>>,
-    /// What groups around it say of its shader's params.
-    pub set: Vec<Inherited<'a, Expr>>,
-}
-
-/// What a group says, with the place where it says it.
-pub(crate) struct Inherited<'a, T> {
-    pub name: &'a Located<String>,
-    pub value: &'a T,
-    pub place: Place,
-    /// Its number in [`Builder::said`].
-    number: usize,
-}
-
-impl<T> Clone for Inherited<'_, T> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<T> Copy for Inherited<'_, T> {}
-
-/// What a document gives and takes, to be held against what its passes do.
-pub(crate) struct Border {
-    pub instance: InstanceId,
-    pub outputs: Vec<(Located<Name>, Target)>,
-    /// Inputs that are no outputs.
-    pub read_only: Vec<(Located<Name>, Target)>,
-}
-
-/// What decides which entries are there.
-#[derive(Debug, Default)]
-pub(crate) struct Deciding {
-    pub params: BTreeSet<String>,
-    pub features: wgt::Features,
-}
 
 /// What is around an entry.
 #[derive(Clone)]

@@ -2,7 +2,8 @@
 //! outputs come back.
 
 use super::{
-    build::{Around, Border, Builder},
+    build::{Around, Builder},
+    flat::Border,
     frames::{Instance, InstanceId, Meaning, Names, Outer, Place},
     params::{Given, Params},
 };

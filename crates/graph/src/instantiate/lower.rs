@@ -1,7 +1,7 @@
 //! Passes become steps: each kind says what its body is, with values of this plan.
 
 use super::{
-    build::{Flat, FlatPass},
+    flat::{Border, Deciding, Flat, FlatPass},
     frames::InstanceId,
     world::World,
 };
@@ -33,8 +33,8 @@ pub(crate) struct Lowered<'a> {
     pub world: World<'a>,
     pub passes: Vec<LoweredPass<'a>>,
     pub first_broken: Option<usize>,
-    pub borders: Vec<super::build::Border>,
-    pub deciding: super::build::Deciding,
+    pub borders: Vec<Border>,
+    pub deciding: Deciding,
 }
 
 /// Lowers every pass.

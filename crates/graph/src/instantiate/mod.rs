@@ -4,6 +4,7 @@
 //! How often something is repeated follows params and sizes, hence this is done for every plan.
 
 pub(crate) mod build;
+pub(crate) mod flat;
 pub(crate) mod frames;
 pub(crate) mod include;
 pub(crate) mod lower;
@@ -13,4 +14,4 @@ pub(crate) mod place;
 pub(crate) mod state;
 pub(crate) mod world;
 
-pub use build::Run;
+pub use flat::Run;

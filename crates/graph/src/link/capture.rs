@@ -7,7 +7,7 @@ use super::{
 use crate::{
     diagnostics::reports::Reported,
     errors::plan::OutputError,
-    instantiate::build::Run,
+    instantiate::flat::Run,
     kinds::step::{Operand, Scratch, Step},
     provider::Provided,
     request::Capture,

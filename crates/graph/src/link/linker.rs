@@ -8,7 +8,7 @@ use crate::{
     diagnostics::reports::{Reported, Reports},
     errors::link::LinkError,
     instantiate::{
-        build::{Border, Deciding, Inherited, Run},
+        flat::{Border, Deciding, Inherited, Run},
         frames::{InstanceId, Place},
         lower::{Lowered, LoweredPass},
         world::World,

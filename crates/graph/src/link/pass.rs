@@ -1,7 +1,7 @@
 //! What linking makes of a pass: steps over ids, and what they read and write.
 
 use crate::{
-    instantiate::build::Run,
+    instantiate::flat::Run,
     kinds::step::{Stage, Step},
     resource::{ResourceId, SubresourceRange, Target},
     shader::reflect::Shader,

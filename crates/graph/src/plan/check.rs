@@ -13,7 +13,7 @@ use crate::{
         params::{Param, ParamType, ParamValue},
     },
     graph::Graph,
-    instantiate::build::Deciding,
+    instantiate::flat::Deciding,
     kinds::registry::Registry,
     provider::Import,
     request::PlanRequest,

@@ -18,10 +18,7 @@ use crate::{
         work::Work,
     },
     graph::Graph,
-    instantiate::{
-        build::{Deciding, flatten},
-        lower::lower,
-    },
+    instantiate::{build::flatten, flat::Deciding, lower::lower},
     link::{
         linker::{Linked, link},
         pass::{Access, LinkedPass, PassId},

@@ -1,0 +1,95 @@
+//! What the tree of entries becomes: one list of passes.
+
+use super::{
+    frames::{InstanceId, Place},
+    world::World,
+};
+use crate::{
+    document::typed::{Entry, Pass},
+    language::{
+        name::Name,
+        syntax::{Expr, Reference},
+    },
+    resource::Target,
+    source::span::Located,
+};
+use std::collections::BTreeSet;
+
+/// In which frames a pass runs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Run {
+    /// In every frame.
+    Always,
+    /// In the first frame after planning.
+    Once,
+    /// In frames where something that it reads has changed.
+    OnChange,
+    /// In frames where an expression is true; equal texts are equal conditions.
+    When(String),
+}
+
+impl std::fmt::Display for Run {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::When(condition) => write!(f, "When({condition:?})"),
+            other => write!(f, "{other:?}"),
+        }
+    }
+}
+
+/// A graph with nothing nested any more.
+pub(crate) struct Flat<'a> {
+    pub world: World<'a>,
+    pub passes: Vec<FlatPass<'a>>,
+    /// How many passes stand above the first entry with a mistake that was reported.
+    pub first_broken: Option<usize>,
+    pub borders: Vec<Border>,
+    pub deciding: Deciding,
+}
+
+/// A pass with its place in the graph.
+pub(crate) struct FlatPass<'a> {
+    pub name: Located<String>,
+    pub entry: &'a Entry,
+    pub pass: &'a Pass,
+    pub place: Place,
+    pub run: Run,
+    /// The value of the expression in [`Run::When`]; true without one.
+    pub enabled: bool,
+    /// What groups around it say of its shader's globals.
+    pub bind: Vec<Inherited<'a, Reference>>,
+    /// What groups around it say of its shader's params.
+    pub set: Vec<Inherited<'a, Expr>>,
+}
+
+/// What a group says, with the place where it says it.
+pub(crate) struct Inherited<'a, T> {
+    pub name: &'a Located<String>,
+    pub value: &'a T,
+    pub place: Place,
+    /// Its number in `Builder::said`.
+    pub(super) number: usize,
+}
+
+impl<T> Clone for Inherited<'_, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for Inherited<'_, T> {}
+
+/// What a document gives and takes, to be held against what its passes do.
+pub(crate) struct Border {
+    pub instance: InstanceId,
+    pub outputs: Vec<(Located<Name>, Target)>,
+    /// Inputs that are no outputs.
+    pub read_only: Vec<(Located<Name>, Target)>,
+}
+
+/// What decides which entries are there.
+#[derive(Debug, Default)]
+pub(crate) struct Deciding {
+    pub params: BTreeSet<String>,
+    pub features: wgt::Features,
+}

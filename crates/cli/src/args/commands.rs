@@ -87,6 +87,12 @@ pub struct CompareArgs {
     /// What is printed on standard output.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,
+    /// Print the time of each pass, too: a table per method, a column per viewport and map.
+    #[arg(long)]
+    pub passes: bool,
+    /// Print all figures of each view and viewport by itself, too.
+    #[arg(long)]
+    pub details: bool,
 }
 
 /// Which pictures are written.

@@ -19,6 +19,7 @@ use crate::measuring::{date, device};
 use crate::pictures::run_pictures::{check_stems, reference_stem, stem};
 use crate::records::results::{PROGRAM, Results};
 use crate::reporting::results_csv::save;
+use crate::reporting::summary_table::{self, Summary};
 use crate::reporting::{markdown, published, results_table};
 use crate::terminal::console::{note, print};
 use crate::terminal::interrupt;
@@ -198,7 +199,10 @@ fn run(
             let outcome = comparison.measure(index, viewport);
             let (results, runs) = (&comparison.results, comparison.runs(index, viewport));
             match args.format {
-                Format::Table => print(&format!("{}\n", results_table::group(results, runs)))?,
+                Format::Table if args.details => {
+                    print(&format!("{}\n", results_table::group(results, runs)))?;
+                }
+                Format::Table => {}
                 Format::Markdown => print(&markdown::viewport(results, runs))?,
                 Format::Json => {}
             }
@@ -206,6 +210,29 @@ fn run(
         }
     }
     Ok(())
+}
+
+/// What all views and viewports come to, as far as they are done.
+fn print_summary(args: &CompareArgs, results: &Results) -> Result<(), CliError> {
+    if results.runs.is_empty() {
+        return Ok(());
+    }
+    let summaries = summary_table::summaries(results);
+    match args.format {
+        Format::Table => {
+            let texts: Vec<String> = summaries.iter().map(Summary::text).collect();
+            print(&texts.join("\n"))?;
+            match args.passes {
+                true => print(&format!("\n{}\n", summary_table::passes(results))),
+                false => Ok(()),
+            }
+        }
+        Format::Markdown => {
+            let texts: Vec<String> = summaries.iter().map(Summary::markdown).collect();
+            print(&texts.concat())
+        }
+        Format::Json => print(&json::to_text(results)),
+    }
 }
 
 /// Says what came of it.
@@ -218,9 +245,7 @@ fn finish(
     let Comparison {
         results, broken, ..
     } = comparison;
-    if args.format == Format::Json && !results.runs.is_empty() {
-        print(&json::to_text(&results))?;
-    }
+    print_summary(args, &results)?;
     let kept = match results.runs.len() {
         0 => "no run was finished".into(),
         done => format!(

@@ -3,6 +3,7 @@
 use crate::error::CliError;
 use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
+use crate::records::results::Promise;
 use crate::records::stress::Guarantee;
 use crate::wording::did_you_mean;
 
@@ -63,6 +64,15 @@ pub fn without_culling<'a>(method: &Method<'a>) -> Option<Method<'a>> {
     let mut params = method.params.clone();
     params.insert(CULL.into(), none);
     Some(Method::new(method.preset, params))
+}
+
+/// What the document promises, for the record; a claim that nobody judges is no promise.
+pub fn promise(method: &Method) -> Option<Promise> {
+    let (guarantee, _) = of(method, &[]).ok()??;
+    Some(Promise {
+        of: guarantee.word().into(),
+        closed_only: without_culling(method).is_some(),
+    })
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use crate::measuring::timing::{self, FrameMode, Times};
 use crate::measuring::{
     date,
     frame::{self, Contents},
+    guarantee,
 };
 use crate::pictures::run_pictures::{conditions, save_pictures, stem};
 use crate::records::results::{Answer, AreaReference, Cached, Measured, Run};
@@ -273,6 +274,7 @@ impl MeasureContext<'_> {
             params: method.all_params(),
             fingerprint: method.fingerprint(self.fingerprint),
             date: date::today(),
+            promise: guarantee::promise(method),
             pixels: counts.pixels,
             band: counts.band,
             area: area.map(|area| AreaReference::of(area, reference)),

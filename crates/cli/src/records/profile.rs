@@ -302,6 +302,7 @@ pub(crate) mod tests {
             scene: Scene {
                 name: "park".into(),
                 triangles: 55_000,
+                parts: None,
             },
             preset: "nsm".into(),
             view: "main".into(),

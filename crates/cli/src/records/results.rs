@@ -61,6 +61,33 @@ pub struct Scene {
     pub name: String,
     /// Triangles in its mesh.
     pub triangles: u64,
+    /// How much of its mesh is open; absent in files of older programs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub parts: Option<OpenParts>,
+}
+
+/// The parts of a mesh, triangles that share edges, and which are open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct OpenParts {
+    /// All of them.
+    pub all: u64,
+    /// Those that have an edge of one side.
+    pub open: u64,
+    /// Triangles of the open ones.
+    pub open_triangles: u64,
+}
+
+impl OpenParts {
+    /// Of a mesh.
+    pub fn of(mesh: &skiagraph_scene::Mesh) -> Self {
+        let parts = skiagraph_scene::Parts::new(mesh);
+        let open = |part: &&u32| parts.open[**part as usize];
+        Self {
+            all: parts.open.len() as u64,
+            open: parts.open.iter().filter(|open| **open).count() as u64,
+            open_triangles: parts.of.iter().filter(open).count() as u64,
+        }
+    }
 }
 
 impl From<&skiagraph_scene::Scene> for Scene {
@@ -68,6 +95,7 @@ impl From<&skiagraph_scene::Scene> for Scene {
         Self {
             name: scene.name.clone(),
             triangles: scene.mesh.triangles.len() as u64,
+            parts: Some(OpenParts::of(&scene.mesh)),
         }
     }
 }
@@ -110,6 +138,10 @@ pub struct Run {
     /// The day on which it was measured, `2026-11-21` (UTC). Empty in files of older programs.
     #[serde(default)]
     pub date: String,
+    /// What the document promises of its answers with these params; absent where nothing, and in
+    /// files of older programs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub promise: Option<Promise>,
     /// The reference's pixels.
     pub pixels: PixelCounts,
     /// Of those facing the light, the ones whose answer flips within the rounding error of receiver
@@ -169,11 +201,25 @@ impl Run {
         })
     }
 
+    /// The method's name.
+    pub fn method_name(&self) -> String {
+        self.preset.clone()
+    }
+
     /// Preset and map size, as a row's name.
     pub fn method_label(&self) -> String {
         let with_size = |size| format!("{} {size}", self.preset);
         self.map_size.map_or(self.preset.clone(), with_size)
     }
+}
+
+/// What a document promises.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Promise {
+    /// `exact` of all its pixels, `certain` of those that it calls certain.
+    pub of: String,
+    /// Whether it holds of closed casters alone, as the method leaves out faces.
+    pub closed_only: bool,
 }
 
 /// In what a method answers.
@@ -427,6 +473,7 @@ pub(crate) mod tests {
             ]),
             fingerprint: "85944171f73967e8".into(),
             date: "2026-11-20".into(),
+            promise: None,
             pixels: PixelCounts {
                 background: 72,
                 facing_away: 31_000,
@@ -528,6 +575,11 @@ pub(crate) mod tests {
             scene: Scene {
                 name: "park".into(),
                 triangles: 55_000,
+                parts: Some(OpenParts {
+                    all: 40,
+                    open: 12,
+                    open_triangles: 5_000,
+                }),
             },
             oracle: "exact".into(),
             frames: 10,

@@ -51,7 +51,7 @@ fn of(run: &Run) -> Option<Graded> {
 }
 
 /// That a method shows what is no share of light.
-fn no_shares(run: &Run) -> Option<String> {
+pub fn no_shares(run: &Run) -> Option<String> {
     let invalid = of(run)?.invalid;
     let counts = [
         ("NaN", invalid.nan),

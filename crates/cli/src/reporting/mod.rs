@@ -16,5 +16,8 @@ pub mod published_row;
 pub mod results_csv;
 pub mod results_table;
 pub mod stress_matrix;
+pub mod summary;
+pub mod summary_table;
 pub mod table;
 pub mod trace;
+pub mod verdict;

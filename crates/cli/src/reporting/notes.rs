@@ -3,6 +3,7 @@
 use crate::records::results::{Measured, Run};
 use crate::records::sequence::{FrameCost, Sequence};
 use crate::wording::{frames, ms, thousands};
+use skiagraph_reference::BlockerCounts;
 
 /// A band of more than one pixel in so many of those facing the light leaves too much open.
 const MAX_BAND: u128 = 1000;
@@ -64,6 +65,21 @@ fn blockers(runs: &[&Run]) -> String {
         any.then(|| format!("{what} {}", text.join(" / ")))
     });
     kinds.collect::<Vec<_>>().join(", ")
+}
+
+/// How many certain pixels are wrong, and what blocks them, as far as that is known.
+pub fn blocked_by(wrong: u64, by: Option<BlockerCounts>) -> String {
+    let kinds = by.map(|by| {
+        [
+            ("blocker in an open part", by.open_part),
+            ("blocker in a closed part", by.closed_part),
+            ("no blocker", by.none),
+        ]
+    });
+    let kinds = kinds.into_iter().flatten().filter(|(_, count)| *count > 0);
+    let kinds = kinds.map(|(what, count)| format!(", {what} {}", thousands(count)));
+    let kinds: String = kinds.collect();
+    format!("certain wrong outside the band {}{kinds}", thousands(wrong))
 }
 
 /// What was judged of a method that remembers.

@@ -1,0 +1,396 @@
+//! The answer to "which one shall I take", as a table with its verdict: a row per method and
+//! setting over all views, the fastest first.
+
+use crate::records::results::{Promise, Results, Run};
+use crate::reporting::columns::are_paths;
+use crate::reporting::notes::{band_warning, blocked_by, remembering, times_missing};
+use crate::reporting::summary::{Row, by_wall, rows};
+use crate::reporting::verdict::verdict;
+use crate::reporting::{graded, table::table};
+use crate::wording::{bytes, frames, ms, percent, plural, size, thousands};
+use skiagraph_reference::BlockerCounts;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// All that was measured in one viewport.
+pub struct Summary<'a> {
+    results: &'a Results,
+    viewport: [u32; 2],
+    runs: Vec<&'a Run>,
+    /// Of hard answers to hard light and of all others, each by itself.
+    groups: Vec<Group<'a>>,
+}
+
+/// Rows that are judged alike.
+struct Group<'a> {
+    is_hard: bool,
+    rows: Vec<Row<'a>>,
+}
+
+/// One summary per viewport, in the order of the results.
+pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
+    let mut viewports: Vec<[u32; 2]> = Vec::new();
+    for run in &results.runs {
+        if !viewports.contains(&run.viewport) {
+            viewports.push(run.viewport);
+        }
+    }
+    let all = viewports.into_iter();
+    all.map(|viewport| Summary::new(results, viewport))
+        .collect()
+}
+
+/// What stands in a row that could not run.
+const NOT_THERE: &str = "n/a";
+
+impl<'a> Summary<'a> {
+    fn new(results: &'a Results, viewport: [u32; 2]) -> Self {
+        let runs = results.runs.iter();
+        let runs: Vec<&Run> = runs.filter(|run| run.viewport == viewport).collect();
+        let (hard, graded): (Vec<&Run>, Vec<&Run>) = runs.iter().partition(|run| run.is_hard());
+        let groups = [(true, hard), (false, graded)].into_iter();
+        let group = |(is_hard, runs): (bool, Vec<&'a Run>)| Group {
+            is_hard,
+            rows: rows(runs, viewport),
+        };
+        Self {
+            results,
+            viewport,
+            runs,
+            groups: groups
+                .filter(|(_, runs)| !runs.is_empty())
+                .map(group)
+                .collect(),
+        }
+    }
+
+    fn views(&self) -> BTreeSet<&str> {
+        self.runs.iter().map(|run| run.view.as_str()).collect()
+    }
+
+    /// `view main`, `path walk, 25 frames`, `9 views`.
+    fn what(&self) -> String {
+        let views = self.views();
+        let paths = are_paths(self.runs.iter().copied());
+        match (views.first(), views.len()) {
+            (Some(view), 1) if paths => format!("path {view}"),
+            (Some(view), 1) => format!("view {view}"),
+            (_, count) => plural(count, if paths { "path" } else { "view" }),
+        }
+    }
+
+    /// For a terminal.
+    pub fn text(&self) -> String {
+        let mut lines = vec![format!(
+            "{} · {} · {}",
+            self.results.scene,
+            self.what(),
+            size(self.viewport)
+        )];
+        lines.extend(self.conditions());
+        for group in &self.groups {
+            let (heads, cells) = self.cells(group);
+            if self.groups.len() > 1 {
+                lines.push(String::new());
+                lines.push(group.title().into());
+            }
+            lines.push(table(heads, 1, cells));
+            lines.extend(group.verdict().sentences);
+        }
+        lines.extend(self.notes());
+        lines.join("\n") + "\n"
+    }
+
+    /// For a document.
+    pub fn markdown(&self) -> String {
+        let mut text = format!("\n### {}, {}, in short\n", self.what(), size(self.viewport));
+        for group in &self.groups {
+            let (heads, cells) = self.cells(group);
+            let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+            let heads: Vec<String> = heads.into_iter().map(Into::into).collect();
+            let rule: Vec<String> = heads.iter().map(|_| "---".into()).collect();
+            text += &format!("\n{}{}", line(&heads), line(&rule));
+            text.extend(cells.iter().map(|cells| line(cells)));
+            let sentences = group.verdict().sentences;
+            if !sentences.is_empty() {
+                text += &format!("\n{}\n", sentences.join("\n"));
+            }
+        }
+        text
+    }
+
+    fn conditions(&self) -> Vec<String> {
+        let views = self.views();
+        let mut seen = BTreeSet::new();
+        let each = self.runs.iter().filter(|run| seen.insert(&run.view));
+        let each: Vec<&&Run> = each.collect();
+        let sum = |of: fn(&Run) -> u64| each.iter().map(|run| of(run)).sum::<u64>();
+        let (facing, band) = (sum(|run| run.pixels.facing_light), sum(|run| run.band));
+        let mean = match views.len() {
+            1 => "",
+            _ => ", means of the views",
+        };
+        let by_wall = self.groups.iter().any(|group| by_wall(&group.rows));
+        let clock = if by_wall { "wall clock" } else { "GPU" };
+        let mut lines = vec![
+            self.results.adapter.to_string(),
+            format!(
+                "times: {clock}, medians of {} after {} to warm up{mean} · oracle {}",
+                frames(self.results.frames),
+                self.results.warmup,
+                self.results.oracle
+            ),
+            format!(
+                "facing the light {} = lit {} + shadow {} · in the band, where the answer hangs on \
+                 rounding, {} ({})",
+                thousands(facing),
+                thousands(sum(|run| run.pixels.lit)),
+                thousands(sum(|run| run.pixels.shadow)),
+                thousands(band),
+                percent(band, facing)
+            ),
+        ];
+        let warning = each.iter().find_map(|run| band_warning(run));
+        lines.extend(warning);
+        let areas = each.iter().filter_map(|run| Some((run.area?, run.band)));
+        lines.extend(
+            areas
+                .map(|(area, band)| graded::area_reference(&area, band))
+                .take(1),
+        );
+        lines
+    }
+
+    fn cells(&self, group: &Group) -> (Vec<&'static str>, Vec<Vec<String>>) {
+        let are_paths = are_paths(self.runs.iter().copied());
+        let by_wall = by_wall(&group.rows);
+        let mut heads = vec!["method"];
+        heads.extend(match group.is_hard {
+            true => &["wrong outside band", "%", "in band"][..],
+            false => &["RMSE"][..],
+        });
+        heads.extend(are_paths.then_some("shimmer"));
+        heads.extend(["frame ms", "map kept ms", "rays", "memory"]);
+        let best = group.verdict().fastest_exact;
+        let views = self.views().len();
+        let row = |(index, row): (usize, &Row)| {
+            let mark = if best == Some(index) { " *" } else { "" };
+            let few = match row.views() {
+                some if some == views || some == 0 => String::new(),
+                some => format!(" ({some} of {})", plural(views, "view")),
+            };
+            let mut cells = vec![format!("{}{few}{mark}", row.label)];
+            if row.views() == 0 {
+                cells.push(NOT_THERE.into());
+                cells.resize(heads.len(), "–".into());
+                return cells;
+            }
+            let wrong = row.wrong();
+            match group.is_hard {
+                true => cells.extend([
+                    thousands(wrong.outside_band),
+                    percent(wrong.outside_band, wrong.facing_light),
+                    thousands(wrong.in_band),
+                ]),
+                false => cells.push(or_dash(row.rmse(), |rmse| format!("{rmse:.5}"))),
+            }
+            if are_paths {
+                let shimmer = row.shimmer();
+                cells.push(or_dash(shimmer, |part| percent(part.count, part.of)));
+            }
+            cells.push(or_dash(row.frame_ms(by_wall), ms));
+            cells.push(or_dash(row.kept_ms(by_wall), ms));
+            cells.push(or_dash(row.rays(), |rays| thousands(rays.round() as u64)));
+            cells.push(bytes(row.bytes()));
+            cells
+        };
+        let cells = group.rows.iter().enumerate().map(row).collect();
+        (heads, cells)
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        if self
+            .groups
+            .iter()
+            .any(|group| group.verdict().fastest_exact.is_some())
+        {
+            notes.push("* the fastest with no wrong pixel outside the band".into());
+        }
+        notes.extend(self.open_parts());
+        let all = self.groups.iter().flat_map(|group| &group.rows);
+        notes.extend(all.clone().filter_map(|row| {
+            let why = row.unavailable?;
+            Some(format!("{} is unavailable: {why}", row.label))
+        }));
+        notes.extend(self.certain_wrong());
+        let several = self.views().len() > 1;
+        let named = |run: &&Run, note: String| match several {
+            true => format!("{}: {note}", run.view),
+            false => note,
+        };
+        let told = self.runs.iter().copied();
+        notes.extend(
+            told.clone()
+                .filter_map(|run| Some(named(&run, graded::no_shares(run)?))),
+        );
+        notes.extend(
+            told.clone()
+                .filter_map(|run| Some(named(&run, remembering(run)?))),
+        );
+        match &self.results.adapter.gpu_unavailable {
+            Some(reason) => notes.push(format!("No GPU times: {reason}")),
+            None => notes.extend(told.filter_map(|run| Some(named(&run, times_missing(run)?)))),
+        }
+        notes
+    }
+
+    /// That promises end at open parts, and whose.
+    fn open_parts(&self) -> Option<String> {
+        let parts = self.results.scene.parts.filter(|parts| parts.open > 0)?;
+        let closed_only = |run: &&&Run| {
+            matches!(
+                run.promise,
+                Some(Promise {
+                    closed_only: true,
+                    ..
+                })
+            )
+        };
+        let methods: BTreeSet<String> = self
+            .runs
+            .iter()
+            .filter(closed_only)
+            .map(|run| format!("`{}`", run.method_name()))
+            .collect();
+        let methods: Vec<String> = methods.into_iter().collect();
+        let share = format!(
+            "{} of the mesh's {} are open ({} of its triangles)",
+            thousands(parts.open),
+            match parts.all {
+                1 => "1 part".into(),
+                all => format!("{} parts", thousands(all)),
+            },
+            percent(parts.open_triangles, self.results.scene.triangles)
+        );
+        (!methods.is_empty()).then(|| {
+            format!(
+                "{share}: what {} promise{} ends at shadows of these, unless --set cull=none",
+                methods.join(", "),
+                if methods.len() == 1 { "s" } else { "" }
+            )
+        })
+    }
+
+    /// What blocks the pixels of which a method was certain and wrong, over all views.
+    fn certain_wrong(&self) -> Vec<String> {
+        let mut sums: BTreeMap<String, (u64, Option<BlockerCounts>)> = BTreeMap::new();
+        for run in self.runs.iter().filter(|run| run.is_hard()) {
+            let measured = run.measured.as_ref();
+            let Some(of) = measured.filter(|of| of.wrong.certain > 0) else {
+                continue;
+            };
+            let sum = sums
+                .entry(run.method_label())
+                .or_insert((0, Some(Default::default())));
+            sum.0 += of.wrong.certain;
+            sum.1 = sum
+                .1
+                .zip(of.certain_wrong_blockers)
+                .map(|(one, other)| BlockerCounts {
+                    open_part: one.open_part + other.open_part,
+                    closed_part: one.closed_part + other.closed_part,
+                    none: one.none + other.none,
+                });
+        }
+        let line =
+            |(label, (wrong, by)): (String, _)| format!("{label}: {}", blocked_by(wrong, by));
+        sums.into_iter().map(line).collect()
+    }
+}
+
+impl Group<'_> {
+    fn title(&self) -> &'static str {
+        match self.is_hard {
+            true => "Hard answers against the hard reference",
+            false => "Graded answers against the hard reference",
+        }
+    }
+
+    fn verdict(&self) -> crate::reporting::verdict::Verdict {
+        verdict(&self.rows)
+    }
+}
+
+fn or_dash<T>(value: Option<T>, text: impl Fn(T) -> String) -> String {
+    value.map_or("–".into(), text)
+}
+
+/// The time of each pass in each viewport and map, a table per method: medians of the GPU's ms,
+/// means where there are several views.
+pub fn passes(results: &Results) -> String {
+    let mut methods: Vec<String> = Vec::new();
+    for run in results.runs.iter().filter(|run| run.measured.is_some()) {
+        let name = run.method_name();
+        if !methods.contains(&name) {
+            methods.push(name);
+        }
+    }
+    let tables = methods.iter().map(|method| {
+        let runs = results
+            .runs
+            .iter()
+            .filter(|run| run.method_name() == *method);
+        matrix(method, &runs.collect::<Vec<_>>())
+    });
+    tables.collect::<Vec<_>>().join("\n")
+}
+
+fn matrix(method: &str, runs: &[&Run]) -> String {
+    let mut columns: Vec<([u32; 2], Option<u32>)> = Vec::new();
+    let mut passes: Vec<&str> = Vec::new();
+    // A pass's place, and the sum and number of its times, by pass and column.
+    let mut times: BTreeMap<(usize, usize), (f64, u32)> = BTreeMap::new();
+    let place = |list: &mut Vec<&'_ str>, name| list.iter().position(|known| *known == name);
+    for run in runs {
+        let Some(measured) = &run.measured else {
+            continue;
+        };
+        let cell = (run.viewport, run.map_size);
+        let column = columns.iter().position(|known| *known == cell);
+        let column = column.unwrap_or_else(|| {
+            columns.push(cell);
+            columns.len() - 1
+        });
+        for pass in &measured.passes {
+            let row = place(&mut passes, pass.name.as_str()).unwrap_or_else(|| {
+                passes.push(&pass.name);
+                passes.len() - 1
+            });
+            if let Some(gpu) = pass.gpu_ms {
+                let (sum, count) = times.entry((row, column)).or_default();
+                *sum += gpu.median;
+                *count += 1;
+            }
+        }
+    }
+    let heads: Vec<String> = columns
+        .iter()
+        .map(|(viewport, map)| match map {
+            Some(map) => format!("{}\nmap {map}", size(*viewport)),
+            None => size(*viewport),
+        })
+        .collect();
+    let first = format!("{method}, GPU ms");
+    let heads = [first.as_str()]
+        .into_iter()
+        .chain(heads.iter().map(String::as_str));
+    let rows = passes.iter().enumerate().map(|(row, name)| {
+        let cell = |column| {
+            let time = times.get(&(row, column));
+            or_dash(time, |(sum, count)| ms(sum / f64::from(*count)))
+        };
+        let cells = (0..columns.len()).map(cell);
+        [name.to_string()].into_iter().chain(cells).collect()
+    });
+    table(heads, 1, rows)
+}

@@ -405,9 +405,9 @@ fn a_scene_or_view_that_is_not_there_is_named() {
         "{}",
         stderr(&view)
     );
-    let own = skiagraph(folder.path(), &["run", "rt", "--eye", "-1,2,3"]);
+    let own = skiagraph(folder.path(), &["run", "rt", "--look", "0,1,0"]);
     assert_exit(&own, 2);
-    assert!(stderr(&own).contains("--look"), "{}", stderr(&own));
+    assert!(stderr(&own).contains("parallel"), "{}", stderr(&own));
 }
 
 /// The results that a unit test pins, as `compare` would have kept them.

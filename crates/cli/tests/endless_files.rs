@@ -37,7 +37,7 @@ const COMMANDS: [(&str, &str, &str, [&str; 3]); 6] = [
         [
             "a results.json",
             "64",
-            "give another --out, or leave out --resume, which measures everything and overwrites \
+            "give another --out, or --replace, which measures everything and overwrites \
              the file",
         ],
     ),

@@ -453,6 +453,80 @@ fn a_resumed_comparison_is_the_one_in_one_go() {
     );
 }
 
+#[test]
+fn settings_stand_beside_each_other_and_runs_that_are_there_stay() {
+    let folder = tempfile::tempdir().unwrap();
+    let common = "--size 16x16 --map-size 8 --frames 1 --warmup 0 --out out";
+    let names = || -> Vec<String> {
+        let results = results(&folder.path().join("out"));
+        let runs = results["runs"].as_array().unwrap().iter();
+        runs.map(|run| run["preset"].as_str().unwrap().to_owned())
+            .collect()
+    };
+    skiagraph(folder.path(), &format!("compare rt {common}"));
+    let line = format!("compare crsm@n=1,depth=plane crsm {common} --set cull=front,none");
+    let output = skiagraph(folder.path(), &line);
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        text.contains("1 other run that out/results.json holds already stays"),
+        "{text}"
+    );
+    let own = ["n=1,depth=plane,cull=front", "n=1,depth=plane,cull=none"];
+    let all = own.into_iter().chain(["cull=front", "cull=none"]);
+    let expected: Vec<String> = all.map(|set| format!("crsm@{set}")).collect();
+    assert_eq!(names(), [&expected[..], &["rt".into()]].concat());
+    png(&folder
+        .path()
+        .join("out/crsm-n-1-depth-plane-cull-none-bench_side-16x16-map8-error.png"));
+    // The verdict is over all that is there.
+    let table = String::from_utf8_lossy(&output.stdout);
+    assert!(table.contains("│ rt"), "{table}");
+    skiagraph(folder.path(), &format!("compare nsm {common} --replace"));
+    assert_eq!(names(), ["nsm"]);
+}
+
+#[test]
+fn a_view_and_a_light_of_ones_own_on_any_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("mesh.obj"), SHEET_AND_BOX).unwrap();
+    let compare = |rest: &str| {
+        let line = format!(
+            "compare rt --size 32x32 --frames 1 --warmup 0 --images none --replace --out . {rest}"
+        );
+        let output = skiagraph(folder.path(), &line);
+        let run = results(folder.path())["runs"][0].clone();
+        (run, String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let (park, _) = compare("--scene park");
+    let (lit, _) = compare("--scene park --light 1,-1,0.2");
+    assert_eq!(
+        (&park["view"], &lit["view"]),
+        (&"bench_side".into(), &"own".into())
+    );
+    assert_ne!(
+        park["pixels"]["facing_light"],
+        lit["pixels"]["facing_light"]
+    );
+    assert_eq!(park["pixels"]["background"], lit["pixels"]["background"]);
+    let (above, _) = compare("--scene park --eye 0,20,0.1 --look 0,-1,0");
+    assert_eq!(
+        above["pixels"]["background"], 0,
+        "straight down there is ground"
+    );
+    // Of a bare mesh all is seen, and it is said from where.
+    let (mesh, text) = compare("--scene mesh.obj");
+    assert!(text.contains("chosen: --eye "), "{text}");
+    assert!(count(&mesh["pixels"]["facing_light"]) > 50, "{mesh}");
+    assert!(count(&mesh["pixels"]["background"]) > 0, "{mesh}");
+    let output = Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+        .args("compare rt --path walk --eye 0,1,0".split(' '))
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(text.contains("--path walk brings its camera"), "{text}");
+}
+
 /// `rt` is judged under the light that it has drawn with, and a run of another light is not kept.
 #[test]
 fn a_views_own_light_is_drawn_judged_and_remembered() {
@@ -546,7 +620,7 @@ fn a_light_with_extent_is_judged_by_shares() {
     fs::write(folder.path().join("soft.ron"), soft).unwrap();
     let (runs, text, _) = compare("soft.ron", "--reference-samples 32");
     assert!(text.contains("reference of 32 samples per pixel"), "{text}");
-    assert!(text.contains("by RMSE: "), "{text}");
+    assert!(text.contains("The least error: `"), "{text}");
     let area = &runs[0]["area"];
     assert_eq!(area["samples"], 32);
     assert!(count(&area["penumbra"]) > 20);
@@ -875,12 +949,10 @@ fn results_of_other_conditions_are_not_resumed() {
     assert_eq!(other.status.code(), Some(1), "{text}");
     assert!(text.contains("frames: there 1, here 2"), "{text}");
     assert_eq!(results(folder.path()), before);
-    assert_eq!(compare("--frames 2").status.code(), Some(0));
-    assert_eq!(
-        results(folder.path())["frames"],
-        2,
-        "without --resume it is overwritten"
-    );
+    assert_eq!(compare("--frames 2").status.code(), Some(1), "nor lost");
+    assert_eq!(results(folder.path()), before);
+    assert_eq!(compare("--frames 2 --replace").status.code(), Some(0));
+    assert_eq!(results(folder.path())["frames"], 2);
 }
 
 #[test]

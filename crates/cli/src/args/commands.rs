@@ -15,8 +15,9 @@ pub const REFERENCE_SAMPLES: u32 = 512;
 #[derive(Args, Debug)]
 pub struct CompareArgs {
     /// Presets by name, or graphs (.ron) with the output `visibility`, and perhaps `status`.
-    /// Without any: all presets, those in ./pipelines and the built-in ones.
-    #[arg(value_name = "PRESET|FILE.ron")]
+    /// With settings of its own a method stands beside itself: `crsm@n=1,depth=plane`. Without any:
+    /// all presets, those in ./pipelines and the built-in ones.
+    #[arg(value_name = "PRESET|FILE.ron[@NAME=VALUE,…]")]
     pub presets: Vec<String>,
     /// What is drawn.
     #[command(flatten)]
@@ -44,8 +45,9 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N,…", value_delimiter = ',',
           value_parser = texels(), allow_negative_numbers = true)]
     pub map_size: Vec<u32>,
-    /// A param of the graphs that have it. May be repeated.
-    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    /// A param of the graphs that have it. Of a list (radius=1,2,4; vectors between semicolons) or
+    /// a range (bias=0..0.01/5: five values) every value is a row. May be repeated.
+    #[arg(long = "set", value_name = "NAME=VALUE,…", allow_hyphen_values = true)]
     pub params: Vec<Assignment>,
     /// Timed frames per run. The frame that is judged and pictured is one more behind them, as its
     /// readback would be timed, too.
@@ -76,6 +78,10 @@ pub struct CompareArgs {
     /// same, and go on with the others.
     #[arg(long)]
     pub resume: bool,
+    /// Forget what DIR/results.json holds. Without it, runs of other methods, views and sizes stay
+    /// in it.
+    #[arg(long, conflicts_with = "resume")]
+    pub replace: bool,
     /// Published figures to stand beside ours in results.json and in --format markdown, there as
     /// (LABEL VALUE): a CSV with the columns scene, view, viewport, map_size, preset, quantity,
     /// value, source, note. May be repeated.
@@ -232,8 +238,9 @@ pub struct ProfileArgs {
 #[derive(Args, Debug)]
 pub struct StressArgs {
     /// Presets by name, or graphs (.ron) with the output `visibility`, and perhaps `status`.
-    /// Without any: all presets, those in ./pipelines and the built-in ones.
-    #[arg(value_name = "PRESET|FILE.ron")]
+    /// With settings of its own a method stands beside itself: `crsm@n=1,depth=plane`. Without any:
+    /// all presets, those in ./pipelines and the built-in ones.
+    #[arg(value_name = "PRESET|FILE.ron[@NAME=VALUE,…]")]
     pub presets: Vec<String>,
     /// List the cases instead: names, casters, reasons. Needs no GPU.
     #[arg(long, exclusive = true)]
@@ -249,8 +256,9 @@ pub struct StressArgs {
     #[arg(long, value_name = "N,…", value_delimiter = ',', default_value = "128",
           value_parser = texels(), allow_negative_numbers = true)]
     pub map_size: Vec<u32>,
-    /// A param of the graphs that have it. May be repeated.
-    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    /// A param of the graphs that have it. Of a list (radius=1,2,4; vectors between semicolons) or
+    /// a range (bias=0..0.01/5: five values) every value is a row. May be repeated.
+    #[arg(long = "set", value_name = "NAME=VALUE,…", allow_hyphen_values = true)]
     pub params: Vec<Assignment>,
     /// Judge this method as an exact one, too: no pixel outside the band may be wrong. May be
     /// repeated.

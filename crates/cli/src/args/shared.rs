@@ -31,35 +31,35 @@ const MAX_SECONDS: u64 = 86_400;
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Scene")]
 pub struct SceneArgs {
-    /// Built-in scene, scene file (.ron), name in scenes/, or a mesh (.obj, .gltf, .glb) with
-    /// --eye, --look and --light.
+    /// Built-in scene, scene file (.ron), name in scenes/, or a mesh (.obj, .gltf, .glb).
     #[arg(long, default_value = "park", value_name = "SCENE")]
     pub scene: String,
     /// A view of the scene, or `all`. Without it: the scene's first view.
     #[arg(long, value_name = "NAME")]
     pub view: Option<String>,
-    /// Eye position, for an .obj.
+    /// Eye position, instead of the view's. Without it, for a mesh: where all of it is seen.
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     pub eye: Option<DVec3>,
-    /// Direction in which the eye looks, for an .obj.
+    /// Direction in which the eye looks, instead of the view's. Without it, for a mesh: at its
+    /// middle.
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     pub look: Option<DVec3>,
     /// A light of the scene, or `all`: each view under each. Without it: the scene's first light,
-    /// or all of them where `compare` has a graph with a layer for each. For an .obj, the direction
-    /// in which the light travels.
+    /// or all of them where `compare` has a graph with a layer for each. Three numbers are
+    /// the direction in which a sun of your own shines.
     #[arg(long, value_name = "NAME|X,Y,Z", value_parser = values::light,
           allow_hyphen_values = true)]
     pub light: Option<LightArgument>,
-    /// Up direction, for an .obj. Without it: 0,1,0.
+    /// Up direction, instead of the view's. Without it, for a mesh: 0,1,0.
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     pub up: Option<DVec3>,
-    /// Vertical field of view in degrees, for an .obj. Without it: 60.
+    /// Vertical field of view in degrees, instead of the view's. Without it, for a mesh: 60.
     #[arg(long, value_name = "DEGREES", value_parser = values::degrees)]
     pub fov: Option<f64>,
-    /// Near plane distance, for an .obj. Without it: a ten-thousandth of --far.
+    /// Near plane distance. Without it, with --eye or for a mesh: a ten-thousandth of --far.
     #[arg(long, value_name = "LENGTH", value_parser = values::positive)]
     pub near: Option<f64>,
-    /// Far plane distance, for an .obj. Without it: just behind the whole mesh.
+    /// Far plane distance. Without it, with --eye or for a mesh: just behind the whole mesh.
     #[arg(long, value_name = "LENGTH", value_parser = values::positive)]
     pub far: Option<f64>,
 }

@@ -10,10 +10,11 @@ use crate::files::write::check_folder;
 use crate::graphs::idle_params::IdleParams;
 use crate::graphs::method::{self, Method};
 use crate::graphs::planning::Capabilities;
+use crate::graphs::variants::{self, MethodArgument};
 use crate::graphs::{contract, preset};
 use crate::measuring::comparison::{Comparison, ComparisonSetup};
 use crate::measuring::reference::PrimaryVisibility;
-use crate::measuring::scene_selection::{SceneSelection, under_lights};
+use crate::measuring::scene_selection::{SceneSelection, check_path, under_lights};
 use crate::measuring::subject::Subject;
 use crate::measuring::{date, device};
 use crate::pictures::run_pictures::{check_stems, reference_stem, stem};
@@ -36,10 +37,11 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let published = published::read(&args.published)?;
     let sources = preset::sources();
     let names = preset::named_or_all(&args.presets, &sources);
-    let presets = contract::load_all(&names, &sources)?;
-    let methods = method::methods(&presets, &args.params, &args.map_size)?;
+    let arguments: Vec<_> = names.iter().map(|name| MethodArgument::new(name)).collect();
+    let presets = contract::load_all(&variants::presets(&arguments), &sources)?;
+    let methods = method::methods(&presets, &arguments, &args.params, &args.map_size)?;
     let deaf = methods.iter().filter(|method| method.map_size.is_none());
-    let deaf: Vec<&str> = deaf.map(|method| method.preset.name.as_str()).collect();
+    let deaf: Vec<&str> = deaf.map(|method| method.name.as_str()).collect();
     if !args.map_size.is_empty() && !deaf.is_empty() {
         note(&format!(
             "--map-size has no effect on {}: no param `map_size`",
@@ -152,6 +154,7 @@ fn subjects(
         };
         return Ok(views.into_iter().map(Subject::Still).collect());
     };
+    check_path(&args.scene, name)?;
     let paths = SceneLibrary::from_environment().paths(&args.scene.scene);
     let paths = paths.map_err(|error| CliError::Input(error.to_string()))?;
     Subject::paths(scene, paths, name, lights)
@@ -168,7 +171,7 @@ fn check_pictures(
         let view = subject.name();
         for &viewport in viewports {
             stems.extend(methods.iter().map(|method| {
-                let owner = format!("`{}` on view `{view}`", method.preset.name);
+                let owner = format!("`{}` on view `{view}`", method.name);
                 (stem(method, view, viewport), owner)
             }));
             let owner = format!("the reference on view `{view}`");
@@ -214,9 +217,6 @@ fn run(
 
 /// What all views and viewports come to, as far as they are done.
 fn print_summary(args: &CompareArgs, results: &Results) -> Result<(), CliError> {
-    if results.runs.is_empty() {
-        return Ok(());
-    }
     let summaries = summary_table::summaries(results);
     match args.format {
         Format::Table => {
@@ -242,10 +242,13 @@ fn finish(
     outcome: Result<(), CliError>,
 ) -> Result<(), CliError> {
     let planned = comparison.planned();
+    let whole = comparison.whole();
     let Comparison {
         results, broken, ..
     } = comparison;
-    print_summary(args, &results)?;
+    if !results.runs.is_empty() {
+        print_summary(args, &whole)?;
+    }
     let kept = match results.runs.len() {
         0 => "no run was finished".into(),
         done => format!(
@@ -264,7 +267,7 @@ fn finish(
     }
     if args.resume {
         // Where every run was kept, nothing has been written yet.
-        save(&results, &args.out)?;
+        save(&whole, &args.out)?;
     }
     if !broken.is_empty() {
         return Err(CliError::Contract(broken.join("\nerror: ")));

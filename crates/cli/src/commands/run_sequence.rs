@@ -5,6 +5,7 @@ use crate::args::values::Save;
 use crate::error::CliError;
 use crate::graphs::preset::Preset;
 use crate::measuring::frame;
+use crate::measuring::scene_selection::check_path;
 use crate::measuring::shapes::Shapes;
 use crate::measuring::subject::{Shot, Subject};
 use crate::pictures::save::{Decoding, capture, write};
@@ -85,6 +86,7 @@ impl Shots {
     }
 
     fn path(args: &RunArgs, scene: &Scene, name: &str) -> Result<Subject, CliError> {
+        check_path(&args.scene, name)?;
         let paths: Result<Vec<CameraPath>, _> =
             SceneLibrary::from_environment().paths(&args.scene.scene);
         let paths = paths.map_err(|error| CliError::Input(error.to_string()))?;

@@ -9,6 +9,7 @@ use crate::files::write::{check_folder, write_whole};
 use crate::graphs::faults::reasons;
 use crate::graphs::method::{self, Method};
 use crate::graphs::planning::Capabilities;
+use crate::graphs::variants::{self, MethodArgument};
 use crate::graphs::{contract, preset};
 use crate::measuring::hard_case::{HardCaseContext, MethodRun};
 use crate::measuring::reference::PrimaryVisibility;
@@ -40,8 +41,9 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let sources = preset::sources();
     let names = preset::named_or_all(&args.presets, &sources);
     check_exact(&args.exact, &names)?;
-    let presets = contract::load_all(&names, &sources)?;
-    let methods = method::methods(&presets, &args.params, &args.map_size)?;
+    let arguments: Vec<_> = names.iter().map(|name| MethodArgument::new(name)).collect();
+    let presets = contract::load_all(&variants::presets(&arguments), &sources)?;
+    let methods = method::methods(&presets, &arguments, &args.params, &args.map_size)?;
     for method in &methods {
         guarantee::of(method, &args.exact)?;
     }
@@ -162,7 +164,7 @@ fn method_run<'a>(
 fn check_abilities(methods: &[MethodRun], gpu: &Gpu) -> Result<(), CliError> {
     let reasons = methods.iter().map(|run| {
         let reason = run.unavailable.as_ref()?;
-        Some(format!("\n  {}: {reason}", run.method.preset.name))
+        Some(format!("\n  {}: {reason}", run.method.name))
     });
     match reasons.collect::<Option<String>>() {
         Some(reasons) => Err(CliError::Input(format!(

@@ -62,14 +62,14 @@ pub fn check_plans(
                     if let Some(device) = device {
                         match method.plan(viewport, device.clone(), provider) {
                             Ok(_) => can_run_one = true,
-                            Err(diagnostics) => refusals.add(&method.preset.name, &diagnostics),
+                            Err(diagnostics) => refusals.add(&method.name, &diagnostics),
                         }
                     }
                 }
                 Err(diagnostics) if diagnostics.iter().all(|found| found.code == Code::Light) => {
-                    refusals.add(&method.preset.name, &diagnostics);
+                    refusals.add(&method.name, &diagnostics);
                 }
-                Err(diagnostics) => faults.add(&method.preset.name, &diagnostics),
+                Err(diagnostics) => faults.add(&method.name, &diagnostics),
             }
         }
     }

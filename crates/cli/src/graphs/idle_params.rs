@@ -33,7 +33,7 @@ impl IdleParams {
     pub fn note(&mut self, methods: &[Method], on: &Capabilities, provider: &SceneProvider) {
         for method in methods {
             if let Ok(plan) = method.plan(method.viewport, on.clone(), provider) {
-                self.note_of(&method.preset.name, &plan, provider.light());
+                self.note_of(&method.name, &plan, provider.light());
             }
         }
     }

@@ -6,6 +6,7 @@ use crate::error::CliError;
 use crate::files::fingerprint::Fingerprint;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::preset::{self, Preset};
+use crate::graphs::variants::{self, MAP_SIZE, MethodArgument, Setting};
 use crate::wording::did_you_mean;
 use skiagraph_gpu::Provider;
 use skiagraph_graph::{Diagnostics, ParamValue, Plan, Sources};
@@ -14,11 +15,10 @@ use std::{collections::BTreeMap, slice};
 /// Values of params, by their names.
 pub type ParamValues = BTreeMap<String, ParamValue>;
 
-/// The param that `--map-size` sets.
-const MAP_SIZE: &str = "map_size";
-
 /// A preset with the params that it runs with.
 pub struct Method<'a> {
+    /// The preset's name, with what tells this setting from its others: `crsm@n=1`.
+    pub name: String,
     /// The preset.
     pub preset: &'a Preset,
     /// Its params that are not at their defaults.
@@ -55,6 +55,7 @@ impl<'a> Method<'a> {
             _ => None,
         };
         Self {
+            name: preset.name.clone(),
             preset,
             params,
             viewport,
@@ -64,14 +65,23 @@ impl<'a> Method<'a> {
         }
     }
 
+    /// The same under another name.
+    pub fn named(self, name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            ..self
+        }
+    }
+
     /// The same on an adapter with these features.
     pub fn settled(self, features: wgpu::Features) -> Self {
-        Self::on(self.preset, self.params, self.viewport, features)
+        Self::on(self.preset, self.params, self.viewport, features).named(&self.name)
     }
 
     /// The same in so many pixels.
     pub fn at(&self, viewport: [u32; 2]) -> Self {
-        Self::on(self.preset, self.params.clone(), viewport, self.features)
+        let params = self.params.clone();
+        Self::on(self.preset, params, viewport, self.features).named(&self.name)
     }
 
     /// The plan on a viewport for such an adapter, of the outputs that are judged: what else the
@@ -118,24 +128,41 @@ fn json(value: &ParamValue) -> serde_json::Value {
     }
 }
 
-/// Each preset with each map size; a preset without that param once.
+/// Each method in each of its settings, with each map size; a preset without that param once.
 ///
 /// # Errors
 /// A value that a param cannot take, and a name that no preset has.
 pub fn methods<'a>(
     presets: &'a [Preset],
+    arguments: &[MethodArgument],
     params: &[Assignment],
     map_sizes: &[u32],
 ) -> Result<Vec<Method<'a>>, CliError> {
     check_names(presets, params)?;
-    let mut methods = Vec::new();
-    for preset in presets {
+    let mut methods: Vec<Method> = Vec::new();
+    for argument in unique(arguments) {
+        let named = presets.iter().find(|preset| preset.name == argument.preset);
+        let Some(preset) = named else {
+            continue;
+        };
         let mut sizes: Vec<Option<u32>> = unique(map_sizes).into_iter().map(Some).collect();
         if sizes.is_empty() || preset.param(MAP_SIZE).is_none() {
             sizes = vec![None];
         }
-        for size in sizes {
-            methods.push(Method::new(preset, param_values(preset, params, size)?));
+        for Setting { label, set } in variants::settings(preset, &argument, params)? {
+            let name = match label.as_str() {
+                "" => preset.name.clone(),
+                label => format!("{}@{label}", preset.name),
+            };
+            let set = set
+                .into_iter()
+                .map(|(name, value)| Assignment { name, value });
+            let set: Vec<Assignment> = set.collect();
+            let has_size = argument.own.iter().any(|own| own.name == MAP_SIZE);
+            for &size in if has_size { &[None][..] } else { &sizes } {
+                let params = param_values(preset, &set, size)?;
+                methods.push(Method::new(preset, params).named(&name));
+            }
         }
     }
     Ok(methods)
@@ -149,12 +176,15 @@ pub fn load_one(
     args: &MethodArgs,
     sources: &dyn Sources,
 ) -> Result<(Preset, ParamValues), CliError> {
-    let mut presets = preset::load_all(slice::from_ref(&args.preset), sources)?;
+    let argument = MethodArgument::new(&args.preset);
+    let mut presets = preset::load_all(slice::from_ref(&argument.preset), sources)?;
     check_names(&presets, &args.params)?;
     let preset = presets
         .pop()
         .ok_or_else(|| CliError::Input("no graph".into()))?;
-    let params = param_values(&preset, &args.params, args.map_size)?;
+    let set = [&args.params[..], &argument.own].concat();
+    check_names(slice::from_ref(&preset), &argument.own)?;
+    let params = param_values(&preset, &set, args.map_size)?;
     Ok((preset, params))
 }
 

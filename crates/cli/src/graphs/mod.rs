@@ -8,3 +8,4 @@ pub mod light_kinds;
 pub mod method;
 pub mod planning;
 pub mod preset;
+pub mod variants;

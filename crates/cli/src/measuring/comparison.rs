@@ -7,7 +7,7 @@ use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::reference::{Judge, PrimaryVisibility, Tracing};
-use crate::measuring::resume::{RunKey, resume};
+use crate::measuring::resume::{RunKey, earlier};
 use crate::measuring::run::MeasureContext;
 use crate::measuring::sequence;
 use crate::measuring::shapes::Shapes;
@@ -52,7 +52,7 @@ impl ComparisonSetup<'_> {
             for &viewport in self.viewports {
                 let methods = self.methods.iter().map(|method| method.at(viewport));
                 planned.extend(methods.map(|method| RunKey {
-                    preset: method.preset.name.clone(),
+                    preset: method.name.clone(),
                     view: subject.name().to_owned(),
                     viewport,
                     map_size: method.map_size,
@@ -80,6 +80,8 @@ pub struct Comparison<'a> {
     states: Vec<RunState>,
     /// Holds the runs that are done, in the order in which they were planned.
     pub results: Results,
+    /// What an earlier comparison left in the folder and this one has not.
+    others: Vec<Run>,
     /// Why graphs broke the contract of outputs.
     pub broken: Vec<String>,
 }
@@ -92,10 +94,10 @@ enum RunState {
 }
 
 impl<'a> Comparison<'a> {
-    /// One that has nothing yet, or with `--resume` what an earlier one left.
+    /// One that has nothing yet, or what an earlier one left.
     ///
     /// # Errors
-    /// Those of [`resume`].
+    /// Those of [`earlier`].
     pub fn new(
         args: &'a CompareArgs,
         setup: ComparisonSetup<'a>,
@@ -113,11 +115,13 @@ impl<'a> Comparison<'a> {
             published,
             states: planned.iter().map(|_| RunState::Pending).collect(),
             results,
+            others: Vec::new(),
             broken: Vec::new(),
         };
-        if args.resume {
-            let earlier = resume(&args.out, &comparison.results, &planned)?;
-            for (place, run) in earlier.into_iter().enumerate() {
+        if !args.replace {
+            let earlier = earlier(&args.out, &comparison.results, &planned, args.resume)?;
+            comparison.others = earlier.others;
+            for (place, run) in earlier.kept.into_iter().enumerate() {
                 match run {
                     Some(run) if run.measured.is_some() => comparison.done(place, run),
                     Some(run) => comparison.states[place] = RunState::Unavailable(run.into()),
@@ -222,9 +226,16 @@ impl<'a> Comparison<'a> {
                 run => run?,
             };
             self.done(place, run);
-            save(&self.results, &self.args.out)?;
+            save(&self.whole(), &self.args.out)?;
         }
         Ok(())
+    }
+
+    /// What is done, with what was in the folder before and stays.
+    pub fn whole(&self) -> Results {
+        let mut whole = self.results.clone();
+        whole.runs.extend(self.others.iter().cloned());
+        whole
     }
 
     /// A method that could not run and again cannot even be planned here needs no reference to say
@@ -245,7 +256,7 @@ impl<'a> Comparison<'a> {
                 ..(**run).clone()
             };
             self.done(place, run);
-            save(&self.results, &self.args.out)?;
+            save(&self.whole(), &self.args.out)?;
         }
         Ok(())
     }

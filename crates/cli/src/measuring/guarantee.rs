@@ -18,7 +18,7 @@ const CLAIMS: [Guarantee; 2] = [Guarantee::Exact, Guarantee::Certain];
 /// A claim that nobody judges, a condition without a value.
 pub fn of(method: &Method, exact: &[String]) -> Result<Option<(Guarantee, String)>, CliError> {
     let preset = method.preset;
-    if exact.contains(&preset.name) {
+    if exact.contains(&method.name) || exact.contains(&preset.name) {
         return Ok(Some((Guarantee::Exact, "--exact".into())));
     }
     let claims = preset
@@ -63,7 +63,7 @@ pub fn without_culling<'a>(method: &Method<'a>) -> Option<Method<'a>> {
     }
     let mut params = method.params.clone();
     params.insert(CULL.into(), none);
-    Some(Method::new(method.preset, params))
+    Some(Method::new(method.preset, params).named(&method.name))
 }
 
 /// What the document promises, for the record; a claim that nobody judges is no promise.

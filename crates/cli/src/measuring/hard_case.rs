@@ -53,7 +53,7 @@ impl<'a> MethodRun<'a> {
     /// As a column of the report.
     pub fn column(&self) -> Column {
         Column {
-            preset: self.method.preset.name.clone(),
+            preset: self.method.name.clone(),
             map_size: self.method.map_size,
             params: self.method.all_params(),
             guarantee: self.guarantee.as_ref().map(|(guarantee, _)| *guarantee),
@@ -82,7 +82,7 @@ impl<'a> MethodRun<'a> {
     /// What the names of its pictures of a case begin with, and whose they are.
     pub fn stems(&self, case: &HardCase, viewport: [u32; 2]) -> Vec<(String, String)> {
         let variants = self.variants(casters(case)).into_iter();
-        let owner = format!("`{}` on `{}`", self.method.preset.name, case.name);
+        let owner = format!("`{}` on `{}`", self.method.name, case.name);
         variants
             .map(|variant| (variant.stem(case, viewport), owner.clone()))
             .collect()
@@ -173,7 +173,7 @@ impl HardCaseContext<'_> {
                     return Err(CliError::interrupted());
                 }
                 let mut cell = Cell {
-                    preset: variant.method.preset.name.clone(),
+                    preset: variant.method.name.clone(),
                     map_size: variant.method.map_size,
                     set: variant.set.map(Into::into),
                     verdict: Verdict::Fail,

@@ -1,9 +1,11 @@
-//! `compare --resume`: what of an earlier comparison need not be measured again.
+//! What of an earlier comparison stays: the runs of others, and with `--resume` what need not be
+//! measured again.
 
 use crate::error::CliError;
 use crate::records::read_back::{self, WITHOUT_RESULTS};
 use crate::records::results::{Results, Run};
 use crate::terminal::console::note;
+use crate::wording::plural;
 use serde_json::Value;
 use std::{collections::BTreeMap, path::Path};
 
@@ -37,40 +39,62 @@ impl RunKey {
     }
 }
 
-/// The runs of an earlier comparison that are as this one would have them: one for each of
-/// `planned`, where there is one.
+/// What of an earlier comparison stays.
+#[derive(Debug, Default)]
+pub struct Earlier {
+    /// For each planned run the one that is as this comparison would have it.
+    pub kept: Vec<Option<Run>>,
+    /// Runs that this comparison has not: of other methods, views, sizes.
+    pub others: Vec<Run>,
+}
+
+/// What of an earlier comparison in the same folder stays; of the planned runs only if `resumes`.
 ///
 /// # Errors
-/// A file that cannot be read, is no results.json, was measured under other conditions than `now`,
-/// or holds runs that the new file would not.
-pub fn resume(
+/// A file that cannot be read, is no results.json, or was measured under other conditions than
+/// `now`.
+pub fn earlier(
     folder: &Path,
     now: &Results,
     planned: &[RunKey],
-) -> Result<Vec<Option<Run>>, CliError> {
+    resumes: bool,
+) -> Result<Earlier, CliError> {
     let path = folder.join("results.json");
     let name = path.display().to_string();
+    let nothing = || planned.iter().map(|_| None).collect();
     let Some(earlier) = read_back::results(&path)? else {
-        note(&format!(
-            "--resume: there is no {name} yet, so everything is measured"
-        ));
-        return Ok(planned.iter().map(|_| None).collect());
+        if resumes {
+            note(&format!(
+                "--resume: there is no {name} yet, so everything is measured"
+            ));
+        }
+        return Ok(Earlier {
+            kept: nothing(),
+            others: Vec::new(),
+        });
     };
-    let differences = differences(&earlier, now);
-    refuse(&name, "was measured under other conditions", &differences)?;
-    let is_planned = |run: &&Run| planned.iter().any(|planned| planned.is_place_of(run));
-    let foreign = earlier.runs.iter().filter(|run| !is_planned(run));
-    let what = "holds runs that this comparison has not, and they would be lost";
-    refuse(&name, what, &foreign.map(Run::label).collect::<Vec<_>>())?;
-    let mut runs = earlier.runs;
+    refuse(&name, &differences(&earlier, now))?;
+    let is_planned = |run: &Run| planned.iter().any(|planned| planned.is_place_of(run));
+    let (mut runs, others): (Vec<Run>, Vec<Run>) = earlier.runs.into_iter().partition(is_planned);
+    if !others.is_empty() {
+        note(&format!(
+            "{} that {name} holds already {} in it",
+            plural(others.len(), "other run"),
+            if others.len() == 1 { "stays" } else { "stay" }
+        ));
+    }
+    if !resumes {
+        return Ok(Earlier {
+            kept: nothing(),
+            others,
+        });
+    }
     let total = runs.len();
-    let kept: Vec<Option<Run>> = planned
-        .iter()
-        .map(|planned| {
-            let index = runs.iter().position(|run| planned.is_of(run))?;
-            Some(runs.swap_remove(index))
-        })
-        .collect();
+    let take = |planned: &RunKey| {
+        let index = runs.iter().position(|run| planned.is_of(run))?;
+        Some(runs.swap_remove(index))
+    };
+    let kept: Vec<Option<Run>> = planned.iter().map(take).collect();
     let measured = kept.iter().flatten().filter(|run| run.measured.is_some());
     note(&format!(
         "--resume: {} of {} runs are kept from {name}",
@@ -84,23 +108,19 @@ pub fn resume(
             runs.len()
         ));
     }
-    Ok(kept)
+    Ok(Earlier { kept, others })
 }
 
 /// An error if there is anything to list.
-fn refuse(name: &str, what: &str, lines: &[String]) -> Result<(), CliError> {
-    /// Nobody reads on to the end of a longer list.
-    const MOST_LINES: usize = 8;
-    if lines.is_empty() {
-        return Ok(());
+fn refuse(name: &str, differences: &[String]) -> Result<(), CliError> {
+    match differences {
+        [] => Ok(()),
+        lines => Err(CliError::Input(format!(
+            "{name} was measured under other conditions\n  {}\n  ask for the same, \
+             {WITHOUT_RESULTS}",
+            lines.join("\n  ")
+        ))),
     }
-    let mut shown = lines[..lines.len().min(MOST_LINES)].join("\n  ");
-    if lines.len() > MOST_LINES {
-        shown += &format!("\n  and {} more", lines.len() - MOST_LINES);
-    }
-    Err(CliError::Input(format!(
-        "--resume: {name} {what}\n  {shown}\n  ask for the same, {WITHOUT_RESULTS}"
-    )))
 }
 
 /// Conditions in which both were not measured alike.
@@ -154,8 +174,8 @@ mod tests {
         let mut now = sample();
         let mut planned = run_keys(&now);
         change(&mut now, &mut planned);
-        resume(folder.path(), &now, &planned)
-            .map(|runs| runs.iter().map(Option::is_some).collect())
+        earlier(folder.path(), &now, &planned, true)
+            .map(|earlier| earlier.kept.iter().map(Option::is_some).collect())
             .map_err(|error| error.to_string())
     }
 
@@ -204,22 +224,30 @@ mod tests {
             let error = kept(|now, _| change(now)).unwrap_err();
             assert!(error.contains(part), "no {part:?} in {error}");
             assert!(
-                error.contains("another --out") && error.contains("leave out --resume"),
+                error.contains("another --out") && error.contains("--replace"),
                 "{error}"
             );
         }
     }
 
     #[test]
-    fn runs_that_would_be_lost_are_named() {
-        let error = kept(|_, planned| drop(planned.remove(0))).unwrap_err();
-        assert!(error.contains("nsm on main 512x256, map 1024"), "{error}");
+    fn runs_of_other_methods_stay() {
+        let folder = tempfile::tempdir().unwrap();
+        save(&sample(), folder.path()).unwrap();
+        let planned = &run_keys(&sample())[1..2];
+        for resumes in [false, true] {
+            let stay = earlier(folder.path(), &sample(), planned, resumes).unwrap();
+            let others: Vec<&str> = stay.others.iter().map(|run| run.preset.as_str()).collect();
+            assert_eq!(others, ["nsm", "rt_hw"]);
+            assert_eq!(stay.kept[0].is_some(), resumes);
+        }
     }
 
     #[test]
     fn no_file_keeps_nothing() {
         let folder = tempfile::tempdir().unwrap();
-        let kept = resume(folder.path(), &sample(), &run_keys(&sample())).unwrap();
-        assert_eq!(kept, [None, None, None]);
+        let none = earlier(folder.path(), &sample(), &run_keys(&sample()), true).unwrap();
+        assert_eq!(none.kept, [None, None, None]);
+        assert_eq!(none.others, []);
     }
 }

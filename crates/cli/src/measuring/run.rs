@@ -85,7 +85,7 @@ impl MeasureContext<'_> {
         let step = Step::begin(
             format!(
                 "{}, {}",
-                method.preset.name,
+                method.name,
                 conditions(method, self.view, viewport)
             ),
             u64::from(self.warmup) + self.frames,
@@ -267,7 +267,7 @@ impl MeasureContext<'_> {
         let (reference, area) = (&right.reference, right.area.as_ref());
         let counts = self.own;
         Run {
-            preset: method.preset.name.clone(),
+            preset: method.name.clone(),
             view: self.view.into(),
             viewport: reference.viewport,
             map_size: method.map_size,

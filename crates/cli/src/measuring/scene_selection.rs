@@ -7,8 +7,10 @@ use crate::terminal::console::note;
 use crate::wording::did_you_mean;
 use glam::DVec3;
 use skiagraph_scene::{
-    DirectionalLight, ObjSetup, QuadDiagonal, Scene, SceneError, SceneLibrary, SceneRequest, View,
+    DirectionalLight, Light, ObjSetup, QuadDiagonal, Scene, SceneError, SceneLibrary, SceneRequest,
+    View,
 };
+use std::path::Path;
 
 /// A scene and the views that were asked for, at least one.
 #[derive(Debug)]
@@ -23,12 +25,11 @@ impl SceneSelection {
     /// Loads what the arguments name; warns of what an import had to mend.
     ///
     /// # Errors
-    /// A scene that cannot be loaded, a view that it does not have, view flags that do not go
-    /// together.
+    /// A scene that cannot be loaded, a view that it does not have, a camera that is none.
     pub fn load(args: &SceneArgs) -> Result<Self, CliError> {
         let request = SceneRequest {
             argument: args.scene.clone(),
-            obj: obj_setup(args)?,
+            obj: bare_setup(args),
         };
         let library = SceneLibrary::from_environment();
         let loaded = library.load(&request);
@@ -40,10 +41,12 @@ impl SceneSelection {
                 report.to_string().trim_end().replace('\n', "; ")
             ));
         }
-        if request.obj.is_some() {
-            fit_planes(&mut scene, args)?;
+        let is_bare = request.obj.is_some();
+        if is_bare {
+            look_at_all(&mut scene, args);
         }
         let views = choose(&scene, args.view.as_deref())?;
+        let views = override_views(&scene, views, args, is_bare)?;
         let views = under_lights(&scene, views, args)?;
         Ok(Self { scene, views })
     }
@@ -66,10 +69,7 @@ pub fn under_lights(
 
 fn explain(error: SceneError, args: &SceneArgs, library: &SceneLibrary) -> CliError {
     match error {
-        // Which flags to add or to leave out is a matter of usage.
-        SceneError::ObjNeedsView { .. }
-        | SceneError::ViewNotWanted { .. }
-        | SceneError::BadView { .. } => CliError::Usage(error.to_string()),
+        SceneError::BadView { .. } => CliError::Usage(error.to_string()),
         SceneError::UnknownScene { .. } => {
             let known = library.list();
             let hint = did_you_mean(&args.scene, known.iter().map(|scene| scene.name.as_str()));
@@ -82,67 +82,167 @@ fn explain(error: SceneError, args: &SceneArgs, library: &SceneLibrary) -> CliEr
     }
 }
 
-/// View and light of a bare `.obj`, once any of the flags is given; the planes that are not given
-/// are fitted later.
-fn obj_setup(args: &SceneArgs) -> Result<Option<ObjSetup>, CliError> {
-    let direction = match &args.light {
-        Some(LightArgument::Direction(direction)) => Some(*direction),
-        Some(LightArgument::Name(_)) | None => None,
-    };
-    let given = [args.eye, args.look, direction, args.up]
-        .iter()
-        .any(Option::is_some)
-        || [args.fov, args.near, args.far].iter().any(Option::is_some);
-    if !given {
-        return Ok(None);
-    }
-    let (Some(eye), Some(look), Some(light)) = (args.eye, args.look, direction) else {
-        return Err(CliError::Usage(
-            "a view of your own needs all of --eye x,y,z, --look x,y,z (direction) and --light \
-             x,y,z (the direction in which the light travels)"
-                .into(),
-        ));
-    };
-    let far = args
-        .far
-        .or(args.near.map(|near| near * NEAR_TO_FAR))
-        .unwrap_or(NEAR_TO_FAR);
-    Ok(Some(ObjSetup {
+/// What a bare mesh file lacks. Its view is put in place once its bounds are known.
+fn bare_setup(args: &SceneArgs) -> Option<ObjSetup> {
+    let extension = Path::new(&args.scene).extension()?;
+    let mut known = ["obj", "gltf", "glb"].into_iter();
+    known.find(|known| extension.eq_ignore_ascii_case(known))?;
+    Some(ObjSetup {
         view: View {
             name: "main".into(),
-            eye,
-            direction: look,
-            up: args.up.unwrap_or(DVec3::Y),
-            fov_y_degrees: args.fov.unwrap_or(60.0),
-            near: args.near.unwrap_or(far / NEAR_TO_FAR),
-            far,
+            eye: DVec3::ZERO,
+            direction: DVec3::NEG_Z,
+            up: DVec3::Y,
+            fov_y_degrees: 60.0,
+            near: 1.0,
+            far: NEAR_TO_FAR,
             light: None,
         },
-        light: DirectionalLight::new(light).into(),
+        light: DirectionalLight::new(own_light(args).unwrap_or(FALLBACK_LIGHT)).into(),
         quads: QuadDiagonal::default(),
-    }))
+    })
 }
+
+/// The direction in which light travels over a mesh where nobody says: a high sun, from the side.
+const FALLBACK_LIGHT: DVec3 = DVec3::new(-0.4, -1.0, -0.55);
 
 /// A depth buffer of 32-bit floats tells depths apart well over this range.
 const NEAR_TO_FAR: f64 = 1e4;
 
-/// Replaces the clip planes that were not given: far just behind the mesh, near a ten-thousandth of
-/// it.
-fn fit_planes(scene: &mut Scene, args: &SceneArgs) -> Result<(), CliError> {
+fn own_light(args: &SceneArgs) -> Option<DVec3> {
+    match &args.light {
+        Some(LightArgument::Direction(direction)) => Some(*direction),
+        Some(LightArgument::Name(_)) | None => None,
+    }
+}
+
+/// Looks at a bare mesh from where all of it is seen, as far as nobody says otherwise, and says so.
+fn look_at_all(scene: &mut Scene, args: &SceneArgs) {
     let (Some((min, max)), Some(view)) = (scene.mesh.bounds(), scene.views.first_mut()) else {
-        return Ok(());
+        return;
     };
     let (min, max) = (min.as_dvec3(), max.as_dvec3());
-    let farthest = (max - view.eye).abs().max((view.eye - min).abs()).length();
-    if args.far.is_none() {
-        view.far = (farthest * 1.01)
+    let centre = (min + max) * 0.5;
+    let radius = ((max - min).length() * 0.5).max(f64::MIN_POSITIVE);
+    let fov = args.fov.unwrap_or(view.fov_y_degrees).to_radians();
+    let distance = radius / (fov * 0.5).sin();
+    view.eye = centre + DVec3::new(0.5, 0.6, 1.0).normalize() * distance;
+    if let Some(eye) = args.eye {
+        view.eye = eye;
+    }
+    let towards = centre - view.eye;
+    view.direction = if towards == DVec3::ZERO {
+        DVec3::NEG_Z
+    } else {
+        towards
+    };
+    let given = [
+        args.eye.is_some(),
+        args.look.is_some(),
+        own_light(args).is_some(),
+    ];
+    if given == [true; 3] {
+        return;
+    }
+    let three = |v: DVec3| format!("{:.4},{:.4},{:.4}", v.x, v.y, v.z);
+    let chosen = [
+        ("--eye", three(view.eye)),
+        ("--look", three(view.direction.normalize())),
+        ("--light", three(FALLBACK_LIGHT)),
+    ];
+    let chosen = chosen.iter().zip(given).filter(|(_, given)| !given);
+    let chosen: Vec<String> = chosen
+        .map(|((flag, value), _)| format!("{flag} {value}"))
+        .collect();
+    note(&format!(
+        "{}: a mesh file holds no view and no light; chosen: {}",
+        args.scene,
+        chosen.join(" ")
+    ));
+}
+
+/// Refuses a camera or a light of one's own along a path, which has both.
+///
+/// # Errors
+/// One is given.
+pub fn check_path(args: &SceneArgs, path: &str) -> Result<(), CliError> {
+    match has_own_view(args) {
+        false => Ok(()),
+        true => Err(CliError::Usage(format!(
+            "--path {path} brings its camera and its light: leave out --eye, --look, --up, --fov, \
+             --near, --far and --light x,y,z"
+        ))),
+    }
+}
+
+fn has_own_view(args: &SceneArgs) -> bool {
+    [args.eye, args.look, args.up].iter().any(Option::is_some)
+        || [args.fov, args.near, args.far].iter().any(Option::is_some)
+        || own_light(args).is_some()
+}
+
+/// Puts what the arguments say of the camera and the light into views, which are then called
+/// `own`; `is_bare` if the view was made here.
+fn override_views(
+    scene: &Scene,
+    views: Vec<View>,
+    args: &SceneArgs,
+    is_bare: bool,
+) -> Result<Vec<View>, CliError> {
+    if !has_own_view(args) && !is_bare {
+        return Ok(views);
+    }
+    let light = own_light(args).filter(|_| !is_bare);
+    if args.eye.is_some() && views.len() > 1 {
+        return Err(CliError::Usage(
+            "--eye is one view of your own: leave out --view all, or --eye".into(),
+        ));
+    }
+    let several = views.len() > 1;
+    let own = |view: View| {
+        let mut own = View {
+            name: match (is_bare, several) {
+                (true, _) => view.name.clone(),
+                (_, true) => format!("{}-own", view.name),
+                (_, false) => "own".into(),
+            },
+            eye: args.eye.unwrap_or(view.eye),
+            direction: args.look.unwrap_or(view.direction),
+            up: args.up.unwrap_or(view.up),
+            fov_y_degrees: args.fov.unwrap_or(view.fov_y_degrees),
+            ..view
+        };
+        if let Some(direction) = light {
+            own.light = Some(Light {
+                name: "own".into(),
+                kind: DirectionalLight::new(direction).into(),
+            });
+        }
+        if args.eye.is_some() || is_bare {
+            fit_planes(&mut own, scene, args);
+        } else {
+            own.far = args.far.unwrap_or(own.far);
+            own.near = args.near.unwrap_or(own.near);
+        }
+        let light = own.light.as_ref().map_or(Ok(()), Light::check);
+        own.check().and(light).map_err(CliError::Usage)?;
+        Ok(own)
+    };
+    views.into_iter().map(own).collect()
+}
+
+/// Clip planes where none are given: far just behind the mesh, near a ten-thousandth of it.
+fn fit_planes(view: &mut View, scene: &Scene, args: &SceneArgs) {
+    let farthest = scene.mesh.bounds().map_or(1.0, |(min, max)| {
+        let (min, max) = (min.as_dvec3(), max.as_dvec3());
+        (max - view.eye).abs().max((view.eye - min).abs()).length()
+    });
+    view.far = args.far.unwrap_or_else(|| {
+        (farthest * 1.01)
             .max(args.near.unwrap_or(0.0) * 2.0)
-            .max(f64::MIN_POSITIVE);
-    }
-    if args.near.is_none() {
-        view.near = view.far / NEAR_TO_FAR;
-    }
-    view.check().map_err(CliError::Usage)
+            .max(f64::MIN_POSITIVE)
+    });
+    view.near = args.near.unwrap_or(view.far / NEAR_TO_FAR);
 }
 
 /// The views under the light of that name, or under all of theirs: `VIEW@LIGHT` where that makes

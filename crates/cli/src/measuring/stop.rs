@@ -48,6 +48,6 @@ pub fn attempt(method: &Method, came: Result<Measured, Stop>) -> Attempt {
         Ok(measured) => Ok(Ok(measured)),
         // The box is an error, too, but not the one that is asked for.
         Err(Stop::Refused(error)) if !is_fatal(&*error) => Ok(Err(explain(&*error))),
-        Err(stop) => Err(stop.of(&method.preset.name)),
+        Err(stop) => Err(stop.of(&method.name)),
     }
 }

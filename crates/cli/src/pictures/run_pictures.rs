@@ -105,7 +105,7 @@ pub fn conditions(method: &Method, view: &str, viewport: [u32; 2]) -> String {
 pub fn stem(method: &Method, view: &str, viewport: [u32; 2]) -> String {
     format!(
         "{}-{}",
-        slug(&method.preset.name),
+        slug(&method.name),
         conditions(method, view, viewport).replace(' ', "-")
     )
 }

@@ -13,7 +13,7 @@ use std::{io, path::Path};
 
 /// How to get on without earlier results.
 pub const WITHOUT_RESULTS: &str =
-    "give another --out, or leave out --resume, which measures everything and overwrites the file";
+    "give another --out, or --replace, which measures everything and overwrites the file";
 
 /// Where results come from.
 const COMPARE_FIRST: &str = "name a folder that `skiagraph compare --out DIR` wrote";

@@ -120,7 +120,8 @@ impl fmt::Display for Scene {
 /// One preset on one view, viewport and map size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
-    /// Name of the preset, or path of the graph.
+    /// Name of the preset, or path of the graph, with what tells one setting of it from its others:
+    /// `crsm@n=1,depth=plane`.
     pub preset: String,
     /// Name of the view.
     pub view: String,
@@ -199,11 +200,6 @@ impl Run {
             count: wrong.shadow,
             of,
         })
-    }
-
-    /// The method's name.
-    pub fn method_name(&self) -> String {
-        self.preset.clone()
     }
 
     /// Preset and map size, as a row's name.

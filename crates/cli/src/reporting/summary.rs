@@ -46,7 +46,10 @@ impl<'a> Row<'a> {
         let has_time =
             |(_, of): &(&Run, &Measured)| full(of).gpu_ms.is_some() && kept(of).gpu_ms.is_some();
         Self {
-            method: all.first().map(|run| run.method_name()).unwrap_or_default(),
+            method: all
+                .first()
+                .map(|run| run.preset.clone())
+                .unwrap_or_default(),
             label,
             unavailable: unavailable.filter(|_| runs.is_empty()),
             has_gpu_times: runs.iter().all(has_time),

@@ -3,7 +3,7 @@
 
 use crate::records::results::{Promise, Results, Run};
 use crate::reporting::columns::are_paths;
-use crate::reporting::notes::{band_warning, blocked_by, remembering, times_missing};
+use crate::reporting::notes::{band_warning, blocked_by, path_costs, remembering, times_missing};
 use crate::reporting::summary::{Row, by_wall, rows};
 use crate::reporting::verdict::verdict;
 use crate::reporting::{graded, table::table};
@@ -102,7 +102,7 @@ impl<'a> Summary<'a> {
 
     /// For a document.
     pub fn markdown(&self) -> String {
-        let mut text = format!("\n### {}, {}, in short\n", self.what(), size(self.viewport));
+        let mut text = format!("\n## In short: {}, {}\n", self.what(), size(self.viewport));
         for group in &self.groups {
             let (heads, cells) = self.cells(group);
             let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
@@ -237,6 +237,7 @@ impl<'a> Summary<'a> {
             told.clone()
                 .filter_map(|run| Some(named(&run, remembering(run)?))),
         );
+        notes.extend(told.clone().flat_map(path_costs));
         match &self.results.adapter.gpu_unavailable {
             Some(reason) => notes.push(format!("No GPU times: {reason}")),
             None => notes.extend(told.filter_map(|run| Some(named(&run, times_missing(run)?)))),
@@ -260,7 +261,7 @@ impl<'a> Summary<'a> {
             .runs
             .iter()
             .filter(closed_only)
-            .map(|run| format!("`{}`", run.method_name()))
+            .map(|run| format!("`{}`", run.preset))
             .collect();
         let methods: Vec<String> = methods.into_iter().collect();
         let share = format!(
@@ -330,16 +331,13 @@ fn or_dash<T>(value: Option<T>, text: impl Fn(T) -> String) -> String {
 pub fn passes(results: &Results) -> String {
     let mut methods: Vec<String> = Vec::new();
     for run in results.runs.iter().filter(|run| run.measured.is_some()) {
-        let name = run.method_name();
+        let name = run.preset.clone();
         if !methods.contains(&name) {
             methods.push(name);
         }
     }
     let tables = methods.iter().map(|method| {
-        let runs = results
-            .runs
-            .iter()
-            .filter(|run| run.method_name() == *method);
+        let runs = results.runs.iter().filter(|run| run.preset == *method);
         matrix(method, &runs.collect::<Vec<_>>())
     });
     tables.collect::<Vec<_>>().join("\n")
@@ -393,4 +391,48 @@ fn matrix(method: &str, runs: &[&Run]) -> String {
         [name.to_string()].into_iter().chain(cells).collect()
     });
     table(heads, 1, rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::records::results::tests::sample;
+
+    /// `sample()` with a second view, and with a promise that ends at open parts.
+    fn two_views() -> Results {
+        let mut results = sample();
+        results.runs[0].promise = Some(Promise {
+            of: "exact".into(),
+            closed_only: true,
+        });
+        results.runs.pop();
+        let mut others = results.runs.clone();
+        for run in &mut others {
+            run.view = "other".into();
+        }
+        // The second method was not run on it.
+        others.truncate(1);
+        results.runs.extend(others);
+        results
+    }
+
+    #[test]
+    fn a_row_per_method_over_all_views() {
+        insta::assert_snapshot!(summaries(&two_views())[0].text());
+    }
+
+    #[test]
+    fn a_document_ends_with_it() {
+        insta::assert_snapshot!(summaries(&sample())[0].markdown());
+    }
+
+    #[test]
+    fn a_pass_has_a_column_for_each_size() {
+        let mut results = sample();
+        let mut larger = results.runs[0].clone();
+        larger.map_size = Some(2048);
+        larger.measured.as_mut().unwrap().passes.pop();
+        results.runs.push(larger);
+        insta::assert_snapshot!(passes(&results));
+    }
 }

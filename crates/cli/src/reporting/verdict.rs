@@ -48,6 +48,9 @@ struct Contender<'a> {
 impl<'a> Contender<'a> {
     fn new(index: usize, row: &'a Row, by_wall: bool) -> Option<Self> {
         let frame = row.frame_ms(by_wall)?;
+        if row.rmse().is_none() && row.wrong().facing_light == 0 {
+            return None; // Nothing was judged.
+        }
         Some(Self {
             index,
             label: &row.label,
@@ -126,6 +129,7 @@ fn sentence(
         .collect();
     let mut text = match when {
         Some((when, _)) => format!("{}{}: ", when[..1].to_uppercase(), &when[1..]),
+        None if all.iter().any(|of| of.kept < of.frame) => "Whatever moves: ".into(),
         None => String::new(),
     };
     text += &format!(
@@ -277,7 +281,7 @@ mod tests {
         assert_eq!(
             said,
             [
-                "`light_buffer`: exact here, 21.0 ms, 2.1 x `nsm` (4.700 % wrong), 0.21 x `rt`, \
+                "Whatever moves: `light_buffer`: exact here, 21.0 ms, 2.1 x `nsm` (4.700 % wrong), 0.21 x `rt`, \
                  the next exact method."
             ]
         );
@@ -322,10 +326,13 @@ mod tests {
         let (_, said) = of(&[run("rt", 0, 10.0, 4.0)]);
         assert_eq!(
             said,
-            ["`rt`: exact here, 10.0 ms (4.00 while only the camera moves)."]
+            ["Whatever moves: `rt`: exact here, 10.0 ms (4.00 while only the camera moves)."]
         );
         assert_eq!(of(&[unavailable("rt_hw")]), (None, Vec::new()));
         assert_eq!(of(&[]), (None, Vec::new()));
+        let mut dark = run("rt", 0, 10.0, 10.0);
+        dark.pixels.facing_light = 0;
+        assert_eq!(of(&[dark]), (None, Vec::new()), "nothing to judge");
     }
 
     #[test]

@@ -20,8 +20,28 @@ use args::cli::{Cli, Command};
 use clap::Parser;
 use std::process::ExitCode;
 
+/// Without a session, in a container say, Mesa's loader asks for this folder and complains above
+/// all that we have to say. The environment of a process is only safe to change before it begins:
+/// so it begins anew.
+#[cfg(unix)]
+fn with_runtime_dir() {
+    use std::os::unix::process::CommandExt;
+    const FOLDER: &str = "XDG_RUNTIME_DIR";
+    if std::env::var_os(FOLDER).is_some() {
+        return;
+    }
+    if let Ok(program) = std::env::current_exe() {
+        let mut again = std::process::Command::new(program);
+        again.args(std::env::args_os().skip(1));
+        // Only comes back if it cannot be done, and then things are as they were.
+        let _ = again.env(FOLDER, std::env::temp_dir()).exec();
+    }
+}
+
 fn main() -> ExitCode {
     let cli = Cli::parse();
+    #[cfg(unix)]
+    with_runtime_dir();
     let gpu = &cli.gpu;
     let outcome = match &cli.command {
         Command::Compare(args) => commands::compare::compare(args, gpu),

@@ -220,8 +220,8 @@ fn compare_measures_what_fits_and_says_why_the_rest_does_not() {
     let line = "compare light.ron nsm --size 16x16 --frames 1 --memory-limit 1MiB --images none";
     let (code, stdout, stderr) = run(folder.path(), line);
     assert_eq!(code, 0, "{stderr}");
-    let why = "nsm 1024 is unavailable: the materials of `pipelines/nsm.ron` take 4.0 MiB, but there \
-        are only 1.0 MiB";
+    let why = "nsm 1024 is unavailable: the materials of `pipelines/nsm.ron` take 4.0 MiB, but \
+        there are only 1.0 MiB";
     assert!(stdout.contains(why), "{stdout}");
     let (code, stdout, stderr) = run(folder.path(), &line.replace("light.ron ", ""));
     assert_eq!((code, &*stdout), (1, ""), "nothing is left to measure");

@@ -281,8 +281,8 @@ mod tests {
         assert_eq!(
             said,
             [
-                "Whatever moves: `light_buffer`: exact here, 21.0 ms, 2.1 x `nsm` (4.700 % wrong), 0.21 x `rt`, \
-                 the next exact method."
+                "Whatever moves: `light_buffer`: exact here, 21.0 ms, 2.1 x `nsm` (4.700 % wrong), \
+                 0.21 x `rt`, the next exact method."
             ]
         );
     }

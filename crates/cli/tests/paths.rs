@@ -133,7 +133,7 @@ fn moving_parts_are_followed_by_what_is_kept_and_by_the_reference() {
     for (path, standing) in [("lamp", 7), ("wind", 9)] {
         let line = format!(
             "compare rt light_buffer nsm crsm --path {path} --size 64x64 --map-size 128 --warmup 1 \
-             --images none --out out"
+             --images none --replace --out out"
         );
         let (runs, _) = results(folder.path(), &line);
         assert_eq!(runs.len(), 4);

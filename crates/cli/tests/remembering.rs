@@ -9,7 +9,8 @@ use support::{results, skiagraph, temporal};
 
 /// What must not depend on how much is timed.
 fn figures(folder: &Path, line: &str) -> (Value, String) {
-    let line = format!("compare temporal.ron --size 48x48 --images none --out out {line}");
+    let line =
+        format!("compare temporal.ron --size 48x48 --images none --replace --out out {line}");
     let (mut runs, table) = results(folder, &line);
     let run = &mut runs[0];
     let mut frames = run["sequence"]["frames"].take();

@@ -17,12 +17,20 @@ const WRONGLY_LIT: Colour = [48, 96, 255];
 const WRONGLY_LIT_INDETERMINATE: Colour = [160, 190, 255];
 const WRONGLY_SHADOWED: Colour = [255, 32, 32];
 const WRONGLY_SHADOWED_INDETERMINATE: Colour = [255, 170, 170];
-/// Grey levels under the error image: dark enough for blue and red to stand out, apart enough to
+/// Grey levels under the error image: pale enough for blue and red to stand out, apart enough to
 /// show shadow contours.
-const DIM_LIGHT: Colour = [96, 96, 96];
-const DIM_SHADOW: Colour = [40, 40, 40];
-const DIM_FACING_AWAY: Colour = [24, 24, 24];
-const DIM_BACKGROUND: Colour = [8, 8, 8];
+const DIM_LIGHT: Colour = [212, 212, 212];
+const DIM_SHADOW: Colour = [144, 144, 144];
+const DIM_FACING_AWAY: Colour = [116, 116, 116];
+const DIM_BACKGROUND: Colour = [232, 236, 240];
+
+/// A single wrong pixel is seen by its halo: this many pixels of the picture's longer edge widen it
+/// by one.
+const EDGE_PER_HALO: u32 = 384;
+/// Most wrong pixels as far as a halo reaches; more of them are seen without.
+const FEW: usize = 3;
+/// How much of the wrong pixel's colour its halo has.
+const HALO: f64 = 0.55;
 
 const NO_NUMBER: Colour = [255, 0, 255];
 /// The error from which on [`Image::difference`] shows its colours in full.
@@ -71,8 +79,9 @@ pub struct Image {
 
 impl Image {
     /// Where a method is wrong: blue = wrongly lit, red = wrongly in shadow, both paler where
-    /// indeterminate, over the reference's shadows in dark grey. What counts as wrong is said at
-    /// [`Statistics`](crate::Statistics).
+    /// indeterminate, over the reference's shadows in pale grey. Around single wrong pixels is a
+    /// halo, in pictures of 384 pixels and more, or nobody would see them. What counts as wrong is
+    /// said at [`Statistics`](crate::Statistics).
     ///
     /// # Errors
     /// Those of [`Statistics::judged`](crate::Statistics::judged).
@@ -82,6 +91,7 @@ impl Image {
         reference: &Reference,
     ) -> Result<Self, Error> {
         let mut rgb = Vec::with_capacity(reference.classes.len() * 3);
+        let mut wrong = Vec::new();
         for_each_verdict(
             visibility,
             status,
@@ -89,6 +99,9 @@ impl Image {
             |class, _, indeterminate, verdict| {
                 let pixel = rgb.len() / 3;
                 let backdrop = |grey| tinted(grey, reference, pixel);
+                if verdict != Verdict::Right && !indeterminate {
+                    wrong.push(pixel);
+                }
                 rgb.extend(match (verdict, indeterminate, class) {
                     (Verdict::WronglyLit, false, _) => WRONGLY_LIT,
                     (Verdict::WronglyLit, true, _) => WRONGLY_LIT_INDETERMINATE,
@@ -101,14 +114,46 @@ impl Image {
                 });
             },
         )?;
-        Ok(Self {
+        let mut image = Self {
             size: reference.viewport,
             rgb,
-        })
+        };
+        image.surround(&wrong);
+        Ok(image)
+    }
+
+    /// Gives pixels that have few others around them a halo in their own colour, over what is not
+    /// coloured itself.
+    fn surround(&mut self, pixels: &[usize]) {
+        let [width, height] = self.size.map(|edge| edge as usize);
+        let radius = (self.size[0].max(self.size[1]) / EDGE_PER_HALO) as usize;
+        let before = self.rgb.clone();
+        let at = |pixel: usize| -> Colour { [0, 1, 2].map(|channel| before[3 * pixel + channel]) };
+        let coloured = [
+            WRONGLY_LIT,
+            WRONGLY_SHADOWED,
+            WRONGLY_LIT_INDETERMINATE,
+            WRONGLY_SHADOWED_INDETERMINATE,
+        ];
+        for &pixel in pixels {
+            let (x, y) = (pixel % width, pixel / width);
+            let rows = y.saturating_sub(radius)..(y + radius + 1).min(height);
+            let columns = x.saturating_sub(radius)..(x + radius + 1).min(width);
+            let around = rows.flat_map(|row| columns.clone().map(move |x| row * width + x));
+            let (wrong, right): (Vec<usize>, Vec<usize>) =
+                around.partition(|&other| coloured.contains(&at(other)));
+            if wrong.len() > FEW {
+                continue;
+            }
+            for other in right {
+                let colour = mixed(at(other), at(pixel), HALO);
+                self.rgb[3 * other..3 * other + 3].copy_from_slice(&colour);
+            }
+        }
     }
 
     /// Where shares of light are off: blue = too light, red = too dark, the stronger the farther,
-    /// at [`FULL_COLOUR`] in full, over the reference's shares in dark grey; magenta = no number.
+    /// at [`FULL_COLOUR`] in full, over the reference's shares in pale grey; magenta = no number.
     ///
     /// # Errors
     /// [`Error::PixelCount`] if a buffer does not fit the reference.
@@ -361,6 +406,28 @@ mod tests {
         assert_eq!((&shown[..4], shown[4]), (&shaded[..4], UNCERTAIN));
         assert!(Image::uncertain(&visibility, &status[1..], &reference).is_err());
         assert!(Image::visibility([5, 2], &visibility, &status).is_err());
+    }
+
+    #[test]
+    fn a_single_wrong_pixel_of_a_large_picture_has_a_halo() {
+        let mut image = Image {
+            size: [1024, 8],
+            rgb: DIM_LIGHT.repeat(1024 * 8),
+        };
+        let pixel = 4 * 1024 + 100;
+        image.rgb[3 * pixel..3 * pixel + 3].copy_from_slice(&WRONGLY_LIT);
+        // Five in a row are seen as they are.
+        let row: Vec<usize> = (0..5).map(|column| 4 * 1024 + 500 + column).collect();
+        for &pixel in &row {
+            image.rgb[3 * pixel..3 * pixel + 3].copy_from_slice(&WRONGLY_SHADOWED);
+        }
+        image.surround(&[&row[1..4], &[pixel]].concat());
+        let colours = colours(image);
+        let halo = mixed(DIM_LIGHT, WRONGLY_LIT, HALO);
+        let count = |of: Colour| colours.iter().filter(|colour| **colour == of).count();
+        assert_eq!((count(WRONGLY_LIT), count(halo)), (1, 24));
+        assert_eq!(colours[pixel + 2], halo);
+        assert_eq!(colours[pixel + 3], DIM_LIGHT);
     }
 
     #[test]

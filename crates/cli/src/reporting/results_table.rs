@@ -82,8 +82,8 @@ fn heading(results: &Results, run: &Run, runs: &[Run]) -> String {
 }
 
 /// How many frames were timed of each run.
-fn timed_frames(results: &Results, runs: &[Run]) -> u32 {
-    let measured = runs.iter().filter_map(|run| run.measured.as_ref());
+pub fn timed_frames<'a>(results: &Results, runs: impl IntoIterator<Item = &'a Run>) -> u32 {
+    let measured = runs.into_iter().filter_map(|run| run.measured.as_ref());
     let mut paths = measured.filter_map(|of| of.sequence.as_ref());
     let of_path = paths.next().map(|path| path.frames.len() as u32);
     of_path.unwrap_or(results.frames)

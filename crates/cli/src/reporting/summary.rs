@@ -115,6 +115,18 @@ impl<'a> Row<'a> {
         Some(all.into_iter().fold(Part { count: 0, of: 0 }, add))
     }
 
+    /// Of camera paths: wrong pixels of the frame with the largest share of them.
+    pub fn worst_frame(&self) -> Option<Part> {
+        let paths = self.runs.iter();
+        let paths = paths.filter_map(|(_, of)| Some(of.sequence.as_ref()?.worst()?.1));
+        let parts = paths.map(|frame| Part {
+            count: frame.wrong,
+            of: frame.facing_light,
+        });
+        let share = |part: &Part| part.count as f64 / part.of.max(1) as f64;
+        parts.max_by(|one, other| share(one).total_cmp(&share(other)))
+    }
+
     /// Bytes of its own materials and of what it reads of the scene, the most on any view.
     pub fn bytes(&self) -> u64 {
         let bytes = self.runs.iter();

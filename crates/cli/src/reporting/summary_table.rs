@@ -6,7 +6,7 @@ use crate::reporting::columns::are_paths;
 use crate::reporting::notes::{band_warning, blocked_by, path_costs, remembering, times_missing};
 use crate::reporting::summary::{Row, by_wall, rows};
 use crate::reporting::verdict::verdict;
-use crate::reporting::{graded, table::table};
+use crate::reporting::{graded, results_table::timed_frames, table::table};
 use crate::wording::{bytes, frames, ms, percent, plural, size, thousands};
 use skiagraph_reference::BlockerCounts;
 use std::collections::{BTreeMap, BTreeSet};
@@ -72,7 +72,10 @@ impl<'a> Summary<'a> {
         let views = self.views();
         let paths = are_paths(self.runs.iter().copied());
         match (views.first(), views.len()) {
-            (Some(view), 1) if paths => format!("path {view}"),
+            (Some(view), 1) if paths => {
+                let frames = frames(timed_frames(self.results, self.runs.iter().copied()));
+                format!("path {view}, {frames}")
+            }
             (Some(view), 1) => format!("view {view}"),
             (_, count) => plural(count, if paths { "path" } else { "view" }),
         }
@@ -135,7 +138,7 @@ impl<'a> Summary<'a> {
             self.results.adapter.to_string(),
             format!(
                 "times: {clock}, medians of {} after {} to warm up{mean} · oracle {}",
-                frames(self.results.frames),
+                frames(timed_frames(self.results, self.runs.iter().copied())),
                 self.results.warmup,
                 self.results.oracle
             ),
@@ -168,6 +171,7 @@ impl<'a> Summary<'a> {
             true => &["wrong outside band", "%", "in band"][..],
             false => &["RMSE"][..],
         });
+        heads.extend((are_paths && group.is_hard).then_some("worst frame"));
         heads.extend(are_paths.then_some("shimmer"));
         heads.extend(["frame ms", "map kept ms", "rays", "memory"]);
         let best = group.verdict().fastest_exact;
@@ -192,6 +196,10 @@ impl<'a> Summary<'a> {
                     thousands(wrong.in_band),
                 ]),
                 false => cells.push(or_dash(row.rmse(), |rmse| format!("{rmse:.5}"))),
+            }
+            if are_paths && group.is_hard {
+                let worst = row.worst_frame();
+                cells.push(or_dash(worst, |part| percent(part.count, part.of)));
             }
             if are_paths {
                 let shimmer = row.shimmer();

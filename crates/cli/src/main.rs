@@ -47,6 +47,7 @@ fn main() -> ExitCode {
         Command::Compare(args) => commands::compare::compare(args, gpu),
         Command::Run(args) => commands::run::run(args, gpu),
         Command::Chart(args) => commands::chart::chart(args),
+        Command::Report(args) => commands::report::report(args),
         Command::Profile(args) => commands::profile::profile(args, gpu),
         Command::Stress(args) => commands::stress::stress(args, gpu),
         Command::Check(args) => commands::check::check(args, gpu),

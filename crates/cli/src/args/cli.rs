@@ -3,8 +3,8 @@
 
 use crate::args::{
     commands::{
-        ChartArgs, CheckArgs, CompareArgs, GraphArgs, PresetsArgs, ProfileArgs, RunArgs, ShowArgs,
-        StressArgs,
+        ChartArgs, CheckArgs, CompareArgs, GraphArgs, PresetsArgs, ProfileArgs, ReportArgs,
+        RunArgs, ShowArgs, StressArgs,
     },
     shared::GpuArgs,
 };
@@ -50,6 +50,13 @@ pub enum Command {
         skiagraph chart sponza park --size 1024x1024 --out fronts.svg\n  \
         skiagraph chart city-1e4 city-1e5 city-1e6 --kind growth --out growth.svg")]
     Chart(ChartArgs),
+    /// Write one page, report.html, of what compare and stress kept in some folders: verdict,
+    /// charts, table, pictures. Needs no GPU, and the page no network.
+    #[command(after_help = "Examples:\n  skiagraph report compare\n  \
+        skiagraph report desk/park laptop/park --out park.html   \
+            # two machines in one page\n\n\
+        `compare` writes the page into its folder by itself.")]
+    Report(ReportArgs),
     /// Render one frame with one graph and save any of its materials.
     #[command(
         after_help = "Examples:\n  skiagraph run nsm --save visibility=shadow.png\n  \

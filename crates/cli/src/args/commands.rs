@@ -160,6 +160,19 @@ pub enum ChartKind {
     Growth,
 }
 
+/// `skiagraph report`.
+#[derive(Args, Debug)]
+pub struct ReportArgs {
+    /// Folders that `compare --out` wrote, each with its results.json, and those that `stress
+    /// --out` wrote. What was measured alike becomes one; of a run that is there twice the newer
+    /// one counts.
+    #[arg(value_name = "DIR", required = true)]
+    pub folders: Vec<PathBuf>,
+    /// The page. Without it: report.html in the first folder.
+    #[arg(long, value_name = "FILE.html")]
+    pub out: Option<PathBuf>,
+}
+
 /// `skiagraph show`.
 #[derive(Args, Debug)]
 pub struct ShowArgs {

@@ -7,6 +7,7 @@ pub mod doctor;
 pub mod graph;
 pub mod presets;
 pub mod profile;
+pub mod report;
 pub mod run;
 pub mod run_sequence;
 pub mod scenes;

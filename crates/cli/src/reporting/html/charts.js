@@ -54,7 +54,7 @@ function drawFront() {
     return;
   }
   const width = chartWidth('front'), isNarrow = width < 560;
-  const left = isNarrow ? 52 : 72, right = width - 16, top = 14;
+  const left = isNarrow ? 52 : 72, right = width - 16, top = 28;
   const exact = rows.filter((row) => error(of, row) === 0);
   const wrong = rows.filter((row) => error(of, row) > 0);
   const bottom = wrong.length > 0 ? (isNarrow ? 260 : 320) : top;
@@ -76,7 +76,7 @@ function drawFront() {
   const what = state.time === 'kept' ? 'ms of a frame in which only the camera moves'
     : 'ms of a frame, every pass run';
   picture.append(svg('text', { class: 'axis', x: right, y: floor + 38, 'text-anchor': 'end' },
-    `${of.wall ? 'Wall clock' : 'GPU'} ${what} · left is faster`));
+    `${of.wall ? 'Wall clock' : 'GPU'} ${what}${isNarrow ? '' : ' · left is faster'}`));
   const y = wrong.length > 0 ? logAxis(wrong.map((row) => error(of, row)), bottom - 10, top) : null;
   for (const value of y ? y.ticks : []) {
     picture.append(svg('line', { class: 'grid', x1: left, x2: right, y1: y.place(value), y2: y.place(value) }));
@@ -84,8 +84,8 @@ function drawFront() {
       of.hard ? `${tick(100 * value)} %` : tick(value)));
   }
   if (y) {
-    picture.append(svg('text', { class: 'axis', x: left + 8, y: top + 14 },
-      of.hard ? 'wrong pixels outside the band, of those that face the light' : 'RMSE of the shares of light'));
+    picture.append(svg('text', { class: 'axis', x: 4, y: 14 },
+      of.hard ? (isNarrow ? 'wrong pixels outside the band' : 'wrong pixels outside the band, of those that face the light') : 'RMSE of the shares of light'));
   }
   const byTime = (one, other) => time(one) - time(other);
   const lane = (row) => bottom + 18 + 22 * [...exact].sort(byTime).indexOf(row);
@@ -113,7 +113,7 @@ function drawFront() {
   // Names beside their marks where there is room; others are told by pointing at them.
   for (const row of [...front, ...rows.filter((row) => !front.includes(row))]) {
     const [px, py] = place(row);
-    const wide = 7.3 * row.label.length;
+    const wide = 8 * row.label.length;
     const spots = [[px + 11, py + 4], [px - 11 - wide, py + 4], [px - wide / 2, py - 12], [px - wide / 2, py + 20]];
     const spot = spots.find(([sx, sy]) => sx > left && sx + wide < right && sy > top + 8 && sy < floor
       && !taken.some((other) => sx < other[2] && sx + wide > other[0] && sy - 11 < other[3] && sy + 3 > other[1]
@@ -145,10 +145,13 @@ function drawPasses() {
   const left = isNarrow ? 8 : Math.min(260, 20 + 7.6 * Math.max(0, ...rows.map((row) => row.label.length)));
   const high = isNarrow ? 40 : 26, top = 4;
   const most = Math.max(1e-9, ...rows.map((row) => row.steps.reduce((sum, [, value]) => sum + value, 0)));
-  const steps = [...new Set(rows.flatMap((row) => row.steps.map(([name]) => name)))];
+  // The longest have the most distinct colours.
+  const totals = new Map();
+  for (const [name, value] of rows.flatMap((row) => row.steps)) totals.set(name, (totals.get(name) ?? 0) + value);
+  const steps = [...totals.keys()].sort((one, other) => totals.get(other) - totals.get(one));
   // The same name has the same colour in every bar.
-  const shade = (name) => `var(--s${steps.indexOf(name) % 8})`;
-  const picture = svg('svg', { viewBox: `0 0 ${width} ${rows.length * high + top + 26}`, role: 'img',
+  const shade = (name) => (steps.indexOf(name) < 8 ? `var(--s${steps.indexOf(name)})` : 'var(--quiet)');
+  const picture = svg('svg', { viewBox: `0 0 ${width} ${rows.length * high + top + 4}`, role: 'img',
     'aria-label': 'GPU time of the steps of each method' });
   rows.forEach((row, index) => {
     const y = top + index * high + (isNarrow ? 16 : 3);
@@ -157,9 +160,8 @@ function drawPasses() {
     let sum = 0;
     const scale = (width - left - 70) / most;
     for (const [name, value] of row.steps) {
-      const fade = steps.indexOf(name) >= 8 ? 0.55 : 1;
       picture.append(svg('rect', { class: 'step', x: left + sum * scale, y, width: Math.max(value * scale - 1, 0.3), height: 19,
-        fill: shade(name), 'fill-opacity': fade, ...told(`${row.label}\n${name}: ${ms(value)} ms`) }));
+        fill: shade(name), ...told(`${row.label}\n${name}: ${ms(value)} ms`) }));
       if (value * scale > 7.4 * name.length + 10) {
         picture.append(svg('text', { x: left + sum * scale + 6, y: y + 14, style: 'fill:var(--card);font-size:12px;pointer-events:none' }, name));
       }
@@ -167,9 +169,11 @@ function drawPasses() {
     }
     picture.append(svg('text', { class: 'tick', x: left + sum * scale + 6, y: y + 14 }, `${ms(sum)} ms`));
   });
-  picture.append(svg('text', { class: 'axis', x: left, y: rows.length * high + top + 18 },
-    'Sums of the passes’ GPU medians; point at a part for its name.'));
-  byId('passes').replaceChildren(picture);
+  const swatch = (colour, name) => el('span', {}, el('i', { style: `background:${colour}` }), name);
+  byId('passes').replaceChildren(picture, el('div', { class: 'swatches' },
+    ...steps.slice(0, 8).map((name) => swatch(shade(name), name)),
+    ...(steps.length > 8 ? [swatch('var(--quiet)', 'others')] : [])),
+  el('p', { class: 'quiet', style: 'margin:6px 0 0' }, 'Sums of the GPU medians of a step’s passes.'));
 }
 
 /** A line per series of `[x, y]`, both axes logarithmic. */

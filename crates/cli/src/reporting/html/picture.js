@@ -7,12 +7,16 @@ function pixels(file) {
   if (!decoded.has(file)) {
     decoded.set(file, (async () => {
       const image = new Image();
-      image.src = `data:image/png;base64,${data.pictures.files[file]}`;
-      await image.decode();
+      await new Promise((loaded, failed) => {
+        image.onload = loaded;
+        image.onerror = () => failed(new Error('a picture of this page is broken'));
+        image.src = `data:image/png;base64,${data.pictures.files[file]}`;
+      });
       const canvas = el('canvas', { width: image.naturalWidth, height: image.naturalHeight });
       const context = canvas.getContext('2d', { willReadFrequently: true });
       context.drawImage(image, 0, 0);
-      return { canvas, ...context.getImageData(0, 0, canvas.width, canvas.height) };
+      const { data: rgba, width, height } = context.getImageData(0, 0, canvas.width, canvas.height);
+      return { canvas, rgba, width, height };
     })());
   }
   return decoded.get(file);
@@ -55,7 +59,7 @@ function reading(kind, isGraded, [red, green, blue]) {
 }
 
 /** Pixels whose colour should be seen from afar, with it. */
-function telling(kind, isGraded, { data: rgba, width }) {
+function telling(kind, isGraded, { rgba, width }) {
   const wanted = new Map(meaningOf(kind, isGraded).filter(([, , isTelling]) => isTelling)
     .map(([[red, green, blue]]) => [(red << 16) | (green << 8) | blue, `rgb(${red} ${green} ${blue})`]));
   const found = [];

@@ -21,7 +21,7 @@ function where(of) {
 
 function columns() {
   const isHard = table().hard;
-  const any = (name) => chosen().some(({ row }) => row[name] !== null);
+  const any = (name) => chosen().some(({ row }) => row.views > 0 && row[name] !== null);
   return [
     { key: 'method', head: 'method', text: true, value: ({ row }) => row.label, cell: ({ of, row }) => {
       const most = Math.max(...of.rows.map((other) => other.views));
@@ -62,14 +62,14 @@ function drawTable() {
   const line = (entry) => {
     const { row } = entry;
     const cells = row.views === 0
-      ? [el('td', {}, row.label), el('td', { colspan: all.length - 1, class: 'open' }, row.unavailable ?? 'not measured')]
+      ? [el('td', {}, row.label), el('td', { colspan: all.length - 1, class: 'why' }, row.unavailable ?? 'not measured')]
       : all.map((column) => el('td', {
         class: column.mark ? (column.value(entry) === 0 ? 'zero' : 'wrong') : null,
       }, column.cell(entry)));
     return el('tr', { class: row.best ? 'best' : null, 'data-label': row.label, onclick: () => choose(row) }, ...cells);
   };
   byId('table').replaceChildren(el('thead', {}, head), el('tbody', {}, ...rows.map(line)));
-  byId('notes').replaceChildren(...table().notes.filter((note) => !note.startsWith('*')).map((note) => el('li', {}, note)));
+  byId('notes').replaceChildren(...table().notes.filter((note) => !note.startsWith('*') && !note.includes(' is unavailable: ')).map((note) => el('li', {}, note)));
 }
 
 function tableControls() {

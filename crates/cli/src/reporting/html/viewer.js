@@ -276,7 +276,7 @@ async function readAt([x, y]) {
       }
       const picture = await pixels(set[kind]);
       const at = 4 * (row * picture.width + column);
-      cells.push([kind, picture.data.slice(at, at + 3)]);
+      cells.push([kind, picture.rgba.slice(at, at + 3)]);
     }
     lines.push([set, cells]);
   }

@@ -31,9 +31,15 @@ fn browsed(folder: &Path, page: &str, width: u32, is_dark: bool, script: &str) -
     let program = std::env::var("CHROMIUM").unwrap_or_else(|_| "chromium".into());
     let output = Command::new(&program)
         .args(["--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"])
-        .arg(format!("--user-data-dir={}", folder.join("browser").display()))
+        .arg(format!(
+            "--user-data-dir={}",
+            folder.join("browser").display()
+        ))
         .arg("--window-size=1400,1000")
-        .arg(format!("--blink-settings=preferredColorScheme={}", if is_dark { 0 } else { 1 }))
+        .arg(format!(
+            "--blink-settings=preferredColorScheme={}",
+            if is_dark { 0 } else { 1 }
+        ))
         .arg("--virtual-time-budget=60000")
         .arg(format!("file://{}", frame.display()))
         .output()
@@ -45,7 +51,9 @@ fn browsed(folder: &Path, page: &str, width: u32, is_dark: bool, script: &str) -
         panic!("the page came to no end: {told}")
     });
     let text = &dom[at + begin.len()..];
-    let text = text[..text.find(end).unwrap()].replace("&lt;", "<").replace("&gt;", ">");
+    let text = text[..text.find(end).unwrap()]
+        .replace("&lt;", "<")
+        .replace("&gt;", ">");
     serde_json::from_str(&text.replace("&amp;", "&")).unwrap()
 }
 
@@ -55,7 +63,10 @@ fn pages(folder: &Path) {
                 --frames 2 --warmup 1 --out out";
     let (runs, _) = results(folder, line);
     assert_eq!(runs.len(), 14, "four methods, one without a map, two sizes");
-    let output = skiagraph(folder, "stress rt nsm --case box_on_floor --size 48x48 --out hard");
+    let output = skiagraph(
+        folder,
+        "stress rt nsm --case box_on_floor --size 48x48 --out hard",
+    );
     assert!(output.status.success());
     // Another machine's results.
     fs::create_dir(folder.join("far")).unwrap();
@@ -65,7 +76,10 @@ fn pages(folder: &Path) {
     fs::write(folder.join("far/results.json"), far.to_string()).unwrap();
     let output = skiagraph(folder, "report out far hard --out all.html");
     let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success() && told.contains("all.html"), "{told}");
+    assert!(
+        output.status.success() && told.contains("all.html"),
+        "{told}"
+    );
 }
 
 #[test]
@@ -82,7 +96,13 @@ fn the_page_works_in_a_browser() {
         assert_eq!(outcome["theme"], theme);
         assert_eq!(outcome["width"], width);
     }
-    let outcome = browsed(folder, "all.html", 1280, false, include_str!("report/merged.js"));
+    let outcome = browsed(
+        folder,
+        "all.html",
+        1280,
+        false,
+        include_str!("report/merged.js"),
+    );
     assert_eq!(outcome["faults"], Value::Array(Vec::new()));
     assert_eq!(outcome["failed"], Value::Array(Vec::new()));
 }

@@ -17,6 +17,8 @@ use clap::{Parser, Subcommand};
     version,
     propagate_version = true,
     after_help = "Example:\n  skiagraph compare rt nsm --scene park --size 512x512\n\n\
+        Progress is shown on a terminal; in a pipe there is none, or with \
+        SKIAGRAPH_PROGRESS=lines a line at the begin and the end of each step.\n\n\
         Exit codes: 0 fine, 1 the input is wrong, 2 wrong usage, 3 no usable GPU, \
         or it was lost or hangs, 130 stopped by Ctrl-C."
 )]
@@ -65,11 +67,13 @@ pub enum Command {
         skiagraph run my_method.ron --poison"
     )]
     Run(RunArgs),
-    /// Time every pass of one graph over many frames, and list what its materials take.
+    /// Time every pass of a graph over many frames, and list what its materials take; of several
+    /// graphs, views or sizes, a table of passes and sizes per graph.
     #[command(
         after_help = "Examples:\n  skiagraph profile nsm --scene park --frames 100\n  \
         skiagraph profile nsm --json before.json\n  \
         skiagraph profile nsm --set map_size=512 --baseline before.json\n  \
+        skiagraph profile nsm crsm --view all --size 512x512,1024x1024 --csv all.csv\n  \
         skiagraph profile my_method.ron --csv passes.csv --trace frames.json   \
             # open frames.json in ui.perfetto.dev\n\n\
         docs/profiling.md says how to read the tables and the trace."

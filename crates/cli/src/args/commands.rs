@@ -219,9 +219,27 @@ pub struct RunArgs {
 /// `skiagraph profile`.
 #[derive(Args, Debug)]
 pub struct ProfileArgs {
-    /// What is timed.
-    #[command(flatten)]
-    pub method: MethodArgs,
+    /// Presets by name, or graphs (.ron). With settings of its own a method stands beside itself:
+    /// `crsm@n=1,depth=plane`.
+    #[arg(value_name = "PRESET|FILE.ron[@NAME=VALUE,…]", required = true)]
+    pub presets: Vec<String>,
+    /// Viewport sizes in pixels, separated by commas.
+    #[arg(
+        long,
+        value_name = "WxH,…",
+        value_delimiter = ',',
+        default_value = "1024x1024"
+    )]
+    pub size: Vec<Size>,
+    /// Shadow map sizes in texels, separated by commas: the param `map_size` of the graphs that
+    /// have it.
+    #[arg(long, value_name = "N,…", value_delimiter = ',',
+          value_parser = texels(), allow_negative_numbers = true)]
+    pub map_size: Vec<u32>,
+    /// A param of the graphs that have it. Of a list (radius=1,2,4; vectors between semicolons) or
+    /// a range (bias=0..0.01/5: five values) every value is timed. May be repeated.
+    #[arg(long = "set", value_name = "NAME=VALUE,…", allow_hyphen_values = true)]
+    pub params: Vec<Assignment>,
     /// What it is run on.
     #[command(flatten)]
     pub scene: SceneArgs,
@@ -236,13 +254,14 @@ pub struct ProfileArgs {
     /// Write a line per pass and one for the frame.
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
-    /// Write every timed frame in the Trace Event Format, for ui.perfetto.dev or chrome://tracing.
+    /// Write every timed frame in the Trace Event Format, for ui.perfetto.dev or chrome://tracing;
+    /// of one profile.
     #[arg(long, value_name = "FILE")]
     pub trace: Option<PathBuf>,
-    /// Write everything, samples included: what --baseline reads.
+    /// Write everything, samples included: what --baseline reads; of one profile.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Compare with what an earlier --json wrote.
+    /// Compare with what an earlier --json wrote; one profile.
     #[arg(long, value_name = "OLD.json")]
     pub baseline: Option<PathBuf>,
 }

@@ -43,14 +43,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let arguments: Vec<_> = names.iter().map(|name| MethodArgument::new(name)).collect();
     let presets = contract::load_all(&variants::presets(&arguments), &sources)?;
     let methods = method::methods(&presets, &arguments, &args.params, &args.map_size)?;
-    let deaf = methods.iter().filter(|method| method.map_size.is_none());
-    let deaf: Vec<&str> = deaf.map(|method| method.name.as_str()).collect();
-    if !args.map_size.is_empty() && !deaf.is_empty() {
-        note(&format!(
-            "--map-size has no effect on {}: no param `map_size`",
-            deaf.join(", ")
-        ));
-    }
+    method::note_without_map(&methods, &args.map_size);
     let primary = PrimaryVisibility::load(&sources)?;
     let gpu = device::open(gpu, preset::graphs(&presets))?;
     let features = gpu.device.features();

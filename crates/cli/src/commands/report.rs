@@ -21,7 +21,10 @@ pub fn report(args: &ReportArgs) -> Result<(), CliError> {
     let file = args.out.clone().or(first).unwrap_or_else(|| FILE.into());
     check_writable(&[("--out".to_owned(), &file)])?;
     write(&args.folders, &file)?;
-    note(&format!("{} shows it all; open it in a browser", file.display()));
+    note(&format!(
+        "{} shows it all; open it in a browser",
+        file.display()
+    ));
     Ok(())
 }
 

@@ -2,7 +2,7 @@
 
 use crate::pictures::run_pictures::{graph_name, reference_name};
 use crate::records::results::{Images, Run};
-use crate::reporting::html::Source;
+use crate::reporting::html::sources::Source;
 use crate::wording::plural;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use serde::Serialize;

@@ -53,6 +53,7 @@ fn main() -> ExitCode {
         Command::Check(args) => commands::check::check(args, gpu),
         Command::Graph(args) => commands::graph::graph(args),
         Command::Presets(args) => commands::presets::presets(args),
+        Command::New(args) => commands::new::new(args),
         Command::Show(args) => commands::show::show(args),
         Command::Scenes => commands::scenes::scenes(),
         Command::Doctor => commands::doctor::doctor(gpu),

@@ -3,8 +3,8 @@
 
 use crate::args::{
     commands::{
-        ChartArgs, CheckArgs, CompareArgs, GraphArgs, PresetsArgs, ProfileArgs, ReportArgs,
-        RunArgs, ShowArgs, StressArgs,
+        ChartArgs, CheckArgs, CompareArgs, GraphArgs, NewArgs, PresetsArgs, ProfileArgs,
+        ReportArgs, RunArgs, ShowArgs, StressArgs,
     },
     shared::GpuArgs,
 };
@@ -119,6 +119,11 @@ pub enum Command {
     #[command(after_help = "Examples:\n  skiagraph presets\n  \
         skiagraph presets --format markdown")]
     Presets(PresetsArgs),
+    /// Write a small working method to start from into the current folder: a document and a
+    /// shader, or a variant of a preset. Overwrites nothing.
+    #[command(after_help = "Examples:\n  skiagraph new my_method\n  \
+        skiagraph new my_crsm --from crsm")]
+    New(NewArgs),
     /// Print a document or shader, of the working directory or built in.
     #[command(after_help = "Examples:\n  skiagraph show nsm\n  \
         skiagraph show shared/light.wgsl\n  skiagraph show crsma_full --flat")]

@@ -173,6 +173,16 @@ pub struct ReportArgs {
     pub out: Option<PathBuf>,
 }
 
+/// `skiagraph new`.
+#[derive(Args, Debug)]
+pub struct NewArgs {
+    /// What the method is called: NAME.ron and NAME.wgsl are written.
+    pub name: String,
+    /// Write a variant of this preset instead, with its params to choose from.
+    #[arg(long, value_name = "PRESET")]
+    pub from: Option<String>,
+}
+
 /// `skiagraph show`.
 #[derive(Args, Debug)]
 pub struct ShowArgs {

@@ -5,6 +5,7 @@ pub mod check;
 pub mod compare;
 pub mod doctor;
 pub mod graph;
+pub mod new;
 pub mod presets;
 pub mod profile;
 pub mod report;

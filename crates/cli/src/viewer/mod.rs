@@ -1,0 +1,145 @@
+//! `skiagraph view`: methods in a window. One thread runs them, one traces the reference, and the
+//! window shows what comes; what is decided is in `state.rs`, without a toolkit.
+
+mod drawn;
+mod flight;
+mod heat;
+mod judge;
+mod saving;
+mod slot;
+mod state;
+#[cfg(test)]
+mod tests;
+mod texels;
+mod ui;
+mod wanted;
+mod watch;
+mod window;
+mod worker;
+
+use crate::args::commands::ViewArgs;
+use crate::args::shared::GpuArgs;
+use crate::error::CliError;
+use crate::graphs::method::param_values;
+use crate::graphs::preset;
+use crate::graphs::variants::MethodArgument;
+use crate::measuring::device;
+use judge::Judge;
+use skiagraph_gpu::timing::Trust;
+use skiagraph_scene::SceneLibrary;
+use state::{Choices, Lines, Viewer};
+use std::{
+    collections::BTreeSet,
+    sync::{Arc, mpsc},
+    thread,
+};
+use wanted::{Wanted, WantedMethod};
+use watch::Watch;
+use worker::{Order, Worker};
+
+pub use window::open;
+
+/// What a window needs to know when something has happened.
+type Wake = Arc<dyn Fn() + Send + Sync>;
+
+/// Starts the threads, and makes the state that shows what they do. The methods of the arguments
+/// need not be faultless: what is wrong with them is shown.
+///
+/// # Errors
+/// No GPU, a method that there is not, a param that it has not.
+fn start(args: &ViewArgs, gpu: &GpuArgs, wake: Wake) -> Result<(Viewer, Option<Watch>), CliError> {
+    let sources = preset::sources();
+    let mut methods = Vec::new();
+    for argument in &args.methods {
+        methods.push(wanted_method(argument, args)?);
+    }
+    let opened = device::open(gpu, [])?;
+    let choices = choices(args, &opened);
+    let (orders, ordered) = mpsc::channel();
+    let (tell, events) = mpsc::channel();
+    let woken = Arc::clone(&wake);
+    // Who is not listened to any more is about to end.
+    let tell = move |event| {
+        let _ = tell.send(event);
+        woken();
+    };
+    let worker = Worker::new(opened, (gpu, &args.scene), Box::new(sources), Box::new(tell));
+    let failed = |error: std::io::Error| CliError::Input(format!("no thread: {error}"));
+    thread::Builder::new()
+        .name("methods".into())
+        .spawn(move || worker.work(&ordered))
+        .map_err(failed)?;
+    let (tell, answers) = mpsc::channel();
+    let judge = Judge::start(move |answer| {
+        let _ = tell.send(answer);
+        wake();
+    });
+    let again = orders.clone();
+    let folders = watch::folders(args.methods.iter().map(|it| it.split('@').next().unwrap_or(it)));
+    let watch = Watch::start(&folders, move || {
+        let _ = again.send(Order::Reload);
+    });
+    let wanted = Wanted {
+        scene: args.scene.scene.clone(),
+        view: None,
+        size: args.size.0,
+        methods,
+        all_passes: false,
+        frame: 0,
+    };
+    let lines = Lines {
+        orders,
+        events,
+        judge: judge.map_err(failed)?,
+        answers,
+    };
+    let mut viewer = Viewer::new(lines, choices, wanted);
+    let watch = match watch {
+        Ok(watch) => Some(watch),
+        Err(error) => {
+            viewer.complain(&format!("changed files are not noticed: {error}"));
+            None
+        }
+    };
+    Ok((viewer, watch))
+}
+
+/// A method of the command line with its setting.
+fn wanted_method(argument: &str, args: &ViewArgs) -> Result<WantedMethod, CliError> {
+    let argument = MethodArgument::new(argument);
+    let sources = preset::sources();
+    preset::locate(&argument.preset, &sources)?;
+    let mut params = Default::default();
+    let set = [&args.params[..], &argument.own].concat();
+    if args.map_size.is_some() || !set.is_empty() {
+        let presets = preset::load_all(std::slice::from_ref(&argument.preset), &sources)?;
+        for preset in &presets {
+            params = param_values(preset, &set, args.map_size)?;
+        }
+    }
+    Ok(WantedMethod {
+        name: argument.preset,
+        params,
+        material: None,
+    })
+}
+
+fn choices(args: &ViewArgs, gpu: &skiagraph_gpu::device::Gpu) -> Choices {
+    let presets = preset::names(&preset::sources());
+    let named = args.methods.iter().map(|it| MethodArgument::new(it).preset);
+    let methods: BTreeSet<String> = presets.into_iter().chain(named).collect();
+    let listed = SceneLibrary::from_environment().list();
+    let listed = listed.into_iter().filter(|scene| scene.mesh_found);
+    let mut scenes: BTreeSet<String> = listed.map(|scene| scene.name).collect();
+    scenes.insert(args.scene.scene.clone());
+    let info = gpu.adapter.get_info();
+    let adapter = match device::timestamp_trust(gpu) {
+        Trust::Trusted => info.name,
+        Trust::Untrusted { reason } => format!("{}; no GPU times: {reason}", info.name),
+    };
+    Choices {
+        scenes: scenes.into_iter().collect(),
+        methods: methods.into_iter().collect(),
+        adapter,
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::{error, params};
 use crate::viewer::saving;
-use crate::viewer::state::Viewer;
+use crate::viewer::state::{Drag, Viewer};
 use crate::wording::size;
 use egui::{ComboBox, RichText, Ui};
 use glam::DVec3;
@@ -21,6 +21,7 @@ const SIZES: [[u32; 2]; 6] = [
 pub fn show(ui: &mut Ui, viewer: &mut Viewer) {
     ui.add_space(4.0);
     scene(ui, viewer);
+    pointer(ui, viewer);
     light(ui, viewer);
     ui.separator();
     running(ui, viewer);
@@ -80,6 +81,21 @@ fn scene(ui: &mut Ui, viewer: &mut Viewer) {
         let save = ui.button("Save").on_hover_text("the scene file once more, with this view");
         if save.clicked() {
             viewer.notice = Some(saved(&viewer.wanted.scene, &view));
+        }
+    });
+}
+
+/// What a plain drag in a picture does.
+fn pointer(ui: &mut Ui, viewer: &mut Viewer) {
+    ui.horizontal(|ui| {
+        ui.label("pointer");
+        for (drag, text, hint) in [
+            (Drag::Look, "look", "look around"),
+            (Drag::Orbit, "orbit", "around the scene's middle; always with the right button"),
+            (Drag::Pan, "pan", "shift the eye; always with Shift, or the middle button"),
+            (Drag::Light, "light", "turn the light; always with Ctrl"),
+        ] {
+            ui.selectable_value(&mut viewer.drag, drag, text).on_hover_text(hint);
         }
     });
 }

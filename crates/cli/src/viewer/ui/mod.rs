@@ -48,7 +48,7 @@ fn state_line(ui: &mut Ui, viewer: &Viewer) {
         } else if viewer.is_current() {
             ui.label("up to date");
         } else {
-            ui.spinner();
+            // Nothing that moves: a software adapter has better things to draw.
             ui.label("running …");
         }
         ui.separator();

@@ -142,8 +142,7 @@ impl Shots {
             let readings = saves.iter();
             let planes = ClipPlanes::of(&shot.view);
             let plan = executor.plan();
-            let readings =
-                readings.map(|save| Decoding::of(plan, &capture(save).name(), planes));
+            let readings = readings.map(|save| Decoding::of(plan, &capture(save).name(), planes));
             let readings: Vec<Decoding> = readings.collect();
             let contents = self
                 .frame(gpu, &mut executor, provider, (index, saves))

@@ -121,7 +121,9 @@ fn lit(shot: &Shot, method: &MethodShot, show: &Show) -> Result<Drawn, String> {
     };
     // The numbers under the cursor are those of the answer.
     let numbers = method.contents.get(VISIBILITY).map(Content::split);
-    let numbers = numbers.as_ref().and_then(|layers| layers.get(shot.light_number));
+    let numbers = numbers
+        .as_ref()
+        .and_then(|layers| layers.get(shot.light_number));
     Ok(Drawn {
         image: Some(image.map_err(|error| error.to_string())?),
         legend,
@@ -149,7 +151,11 @@ fn difference(shot: &Shot, method: &MethodShot, answer: &Answer) -> Result<Drawn
     };
     Ok(Drawn {
         image: Some(image.map_err(wrong)?),
-        legend: format!("{}; {}", verdict(&judgement, reference), of_pixels(answer.stride)),
+        legend: format!(
+            "{}; {}",
+            verdict(&judgement, reference),
+            of_pixels(answer.stride)
+        ),
         ..Drawn::default()
     })
 }
@@ -170,7 +176,10 @@ fn verdict(judgement: &Judgement, reference: &skiagraph_reference::Reference) ->
             graded.rmse, graded.mean_absolute_error, graded.flip
         );
     }
-    let facing = reference.classes.iter().filter(|class: &&Class| class.faces_light());
+    let facing = reference
+        .classes
+        .iter()
+        .filter(|class: &&Class| class.faces_light());
     let facing = facing.count() as u64;
     let wrong = &judgement.counts.wrong;
     let outside = wrong.total - wrong.in_band;
@@ -223,7 +232,9 @@ fn material(method: &MethodShot, name: &str, reading: &Reading) -> Drawn {
         let last = texels.as_ref().map_or(0, |texels| texels.channels() - 1);
         wanted.min(last)
     };
-    let histogram = texels.as_ref().map(|texels| texels.histogram(channel(reading.channel)));
+    let histogram = texels
+        .as_ref()
+        .map(|texels| texels.histogram(channel(reading.channel)));
     let material = name.split('@').next().unwrap_or(name);
     let picture = Picture::of(material, part, decoding.planes);
     let (mut image, mut legend) = match picture {
@@ -255,7 +266,10 @@ fn table(text: &str) -> Drawn {
     let shown: Vec<&str> = text.lines().take(MOST_LINES + 1).collect();
     Drawn {
         legend: match lines > MOST_LINES {
-            true => format!("the first {MOST_LINES} of {} items", thousands(lines as u64)),
+            true => format!(
+                "the first {MOST_LINES} of {} items",
+                thousands(lines as u64)
+            ),
             false => format!("{} items", thousands(lines as u64)),
         },
         table: Some(shown.join("\n")),

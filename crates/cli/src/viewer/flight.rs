@@ -16,7 +16,9 @@ fn frame(view: &View) -> [DVec3; 3] {
 fn turned(direction: DVec3, up: DVec3, yaw: f64, pitch: f64) -> DVec3 {
     let up = up.normalize_or(DVec3::Y);
     let direction = DQuat::from_axis_angle(up, yaw) * direction.normalize_or(DVec3::NEG_Z);
-    let right = direction.cross(up).normalize_or(up.any_orthonormal_vector());
+    let right = direction
+        .cross(up)
+        .normalize_or(up.any_orthonormal_vector());
     let height = direction.dot(up).clamp(-1.0, 1.0).asin();
     let steepest = STEEPEST_DEGREES.to_radians();
     // What is steeper from the start may stay so, and not become more so.

@@ -34,7 +34,9 @@ mod tests {
         let luma = |[r, g, b]: [u8; 3]| {
             0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)
         };
-        let steps: Vec<f64> = (0..=64).map(|at| luma(colour(f64::from(at) / 64.0))).collect();
+        let steps: Vec<f64> = (0..=64)
+            .map(|at| luma(colour(f64::from(at) / 64.0)))
+            .collect();
         assert!(steps.windows(2).all(|pair| pair[0] < pair[1]), "{steps:?}");
     }
 }

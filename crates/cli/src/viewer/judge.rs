@@ -183,9 +183,7 @@ fn thinned(camera: &Camera, primitives: &[u32], stride: u32) -> Option<(Camera, 
     }
     let share = |axis: usize| f64::from(viewport[axis] * stride) / f64::from(size[axis]);
     // What is cut off at the right and below moves the picture's middle.
-    let cut = |axis: usize| {
-        f64::from(viewport[axis] * stride) - f64::from(size[axis])
-    };
+    let cut = |axis: usize| f64::from(viewport[axis] * stride) - f64::from(size[axis]);
     let jitter = (camera.jitter * 2.0 + DVec2::new(cut(0), cut(1))) / (2.0 * f64::from(stride));
     let camera = Camera {
         viewport,
@@ -225,7 +223,10 @@ mod tests {
                     let number = kept[(y * width + x) as usize];
                     let pixel = whole.pixel_direction(number % size[0], number / size[0]);
                     let thin = camera.pixel_direction(x, y);
-                    assert!(thin.distance(pixel) < 1e-12, "{size:?} / {stride} at {x}, {y}");
+                    assert!(
+                        thin.distance(pixel) < 1e-12,
+                        "{size:?} / {stride} at {x}, {y}"
+                    );
                 }
             }
         }

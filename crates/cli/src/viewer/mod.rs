@@ -63,7 +63,12 @@ fn start(args: &ViewArgs, gpu: &GpuArgs, wake: Wake) -> Result<(Viewer, Option<W
         let _ = tell.send(event);
         woken();
     };
-    let worker = Worker::new(opened, (gpu, &args.scene), Box::new(sources), Box::new(tell));
+    let worker = Worker::new(
+        opened,
+        (gpu, &args.scene),
+        Box::new(sources),
+        Box::new(tell),
+    );
     let failed = |error: std::io::Error| CliError::Input(format!("no thread: {error}"));
     thread::Builder::new()
         .name("methods".into())
@@ -75,7 +80,11 @@ fn start(args: &ViewArgs, gpu: &GpuArgs, wake: Wake) -> Result<(Viewer, Option<W
         wake();
     });
     let again = orders.clone();
-    let folders = watch::folders(args.methods.iter().map(|it| it.split('@').next().unwrap_or(it)));
+    let folders = watch::folders(
+        args.methods
+            .iter()
+            .map(|it| it.split('@').next().unwrap_or(it)),
+    );
     let watch = Watch::start(&folders, move || {
         let _ = again.send(Order::Reload);
     });

@@ -46,7 +46,9 @@ pub fn save(
             "{scene}: {why}; copy the view and paste it into a scene file's `views`"
         ))
     };
-    let located = library.locate(scene).map_err(|error| by_hand(error.to_string()))?;
+    let located = library
+        .locate(scene)
+        .map_err(|error| by_hand(error.to_string()))?;
     let (file, text) = located;
     let parsed = SceneFile::parse(&text, scene).map_err(|error| by_hand(error.to_string()))?;
     let taken = |name: &str| parsed.views.iter().any(|view| view.name == name);
@@ -55,8 +57,12 @@ pub fn save(
         name: name.clone(),
         ..view.clone()
     };
-    let text = with_view(&text, &named).ok_or_else(|| by_hand("its views were not found".into()))?;
-    let folder = file.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
+    let text =
+        with_view(&text, &named).ok_or_else(|| by_hand("its views were not found".into()))?;
+    let folder = file
+        .as_deref()
+        .and_then(Path::parent)
+        .unwrap_or(Path::new(""));
     let stem = file.as_deref().and_then(Path::file_stem);
     let stem = stem.map_or(scene.into(), |stem| stem.to_string_lossy().into_owned());
     let path = |name: &str| folder.join(format!("{name}.ron"));
@@ -78,14 +84,19 @@ fn with_view(text: &str, view: &View) -> Option<String> {
     let mut places = text.match_indices("views:").filter_map(|(at, word)| {
         let behind = &text[at + word.len()..];
         let bracket = behind.find(|c: char| !c.is_whitespace())?;
-        behind[bracket..].starts_with('[').then_some(at + word.len() + bracket + 1)
+        behind[bracket..]
+            .starts_with('[')
+            .then_some(at + word.len() + bracket + 1)
     });
     // One of them may stand in a comment; then the view is not read.
     places.find_map(|at| {
         let (before, behind) = text.split_at(at);
         let text = format!("{before}\n        {},{behind}", entry(view));
         let read = SceneFile::parse(&text, "").ok()?;
-        read.views.iter().any(|read| read.name == view.name).then_some(text)
+        read.views
+            .iter()
+            .any(|read| read.name == view.name)
+            .then_some(text)
     })
 }
 

@@ -13,7 +13,7 @@ use skiagraph_passes::{SceneProvider, registry};
 use std::{sync::Arc, time::Duration};
 
 /// The device is of no more use.
-pub struct Lost(pub String);
+pub struct Lost;
 
 /// What a plan was made for.
 #[derive(Clone, PartialEq)]
@@ -145,9 +145,9 @@ impl Slot {
 
     fn refuse(&mut self, planned: PlannedFor, refusal: Refusal) -> Result<(), Lost> {
         self.refused = Some(planned);
-        self.error = Some(refusal.text.clone());
+        self.error = Some(refusal.text);
         match refusal.is_fatal {
-            true => Err(Lost(refusal.text)),
+            true => Err(Lost),
             false => Ok(()),
         }
     }
@@ -180,7 +180,9 @@ impl Slot {
             let plan = plan(preset, next, Capabilities::of(gpu), provider)?;
             match &mut self.executor {
                 Some(executor) => {
-                    executor.replace_graph(plan, provider).map_err(Refusal::of)?;
+                    executor
+                        .replace_graph(plan, provider)
+                        .map_err(Refusal::of)?;
                 }
                 None => {
                     let made = frame::executor(gpu, plan, provider);
@@ -202,7 +204,12 @@ impl Slot {
             return Ok(self.last.clone());
         };
         frame::grow(gpu, executor, provider)?;
-        let names: Vec<String> = executor.plan().outputs().into_iter().map(|it| it.name).collect();
+        let names: Vec<String> = executor
+            .plan()
+            .outputs()
+            .into_iter()
+            .map(|it| it.name)
+            .collect();
         let read: Vec<&str> = names.iter().map(String::as_str).collect();
         let wanted = Frame {
             timing: how.timing,

@@ -135,7 +135,10 @@ impl Viewer {
             is_new = true;
         }
         while let Ok(answer) = self.lines.answers.try_recv() {
-            let fits = self.shot.as_ref().is_some_and(|shot| answer.question.is_about(shot));
+            let fits = self
+                .shot
+                .as_ref()
+                .is_some_and(|shot| answer.question.is_about(shot));
             if fits {
                 self.answer = Some(answer);
                 self.redraw();
@@ -176,7 +179,8 @@ impl Viewer {
             Event::Broken(why) => self.complain(&why),
             Event::Frame(shot) => {
                 for (pane, method) in self.panes.iter_mut().zip(&shot.methods) {
-                    pane.history.push_back(method.gpu_ms.unwrap_or(method.wall_ms));
+                    pane.history
+                        .push_back(method.gpu_ms.unwrap_or(method.wall_ms));
                     if pane.history.len() > HISTORY {
                         pane.history.pop_front();
                     }
@@ -353,10 +357,16 @@ impl Viewer {
 
     /// Middle and radius of the scene.
     pub fn extent(&self) -> (DVec3, f64) {
-        let bounds = self.loaded.as_ref().and_then(|loaded| loaded.scene.mesh.bounds());
+        let bounds = self
+            .loaded
+            .as_ref()
+            .and_then(|loaded| loaded.scene.mesh.bounds());
         bounds.map_or((DVec3::ZERO, 1.0), |(min, max)| {
             let (min, max) = (min.as_dvec3(), max.as_dvec3());
-            ((min + max) * 0.5, ((max - min).length() * 0.5).max(f64::MIN_POSITIVE))
+            (
+                (min + max) * 0.5,
+                ((max - min).length() * 0.5).max(f64::MIN_POSITIVE),
+            )
         })
     }
 
@@ -371,7 +381,10 @@ impl Viewer {
         match drag {
             Drag::Look => flight::look(&mut moved, -x, -y),
             Drag::Orbit => {
-                let distance = moved.eye.distance(centre).clamp(radius * 0.05, radius * 4.0);
+                let distance = moved
+                    .eye
+                    .distance(centre)
+                    .clamp(radius * 0.05, radius * 4.0);
                 flight::orbit(&mut moved, -x, -y, distance);
             }
             Drag::Pan => flight::fly(&mut moved, DVec3::new(-x, y, 0.0) * radius * 0.5),

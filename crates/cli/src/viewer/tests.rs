@@ -3,8 +3,8 @@
 use super::drawn::Show;
 use super::state::{Drag, Viewer};
 use super::ui::{self, Surface};
-use super::watch::Watch;
 use super::wanted::MethodShot;
+use super::watch::Watch;
 use crate::args::commands::ViewArgs;
 use crate::args::shared::{GpuArgs, SceneArgs};
 use crate::args::values::Size;
@@ -74,7 +74,10 @@ fn until(desk: &mut Harness<Desk>, what: &str, holds: impl Fn(&Viewer) -> bool) 
             return;
         }
         let notice = &desk.state().viewer.notice;
-        assert!(began.elapsed() < PATIENCE, "not in time: {what}; {notice:?}");
+        assert!(
+            began.elapsed() < PATIENCE,
+            "not in time: {what}; {notice:?}"
+        );
         std::thread::sleep(Duration::from_millis(20));
     }
 }
@@ -146,7 +149,10 @@ fn dragging_turns_the_camera_and_the_light() {
     desk.run_steps(3);
     desk.key_up_modifiers(Modifiers::NONE, egui::Key::W);
     settled(&mut desk);
-    assert_ne!(desk.state().viewer.wanted.view.as_ref().unwrap().eye, view.eye);
+    assert_ne!(
+        desk.state().viewer.wanted.view.as_ref().unwrap().eye,
+        view.eye
+    );
 }
 
 #[test]
@@ -161,9 +167,16 @@ fn passes_are_stepped_through_and_materials_read() {
         let viewer = &desk.state().viewer;
         assert_eq!(viewer.panes[0].show, Show::Material(step.clone()));
         let drawn = &viewer.panes[0].drawn;
-        assert!(drawn.image.is_some() || drawn.table.is_some(), "{step:?}: {}", drawn.legend);
+        assert!(
+            drawn.image.is_some() || drawn.table.is_some(),
+            "{step:?}: {}",
+            drawn.legend
+        );
     }
-    let map = steps.iter().find(|step| step.material.ends_with("shadow_maps")).unwrap();
+    let map = steps
+        .iter()
+        .find(|step| step.material.ends_with("shadow_maps"))
+        .unwrap();
     desk.state_mut().viewer.show(0, Show::Material(map.clone()));
     settled(&mut desk);
     desk.get_by_label("heat map").click();
@@ -185,12 +198,23 @@ fn the_reference_becomes_finer_and_tells_what_is_wrong() {
     until(&mut desk, "the reference of all pixels", |viewer| {
         viewer.answer().is_some_and(|answer| answer.stride == 1)
     });
-    let legend = |desk: &Harness<Desk>, index: usize| {
-        desk.state().viewer.panes[index].drawn.legend.clone()
-    };
-    assert!(legend(&desk, 0).contains("; 0 wrong outside the band"), "{}", legend(&desk, 0));
-    assert!(!legend(&desk, 1).contains("; 0 wrong outside the band"), "{}", legend(&desk, 1));
-    assert!(legend(&desk, 1).ends_with("of all pixels"), "{}", legend(&desk, 1));
+    let legend =
+        |desk: &Harness<Desk>, index: usize| desk.state().viewer.panes[index].drawn.legend.clone();
+    assert!(
+        legend(&desk, 0).contains("; 0 wrong outside the band"),
+        "{}",
+        legend(&desk, 0)
+    );
+    assert!(
+        !legend(&desk, 1).contains("; 0 wrong outside the band"),
+        "{}",
+        legend(&desk, 1)
+    );
+    assert!(
+        legend(&desk, 1).ends_with("of all pixels"),
+        "{}",
+        legend(&desk, 1)
+    );
     keep(&mut desk, "difference.png");
     desk.state_mut().viewer.dragged(Drag::Look, [0.3, 0.0]);
     desk.step();
@@ -251,7 +275,9 @@ fn changed_files_are_read_again_and_a_mistake_keeps_the_last_graph() {
     let error = shown(&desk, 0).error.unwrap();
     assert!(error.contains("part.wgsl"), "{error}");
     assert_eq!(first(&desk), 0.5, "the last good graph runs on");
-    desk.state_mut().viewer.set_param(0, "share", ParamValue::F32(0.5));
+    desk.state_mut()
+        .viewer
+        .set_param(0, "share", ParamValue::F32(0.5));
     settled(&mut desk);
     assert_eq!(first(&desk), 0.25, "and takes params");
     std::fs::write(file("part.wgsl"), PART).unwrap();

@@ -80,7 +80,9 @@ impl Texels {
             Values::I32(values) => values[range].iter().map(i32::to_string).collect(),
             Values::F32(values) => values[range].iter().map(f32::to_string).collect(),
         };
-        let distance = self.planes.map(|planes| planes.distance(self.number(first) as f32));
+        let distance = self
+            .planes
+            .map(|planes| planes.distance(self.number(first) as f32));
         Some(match distance {
             Some(distance) if self.is_depth => {
                 format!("{} = {distance} along the view", texts.join(", "))
@@ -105,9 +107,10 @@ impl Texels {
             let number = self.number(texel * self.channels + channel);
             match self.is_depth {
                 true if number == 1.0 => None,
-                true => Some(self.planes.map_or(number, |planes| {
-                    f64::from(planes.distance(number as f32))
-                })),
+                true => Some(
+                    self.planes
+                        .map_or(number, |planes| f64::from(planes.distance(number as f32))),
+                ),
                 false => Some(number),
             }
         })
@@ -168,7 +171,10 @@ mod tests {
         Content::Texture {
             format,
             parts: vec![size],
-            bytes: values.iter().flat_map(|value| value.to_le_bytes()).collect(),
+            bytes: values
+                .iter()
+                .flat_map(|value| value.to_le_bytes())
+                .collect(),
         }
     }
 

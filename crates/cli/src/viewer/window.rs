@@ -6,9 +6,11 @@ use crate::error::CliError;
 use crate::viewer::state::Viewer;
 use crate::viewer::{start, ui, watch::Watch};
 use egui::ViewportId;
-use egui_wgpu::{RendererOptions, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew, winit::Painter};
+use egui_wgpu::{
+    RendererOptions, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew, winit::Painter,
+};
 use std::{
-    panic::{self, AssertUnwindSafe},
+    panic,
     sync::Arc,
     time::{Duration, Instant},
 };
@@ -109,7 +111,9 @@ impl App {
             .with_inner_size(LogicalSize::new(1280, 800));
         let window = events.create_window(attributes);
         let window = Arc::new(window.map_err(|error| no_display(&error.to_string()))?);
-        let set = self.painter.set_window(ViewportId::ROOT, Some(window.clone()));
+        let set = self
+            .painter
+            .set_window(ViewportId::ROOT, Some(window.clone()));
         pollster::block_on(set)
             .map_err(|error| CliError::NoGpu(format!("no GPU draws into a window: {error}")))?;
         let state = egui_winit::State::new(
@@ -131,9 +135,13 @@ impl App {
         };
         let input = state.take_egui_input(window);
         let (viewer, surface) = (&mut self.viewer, &mut self.surface);
-        let mut output = self.context.run_ui(input, |ui| ui::show(ui, viewer, surface));
+        let mut output = self
+            .context
+            .run_ui(input, |ui| ui::show(ui, viewer, surface));
         state.handle_platform_output(window, output.platform_output);
-        let shapes = self.context.tessellate(output.shapes, output.pixels_per_point);
+        let shapes = self
+            .context
+            .tessellate(output.shapes, output.pixels_per_point);
         self.painter.paint_and_update_textures(
             ViewportId::ROOT,
             output.pixels_per_point,
@@ -192,7 +200,8 @@ impl ApplicationHandler<Wake> for App {
                 if let (Some(width), Some(height)) =
                     (size.width.try_into().ok(), size.height.try_into().ok())
                 {
-                    self.painter.on_window_resized(ViewportId::ROOT, width, height);
+                    self.painter
+                        .on_window_resized(ViewportId::ROOT, width, height);
                 }
             }
             _ => {}

@@ -3,7 +3,6 @@
 
 use crate::args::shared::{GpuArgs, SceneArgs};
 use crate::error::{CliError, explain, with_causes};
-use crate::graphs::preset;
 use crate::measuring::{
     device, frame, reference::PrimaryVisibility, scene_selection::SceneSelection,
 };
@@ -57,7 +56,12 @@ pub struct Worker {
 
 impl Worker {
     /// On a GPU. What the arguments say of camera and light holds for the scene that they name.
-    pub fn new(gpu: Gpu, args: (&GpuArgs, &SceneArgs), sources: Box<dyn Sources>, tell: Tell) -> Self {
+    pub fn new(
+        gpu: Gpu,
+        args: (&GpuArgs, &SceneArgs),
+        sources: Box<dyn Sources>,
+        tell: Tell,
+    ) -> Self {
         let (args, scene_args) = (args.0.clone(), args.1.clone());
         Self {
             timing: device::timestamp_trust(&gpu) == Trust::Trusted,
@@ -111,7 +115,7 @@ impl Worker {
                     (self.tell)(Event::Frame(Box::new(shot)));
                     return Ok(());
                 }
-                Err(Lost(_)) => self.reopen()?,
+                Err(Lost) => self.reopen()?,
             }
         }
         Ok(())
@@ -119,7 +123,11 @@ impl Worker {
 
     /// Loads the scene, if it is another one; says whether there is one.
     fn load(&mut self, wanted: &Wanted) -> bool {
-        if self.stage.as_ref().is_some_and(|stage| stage.name == wanted.scene) {
+        if self
+            .stage
+            .as_ref()
+            .is_some_and(|stage| stage.name == wanted.scene)
+        {
             return true;
         }
         if self.failed_scene.as_ref() == Some(&wanted.scene) {
@@ -277,9 +285,4 @@ impl Stage {
         unshadowed(mesh, camera, &light, primitives, Progress::default())
             .map_err(|error| CliError::Input(error.to_string()))
     }
-}
-
-/// Where a graph of a file reads from.
-pub fn sources() -> Box<dyn Sources> {
-    Box::new(preset::sources())
 }

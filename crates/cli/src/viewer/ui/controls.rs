@@ -70,15 +70,23 @@ fn scene(ui: &mut Ui, viewer: &mut Viewer) {
         return;
     };
     ui.horizontal(|ui| {
-        let again = ui.button("Back").on_hover_text("to where the view is in the file");
+        let again = ui
+            .button("Back")
+            .on_hover_text("to where the view is in the file");
         if again.clicked() {
             viewer.choose_view(&view.name);
         }
-        if ui.button("Copy").on_hover_text("as an entry of a scene file's `views`").clicked() {
+        if ui
+            .button("Copy")
+            .on_hover_text("as an entry of a scene file's `views`")
+            .clicked()
+        {
             ui.copy_text(saving::entry(&view));
             viewer.notice = Some(("the view is on the clipboard".into(), false));
         }
-        let save = ui.button("Save").on_hover_text("the scene file once more, with this view");
+        let save = ui
+            .button("Save")
+            .on_hover_text("the scene file once more, with this view");
         if save.clicked() {
             viewer.notice = Some(saved(&viewer.wanted.scene, &view));
         }
@@ -91,11 +99,20 @@ fn pointer(ui: &mut Ui, viewer: &mut Viewer) {
         ui.label("pointer");
         for (drag, text, hint) in [
             (Drag::Look, "look", "look around"),
-            (Drag::Orbit, "orbit", "around the scene's middle; always with the right button"),
-            (Drag::Pan, "pan", "shift the eye; always with Shift, or the middle button"),
+            (
+                Drag::Orbit,
+                "orbit",
+                "around the scene's middle; always with the right button",
+            ),
+            (
+                Drag::Pan,
+                "pan",
+                "shift the eye; always with Shift, or the middle button",
+            ),
             (Drag::Light, "light", "turn the light; always with Ctrl"),
         ] {
-            ui.selectable_value(&mut viewer.drag, drag, text).on_hover_text(hint);
+            ui.selectable_value(&mut viewer.drag, drag, text)
+                .on_hover_text(hint);
         }
     });
 }
@@ -104,7 +121,10 @@ fn saved(scene: &str, view: &View) -> (String, bool) {
     match saving::save(&SceneLibrary::from_environment(), scene, view) {
         Ok((file, name)) => {
             let file = file.display();
-            (format!("--scene {file} --view {name} shows this again"), false)
+            (
+                format!("--scene {file} --view {name} shows this again"),
+                false,
+            )
         }
         Err(error) => (crate::error::with_causes(&error), true),
     }
@@ -125,18 +145,27 @@ fn light(ui: &mut Ui, viewer: &mut Viewer) {
     };
     let LightKind::Directional(sun) = kind else {
         let place = kind.position().unwrap_or_default();
-        let LightKind::Spot(_) | LightKind::Point(_) = kind else {
-            return;
-        };
         ui.label(format!("{} light `{name}` at {place:.2}", kind.word()));
         return;
     };
     let before = place_of(&sun);
     let [mut around, mut above] = before;
     let mut angle = sun.angle_degrees;
-    ui.add(egui::Slider::new(&mut around, -180.0..=180.0).suffix("°").text("light from"));
-    ui.add(egui::Slider::new(&mut above, -89.0..=89.0).suffix("°").text("above"));
-    ui.add(egui::Slider::new(&mut angle, 0.0..=20.0).suffix("°").text("wide"));
+    ui.add(
+        egui::Slider::new(&mut around, -180.0..=180.0)
+            .suffix("°")
+            .text("light from"),
+    );
+    ui.add(
+        egui::Slider::new(&mut above, -89.0..=89.0)
+            .suffix("°")
+            .text("above"),
+    );
+    ui.add(
+        egui::Slider::new(&mut angle, 0.0..=20.0)
+            .suffix("°")
+            .text("wide"),
+    );
     if [around, above, angle] == [before[0], before[1], sun.angle_degrees] {
         return;
     }

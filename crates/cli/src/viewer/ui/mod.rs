@@ -60,7 +60,7 @@ fn state_line(ui: &mut Ui, viewer: &Viewer) {
 fn error(ui: &mut Ui, text: &str) {
     let colour = ui.visuals().error_fg_color;
     ScrollArea::both()
-        .id_salt(("error", ui.id()))
+        .id_salt(("error", ui.scope_id()))
         .max_height(220.0)
         .show(ui, |ui| {
             let text = RichText::new(text).monospace().color(colour);

@@ -92,7 +92,9 @@ fn slider(
     if let (Some(low), Some(high)) = bounds {
         // Sizes and counts are told apart by their factors.
         let is_wide = low >= 0.0 && high > 1000.0 * low.max(1.0);
-        let slider = Slider::new(number, low..=high).logarithmic(is_wide).text(name);
+        let slider = Slider::new(number, low..=high)
+            .logarithmic(is_wide)
+            .text(name);
         return ui.add(if is_whole { slider.integer() } else { slider });
     }
     let low = bounds.0.unwrap_or(f64::from(f32::MIN));
@@ -103,7 +105,11 @@ fn slider(
     };
     ui.horizontal(|ui| {
         let drag = DragValue::new(number).range(low..=high).speed(speed);
-        let drag = if is_whole { drag.fixed_decimals(0) } else { drag };
+        let drag = if is_whole {
+            drag.fixed_decimals(0)
+        } else {
+            drag
+        };
         let response = ui.add(drag);
         let label = ui.label(name);
         response.labelled_by(label.id)

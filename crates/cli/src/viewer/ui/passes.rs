@@ -24,32 +24,38 @@ fn one(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
         history(ui, viewer, index);
     });
     let mut chosen = None;
-    ScrollArea::vertical().id_salt(("passes", index)).show(ui, |ui| {
-        Grid::new(("grid", index)).striped(true).num_columns(4).show(ui, |ui| {
-            for pass in &method.passes {
-                ui.label(&pass.name);
-                ui.weak(&pass.kind);
-                ui.label(match (pass.skipped, pass.gpu_ms) {
-                    (true, _) => "kept".to_owned(),
-                    (false, Some(ms)) => format!("{ms:.3} ms"),
-                    (false, None) => "–".to_owned(),
-                });
-                ui.horizontal(|ui| {
-                    for material in &pass.writes {
-                        let capture = Capture {
-                            material: material.clone(),
-                            after: Some(pass.name.clone()),
-                        };
-                        let is_shown = viewer.panes[index].show == Show::Material(capture.clone());
-                        if ui.selectable_label(is_shown, material).clicked() {
-                            chosen = Some(capture);
-                        }
+    ScrollArea::vertical()
+        .id_salt(("passes", index))
+        .show(ui, |ui| {
+            Grid::new(("grid", index))
+                .striped(true)
+                .num_columns(4)
+                .show(ui, |ui| {
+                    for pass in &method.passes {
+                        ui.label(&pass.name);
+                        ui.weak(&pass.kind);
+                        ui.label(match (pass.skipped, pass.gpu_ms) {
+                            (true, _) => "kept".to_owned(),
+                            (false, Some(ms)) => format!("{ms:.3} ms"),
+                            (false, None) => "–".to_owned(),
+                        });
+                        ui.horizontal(|ui| {
+                            for material in &pass.writes {
+                                let capture = Capture {
+                                    material: material.clone(),
+                                    after: Some(pass.name.clone()),
+                                };
+                                let is_shown =
+                                    viewer.panes[index].show == Show::Material(capture.clone());
+                                if ui.selectable_label(is_shown, material).clicked() {
+                                    chosen = Some(capture);
+                                }
+                            }
+                        });
+                        ui.end_row();
                     }
                 });
-                ui.end_row();
-            }
         });
-    });
     if let Some(capture) = chosen {
         viewer.show(index, Show::Material(capture));
     }
@@ -84,9 +90,11 @@ fn history(ui: &mut Ui, viewer: &Viewer, index: usize) {
     };
     let line: Vec<Pos2> = times.iter().enumerate().map(place).collect();
     let visuals = ui.visuals();
-    ui.painter().rect_filled(rect, 2.0, visuals.extreme_bg_color);
+    ui.painter()
+        .rect_filled(rect, 2.0, visuals.extreme_bg_color);
     let stroke = Stroke::new(1.0, visuals.hyperlink_color);
-    ui.painter_at(Rect::from(rect)).add(Shape::line(line, stroke));
+    ui.painter_at(Rect::from(rect))
+        .add(Shape::line(line, stroke));
     response.on_hover_text(format!(
         "the last {} frames, 0 to {longest:.2} ms",
         times.len()

@@ -37,10 +37,10 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer, index: usize, held: &mut Held) {
     let of_image = texture.size_vec2();
     let room = ui.available_size() - Vec2::new(0.0, BELOW);
     let scale = (room.x / of_image.x).min(room.y / of_image.y).max(0.01);
-    let (rect, response) =
-        ui.allocate_exact_size(of_image * scale, Sense::click_and_drag());
+    let (rect, response) = ui.allocate_exact_size(of_image * scale, Sense::click_and_drag());
     let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
-    ui.painter().image(texture.id(), rect, whole, Color32::WHITE);
+    ui.painter()
+        .image(texture.id(), rect, whole, Color32::WHITE);
     point(ui, viewer, &response);
     below(ui, viewer, index, &response, rect);
 }
@@ -56,15 +56,22 @@ fn choice(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
             .width(220.0)
             .height(480.0)
             .show_ui(ui, |ui| {
-                let answers = [Show::Shaded, Show::Visibility, Show::Uncertain, Show::Difference];
+                let answers = [
+                    Show::Shaded,
+                    Show::Visibility,
+                    Show::Uncertain,
+                    Show::Difference,
+                ];
                 let materials = steps.into_iter().map(Show::Material);
                 for show in answers.into_iter().chain(materials) {
                     let text = title(&show);
                     ui.selectable_value(&mut chosen, show, text);
                 }
             });
-        for (text, forward, hint) in [("<", false, "the pass before"), (">", true, "the next pass")]
-        {
+        for (text, forward, hint) in [
+            ("<", false, "the pass before"),
+            (">", true, "the next pass"),
+        ] {
             if ui.button(text).on_hover_text(hint).clicked() {
                 viewer.step(index, forward);
                 chosen = viewer.panes[index].show.clone();
@@ -95,13 +102,19 @@ fn reading(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
     let pane = &viewer.panes[index];
     let mut reading: Reading = pane.reading.clone();
     if let Some(now) = pane.drawn.parts.get(reading.part) {
-        ComboBox::from_id_salt(("part", index)).selected_text(now).show_ui(ui, |ui| {
-            for (part, name) in pane.drawn.parts.iter().enumerate() {
-                ui.selectable_value(&mut reading.part, part, name);
-            }
-        });
+        ComboBox::from_id_salt(("part", index))
+            .selected_text(now)
+            .show_ui(ui, |ui| {
+                for (part, name) in pane.drawn.parts.iter().enumerate() {
+                    ui.selectable_value(&mut reading.part, part, name);
+                }
+            });
     }
-    let channels = pane.drawn.texels.as_ref().map_or(0, |texels| texels.channels());
+    let channels = pane
+        .drawn
+        .texels
+        .as_ref()
+        .map_or(0, |texels| texels.channels());
     if channels > 1 {
         ui.add(egui::Slider::new(&mut reading.channel, 0..=channels - 1).text("channel"));
     }
@@ -119,7 +132,12 @@ fn upload(ui: &Ui, viewer: &Viewer, index: usize, held: &mut Held) {
         return;
     }
     held.version = pane.version;
-    let Some(image) = pane.drawn.image.as_ref().filter(|image| !image.rgb.is_empty()) else {
+    let Some(image) = pane
+        .drawn
+        .image
+        .as_ref()
+        .filter(|image| !image.rgb.is_empty())
+    else {
         held.texture = None;
         return;
     };
@@ -149,7 +167,8 @@ fn point(ui: &Ui, viewer: &mut Viewer, response: &Response) {
     let extent = f64::from(response.rect.width().max(1.0));
     let moved = response.drag_delta();
     if moved != Vec2::ZERO {
-        let by = [f64::from(moved.x) / extent, f64::from(moved.y) / extent].map(|share| share * 2.0);
+        let by =
+            [f64::from(moved.x) / extent, f64::from(moved.y) / extent].map(|share| share * 2.0);
         let keys = ui.input(|input| input.modifiers);
         let drag = match () {
             () if keys.command => Drag::Light,
@@ -203,7 +222,10 @@ fn below(ui: &mut Ui, viewer: &Viewer, index: usize, response: &Response, rect: 
     if let (Some(texels), Some(at)) = (&drawn.texels, response.hover_pos()) {
         let share = (at - rect.min) / rect.size();
         let place = |share: f32, edge: u32| ((share.max(0.0) * edge as f32) as u32).min(edge - 1);
-        let texel = [place(share.x, texels.size[0]), place(share.y, texels.size[1])];
+        let texel = [
+            place(share.x, texels.size[0]),
+            place(share.y, texels.size[1]),
+        ];
         if let Some(text) = texels.text(texel) {
             ui.small(format!("at {}, {}: {text}", texel[0], texel[1]));
         }
@@ -231,7 +253,8 @@ fn scale(ui: &mut Ui, [low, high]: [f64; 2]) {
         let width = rect.width() / steps as f32;
         let left = rect.left() + width * step as f32;
         let bar = Rect::from_min_size(Pos2::new(left, rect.top()), Vec2::new(width + 0.5, 12.0));
-        ui.painter().rect_filled(bar, 0.0, Color32::from_rgb(r, g, b));
+        ui.painter()
+            .rect_filled(bar, 0.0, Color32::from_rgb(r, g, b));
     }
     ui.small(format!("{high:.4}"));
 }
@@ -245,7 +268,8 @@ fn bars(ui: &mut Ui, histogram: &Histogram) {
     }
     let (rect, response) = ui.allocate_exact_size(Vec2::new(256.0, 40.0), Sense::hover());
     let visuals = ui.visuals();
-    ui.painter().rect_filled(rect, 2.0, visuals.extreme_bg_color);
+    ui.painter()
+        .rect_filled(rect, 2.0, visuals.extreme_bg_color);
     let most = histogram.bins.iter().copied().max().unwrap_or(0).max(1) as f32;
     let width = rect.width() / histogram.bins.len() as f32;
     for (bin, &count) in histogram.bins.iter().enumerate() {

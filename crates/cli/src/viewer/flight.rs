@@ -91,7 +91,7 @@ mod tests {
             let towards = (centre - view.eye).normalize();
             assert!(towards.dot(view.direction.normalize()) > 1.0 - 1e-9);
         }
-        assert!(view.eye.y < -7.0, "the pitch has led below: {}", view.eye);
+        assert!(view.eye.y < -5.9, "the pitch has led below: {}", view.eye);
     }
 
     #[test]

@@ -20,9 +20,8 @@ mod worker;
 use crate::args::commands::ViewArgs;
 use crate::args::shared::GpuArgs;
 use crate::error::CliError;
-use crate::graphs::method::param_values;
-use crate::graphs::preset;
-use crate::graphs::variants::MethodArgument;
+use crate::graphs::variants::{self, MethodArgument};
+use crate::graphs::{method, preset};
 use crate::measuring::device;
 use judge::Judge;
 use skiagraph_gpu::timing::Trust;
@@ -49,10 +48,7 @@ type Wake = Arc<dyn Fn() + Send + Sync>;
 /// No GPU, a method that there is not, a param that it has not.
 fn start(args: &ViewArgs, gpu: &GpuArgs, wake: Wake) -> Result<(Viewer, Option<Watch>), CliError> {
     let sources = preset::sources();
-    let mut methods = Vec::new();
-    for argument in &args.methods {
-        methods.push(wanted_method(argument, args)?);
-    }
+    let methods = wanted_methods(args)?;
     let opened = device::open(gpu, [])?;
     let choices = choices(args, &opened);
     let (orders, ordered) = mpsc::channel();
@@ -113,24 +109,39 @@ fn start(args: &ViewArgs, gpu: &GpuArgs, wake: Wake) -> Result<(Viewer, Option<W
     Ok((viewer, watch))
 }
 
-/// A method of the command line with its setting.
-fn wanted_method(argument: &str, args: &ViewArgs) -> Result<WantedMethod, CliError> {
-    let argument = MethodArgument::new(argument);
+/// The methods of the command line with their settings. Without settings they need not be read
+/// before the window is there, which then shows what is wrong with them.
+fn wanted_methods(args: &ViewArgs) -> Result<Vec<WantedMethod>, CliError> {
+    let arguments = args.methods.iter().map(|it| MethodArgument::new(it));
+    let arguments: Vec<MethodArgument> = arguments.collect();
     let sources = preset::sources();
-    preset::locate(&argument.preset, &sources)?;
-    let mut params = Default::default();
-    let set = [&args.params[..], &argument.own].concat();
-    if args.map_size.is_some() || !set.is_empty() {
-        let presets = preset::load_all(std::slice::from_ref(&argument.preset), &sources)?;
-        for preset in &presets {
-            params = param_values(preset, &set, args.map_size)?;
-        }
+    for argument in &arguments {
+        preset::locate(&argument.preset, &sources)?;
     }
-    Ok(WantedMethod {
-        name: argument.preset,
-        params,
+    let map_sizes: Vec<u32> = args.map_size.into_iter().collect();
+    let own = arguments.iter().any(|argument| !argument.own.is_empty());
+    if !own && map_sizes.is_empty() && args.params.is_empty() {
+        let plain = arguments.into_iter().map(|argument| WantedMethod {
+            name: argument.preset,
+            params: Default::default(),
+            material: None,
+        });
+        return Ok(plain.collect());
+    }
+    let presets = preset::load_all(&variants::presets(&arguments), &sources)?;
+    let methods = method::methods(&presets, &arguments, &args.params, &map_sizes)?;
+    if methods.len() > 2 {
+        return Err(CliError::Usage(format!(
+            "these are {} methods and settings; the window shows two side by side",
+            methods.len()
+        )));
+    }
+    let wanted = methods.into_iter().map(|method| WantedMethod {
+        name: method.preset.name.clone(),
+        params: method.params,
         material: None,
-    })
+    });
+    Ok(wanted.collect())
 }
 
 fn choices(args: &ViewArgs, gpu: &skiagraph_gpu::device::Gpu) -> Choices {

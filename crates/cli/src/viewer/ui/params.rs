@@ -126,11 +126,13 @@ fn vector(
     let low = low.map_or(f32::MIN, |low| low as f32);
     let high = high.map_or(f32::MAX, |high| high as f32);
     ui.horizontal(|ui| {
+        let label = ui.label(name);
         for number in numbers {
             let speed = (number.abs() * 0.01).max(1e-3);
-            ui.add(DragValue::new(number).range(low..=high).speed(speed));
+            let drag = DragValue::new(number).range(low..=high).speed(speed);
+            ui.add(drag).labelled_by(label.id);
         }
-        ui.label(name)
+        label
     })
     .inner
 }

@@ -51,6 +51,7 @@ fn choice(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
     let mut chosen = now.clone();
     ui.horizontal(|ui| {
         let steps = viewer.steps(index);
+        let label = ui.label("show");
         ComboBox::from_id_salt(("show", index))
             .selected_text(title(&now))
             .width(220.0)
@@ -67,7 +68,9 @@ fn choice(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
                     let text = title(&show);
                     ui.selectable_value(&mut chosen, show, text);
                 }
-            });
+            })
+            .response
+            .labelled_by(label.id);
         for (text, forward, hint) in [
             ("<", false, "the pass before"),
             (">", true, "the next pass"),
@@ -102,13 +105,16 @@ fn reading(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
     let pane = &viewer.panes[index];
     let mut reading: Reading = pane.reading.clone();
     if let Some(now) = pane.drawn.parts.get(reading.part) {
+        let label = ui.label("part");
         ComboBox::from_id_salt(("part", index))
             .selected_text(now)
             .show_ui(ui, |ui| {
                 for (part, name) in pane.drawn.parts.iter().enumerate() {
                     ui.selectable_value(&mut reading.part, part, name);
                 }
-            });
+            })
+            .response
+            .labelled_by(label.id);
     }
     let channels = pane
         .drawn

@@ -149,12 +149,6 @@ impl Viewer {
         for index in 0..self.panes.len() {
             self.draw(index);
         }
-        for (method, pane) in self.wanted.methods.iter_mut().zip(&self.panes) {
-            method.material = match &pane.show {
-                Show::Material(capture) => Some(capture.clone()),
-                _ => None,
-            };
-        }
         if self.sent.as_ref() != Some(&self.wanted) {
             self.sent = Some(self.wanted.clone());
             let order = Order::Show(Box::new(self.wanted.clone()));
@@ -248,6 +242,12 @@ impl Viewer {
     pub fn show(&mut self, index: usize, show: Show) {
         let pane = &mut self.panes[index];
         if pane.show != show {
+            if let Some(method) = self.wanted.methods.get_mut(index) {
+                method.material = match &show {
+                    Show::Material(capture) => Some(capture.clone()),
+                    _ => None,
+                };
+            }
             pane.show = show;
             pane.reading.part = 0;
             pane.is_stale = true;

@@ -45,22 +45,25 @@ fn gpu() -> GpuArgs {
 }
 
 fn desk(methods: &[&str]) -> Harness<'static, Desk> {
-    let started = super::start(&arguments(methods), &gpu(), Arc::new(|| {}));
+    desk_with(&arguments(methods))
+}
+
+fn desk_with(arguments: &ViewArgs) -> Harness<'static, Desk> {
+    let started = super::start::start(arguments, &gpu(), Arc::new(|| {}));
     let (viewer, watch) = started.unwrap_or_else(|error| panic!("{error}"));
     let desk = Desk {
         viewer,
         surface: Surface::default(),
         _watch: watch,
     };
-    let harness = Harness::builder()
+    Harness::builder()
         .with_size(Vec2::new(1280.0, 800.0))
         .allow_missing_glyphs()
         .wgpu()
         .build_ui_state(
             |ui, desk: &mut Desk| ui::show(ui, &mut desk.viewer, &mut desk.surface),
             desk,
-        );
-    harness
+        )
 }
 
 /// Draws until something holds.
@@ -242,20 +245,9 @@ fn changed_files_are_read_again_and_a_mistake_keeps_the_last_graph() {
     std::fs::write(file("all.wgsl"), SHADER).unwrap();
     std::fs::write(file("part.wgsl"), PART).unwrap();
     let path = file("mine.ron");
-    let mut desk = {
-        let mut arguments = arguments(&[path.to_str().unwrap()]);
-        arguments.map_size = None;
-        let (viewer, watch) = super::start(&arguments, &gpu(), Arc::new(|| {})).unwrap();
-        let desk = Desk {
-            viewer,
-            surface: Surface::default(),
-            _watch: watch,
-        };
-        Harness::builder().allow_missing_glyphs().build_ui_state(
-            |ui, desk: &mut Desk| ui::show(ui, &mut desk.viewer, &mut desk.surface),
-            desk,
-        )
-    };
+    let mut arguments = arguments(&[path.to_str().unwrap()]);
+    arguments.map_size = None;
+    let mut desk = desk_with(&arguments);
     settled(&mut desk);
     let first = |desk: &Harness<Desk>| {
         let bytes = output(desk, 0, "visibility");
@@ -302,4 +294,44 @@ fn another_scene_and_a_scene_that_is_not_there() {
     assert_eq!(desk.state().viewer.notice, None);
     let scene = desk.state().viewer.shot.as_ref().unwrap().scene.clone();
     assert_eq!(scene.name, "forest");
+}
+
+/// `SKIAGRAPH_SCREENSHOTS=docs/images` writes those of docs/view.md.
+#[test]
+#[ignore = "takes larger pictures than a test needs"]
+fn pictures_for_the_documents() {
+    let large = |viewer: &mut Viewer| viewer.wanted.size = [720, 480];
+    let map = |viewer: &mut Viewer, index: usize| {
+        viewer.set_param(index, "map_size", ParamValue::U32(1024));
+    };
+    let mut one = desk(&["nsm"]);
+    large(&mut one.state_mut().viewer);
+    map(&mut one.state_mut().viewer, 0);
+    settled(&mut one);
+    keep(&mut one, "view-params.png");
+    let steps = one.state().viewer.steps(0);
+    let is_map = |step: &&skiagraph_graph::Capture| step.material.ends_with("shadow_maps");
+    let step = steps.iter().rfind(is_map).unwrap().clone();
+    let viewer = &mut one.state_mut().viewer;
+    viewer.show(0, Show::Material(step));
+    let hot = super::drawn::Reading {
+        part: 0,
+        heat: Some(0),
+        channel: 0,
+    };
+    viewer.read(0, hot);
+    settled(&mut one);
+    one.hover_at(egui::pos2(560.0, 300.0));
+    one.run_steps(3);
+    keep(&mut one, "view-material.png");
+    let mut two = desk(&["nsm", "light_buffer"]);
+    large(&mut two.state_mut().viewer);
+    for index in 0..2 {
+        map(&mut two.state_mut().viewer, index);
+        two.state_mut().viewer.show(index, Show::Difference);
+    }
+    until(&mut two, "the reference of all pixels", |viewer| {
+        viewer.is_current() && viewer.answer().is_some_and(|answer| answer.stride == 1)
+    });
+    keep(&mut two, "view-difference.png");
 }

@@ -4,7 +4,7 @@ use crate::args::commands::ViewArgs;
 use crate::args::shared::GpuArgs;
 use crate::error::CliError;
 use crate::viewer::state::Viewer;
-use crate::viewer::{start, ui, watch::Watch};
+use crate::viewer::{start::start, ui, watch::Watch};
 use egui::ViewportId;
 use egui_wgpu::{
     RendererOptions, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew, winit::Painter,

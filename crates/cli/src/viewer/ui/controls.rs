@@ -1,6 +1,6 @@
 //! The panel at the left: scene, view, light, reference and methods.
 
-use super::{error, params};
+use super::{fault, params};
 use crate::viewer::saving;
 use crate::viewer::state::{Drag, Viewer};
 use crate::wording::size;
@@ -223,7 +223,7 @@ fn method(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
             return;
         };
         if let Some(text) = shown.error.clone() {
-            error(ui, &text);
+            fault::show(ui, &text);
             ui.label(RichText::new("shown is the last graph that ran").italics());
         }
         if let Some(shown) = viewer.method(index) {

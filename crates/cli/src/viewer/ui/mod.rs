@@ -1,6 +1,7 @@
 //! What draws: the state as panels, plots and pictures of egui.
 
 mod controls;
+mod fault;
 mod params;
 mod passes;
 mod picture;
@@ -54,16 +55,4 @@ fn state_line(ui: &mut Ui, viewer: &Viewer) {
         ui.separator();
         ui.weak(&viewer.choices.adapter);
     });
-}
-
-/// An error, as it was printed.
-fn error(ui: &mut Ui, text: &str) {
-    let colour = ui.visuals().error_fg_color;
-    ScrollArea::both()
-        .id_salt(("error", ui.scope_id()))
-        .max_height(220.0)
-        .show(ui, |ui| {
-            let text = RichText::new(text).monospace().color(colour);
-            ui.add(egui::Label::new(text).extend());
-        });
 }

@@ -19,7 +19,7 @@ fn one(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
     let Some(method) = viewer.method(index).cloned() else {
         return;
     };
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(summary(&method)).strong());
         history(ui, viewer, index);
     });

@@ -4,7 +4,7 @@ use crate::viewer::drawn::Show;
 use crate::viewer::state::{HISTORY, Viewer};
 use crate::viewer::wanted::MethodShot;
 use crate::wording::bytes;
-use egui::{Grid, Pos2, Rect, RichText, ScrollArea, Sense, Shape, Stroke, Ui, Vec2};
+use egui::{Grid, Pos2, RichText, ScrollArea, Sense, Shape, Stroke, Ui, Vec2};
 use skiagraph_graph::Capture;
 
 pub fn show(ui: &mut Ui, viewer: &mut Viewer) {
@@ -24,7 +24,7 @@ fn one(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
         history(ui, viewer, index);
     });
     let mut chosen = None;
-    ScrollArea::vertical()
+    ScrollArea::both()
         .id_salt(("passes", index))
         .show(ui, |ui| {
             Grid::new(("grid", index))
@@ -93,8 +93,7 @@ fn history(ui: &mut Ui, viewer: &Viewer, index: usize) {
     ui.painter()
         .rect_filled(rect, 2.0, visuals.extreme_bg_color);
     let stroke = Stroke::new(1.0, visuals.hyperlink_color);
-    ui.painter_at(Rect::from(rect))
-        .add(Shape::line(line, stroke));
+    ui.painter_at(rect).add(Shape::line(line, stroke));
     response.on_hover_text(format!(
         "the last {} frames, 0 to {longest:.2} ms",
         times.len()

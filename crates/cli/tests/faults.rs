@@ -58,7 +58,8 @@ fn command(folder: &Path, line: &str) -> Command {
     command
         .args(line.split_whitespace())
         .current_dir(folder)
-        .env("NO_COLOR", "1");
+        .env("NO_COLOR", "1")
+        .env("SKIAGRAPH_PROGRESS", "lines");
     command
 }
 

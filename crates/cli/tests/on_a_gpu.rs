@@ -17,6 +17,7 @@ fn skiagraph(folder: &Path, line: &str) -> Output {
         .args(line.split_whitespace())
         .current_dir(folder)
         .env("NO_COLOR", "1")
+        .env("SKIAGRAPH_PROGRESS", "lines")
         .output()
         .expect("the program was built for this test");
     assert!(

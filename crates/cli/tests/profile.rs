@@ -14,7 +14,8 @@ fn program(folder: &Path, line: &str) -> Command {
     command
         .args(line.split_whitespace())
         .current_dir(folder)
-        .env("NO_COLOR", "1");
+        .env("NO_COLOR", "1")
+        .env("SKIAGRAPH_PROGRESS", "lines");
     command
 }
 
@@ -234,10 +235,38 @@ fn a_baseline_that_is_none_is_shown_before_anything_runs() {
 }
 
 #[test]
+fn several_stand_beside_each_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "profile rt nsm@cull=none --view all --size 16x16,24x16 --map-size 16 --frames 2 \
+                --warmup 0 --csv all.csv";
+    let output = skiagraph(folder.path(), line, 0);
+    let (shown, told) = (text(&output.stdout), text(&output.stderr));
+    assert!(told.contains("--map-size has no effect on rt"), "{told}");
+    for part in [
+        "rt",
+        "nsm@cull=none",
+        "bench_side",
+        "24x16",
+        "map 32",
+        "whole frame",
+    ] {
+        assert!(shown.contains(part), "{part}: {shown}");
+    }
+    let csv = fs::read_to_string(folder.path().join("all.csv")).unwrap();
+    let frames = csv.lines().filter(|line| line.contains(",frame,"));
+    // Nine views in two sizes: rt and nsm.
+    assert_eq!(frames.count(), 9 * 2 * 2);
+}
+
+#[test]
 fn arguments_that_do_not_go_together_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     for (line, code, part) in [
-        ("profile nsm --view all", 2, "one view"),
+        (
+            "profile nsm rt --size 16x16 --json a.json",
+            2,
+            "--json is of one profile, and 2 are asked for",
+        ),
         (
             "profile nsm --json a.json --trace ./a.json",
             2,
@@ -253,7 +282,6 @@ fn arguments_that_do_not_go_together_are_refused() {
             1,
             "did you mean `map_size`?",
         ),
-        ("profile rt --map-size 4", 1, "map_size"),
     ] {
         let message = text(&skiagraph(folder.path(), line, code).stderr);
         assert!(message.contains(part), "{line}: {message}");

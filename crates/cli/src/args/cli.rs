@@ -3,8 +3,8 @@
 
 use crate::args::{
     commands::{
-        ChartArgs, CheckArgs, CompareArgs, GraphArgs, PresetsArgs, ProfileArgs, RunArgs, ShowArgs,
-        StressArgs, ViewArgs,
+        ChartArgs, CheckArgs, CompareArgs, GraphArgs, NewArgs, PresetsArgs, ProfileArgs,
+        ReportArgs, RunArgs, ShowArgs, StressArgs, ViewArgs,
     },
     shared::GpuArgs,
 };
@@ -17,6 +17,8 @@ use clap::{Parser, Subcommand};
     version,
     propagate_version = true,
     after_help = "Example:\n  skiagraph compare rt nsm --scene park --size 512x512\n\n\
+        Progress is shown on a terminal; in a pipe there is none, or with \
+        SKIAGRAPH_PROGRESS=lines a line at the begin and the end of each step.\n\n\
         Exit codes: 0 fine, 1 the input is wrong, 2 wrong usage, 3 no usable GPU, \
         or it was lost or hangs, 130 stopped by Ctrl-C."
 )]
@@ -50,6 +52,13 @@ pub enum Command {
         skiagraph chart sponza park --size 1024x1024 --out fronts.svg\n  \
         skiagraph chart city-1e4 city-1e5 city-1e6 --kind growth --out growth.svg")]
     Chart(ChartArgs),
+    /// Write one page, report.html, of what compare and stress kept in some folders: verdict,
+    /// charts, table, pictures. Needs no GPU, and the page no network.
+    #[command(after_help = "Examples:\n  skiagraph report compare\n  \
+        skiagraph report desk/park laptop/park --out park.html   \
+            # two machines in one page\n\n\
+        `compare` writes the page into its folder by itself.")]
+    Report(ReportArgs),
     /// Render one frame with one graph and save any of its materials.
     #[command(
         after_help = "Examples:\n  skiagraph run nsm --save visibility=shadow.png\n  \
@@ -58,11 +67,13 @@ pub enum Command {
         skiagraph run my_method.ron --poison"
     )]
     Run(RunArgs),
-    /// Time every pass of one graph over many frames, and list what its materials take.
+    /// Time every pass of a graph over many frames, and list what its materials take; of several
+    /// graphs, views or sizes, a table of passes and sizes per graph.
     #[command(
         after_help = "Examples:\n  skiagraph profile nsm --scene park --frames 100\n  \
         skiagraph profile nsm --json before.json\n  \
         skiagraph profile nsm --set map_size=512 --baseline before.json\n  \
+        skiagraph profile nsm crsm --view all --size 512x512,1024x1024 --csv all.csv\n  \
         skiagraph profile my_method.ron --csv passes.csv --trace frames.json   \
             # open frames.json in ui.perfetto.dev\n\n\
         docs/profiling.md says how to read the tables and the trace."
@@ -108,6 +119,11 @@ pub enum Command {
     #[command(after_help = "Examples:\n  skiagraph presets\n  \
         skiagraph presets --format markdown")]
     Presets(PresetsArgs),
+    /// Write a small working method to start from into the current folder: a document and a
+    /// shader, or a variant of a preset. Overwrites nothing.
+    #[command(after_help = "Examples:\n  skiagraph new my_method\n  \
+        skiagraph new my_crsm --from crsm")]
+    New(NewArgs),
     /// Print a document or shader, of the working directory or built in.
     #[command(after_help = "Examples:\n  skiagraph show nsm\n  \
         skiagraph show shared/light.wgsl\n  skiagraph show crsma_full --flat")]

@@ -160,6 +160,29 @@ pub enum ChartKind {
     Growth,
 }
 
+/// `skiagraph report`.
+#[derive(Args, Debug)]
+pub struct ReportArgs {
+    /// Folders that `compare --out` wrote, each with its results.json, and those that `stress
+    /// --out` wrote. What was measured alike becomes one; of a run that is there twice the newer
+    /// one counts.
+    #[arg(value_name = "DIR", required = true)]
+    pub folders: Vec<PathBuf>,
+    /// The page. Without it: report.html in the first folder.
+    #[arg(long, value_name = "FILE.html")]
+    pub out: Option<PathBuf>,
+}
+
+/// `skiagraph new`.
+#[derive(Args, Debug)]
+pub struct NewArgs {
+    /// What the method is called: NAME.ron and NAME.wgsl are written.
+    pub name: String,
+    /// Write a variant of this preset instead, with its params to choose from.
+    #[arg(long, value_name = "PRESET")]
+    pub from: Option<String>,
+}
+
 /// `skiagraph show`.
 #[derive(Args, Debug)]
 pub struct ShowArgs {
@@ -206,9 +229,27 @@ pub struct RunArgs {
 /// `skiagraph profile`.
 #[derive(Args, Debug)]
 pub struct ProfileArgs {
-    /// What is timed.
-    #[command(flatten)]
-    pub method: MethodArgs,
+    /// Presets by name, or graphs (.ron). With settings of its own a method stands beside itself:
+    /// `crsm@n=1,depth=plane`.
+    #[arg(value_name = "PRESET|FILE.ron[@NAME=VALUE,…]", required = true)]
+    pub presets: Vec<String>,
+    /// Viewport sizes in pixels, separated by commas.
+    #[arg(
+        long,
+        value_name = "WxH,…",
+        value_delimiter = ',',
+        default_value = "1024x1024"
+    )]
+    pub size: Vec<Size>,
+    /// Shadow map sizes in texels, separated by commas: the param `map_size` of the graphs that
+    /// have it.
+    #[arg(long, value_name = "N,…", value_delimiter = ',',
+          value_parser = texels(), allow_negative_numbers = true)]
+    pub map_size: Vec<u32>,
+    /// A param of the graphs that have it. Of a list (radius=1,2,4; vectors between semicolons) or
+    /// a range (bias=0..0.01/5: five values) every value is timed. May be repeated.
+    #[arg(long = "set", value_name = "NAME=VALUE,…", allow_hyphen_values = true)]
+    pub params: Vec<Assignment>,
     /// What it is run on.
     #[command(flatten)]
     pub scene: SceneArgs,
@@ -223,13 +264,14 @@ pub struct ProfileArgs {
     /// Write a line per pass and one for the frame.
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
-    /// Write every timed frame in the Trace Event Format, for ui.perfetto.dev or chrome://tracing.
+    /// Write every timed frame in the Trace Event Format, for ui.perfetto.dev or chrome://tracing;
+    /// of one profile.
     #[arg(long, value_name = "FILE")]
     pub trace: Option<PathBuf>,
-    /// Write everything, samples included: what --baseline reads.
+    /// Write everything, samples included: what --baseline reads; of one profile.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Compare with what an earlier --json wrote.
+    /// Compare with what an earlier --json wrote; one profile.
     #[arg(long, value_name = "OLD.json")]
     pub baseline: Option<PathBuf>,
 }

@@ -3,10 +3,11 @@
 use crate::args::commands::{CompareArgs, Format, Images};
 use crate::args::shared::{GpuArgs, SceneArgs};
 use crate::args::values::{LightArgument, Size, unique};
+use crate::commands::report;
 use crate::error::CliError;
 use crate::files::fingerprint::Fingerprint;
 use crate::files::json;
-use crate::files::write::check_folder;
+use crate::files::write::{check_folder, write_whole};
 use crate::graphs::idle_params::IdleParams;
 use crate::graphs::method::{self, Method};
 use crate::graphs::planning::Capabilities;
@@ -17,13 +18,15 @@ use crate::measuring::reference::PrimaryVisibility;
 use crate::measuring::scene_selection::{SceneSelection, check_path, under_lights};
 use crate::measuring::subject::Subject;
 use crate::measuring::{date, device};
-use crate::pictures::run_pictures::{check_stems, reference_stem, stem};
+use crate::pictures::run_pictures::{check_stems, graph_name, reference_stem, stem};
 use crate::records::results::{PROGRAM, Results};
 use crate::reporting::results_csv::save;
 use crate::reporting::summary_table::{self, Summary};
 use crate::reporting::{markdown, published, results_table};
 use crate::terminal::console::{note, print};
 use crate::terminal::interrupt;
+use crate::wording::{command_line, size};
+use skiagraph_draw::Drawing;
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{Scene, SceneLibrary, View};
 use std::sync::Arc;
@@ -40,14 +43,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let arguments: Vec<_> = names.iter().map(|name| MethodArgument::new(name)).collect();
     let presets = contract::load_all(&variants::presets(&arguments), &sources)?;
     let methods = method::methods(&presets, &arguments, &args.params, &args.map_size)?;
-    let deaf = methods.iter().filter(|method| method.map_size.is_none());
-    let deaf: Vec<&str> = deaf.map(|method| method.name.as_str()).collect();
-    if !args.map_size.is_empty() && !deaf.is_empty() {
-        note(&format!(
-            "--map-size has no effect on {}: no param `map_size`",
-            deaf.join(", ")
-        ));
-    }
+    method::note_without_map(&methods, &args.map_size);
     let primary = PrimaryVisibility::load(&sources)?;
     let gpu = device::open(gpu, preset::graphs(&presets))?;
     let features = gpu.device.features();
@@ -96,6 +92,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         frames: args.frames,
         warmup: args.warmup,
         cached_frames: args.cached_frames.unwrap_or(args.frames),
+        commands: vec![command_line(std::env::args_os())],
         runs: Vec::new(),
     };
     let setup = ComparisonSetup {
@@ -107,10 +104,33 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         primary: &primary,
         fingerprint: fingerprint(args, &scene, &subjects, &primary),
     };
+    if args.images == Images::All {
+        save_graphs(args, &setup, &provider)?;
+    }
     let mut comparison = Comparison::new(args, setup, provider, published, results)?;
     interrupt::install()?;
     let outcome = run(args, &mut comparison, &subjects, viewports.len());
     finish(args, comparison, outcome)
+}
+
+/// A chart of each method's graph; of one that this adapter cannot run there is none.
+fn save_graphs(
+    args: &CompareArgs,
+    setup: &ComparisonSetup,
+    provider: &SceneProvider,
+) -> Result<(), CliError> {
+    let Some(&viewport) = setup.viewports.first() else {
+        return Ok(());
+    };
+    for method in setup.methods {
+        let capabilities = Capabilities::of(setup.gpu);
+        if let Ok(plan) = method.at(viewport).plan(viewport, capabilities, provider) {
+            let title = format!("{}, viewport {}", method.name, size(viewport));
+            let svg = Drawing::of(&plan).titled(title).to_svg();
+            write_whole(&args.out.join(graph_name(&method.name)), svg.as_bytes())?;
+        }
+    }
+    Ok(())
 }
 
 /// Of all that every run depends on.
@@ -248,6 +268,8 @@ fn finish(
     } = comparison;
     if !results.runs.is_empty() {
         print_summary(args, &whole)?;
+        save(&whole, &args.out)?;
+        report::write_beside(&args.out)?;
     }
     let kept = match results.runs.len() {
         0 => "no run was finished".into(),
@@ -265,10 +287,6 @@ fn finish(
             return Err(error);
         }
     }
-    if args.resume {
-        // Where every run was kept, nothing has been written yet.
-        save(&whole, &args.out)?;
-    }
     if !broken.is_empty() {
         return Err(CliError::Contract(broken.join("\nerror: ")));
     }
@@ -279,8 +297,8 @@ fn finish(
         )));
     }
     let files = match args.images {
-        Images::All => "results.json, results.csv and the pictures",
-        Images::None => "results.json and results.csv",
+        Images::All => "report.html, results.json, results.csv and the pictures",
+        Images::None => "report.html, results.json and results.csv",
     };
     if !args.published.is_empty() && results.runs.iter().all(|run| run.published.is_empty()) {
         note(

@@ -1,54 +1,74 @@
-//! `skiagraph profile`: one graph over many frames.
+//! `skiagraph profile`: graphs over many frames.
 
 use crate::args::commands::ProfileArgs;
 use crate::args::shared::GpuArgs;
+use crate::args::values::{Size, unique};
 use crate::error::CliError;
 use crate::files::json;
 use crate::files::write::{check_writable, write_whole};
-use crate::graphs::method::{self, Method};
-use crate::graphs::preset;
+use crate::graphs::variants::{self, MethodArgument};
+use crate::graphs::{method, preset};
 use crate::measuring::scene_selection::SceneSelection;
 use crate::measuring::{device, profiling};
 use crate::records::profile::Profile;
 use crate::records::read_back;
 use crate::records::samples::TimedFrame;
 use crate::reporting::profile_csv::to_csv;
-use crate::reporting::profile_text::report;
+use crate::reporting::profile_text::{matrices, report};
 use crate::reporting::trace::trace;
 use crate::terminal::console::{note, print};
+use crate::terminal::interrupt;
 use std::{path::Path, sync::Arc};
 
-/// Times a graph, prints what it measured, and writes what was asked for.
+/// Times graphs, prints what it measured, and writes what was asked for.
 ///
 /// # Errors
 /// A faulty graph or baseline, a scene that cannot be loaded, no GPU, Ctrl-C, a file that cannot be
 /// written.
 pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
-    if args.scene.view.as_deref() == Some("all") {
-        return Err(CliError::Usage(
-            "a profile is one of one view; give its name instead of `all`".into(),
-        ));
-    }
     check_writable(&files(args))?;
     let old = match &args.baseline {
         Some(path) => Some((path.as_path(), read_back::profile(path)?)),
         None => None,
     };
-    let (preset, params) = method::load_one(&args.method, &preset::sources())?;
-    let gpu = device::open(gpu, [&preset.graph])?;
-    let method = Method::on(&preset, params, args.method.size.0, gpu.device.features());
+    let arguments = args.presets.iter().map(|name| MethodArgument::new(name));
+    let arguments: Vec<MethodArgument> = arguments.collect();
+    let presets = preset::load_all(&variants::presets(&arguments), &preset::sources())?;
+    let methods = method::methods(&presets, &arguments, &args.params, &args.map_size)?;
+    method::note_without_map(&methods, &args.map_size);
+    let gpu = device::open(gpu, preset::graphs(&presets))?;
     let SceneSelection { scene, views } = SceneSelection::load(&args.scene)?;
-    let Some(view) = views.first() else {
-        return Err(CliError::Input(format!(
-            "the scene `{}` has no view",
-            scene.name
-        )));
-    };
+    let viewports = unique(&args.size);
+    let planned = methods.len() * views.len() * viewports.len();
+    check_single(args, planned)?;
+    interrupt::install()?;
     let scene = Arc::new(scene);
-    let (mut profile, timed) = profiling::profile(args, &gpu, &method, &scene, view)?;
-    profile.baseline = old.map(|(path, old)| profile.against(path, &old));
-    print(&report(&profile))?;
-    let written = write(args, &profile, &timed)?;
+    let mut profiles: Vec<Profile> = Vec::new();
+    let mut timed = Vec::new();
+    for method in methods {
+        let method = method.settled(gpu.device.features());
+        for view in &views {
+            for &Size(viewport) in &viewports {
+                let method = method.at(viewport);
+                let mut profile;
+                (profile, timed) = match profiling::profile(args, &gpu, &method, &scene, view) {
+                    Err(CliError::Interrupted { .. }) if !profiles.is_empty() => {
+                        return interrupted(args, &profiles, planned);
+                    }
+                    measured => measured?,
+                };
+                let old = old.as_ref();
+                profile.baseline = old.map(|(path, old)| profile.against(path, old));
+                let is_whole = timed.len() >= args.frames as usize;
+                profiles.push(profile);
+                if !is_whole && planned > 1 {
+                    return interrupted(args, &profiles, planned);
+                }
+            }
+        }
+    }
+    show(&profiles)?;
+    let written = write(args, &profiles, &timed)?;
     if timed.len() < args.frames as usize {
         return Err(CliError::Interrupted {
             kept: format!(
@@ -59,6 +79,42 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         });
     }
     Ok(())
+}
+
+/// One in full, several as tables beside each other.
+fn show(profiles: &[Profile]) -> Result<(), CliError> {
+    match profiles {
+        [profile] => print(&report(profile)),
+        all => print(&matrices(all)),
+    }
+}
+
+/// Shows and writes what there is.
+fn interrupted(args: &ProfileArgs, profiles: &[Profile], planned: usize) -> Result<(), CliError> {
+    show(profiles)?;
+    let written = write(args, profiles, &[])?;
+    Err(CliError::Interrupted {
+        kept: format!(
+            "{} of {planned} profiles are shown{written}",
+            profiles.len()
+        ),
+    })
+}
+
+/// Refuses files that hold one profile where there are several.
+fn check_single(args: &ProfileArgs, planned: usize) -> Result<(), CliError> {
+    let single = [
+        ("--json", args.json.is_some()),
+        ("--trace", args.trace.is_some()),
+        ("--baseline", args.baseline.is_some()),
+    ];
+    match single.iter().find(|(_, is_given)| *is_given) {
+        Some((name, _)) if planned > 1 => Err(CliError::Usage(format!(
+            "{name} is of one profile, and {planned} are asked for; name one method, view and \
+             size, or take --csv, which holds them all"
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// The files to write, each with the argument that names it.
@@ -75,15 +131,20 @@ fn files(args: &ProfileArgs) -> Vec<(String, &Path)> {
 }
 
 /// Writes the files; returns what to say about them.
-fn write(args: &ProfileArgs, profile: &Profile, timed: &[TimedFrame]) -> Result<String, CliError> {
+fn write(
+    args: &ProfileArgs,
+    profiles: &[Profile],
+    timed: &[TimedFrame],
+) -> Result<String, CliError> {
     if let Some(path) = &args.csv {
-        let csv = to_csv(profile).map_err(|error| CliError::write(path, error))?;
+        let csv = to_csv(profiles).map_err(|error| CliError::write(path, error))?;
         write_whole(path, csv.as_bytes())?;
     }
-    if let Some(path) = &args.json {
+    let single = profiles.first().filter(|_| profiles.len() == 1);
+    if let Some((path, profile)) = args.json.as_ref().zip(single) {
         write_whole(path, json::to_text(profile).as_bytes())?;
     }
-    if let Some(path) = &args.trace {
+    if let Some((path, profile)) = args.trace.as_ref().zip(single) {
         write_whole(path, trace(&profile.conditions, timed).as_bytes())?;
     }
     let names: Vec<String> = files(args)

@@ -7,6 +7,7 @@ use crate::files::fingerprint::Fingerprint;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::preset::{self, Preset};
 use crate::graphs::variants::{self, MAP_SIZE, MethodArgument, Setting};
+use crate::terminal::console::note;
 use crate::wording::did_you_mean;
 use skiagraph_gpu::Provider;
 use skiagraph_graph::{Diagnostics, ParamValue, Plan, Sources};
@@ -166,6 +167,18 @@ pub fn methods<'a>(
         }
     }
     Ok(methods)
+}
+
+/// Says on which methods `--map-size` has no effect.
+pub fn note_without_map(methods: &[Method], map_sizes: &[u32]) {
+    let without = methods.iter().filter(|method| method.map_size.is_none());
+    let without: Vec<&str> = without.map(|method| method.name.as_str()).collect();
+    if !map_sizes.is_empty() && !without.is_empty() {
+        note(&format!(
+            "--map-size has no effect on {}: no param `map_size`",
+            without.join(", ")
+        ));
+    }
 }
 
 /// Loads the one graph that the arguments name, with the params that they set.

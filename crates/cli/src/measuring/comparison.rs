@@ -1,6 +1,7 @@
 //! The runs of a comparison, one after the other; whatever is measured is on disk at once.
 
 use crate::args::commands::{CompareArgs, Images};
+use crate::args::values::unique;
 use crate::error::CliError;
 use crate::files::fingerprint::Fingerprint;
 use crate::graphs::faults::reasons;
@@ -121,6 +122,8 @@ impl<'a> Comparison<'a> {
         if !args.replace {
             let earlier = earlier(&args.out, &comparison.results, &planned, args.resume)?;
             comparison.others = earlier.others;
+            let now = std::mem::take(&mut comparison.results.commands);
+            comparison.results.commands = unique(&[earlier.commands, now].concat());
             for (place, run) in earlier.kept.into_iter().enumerate() {
                 match run {
                     Some(run) if run.measured.is_some() => comparison.done(place, run),

@@ -6,10 +6,10 @@ use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::timing::{self, FrameMode};
 use crate::measuring::{date, device, frame};
+use crate::pictures::run_pictures::conditions as conditions_in_words;
 use crate::records::profile::{Conditions, Memory, Profile};
 use crate::records::results::PROGRAM;
 use crate::records::samples::{Samples, TimedFrame};
-use crate::terminal::interrupt;
 use crate::terminal::progress::Step;
 use skiagraph_gpu::device::Gpu;
 use skiagraph_graph::Plan;
@@ -28,13 +28,12 @@ pub fn profile(
     scene: &Arc<Scene>,
     view: &View,
 ) -> Result<(Profile, Vec<TimedFrame>), CliError> {
-    let (preset, viewport) = (method.preset, args.method.size.0);
+    let (preset, viewport) = (method.preset, method.viewport);
     let mut provider = SceneProvider::new(scene.clone());
     provider.set_view(view, viewport);
     let mut request = Capabilities::of(gpu).request(viewport, &provider);
     request.params = method.params.clone();
     let plan = preset.plan(&request)?;
-    interrupt::install()?;
 
     let conditions = Conditions {
         program: PROGRAM.into(),
@@ -45,19 +44,23 @@ pub fn profile(
         date: date::utc(SystemTime::now()),
         adapter: device::describe(gpu, device::timestamp_trust(gpu)),
         scene: (&**scene).into(),
-        preset: preset.name.clone(),
+        preset: method.name.clone(),
         view: view.name.clone(),
         viewport,
         params: method.all_params(),
         frames: args.frames,
         warmup: args.warmup,
     };
-    let failed = |error| frame::failed(&preset.name, error);
+    let failed = |error| frame::failed(&method.name, error);
     let mut executor = frame::executor(gpu, plan, &mut provider).map_err(failed)?;
     frame::grow(gpu, &mut executor, &mut provider).map_err(failed)?;
     let (passes, memory) = (executor.plan().passes(), memory(executor.plan()));
     let step = Step::begin(
-        format!("{}, {} {}", preset.name, view.name, args.method.size),
+        format!(
+            "{}, {}",
+            method.name,
+            conditions_in_words(method, &view.name, viewport)
+        ),
         u64::from(args.warmup) + u64::from(args.frames),
         "frames",
     );

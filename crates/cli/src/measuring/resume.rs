@@ -46,6 +46,8 @@ pub struct Earlier {
     pub kept: Vec<Option<Run>>,
     /// Runs that this comparison has not: of other methods, views, sizes.
     pub others: Vec<Run>,
+    /// What measured them.
+    pub commands: Vec<String>,
 }
 
 /// What of an earlier comparison in the same folder stays; of the planned runs only if `resumes`.
@@ -70,7 +72,7 @@ pub fn earlier(
         }
         return Ok(Earlier {
             kept: nothing(),
-            others: Vec::new(),
+            ..Earlier::default()
         });
     };
     refuse(&name, &differences(&earlier, now))?;
@@ -83,10 +85,15 @@ pub fn earlier(
             if others.len() == 1 { "stays" } else { "stay" }
         ));
     }
+    let commands = match others.is_empty() && !resumes {
+        true => Vec::new(),
+        false => earlier.commands,
+    };
     if !resumes {
         return Ok(Earlier {
             kept: nothing(),
             others,
+            commands,
         });
     }
     let total = runs.len();
@@ -108,7 +115,11 @@ pub fn earlier(
             runs.len()
         ));
     }
-    Ok(Earlier { kept, others })
+    Ok(Earlier {
+        kept,
+        others,
+        commands,
+    })
 }
 
 /// An error if there is anything to list.

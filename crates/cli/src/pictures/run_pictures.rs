@@ -56,8 +56,7 @@ pub fn save_pictures(
 pub fn save_reference(folder: &Path, view: &str, right: &RightAnswer) -> Result<(), CliError> {
     let reference = &right.reference;
     let image = Image::visibility(reference.viewport, &right.shares(), &reference.status());
-    let stem = reference_stem(view, reference.viewport);
-    save_picture(folder, format!("{stem}-visibility.png"), image).map(|_| ())
+    save_picture(folder, reference_name(view, reference.viewport), image).map(|_| ())
 }
 
 fn save_picture(
@@ -113,6 +112,16 @@ pub fn stem(method: &Method, view: &str, viewport: [u32; 2]) -> String {
 /// What the name of the reference's picture begins with.
 pub fn reference_stem(view: &str, viewport: [u32; 2]) -> String {
     format!("reference-{}-{}", slug(view), size(viewport))
+}
+
+/// The name of the chart of a method's graph.
+pub fn graph_name(method: &str) -> String {
+    format!("graph-{}.svg", slug(method))
+}
+
+/// The name of the reference's picture.
+pub fn reference_name(view: &str, viewport: [u32; 2]) -> String {
+    format!("{}-visibility.png", reference_stem(view, viewport))
 }
 
 /// A name as part of a file name: `my/method.ron` becomes `my-method`.

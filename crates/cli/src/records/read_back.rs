@@ -93,6 +93,38 @@ pub fn kept(folder: &Path) -> Result<Results, CliError> {
     })
 }
 
+/// Reads the matrix in a folder; `None` if there is none.
+///
+/// # Errors
+/// A file that cannot be read or is no stress.json; with the place.
+pub fn stress(folder: &Path) -> Result<Option<Value>, CliError> {
+    let path = folder.join("stress.json");
+    let name = path.display().to_string();
+    let text = match KEPT.read_text(&path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        text => text.map_err(|error| CliError::Input(format!("{name}: {error}")))?,
+    };
+    let file = SourceFile::new(name, text);
+    parse_stress(&file.text).map(Some).map_err(|mistake| {
+        let help = "`skiagraph stress --out DIR` writes it anew";
+        let summary = "the matrix cannot be used";
+        mistake.in_file(&file, "stress.json", help, summary)
+    })
+}
+
+fn parse_stress(text: &str) -> Result<Value, Mistake> {
+    let value: Value = parse(text)?;
+    check_schema(text, value.get("schema").cloned())?;
+    let has = |name: &str| value.get(name).is_some_and(Value::is_array);
+    match has("methods") && has("cases") {
+        true => Ok(value),
+        false => {
+            let what = "there are no \"methods\" in it, or no \"cases\"".into();
+            Err(Mistake::at_field(text, "{", what))
+        }
+    }
+}
+
 fn profile_of(file: &SourceFile) -> Result<Profile, CliError> {
     parse_profile(&file.text).map_err(|mistake| {
         let help = "a baseline is what `skiagraph profile --json FILE` writes";

@@ -34,6 +34,9 @@ pub struct Results {
     pub warmup: u32,
     /// Timed frames in which only the camera moves, per run.
     pub cached_frames: u32,
+    /// The commands that measured it, the first one first. Empty in files of older programs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub commands: Vec<String>,
     /// One entry per view, viewport, preset and map size, in this order.
     pub runs: Vec<Run>,
 }
@@ -581,6 +584,7 @@ pub(crate) mod tests {
             frames: 10,
             warmup: 2,
             cached_frames: 10,
+            commands: vec!["skiagraph compare nsm rt rt_hw --size 512x256".into()],
             runs: vec![
                 Run {
                     measured: Some(measured("create_shadow_map", true, None)),

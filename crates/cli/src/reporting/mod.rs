@@ -4,6 +4,7 @@
 pub mod charts;
 pub mod columns;
 pub mod graded;
+pub mod html;
 pub mod markdown;
 pub mod notes;
 pub mod profile_csv;

@@ -1,4 +1,4 @@
-//! `profile --csv`: a line per pass and one for the frame, for spreadsheets.
+//! `profile --csv`: a line per pass and one for the frame of each profile, for spreadsheets.
 
 use crate::files::csv;
 use crate::records::profile::{Conditions, PassProfile, Profile};
@@ -94,12 +94,12 @@ fn six_digits(number: f64) -> String {
 ///
 /// # Errors
 /// See [`csv::to_text`].
-pub fn to_csv(profile: &Profile) -> Result<String, ::csv::Error> {
-    let passes = profile.passes.iter().map(Some).chain([None]);
-    let records = passes.map(|pass| {
-        let line = Line { profile, pass };
-        COLUMNS.iter().map(|(_, cell)| cell(&line)).collect()
+pub fn to_csv(profiles: &[Profile]) -> Result<String, ::csv::Error> {
+    let lines = profiles.iter().flat_map(|profile| {
+        let passes = profile.passes.iter().map(Some).chain([None]);
+        passes.map(move |pass| Line { profile, pass })
     });
+    let records = lines.map(|line| COLUMNS.iter().map(|(_, cell)| cell(&line)).collect());
     csv::to_text(&COLUMNS.map(|(name, _)| name), records)
 }
 
@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn csv_has_a_line_per_pass_and_one_for_the_frame() {
-        let csv = to_csv(&sample()).unwrap();
+        let csv = to_csv(&[sample()]).unwrap();
         insta::assert_snapshot!(csv);
         let mut reader = ::csv::Reader::from_reader(csv.as_bytes());
         let lengths = reader.records().map(|record| record.unwrap().len());

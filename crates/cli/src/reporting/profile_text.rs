@@ -1,5 +1,6 @@
 //! A profile as text: conditions, passes, memory, and how it stands to an older one.
 
+use crate::graphs::variants::MAP_SIZE;
 use crate::records::baseline::{Comparison, Difference, MIN_FRAMES, Ratio, Verdict};
 use crate::records::profile::{Conditions, Material, Profile};
 use crate::records::statistics::Series;
@@ -31,6 +32,70 @@ pub fn report(profile: &Profile) -> String {
         text.push_str(&comparison(baseline, profile));
     }
     text
+}
+
+/// What is printed of several: a table per method, a row per pass, a column per view and size.
+pub fn matrices(profiles: &[Profile]) -> String {
+    let mut text = String::new();
+    if let Some(first) = profiles.first() {
+        text += &format!(
+            "{}\n{}\nGPU ms, medians of {} after {} to warm up\n",
+            first.conditions.scene,
+            first.conditions.adapter,
+            frames(first.conditions.frames),
+            first.conditions.warmup
+        );
+    }
+    for method in unique(profiles, |profile| profile.conditions.preset.as_str()) {
+        let columns = profiles.iter();
+        let columns = columns.filter(|profile| profile.conditions.preset == method);
+        text += &format!("\n{}\n", matrix(method, &columns.collect::<Vec<_>>()));
+    }
+    text
+}
+
+/// In the order in which they first appear.
+fn unique<'a, T>(list: &'a [T], name: impl Fn(&'a T) -> &'a str) -> Vec<&'a str> {
+    let mut names = Vec::new();
+    for item in list {
+        if !names.contains(&name(item)) {
+            names.push(name(item));
+        }
+    }
+    names
+}
+
+fn matrix(method: &str, profiles: &[&Profile]) -> String {
+    let head = |profile: &&Profile| {
+        let Conditions { view, viewport, .. } = &profile.conditions;
+        let map = profile.conditions.params.get(MAP_SIZE);
+        let map = map.map_or(String::new(), |map| format!("\nmap {map}"));
+        format!("{view}\n{}{map}", size(*viewport))
+    };
+    let heads: Vec<String> = profiles.iter().map(head).collect();
+    let heads = [method].into_iter().chain(heads.iter().map(String::as_str));
+    let mut passes: Vec<&str> = Vec::new();
+    for pass in profiles.iter().flat_map(|profile| &profile.passes) {
+        if !passes.contains(&pass.name.as_str()) {
+            passes.push(&pass.name);
+        }
+    }
+    let cell = |series: Option<&Series>| series.map_or("–".into(), |of| ms(of.median));
+    let rows = passes.into_iter().map(|name| {
+        let of = |profile: &&Profile| {
+            let pass = profile.passes.iter().find(|pass| pass.name == name);
+            cell(pass.and_then(|pass| pass.gpu_ms.as_ref()))
+        };
+        let cells = profiles.iter().map(of);
+        [name.to_owned()].into_iter().chain(cells).collect()
+    });
+    let wholes = profiles.iter();
+    let wholes = wholes.map(|profile| cell(profile.frame.gpu_ms.as_ref()));
+    let whole: Vec<String> = ["whole frame".to_owned()]
+        .into_iter()
+        .chain(wholes)
+        .collect();
+    table(heads, 1, rows.chain([whole]))
 }
 
 fn times(profile: &Profile) -> String {

@@ -1,7 +1,7 @@
 //! Runs folded to a row per method and setting, over all views of a viewport: what somebody who
 //! picks a method asks for.
 
-use crate::records::results::{Measured, Part, Run};
+use crate::records::results::{Measured, Part, Run, step};
 use crate::records::statistics::FrameTimes;
 use skiagraph_reference::Shimmer;
 
@@ -71,6 +71,26 @@ impl<'a> Row<'a> {
                 in_band: sum.in_band + of.wrong.in_band,
                 facing_light: sum.facing_light + run.pixels.facing_light,
             })
+    }
+
+    /// The size of its map, where it has one.
+    pub fn map_size(&self) -> Option<u32> {
+        self.runs.first().and_then(|(run, _)| run.map_size)
+    }
+
+    /// Its steps in their order, each with the sum of its passes' medians in GPU ms, means of the
+    /// views; those without GPU times are left out.
+    pub fn steps(&self) -> Vec<(&'a str, f64)> {
+        let mut steps: Vec<(&str, f64)> = Vec::new();
+        let passes = self.runs.iter().flat_map(|(_, of)| &of.passes);
+        for (name, gpu) in passes.filter_map(|pass| Some((step(&pass.name), pass.gpu_ms?))) {
+            let ms = gpu.median / self.views() as f64;
+            match steps.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, sum)) => *sum += ms,
+                None => steps.push((name, ms)),
+            }
+        }
+        steps
     }
 
     /// Root mean square error of graded answers, over all views.

@@ -5,7 +5,7 @@ use crate::records::results::{Promise, Results, Run};
 use crate::reporting::columns::are_paths;
 use crate::reporting::notes::{band_warning, blocked_by, path_costs, remembering, times_missing};
 use crate::reporting::summary::{Row, by_wall, rows};
-use crate::reporting::verdict::verdict;
+use crate::reporting::verdict::{Verdict, verdict};
 use crate::reporting::{graded, results_table::timed_frames, table::table};
 use crate::wording::{bytes, frames, ms, percent, plural, size, thousands};
 use skiagraph_reference::BlockerCounts;
@@ -14,16 +14,19 @@ use std::collections::{BTreeMap, BTreeSet};
 /// All that was measured in one viewport.
 pub struct Summary<'a> {
     results: &'a Results,
-    viewport: [u32; 2],
+    /// Its size in pixels.
+    pub viewport: [u32; 2],
     runs: Vec<&'a Run>,
     /// Of hard answers to hard light and of all others, each by itself.
-    groups: Vec<Group<'a>>,
+    pub groups: Vec<Group<'a>>,
 }
 
 /// Rows that are judged alike.
-struct Group<'a> {
-    is_hard: bool,
-    rows: Vec<Row<'a>>,
+pub struct Group<'a> {
+    /// By wrong pixels, not by how far shares of light are off.
+    pub is_hard: bool,
+    /// The fastest first.
+    pub rows: Vec<Row<'a>>,
 }
 
 /// One summary per viewport, in the order of the results.
@@ -68,7 +71,7 @@ impl<'a> Summary<'a> {
     }
 
     /// `view main`, `path walk, 25 frames`, `9 views`.
-    fn what(&self) -> String {
+    pub fn what(&self) -> String {
         let views = self.views();
         let paths = are_paths(self.runs.iter().copied());
         match (views.first(), views.len()) {
@@ -121,7 +124,8 @@ impl<'a> Summary<'a> {
         text
     }
 
-    fn conditions(&self) -> Vec<String> {
+    /// Under which conditions all this was measured, a line each.
+    pub fn conditions(&self) -> Vec<String> {
         let views = self.views();
         let mut seen = BTreeSet::new();
         let each = self.runs.iter().filter(|run| seen.insert(&run.view));
@@ -215,7 +219,8 @@ impl<'a> Summary<'a> {
         (heads, cells)
     }
 
-    fn notes(&self) -> Vec<String> {
+    /// What else there is to know, a line each.
+    pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         if self
             .groups
@@ -318,14 +323,16 @@ impl<'a> Summary<'a> {
 }
 
 impl Group<'_> {
-    fn title(&self) -> &'static str {
+    /// What is judged against what.
+    pub fn title(&self) -> &'static str {
         match self.is_hard {
             true => "Hard answers against the hard reference",
             false => "Graded answers against the hard reference",
         }
     }
 
-    fn verdict(&self) -> crate::reporting::verdict::Verdict {
+    /// Which of its rows to take.
+    pub fn verdict(&self) -> Verdict {
         verdict(&self.rows)
     }
 }

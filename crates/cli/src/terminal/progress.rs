@@ -1,5 +1,5 @@
-//! Progress on standard error: a bar on a terminal, a line at the begin and the end of each step
-//! elsewhere.
+//! Progress on standard error: a bar on a terminal, nothing elsewhere; with
+//! `SKIAGRAPH_PROGRESS=lines` a line at the begin and the end of each step, for logs.
 
 use crate::terminal::console::note;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -7,6 +7,11 @@ use std::{
     io::{self, IsTerminal},
     time::{Duration, Instant},
 };
+
+fn wants_lines() -> bool {
+    let is_asked = || std::env::var_os("SKIAGRAPH_PROGRESS").is_some_and(|value| value == "lines");
+    !io::stderr().is_terminal() && is_asked()
+}
 
 /// One step of a long command.
 pub struct Step {
@@ -18,7 +23,7 @@ pub struct Step {
 impl Step {
     /// Begins a step of `total` parts, counted in `unit`.
     pub fn begin(what: String, total: u64, unit: &str) -> Self {
-        if !io::stderr().is_terminal() {
+        if wants_lines() {
             note(&format!("starting {what}"));
         }
         Self::bar(what, total, unit)
@@ -56,7 +61,7 @@ impl Step {
     /// Ends the step.
     pub fn end(self) {
         self.bar.finish_and_clear();
-        if !io::stderr().is_terminal() {
+        if wants_lines() {
             note(&format!(
                 "{}: {:.1} s",
                 self.what,

@@ -69,6 +69,13 @@ pub fn open(args: &ViewArgs, gpu: &GpuArgs) -> Result<(), CliError> {
 }
 
 fn no_display(why: &str) -> CliError {
+    // winit says first where in its own files it happened.
+    let behind_place = why
+        .split_once(".rs:")
+        .and_then(|(_, rest)| rest.split_once(": "));
+    let why = behind_place
+        .map_or(why, |(_, reason)| reason)
+        .trim_end_matches('.');
     CliError::NoGpu(format!(
         "no window: {why}\n  `view` needs a display: on Linux $WAYLAND_DISPLAY or $DISPLAY, and \
          for X11 the libraries libX11, libXcursor, libXi and libxkbcommon-x11 (`apt-get install \

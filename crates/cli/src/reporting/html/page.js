@@ -1,0 +1,88 @@
+// The data, the state of the page, and elements.
+
+const data = JSON.parse(document.getElementById('data').textContent);
+
+/** What is chosen; `changed()` draws everything anew. */
+const state = {
+  /** Index of the table: a source and viewport. */
+  table: 0,
+  /** 'frame' with every pass run, 'kept' with what is kept while only the camera moves. */
+  time: 'frame',
+  /** Names of methods that are not drawn. */
+  hidden: new Set(),
+  /** Label of the row that was clicked last. */
+  row: null,
+};
+const drawers = [];
+const changed = () => drawers.forEach((draw) => draw());
+
+const byId = (id) => document.getElementById(id);
+
+/** An element with attributes and children; strings become text. */
+function el(name, attributes = {}, ...children) {
+  return filled(document.createElement(name), attributes, children);
+}
+
+/** The same of SVG. */
+function svg(name, attributes = {}, ...children) {
+  return filled(document.createElementNS('http://www.w3.org/2000/svg', name), attributes, children);
+}
+
+function filled(element, attributes, children) {
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith('on')) element.addEventListener(name.slice(2), value);
+    else if (value !== null && value !== undefined && value !== false) element.setAttribute(name, value);
+  }
+  element.append(...children.filter((child) => child !== null));
+  return element;
+}
+
+/** A labelled choice of `[value, text]`; `act` gets the value's index. */
+function choice(id, label, options, chosen, act) {
+  const select = el('select', { id, onchange: () => act(select.selectedIndex) },
+    ...options.map((text, index) => el('option', { value: index }, text)));
+  select.selectedIndex = chosen;
+  return el('label', { for: id }, label, select);
+}
+
+/** Buttons of which one is pressed. */
+function toggle(id, options, chosen, act) {
+  const group = el('span', { id, role: 'group', class: 'controls', style: 'margin:0;gap:4px' });
+  options.forEach(([value, text]) => group.append(el('button', {
+    type: 'button', 'data-value': value, 'aria-pressed': String(value === chosen()),
+    onclick: () => {
+      act(value);
+      for (const button of group.children) {
+        button.setAttribute('aria-pressed', String(button.dataset.value === chosen()));
+      }
+    },
+  }, text)));
+  return group;
+}
+
+const tip = byId('tip');
+function showTip(event, text) {
+  tip.textContent = text;
+  tip.hidden = false;
+  const box = event.type === 'focus' ? event.target.getBoundingClientRect() : null;
+  const [x, y] = box ? [box.right, box.bottom] : [event.clientX, event.clientY];
+  const { width, height } = tip.getBoundingClientRect();
+  tip.style.left = `${Math.max(4, Math.min(x + 14, innerWidth - width - 8))}px`;
+  tip.style.top = `${Math.max(4, y + 14 + height > innerHeight ? y - height - 14 : y + 14)}px`;
+}
+const hideTip = () => { tip.hidden = true; };
+/** What an element shows while pointed at or focused. */
+const told = (text) => ({
+  onpointermove: (event) => showTip(event, text), onpointerleave: hideTip,
+  onfocus: (event) => showTip(event, text), onblur: hideTip,
+});
+
+function setTheme(theme) {
+  document.documentElement.dataset.theme = theme;
+}
+const dark = matchMedia('(prefers-color-scheme: dark)');
+setTheme(dark.matches ? 'dark' : 'light');
+dark.addEventListener('change', () => setTheme(dark.matches ? 'dark' : 'light'));
+byId('theme').addEventListener('click', () => {
+  setTheme(document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark');
+});

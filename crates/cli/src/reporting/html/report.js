@@ -1,0 +1,108 @@
+// The page's head, its lesser sections, and the first drawing.
+
+function drawHead() {
+  const source = data.sources[table()?.source ?? 0];
+  if (!source) return;
+  byId('title').textContent = `Which shadow method for ${source.scene}?`;
+  document.title = `${source.scene}: Skiagraph report`;
+  byId('subtitle').textContent = table().conditions.slice(0, 2).join(' · ');
+  // What stands between backquotes is a name.
+  const words = (text) => text.split('`').map((part, index) => (index % 2 === 1 ? el('code', {}, part) : part));
+  byId('verdict').replaceChildren(...table().sentences.map((text) => el('p', {}, ...words(text))));
+}
+
+function headControls() {
+  const names = data.tables.map((of) => (data.tables.some((other) => other.hard !== of.hard)
+    ? `${where(of)}: ${of.title.toLowerCase()}` : where(of)));
+  if (names.length > 1) {
+    byId('choice').replaceChildren(choice('table-choice', 'Shown', names, state.table, (chosen) => {
+      state.table = chosen;
+      state.row = null;
+      viewer.scale = null;
+      changed();
+    }));
+  }
+  if (data.tables.some((of) => of.rows.some((row) => row.kept_ms !== null))) {
+    byId('front-controls').replaceChildren(toggle('time', [
+      ['frame', 'light or meshes move'], ['kept', 'only the camera moves'],
+    ], () => state.time, (value) => {
+      state.time = value;
+      changed();
+    }));
+  }
+}
+
+function drawGraph() {
+  const graphs = data.pictures.graphs.filter((graph) => graph.source === table().source);
+  byId('graph-section').hidden = graphs.length === 0;
+  if (graphs.length === 0) return;
+  const names = graphs.map((graph) => graph.method);
+  const row = table().rows.find((one) => one.label === state.row);
+  const index = Math.max(0, names.indexOf(drawGraph.method ?? row?.method));
+  byId('graph-controls').replaceChildren(choice('graph-method', 'method', names, index, (chosen) => {
+    drawGraph.method = names[chosen];
+    drawGraph();
+  }), el('span', { class: 'quiet' }, 'Rows are passes in their order, columns are materials, a bar is the time one lives.'));
+  byId('graph').replaceChildren(el('img', { alt: `graph of ${names[index]}`,
+    src: `data:image/svg+xml;base64,${data.pictures.files[graphs[index].file]}` }));
+}
+
+/** The matrix of hard cases: what is wrong outside the band, and whether that breaks a promise. */
+function drawStress() {
+  byId('stress-section').hidden = data.stress.length === 0;
+  const label = (of) => (of.map_size === null ? of.preset : `${of.preset} ${of.map_size}`);
+  byId('stress').replaceChildren(...data.stress.flatMap((matrix) => {
+    const columns = matrix.methods.filter((method) => !method.unavailable);
+    const cell = (found) => {
+      if (!found) return el('td', {}, '–');
+      if (found.failed) return el('td', { class: 'fail', title: found.failed }, 'failed');
+      const { lit, shadow } = found.outside_band;
+      const text = `${lit + shadow === 0 ? '0' : `${lit}+${shadow}`}${found.set ? ` ${found.set}` : ''}`;
+      return el('td', { class: found.verdict, title: `${found.verdict}; uncertain ${percent(found.uncertain_share)}` },
+        found.verdict === 'fail' ? `✗ ${text}` : text);
+    };
+    const cells = (one, method) => one.cells.filter((found) => label(found) === label(method));
+    const broken = matrix.cases.flatMap((one) => one.cells).filter((found) => found.verdict === 'fail').length;
+    return [
+      el('p', { class: 'quiet' }, `${matrix.adapter.name}, ${size(matrix.viewport)}: ${matrix.cases.length} cases; pixels outside the band, `
+        + `wrongly lit + wrongly in shadow. ${broken === 0 ? 'No promise is broken.' : `${broken} cells break a promise (✗).`}`),
+      el('table', { class: 'matrix' },
+        el('thead', {}, el('tr', {}, el('th', {}, 'case'), ...columns.map((method) => el('th', {}, label(method), el('br'),
+          method.promise ?? '')))),
+        el('tbody', {}, ...matrix.cases.map((one) => el('tr', {}, el('td', { title: one.reason }, one.name),
+          ...columns.map((method) => cell(cells(one, method).at(-1))))))),
+    ];
+  }));
+}
+
+function drawConditions() {
+  byId('conditions').replaceChildren(...data.sources.flatMap((source) => [
+    el('dl', {}, ...Object.entries({
+      scene: `${source.scene}, ${thousands(source.triangles)} triangles`,
+      adapter: `${source.adapter} (${source.device_type})`,
+      measured: source.dates.join(', ') || 'on an unknown day',
+      frames: `${source.frames} timed after ${source.warmup} to warm up`,
+      reference: `oracle ${source.oracle}`,
+      from: source.folders.join(', '),
+    }).flatMap(([name, text]) => [el('dt', {}, name), el('dd', {}, text)])),
+    ...source.commands.map((command) => el('pre', {}, command)),
+  ]), ...data.left_out.map((line) => el('p', { class: 'quiet', id: 'left-out' }, line)));
+  byId('footer').textContent = `Written by ${data.program}. Wrong pixels are counted against exact rays from every `
+    + 'pixel; the band holds those whose right answer hangs on rounding.';
+}
+
+if (data.tables.length > 0) {
+  headControls();
+  tableControls();
+  drawers.push(drawHead, drawLegend, drawFront, drawTable, drawViewer, drawPasses, drawGrowth, drawGraph);
+  changed();
+  addEventListener('resize', () => {
+    drawFront();
+    drawPasses();
+    paint();
+  });
+} else {
+  for (const id of ['front', 'table', 'pictures', 'passes', 'growth', 'graph']) byId(`${id}-section`).hidden = true;
+}
+drawStress();
+drawConditions();

@@ -64,6 +64,7 @@ pub struct SceneArgs {
     pub far: Option<f64>,
 }
 
+#[cfg(feature = "window")]
 impl SceneArgs {
     /// A scene as its file says.
     pub fn of(scene: &str) -> Self {

@@ -14,6 +14,8 @@ mod pictures;
 mod records;
 mod reporting;
 mod terminal;
+#[cfg(feature = "window")]
+mod viewer;
 mod wording;
 
 use args::cli::{Cli, Command};
@@ -57,6 +59,7 @@ fn main() -> ExitCode {
         Command::Show(args) => commands::show::show(args),
         Command::Scenes => commands::scenes::scenes(),
         Command::Doctor => commands::doctor::doctor(gpu),
+        Command::View(args) => commands::view::view(args, gpu),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -2,7 +2,7 @@
 
 use crate::{
     error::Error,
-    oracle::{Answer, Class, Oracle, OracleMode, Reference},
+    oracle::{Answer, Class, Oracle, OracleMode, Reference, base_colors},
     pixels::{Progress, check_pixel_count, per_pixel},
     ray::Ray,
     receiver::Receiver,
@@ -207,7 +207,7 @@ impl<'a> Oracle<'a> {
             Reference::of(
                 camera.viewport,
                 &answers,
-                self.base_colors(camera, primitives),
+                base_colors(self.mesh, camera, primitives),
             ),
             area,
         ))

@@ -52,7 +52,7 @@ pub use blockers::BlockerCounts;
 pub use error::Error;
 pub use graded::{Graded, Invalid, OffBy};
 pub use image::Image;
-pub use oracle::{Class, Occlusion, Oracle, OracleMode, Reference};
+pub use oracle::{Class, Occlusion, Oracle, OracleMode, Reference, unshadowed};
 pub use pixels::{BACKGROUND, Progress};
 pub use receiver::Receiver;
 pub use shimmer::Shimmer;

@@ -264,7 +264,7 @@ impl<'a> Oracle<'a> {
                 None => Answer::BACKGROUND,
             })
         })?;
-        let base_colors = self.base_colors(camera, primitives);
+        let base_colors = base_colors(self.mesh, camera, primitives);
         Ok(Reference::of(viewport, &answers, base_colors))
     }
 
@@ -304,25 +304,6 @@ impl<'a> Oracle<'a> {
                 }
             })
             .collect()
-    }
-
-    /// What the pixels of a G-buffer are made of; nothing where the mesh has no materials.
-    pub(crate) fn base_colors(&self, camera: &Camera, primitives: &[u32]) -> Vec<[f32; 3]> {
-        let surfaces = &self.mesh.surfaces;
-        if surfaces.materials.is_empty() {
-            return Vec::new();
-        }
-        let width = camera.viewport[0];
-        let colour = |(pixel, &primitive): (usize, &u32)| {
-            if primitive == BACKGROUND {
-                return [0.0; 3];
-            }
-            let pixel = pixel as u32;
-            let direction = camera.pixel_direction(pixel % width, pixel / width);
-            let weights = receiver::weights(self.mesh, primitive, camera.eye, direction);
-            surfaces.base_color(primitive, weights)
-        };
-        primitives.par_iter().enumerate().map(colour).collect()
     }
 
     pub(crate) fn answer(
@@ -435,4 +416,45 @@ impl<'a> Oracle<'a> {
         });
         occluded
     }
+}
+
+/// What each pixel of a G-buffer shows as if nothing cast shadows: whatever faces the light is lit.
+/// It needs no hierarchy. `primitives` as for [`Oracle::shade`].
+///
+/// # Errors
+/// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Light`], [`Error::Interrupted`].
+pub fn unshadowed(
+    mesh: &Mesh,
+    camera: &Camera,
+    light: &LightKind,
+    primitives: &[u32],
+    progress: Progress,
+) -> Result<Reference, Error> {
+    check_pixel_count("primitives", camera.viewport, primitives.len())?;
+    light.check().map_err(Error::Light)?;
+    let answers = per_pixel(camera.viewport, progress, |x, y, _| {
+        let receiver = Receiver::of_pixel(mesh, primitives, camera, [x, y], light)?;
+        Ok(receiver.map_or(Answer::BACKGROUND, |receiver| Answer::facing(&receiver)))
+    })?;
+    let base_colors = base_colors(mesh, camera, primitives);
+    Ok(Reference::of(camera.viewport, &answers, base_colors))
+}
+
+/// What the pixels of a G-buffer are made of; nothing where the mesh has no materials.
+pub(crate) fn base_colors(mesh: &Mesh, camera: &Camera, primitives: &[u32]) -> Vec<[f32; 3]> {
+    let surfaces = &mesh.surfaces;
+    if surfaces.materials.is_empty() {
+        return Vec::new();
+    }
+    let width = camera.viewport[0];
+    let colour = |(pixel, &primitive): (usize, &u32)| {
+        if primitive == BACKGROUND {
+            return [0.0; 3];
+        }
+        let pixel = pixel as u32;
+        let direction = camera.pixel_direction(pixel % width, pixel / width);
+        let weights = receiver::weights(mesh, primitive, camera.eye, direction);
+        surfaces.base_color(primitive, weights)
+    };
+    primitives.par_iter().enumerate().map(colour).collect()
 }

@@ -218,7 +218,10 @@ impl SceneLibrary {
     }
 
     /// The scene file of that name or path (`None` if built in) and its text.
-    fn locate(&self, argument: &str) -> Result<(Option<PathBuf>, String), SceneError> {
+    ///
+    /// # Errors
+    /// [`SceneError`]: no such scene, a file that cannot be read.
+    pub fn locate(&self, argument: &str) -> Result<(Option<PathBuf>, String), SceneError> {
         let path = Path::new(argument);
         let by_name = self.scenes.join(format!("{argument}.ron"));
         let file = if has_extension(path, "ron") {

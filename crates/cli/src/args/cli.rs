@@ -4,7 +4,7 @@
 use crate::args::{
     commands::{
         ChartArgs, CheckArgs, CompareArgs, GraphArgs, NewArgs, PresetsArgs, ProfileArgs,
-        ReportArgs, RunArgs, ShowArgs, StressArgs,
+        ReportArgs, RunArgs, ShowArgs, StressArgs, ViewArgs,
     },
     shared::GpuArgs,
 };
@@ -134,6 +134,13 @@ pub enum Command {
     /// Show the GPUs, what they can do, and where meshes are searched.
     #[command(after_help = "Example:\n  skiagraph doctor --adapter llvmpipe")]
     Doctor,
+    /// Show methods in a window: fly through the scene, turn the light, move params, look at any
+    /// material, see where a method is wrong. Changed files are read again while it runs.
+    #[command(after_help = "Examples:\n  skiagraph view\n  \
+        skiagraph view my_method.ron rt --scene sponza\n  \
+        skiagraph view crsm@n=1 --scene my_model.glb --size 1024x1024\n\n\
+        docs/view.md says what there is to see and to press.")]
+    View(ViewArgs),
 }
 
 #[cfg(test)]

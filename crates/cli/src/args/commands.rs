@@ -391,3 +391,23 @@ pub enum DrawingFormat {
     /// The plan as data, for scripts.
     Json,
 }
+
+/// `skiagraph view`.
+#[derive(Args, Debug)]
+pub struct ViewArgs {
+    /// One or two presets by name, or graphs (.ron), each perhaps in a setting of its own.
+    #[arg(value_name = "PRESET|FILE.ron[@NAME=VALUE,…]", num_args = 0..=2, default_value = "nsm")]
+    pub methods: Vec<String>,
+    /// What is drawn.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Pixels that the methods run in; the window shows them larger or smaller.
+    #[arg(long, value_name = "WxH", default_value = "512x512")]
+    pub size: Size,
+    /// Shadow map size in texels: the param `map_size`.
+    #[arg(long, value_name = "N", value_parser = texels(), allow_negative_numbers = true)]
+    pub map_size: Option<u32>,
+    /// A param of the graphs that have it. May be repeated.
+    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub params: Vec<Assignment>,
+}

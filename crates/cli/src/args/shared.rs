@@ -64,6 +64,24 @@ pub struct SceneArgs {
     pub far: Option<f64>,
 }
 
+#[cfg(feature = "window")]
+impl SceneArgs {
+    /// A scene as its file says.
+    pub fn of(scene: &str) -> Self {
+        Self {
+            scene: scene.to_owned(),
+            view: None,
+            eye: None,
+            look: None,
+            light: None,
+            up: None,
+            fov: None,
+            near: None,
+            far: None,
+        }
+    }
+}
+
 /// One graph, its viewport and its params.
 #[derive(Args, Debug)]
 pub struct MethodArgs {

@@ -14,3 +14,4 @@ pub mod run_sequence;
 pub mod scenes;
 pub mod show;
 pub mod stress;
+pub mod view;

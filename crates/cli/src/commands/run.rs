@@ -11,6 +11,7 @@ use crate::graphs::planning::Capabilities;
 use crate::graphs::{method, preset};
 use crate::measuring::scene_selection::SceneSelection;
 use crate::measuring::{device, frame, poison};
+use crate::pictures::colours::ClipPlanes;
 use crate::pictures::save::{Decoding, capture, captures, check_encodings, write};
 use crate::terminal::console::print;
 use crate::wording::bytes;
@@ -62,7 +63,7 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         check_encodings(&plan, saves)?;
         let readings: Vec<Decoding> = saves
             .iter()
-            .map(|save| Decoding::of(&plan, save, view))
+            .map(|save| Decoding::of(&plan, &name(save), ClipPlanes::of(view)))
             .collect();
         print(&format!(
             "{} on {}, view {}, {}\n{}",

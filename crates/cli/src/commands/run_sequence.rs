@@ -8,6 +8,7 @@ use crate::measuring::frame;
 use crate::measuring::scene_selection::check_path;
 use crate::measuring::shapes::Shapes;
 use crate::measuring::subject::{Shot, Subject};
+use crate::pictures::colours::ClipPlanes;
 use crate::pictures::save::{Decoding, capture, write};
 use crate::terminal::console::print;
 use crate::terminal::interrupt;
@@ -139,7 +140,9 @@ impl Shots {
                 shapes.show(index, provider)?;
             }
             let readings = saves.iter();
-            let readings = readings.map(|save| Decoding::of(executor.plan(), save, &shot.view));
+            let planes = ClipPlanes::of(&shot.view);
+            let plan = executor.plan();
+            let readings = readings.map(|save| Decoding::of(plan, &capture(save).name(), planes));
             let readings: Vec<Decoding> = readings.collect();
             let contents = self
                 .frame(gpu, &mut executor, provider, (index, saves))

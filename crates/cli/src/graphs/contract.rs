@@ -244,6 +244,19 @@ pub struct Judgement {
 }
 
 impl Judgement {
+    /// Of a frame's outputs beside the right answer.
+    ///
+    /// # Errors
+    /// Outputs of another size than the reference, or with values that are none.
+    pub fn of(outputs: &Outputs, right: &RightAnswer) -> Result<Self, skiagraph_reference::Error> {
+        let reference = &right.reference;
+        let counts = Statistics::judged(&outputs.visibility, &outputs.status, reference)?;
+        let graded = (outputs.shares.is_some() || right.area.is_some())
+            .then(|| Graded::judged(&outputs.shown(), &right.shares(), reference))
+            .transpose()?;
+        Ok(Self { counts, graded })
+    }
+
     /// Of two frames of a path: by grades where there are any, else by wrong pixels.
     pub fn is_worse_than(&self, other: &Self) -> bool {
         match (&self.graded, &other.graded) {
@@ -267,14 +280,8 @@ pub fn judged(
         CliError::Contract(format!("`{name}` breaks the contract of outputs: {reason}"))
     };
     let outputs = outputs.map_err(broken)?;
-    let reference = &right.reference;
-    let counts = Statistics::judged(&outputs.visibility, &outputs.status, reference)
-        .map_err(|error| broken(error.to_string()))?;
-    let graded = (outputs.shares.is_some() || right.area.is_some())
-        .then(|| Graded::judged(&outputs.shown(), &right.shares(), reference))
-        .transpose()
-        .map_err(|error| broken(error.to_string()))?;
-    Ok((outputs, Judgement { counts, graded }))
+    let judgement = Judgement::of(&outputs, right).map_err(|error| broken(error.to_string()))?;
+    Ok((outputs, judgement))
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use crate::wording::thousands;
 use skiagraph_reference::BACKGROUND;
+use skiagraph_scene::View;
 use std::collections::BTreeSet;
 
 /// Colours of the `status` values 0 to 4, with their meaning.
@@ -29,8 +30,14 @@ pub struct ClipPlanes {
 }
 
 impl ClipPlanes {
+    /// Of a view.
+    pub fn of(view: &View) -> Self {
+        let View { near, far, .. } = *view;
+        Self { near, far }
+    }
+
     /// The distance along the viewing direction that a depth stands for.
-    fn distance(self, depth: f32) -> f32 {
+    pub fn distance(self, depth: f32) -> f32 {
         let Self { near, far } = self;
         (near * far / (far - f64::from(depth) * (far - near))) as f32
     }

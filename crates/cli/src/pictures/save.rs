@@ -10,7 +10,6 @@ use crate::wording::{bytes, size, thousands};
 use skiagraph_gpu::Content;
 use skiagraph_graph::{Capture, Item, Plan};
 use skiagraph_passes::names::{CAMERA, LIGHT};
-use skiagraph_scene::View;
 use std::collections::BTreeMap;
 
 /// What is read back for a save.
@@ -56,28 +55,24 @@ pub fn check_encodings(plan: &Plan, saves: &[Save]) -> Result<(), CliError> {
     Ok(())
 }
 
-/// How the contents of one save are to be read.
+/// How the contents of a material are to be read.
+#[derive(Clone, Default)]
 pub struct Decoding {
     /// The camera whose depths they are, if they are depths.
-    planes: Option<ClipPlanes>,
+    pub planes: Option<ClipPlanes>,
     /// The items of a buffer.
-    item: Option<Item>,
+    pub item: Option<Item>,
 }
 
 impl Decoding {
-    /// Of what this plan writes into the material.
-    pub fn of(plan: &Plan, save: &Save, view: &View) -> Self {
-        let name = capture(save).name();
-        let behind = plan.provided_behind(&name);
+    /// Of what this plan writes into the output or capture, seen between these planes.
+    pub fn of(plan: &Plan, name: &str, planes: ClipPlanes) -> Self {
+        let behind = plan.provided_behind(name);
         // A pass that also knows the light may well draw from there.
         let is_camera = behind.contains(CAMERA) && !behind.contains(LIGHT);
-        let planes = || ClipPlanes {
-            near: view.near,
-            far: view.far,
-        };
         Self {
-            planes: is_camera.then(planes),
-            item: plan.item(&name),
+            planes: is_camera.then_some(planes),
+            item: plan.item(name),
         }
     }
 }

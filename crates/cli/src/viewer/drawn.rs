@@ -1,0 +1,337 @@
+//! From a frame to what a pane of the window shows of it: a picture, its legend, and its numbers.
+
+use crate::graphs::contract::{Judgement, Outputs};
+use crate::graphs::preset::{STATUS, VISIBILITY};
+use crate::pictures::buffer_csv;
+use crate::pictures::material::Picture;
+use crate::viewer::judge::{Answer, thin, thinned_size};
+use crate::viewer::texels::{Histogram, Texels};
+use crate::viewer::wanted::{MethodShot, Shot};
+use crate::wording::{percent, thousands};
+use skiagraph_gpu::Content;
+use skiagraph_graph::Capture;
+use skiagraph_reference::{Class, Image};
+use std::collections::BTreeMap;
+
+/// What a pane shows.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Show {
+    /// The scene in the method's light.
+    Shaded,
+    /// The output `visibility`, with the status' background and what faces away.
+    Visibility,
+    /// The scene with uncertain pixels in purple.
+    Uncertain,
+    /// Where the method is wrong by the reference.
+    Difference,
+    /// A material after a pass.
+    Material(Capture),
+}
+
+/// How a material is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// Which of its mips and layers, in their order.
+    pub part: usize,
+    /// One channel as a heat map instead of the colours that files have.
+    pub heat: Option<usize>,
+    /// The channel of the histogram.
+    pub channel: usize,
+}
+
+/// What there is to see.
+#[derive(Default)]
+pub struct Drawn {
+    /// The picture.
+    pub image: Option<Image>,
+    /// How values became colours; or why there is no picture.
+    pub legend: String,
+    /// The numbers behind the picture.
+    pub texels: Option<Texels>,
+    /// How often they occur.
+    pub histogram: Option<Histogram>,
+    /// Between which values the heat map lies.
+    pub heat: Option<[f64; 2]>,
+    /// Names of mips and layers, where there are several.
+    pub parts: Vec<String>,
+    /// The items of a buffer, a line each.
+    pub table: Option<String>,
+}
+
+/// Lines of a buffer that are shown.
+const MOST_LINES: usize = 200;
+
+impl Drawn {
+    fn only(legend: String) -> Self {
+        Self {
+            legend,
+            ..Self::default()
+        }
+    }
+}
+
+/// What a pane shows of the method `index`; `answer` is the reference's to this frame.
+pub fn draw(
+    shot: &Shot,
+    index: usize,
+    show: &Show,
+    reading: &Reading,
+    answer: Option<&Answer>,
+) -> Drawn {
+    let Some(method) = shot.methods.get(index) else {
+        return Drawn::default();
+    };
+    if method.contents.is_empty() {
+        return Drawn::only("nothing was drawn yet".into());
+    }
+    let drawn = match (show, answer) {
+        (Show::Material(capture), _) => Ok(material(method, &capture.name(), reading)),
+        (Show::Difference, None) => Err("the reference has no answer to this frame yet".into()),
+        (Show::Difference, Some(answer)) => difference(shot, method, answer),
+        (show, _) => lit(shot, method, show),
+    };
+    drawn.unwrap_or_else(Drawn::only)
+}
+
+/// The method's answer on the scene.
+fn lit(shot: &Shot, method: &MethodShot, show: &Show) -> Result<Drawn, String> {
+    let facing = &*shot.facing;
+    let contents = (*method.contents).clone();
+    let outputs = Outputs::of_light(contents, shot.light_number, facing)?;
+    let shown = outputs.shown();
+    let image = match show {
+        Show::Visibility => Image::visibility(facing.viewport, &shown, &outputs.status),
+        Show::Uncertain => Image::uncertain(&shown, &outputs.status, facing),
+        _ => Image::shaded(&shown, facing),
+    };
+    let uncertain = outputs.status.iter().filter(|&&status| status == 4).count() as u64;
+    let facing_light = facing.classes.iter().filter(|class| class.faces_light());
+    let facing_light = facing_light.count() as u64;
+    let legend = match show {
+        Show::Visibility => "black shadow, white light, green facing away".to_owned(),
+        Show::Uncertain => format!(
+            "purple: uncertain, {} of the pixels that face the light",
+            percent(uncertain, facing_light)
+        ),
+        _ => "lit by what the method sees of the light".to_owned(),
+    };
+    let legend = match outputs.rays {
+        Some(rays) => format!("{legend}; {} rays", thousands(rays)),
+        None => legend,
+    };
+    // The numbers under the cursor are those of the answer.
+    let numbers = method.contents.get(VISIBILITY).map(Content::split);
+    let numbers = numbers
+        .as_ref()
+        .and_then(|layers| layers.get(shot.light_number));
+    Ok(Drawn {
+        image: Some(image.map_err(|error| error.to_string())?),
+        legend,
+        texels: numbers.and_then(|part| Texels::of(part, None)),
+        ..Drawn::default()
+    })
+}
+
+/// Where the method is wrong, of the pixels that the reference has answered.
+fn difference(shot: &Shot, method: &MethodShot, answer: &Answer) -> Result<Drawn, String> {
+    let right = answer.right.as_ref().map_err(Clone::clone)?;
+    let size = shot.facing.viewport;
+    let judged = [VISIBILITY, STATUS].into_iter();
+    let contents: BTreeMap<String, Content> = judged
+        .filter_map(|name| Some((name.to_owned(), method.contents.get(name)?)))
+        .map(|(name, content)| (name, thin_content(content, size, answer.stride)))
+        .collect();
+    let outputs = Outputs::of_light(contents, shot.light_number, &right.reference)?;
+    let wrong = |error: skiagraph_reference::Error| error.to_string();
+    let judgement = Judgement::of(&outputs, right).map_err(wrong)?;
+    let reference = &right.reference;
+    let image = match judgement.graded {
+        Some(_) => Image::difference(&outputs.shown(), &right.shares(), reference),
+        None => Image::error(&outputs.visibility, &outputs.status, reference),
+    };
+    Ok(Drawn {
+        image: Some(image.map_err(wrong)?),
+        legend: format!(
+            "{}; {}",
+            verdict(&judgement, reference),
+            of_pixels(answer.stride)
+        ),
+        ..Drawn::default()
+    })
+}
+
+/// Which pixels a reference is of.
+pub fn of_pixels(stride: u32) -> &'static str {
+    match stride {
+        1 => "of all pixels",
+        3 => "of every third pixel in each row and column so far",
+        _ => "of every ninth pixel in each row and column so far",
+    }
+}
+
+fn verdict(judgement: &Judgement, reference: &skiagraph_reference::Reference) -> String {
+    if let Some(graded) = &judgement.graded {
+        return format!(
+            "blue too light, red too dark; RMSE {:.4}, mean {:.4}, FLIP {:.4}",
+            graded.rmse, graded.mean_absolute_error, graded.flip
+        );
+    }
+    let facing = reference
+        .classes
+        .iter()
+        .filter(|class: &&Class| class.faces_light());
+    let facing = facing.count() as u64;
+    let wrong = &judgement.counts.wrong;
+    let outside = wrong.total - wrong.in_band;
+    format!(
+        "blue wrongly lit, red wrongly in shadow; {} wrong outside the band ({}), {} in it",
+        thousands(outside),
+        percent(outside, facing),
+        thousands(wrong.in_band)
+    )
+}
+
+/// One texel of `stride` in each row and column of every layer of a content of the viewport's size.
+fn thin_content(content: &Content, size: [u32; 2], stride: u32) -> Content {
+    let Content::Texture { format, .. } = content else {
+        return content.clone();
+    };
+    let texel = format.block_copy_size(None).unwrap_or(4) as usize;
+    let layers = content.split();
+    let thinned = layers.iter().flat_map(|layer| {
+        let texels: Vec<&[u8]> = layer.bytes().chunks_exact(texel).collect();
+        match texels.len() == size[0] as usize * size[1] as usize {
+            true => thin(&texels, size, stride).concat(),
+            // Of another size, which judging refuses by name.
+            false => Vec::new(),
+        }
+    });
+    Content::Texture {
+        format: *format,
+        bytes: thinned.collect(),
+        parts: vec![thinned_size(size, stride); layers.len()],
+    }
+}
+
+/// A material, decoded as files of it are.
+fn material(method: &MethodShot, name: &str, reading: &Reading) -> Drawn {
+    let Some(content) = method.contents.get(name) else {
+        return Drawn::only(format!("`{name}` was not read yet"));
+    };
+    let decoding = method.readings.get(name).cloned().unwrap_or_default();
+    if let Content::Buffer(bytes) = content {
+        return match buffer_csv::to_csv(bytes, decoding.item.as_ref()) {
+            Ok(text) => table(&text),
+            Err(error) => Drawn::only(error.to_string()),
+        };
+    }
+    let parts = content.split();
+    let part = &parts[reading.part.min(parts.len() - 1)];
+    let texels = Texels::of(part, decoding.planes);
+    let channel = |wanted: usize| {
+        let last = texels.as_ref().map_or(0, |texels| texels.channels() - 1);
+        wanted.min(last)
+    };
+    let histogram = texels
+        .as_ref()
+        .map(|texels| texels.histogram(channel(reading.channel)));
+    let material = name.split('@').next().unwrap_or(name);
+    let picture = Picture::of(material, part, decoding.planes);
+    let (mut image, mut legend) = match picture {
+        Ok(picture) => (Some(picture.image), picture.legend),
+        Err(why) => (None, format!("`{name}` {why}")),
+    };
+    let mut heat = None;
+    if let (Some(wanted), Some(texels)) = (reading.heat, &texels) {
+        let range = texels.histogram(channel(wanted)).range;
+        if range[0] <= range[1] {
+            image = Some(texels.heat(channel(wanted), range));
+            legend = format!("heat map of channel {}", channel(wanted));
+            heat = Some(range);
+        }
+    }
+    Drawn {
+        image,
+        legend,
+        histogram,
+        heat,
+        texels,
+        parts: part_names(content),
+        table: None,
+    }
+}
+
+fn table(text: &str) -> Drawn {
+    let lines = text.lines().count().saturating_sub(1);
+    let shown: Vec<&str> = text.lines().take(MOST_LINES + 1).collect();
+    Drawn {
+        legend: match lines > MOST_LINES {
+            true => format!(
+                "the first {MOST_LINES} of {} items",
+                thousands(lines as u64)
+            ),
+            false => format!("{} items", thousands(lines as u64)),
+        },
+        table: Some(shown.join("\n")),
+        ..Drawn::default()
+    }
+}
+
+/// What each part of a texture is; nothing where there is only one.
+fn part_names(content: &Content) -> Vec<String> {
+    let Content::Texture { parts, .. } = content else {
+        return Vec::new();
+    };
+    if parts.len() < 2 {
+        return Vec::new();
+    }
+    let (mut mip, mut layer) = (0, 0);
+    let name = |(index, size): (usize, &[u32; 2])| {
+        match index.checked_sub(1).map(|before| parts[before]) {
+            Some(before) if before != *size => (mip, layer) = (mip + 1, 0),
+            Some(_) => layer += 1,
+            None => {}
+        }
+        format!("mip {mip}, layer {layer}, {}x{}", size[0], size[1])
+    };
+    parts.iter().enumerate().map(name).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wgpu::TextureFormat as F;
+
+    #[test]
+    fn parts_are_layers_of_mips() {
+        let content = Content::Texture {
+            format: F::R8Unorm,
+            parts: vec![[4, 4], [4, 4], [2, 2], [2, 2], [1, 1], [1, 1]],
+            bytes: vec![0; 42],
+        };
+        let names = part_names(&content);
+        assert_eq!(names[1], "mip 0, layer 1, 4x4");
+        assert_eq!(names[2], "mip 1, layer 0, 2x2");
+        assert_eq!(names[5], "mip 2, layer 1, 1x1");
+    }
+
+    #[test]
+    fn a_thinned_content_keeps_the_middle_of_each_block_in_every_layer() {
+        let content = Content::Texture {
+            format: F::R16Uint,
+            parts: vec![[4, 3]; 2],
+            bytes: (0..24u16).flat_map(u16::to_le_bytes).collect(),
+        };
+        let thin = thin_content(&content, [4, 3], 3);
+        assert_eq!(thin.as_u32(), Some(vec![5, 17]));
+        assert_eq!(thin.split().len(), 2);
+    }
+
+    #[test]
+    fn a_long_table_is_cut_and_says_so() {
+        let text: String = (0..300).map(|line| format!("{line}\n")).collect();
+        let drawn = table(&text);
+        assert_eq!(drawn.legend, "the first 200 of 299 items");
+        assert_eq!(drawn.table.unwrap().lines().count(), 201);
+    }
+}

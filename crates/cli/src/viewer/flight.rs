@@ -1,0 +1,133 @@
+//! How the camera and the light move: a view in, a view out.
+
+use glam::{DQuat, DVec3};
+use skiagraph_scene::{LightKind, View};
+
+/// Closer than this to straight up or down nobody looks: there is no right and left then.
+const STEEPEST_DEGREES: f64 = 89.0;
+
+/// The frame of a view: right, up and forward, unit vectors.
+fn frame(view: &View) -> [DVec3; 3] {
+    let camera = view.camera([1, 1]);
+    [camera.right, camera.up, camera.forward]
+}
+
+/// Turns a direction about `up` by `yaw` and towards `up` by `pitch`, radians.
+fn turned(direction: DVec3, up: DVec3, yaw: f64, pitch: f64) -> DVec3 {
+    let up = up.normalize_or(DVec3::Y);
+    let direction = DQuat::from_axis_angle(up, yaw) * direction.normalize_or(DVec3::NEG_Z);
+    let right = direction
+        .cross(up)
+        .normalize_or(up.any_orthonormal_vector());
+    let height = direction.dot(up).clamp(-1.0, 1.0).asin();
+    let steepest = STEEPEST_DEGREES.to_radians();
+    // What is steeper from the start may stay so, and not become more so.
+    let most = steepest.max(height.abs());
+    let pitch = (height + pitch).clamp(-most, most) - height;
+    DQuat::from_axis_angle(right, pitch) * direction
+}
+
+/// Looks elsewhere from the same place.
+pub fn look(view: &mut View, yaw: f64, pitch: f64) {
+    view.direction = turned(view.direction, view.up, yaw, pitch);
+}
+
+/// Goes around what lies `distance` before the eye.
+pub fn orbit(view: &mut View, yaw: f64, pitch: f64, distance: f64) {
+    let [_, _, forward] = frame(view);
+    let centre = view.eye + forward * distance;
+    look(view, yaw, pitch);
+    let [_, _, forward] = frame(view);
+    view.eye = centre - forward * distance;
+}
+
+/// Moves the eye along its own right, up and forward.
+pub fn fly(view: &mut View, by: DVec3) {
+    let [right, up, forward] = frame(view);
+    view.eye += right * by.x + up * by.y + forward * by.z;
+}
+
+/// Turns a directional light, or the axis of a spot light; a point light goes around `centre`.
+pub fn turn_light(light: &mut LightKind, view: &View, yaw: f64, pitch: f64, centre: DVec3) {
+    let turn = |direction| turned(direction, view.up, yaw, pitch);
+    match light {
+        LightKind::Directional(light) => light.direction = turn(light.direction),
+        LightKind::Spot(light) => light.direction = turn(light.direction),
+        LightKind::Point(light) => {
+            let arm = light.position - centre;
+            if arm != DVec3::ZERO {
+                light.position = centre + turn(arm) * arm.length();
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use skiagraph_scene::{DirectionalLight, PointLight};
+
+    fn view() -> View {
+        View {
+            name: "main".into(),
+            eye: DVec3::new(0.0, 2.0, 8.0),
+            direction: DVec3::NEG_Z,
+            up: DVec3::Y,
+            fov_y_degrees: 60.0,
+            near: 0.1,
+            far: 100.0,
+            light: None,
+        }
+    }
+
+    #[test]
+    fn who_orbits_keeps_distance_and_subject() {
+        let mut view = view();
+        let centre = view.eye + view.direction * 8.0;
+        for _ in 0..40 {
+            orbit(&mut view, 0.2, 0.1, 8.0);
+            view.check().unwrap();
+            assert!((view.eye.distance(centre) - 8.0).abs() < 1e-9);
+            let towards = (centre - view.eye).normalize();
+            assert!(towards.dot(view.direction.normalize()) > 1.0 - 1e-9);
+        }
+        assert!(view.eye.y < -5.9, "the pitch has led below: {}", view.eye);
+    }
+
+    #[test]
+    fn nobody_looks_straight_up() {
+        let mut view = view();
+        look(&mut view, 0.0, 10.0);
+        view.check().unwrap();
+        let height = view.direction.normalize().y.asin().to_degrees();
+        assert!((height - STEEPEST_DEGREES).abs() < 1e-6, "{height}");
+        view.direction = DVec3::new(1e-4, 1.0, 0.0);
+        look(&mut view, 0.0, 1.0);
+        view.check().unwrap();
+    }
+
+    #[test]
+    fn flying_goes_where_the_eye_looks() {
+        let mut view = view();
+        look(&mut view, std::f64::consts::FRAC_PI_2, 0.0);
+        fly(&mut view, DVec3::new(0.0, 0.0, 3.0));
+        let there = DVec3::new(-3.0, 2.0, 8.0);
+        assert!(view.eye.distance(there) < 1e-9, "{}", view.eye);
+    }
+
+    #[test]
+    fn a_light_turns_and_stays_as_long_or_as_far_away() {
+        let view = view();
+        let mut sun = LightKind::from(DirectionalLight::new(DVec3::new(1.0, -1.0, 0.0)));
+        turn_light(&mut sun, &view, 0.5, 0.1, DVec3::ZERO);
+        sun.check().unwrap();
+        let mut bulb = LightKind::Point(PointLight {
+            position: DVec3::new(3.0, 4.0, 0.0),
+            radius: 0.0,
+        });
+        turn_light(&mut bulb, &view, 0.5, 0.0, DVec3::ZERO);
+        let position = bulb.position().unwrap();
+        assert!((position.length() - 5.0).abs() < 1e-9, "{position}");
+        assert!((position.y - 4.0).abs() < 1e-9, "{position}");
+    }
+}

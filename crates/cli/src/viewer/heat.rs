@@ -1,0 +1,42 @@
+//! A heat map: from dark blue over green to yellow, evenly in what the eye calls brightness.
+
+/// Nine colours of viridis (Smith, van der Walt 2015), evenly spaced.
+const VIRIDIS: [[u8; 3]; 9] = [
+    [68, 1, 84],
+    [71, 45, 123],
+    [59, 82, 139],
+    [44, 114, 142],
+    [33, 145, 140],
+    [40, 174, 128],
+    [94, 201, 98],
+    [173, 220, 48],
+    [253, 231, 37],
+];
+
+/// The colour of a share from 0 to 1.
+pub fn colour(share: f64) -> [u8; 3] {
+    let place = share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
+    let from = (place as usize).min(VIRIDIS.len() - 2);
+    let part = place - from as f64;
+    std::array::from_fn(|channel| {
+        let [low, high] = [from, from + 1].map(|at| f64::from(VIRIDIS[at][channel]));
+        (low + (high - low) * part).round() as u8
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_begins_and_ends_in_viridis_own_colours_and_grows_brighter() {
+        assert_eq!((colour(-1.0), colour(2.0)), (VIRIDIS[0], VIRIDIS[8]));
+        let luma = |[r, g, b]: [u8; 3]| {
+            0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)
+        };
+        let steps: Vec<f64> = (0..=64)
+            .map(|at| luma(colour(f64::from(at) / 64.0)))
+            .collect();
+        assert!(steps.windows(2).all(|pair| pair[0] < pair[1]), "{steps:?}");
+    }
+}

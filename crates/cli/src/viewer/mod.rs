@@ -1,0 +1,21 @@
+//! `skiagraph view`: methods in a window. One thread runs them, one traces the reference, and the
+//! window shows what comes; what is decided is in `state.rs`, without a toolkit.
+
+mod drawn;
+mod flight;
+mod heat;
+mod judge;
+mod saving;
+mod slot;
+mod start;
+mod state;
+#[cfg(test)]
+mod tests;
+mod texels;
+mod ui;
+mod wanted;
+mod watch;
+mod window;
+mod worker;
+
+pub use window::open;

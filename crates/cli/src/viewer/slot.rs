@@ -1,0 +1,358 @@
+//! One method as it runs: the last good graph of its files, and why the newest is not it.
+
+use crate::error::{explain, is_fatal};
+use crate::files::fingerprint::{Fingerprint, RecordedSources};
+use crate::graphs::planning::Capabilities;
+use crate::graphs::preset::{self, Preset, VISIBILITY};
+use crate::measuring::frame;
+use crate::pictures::{colours::ClipPlanes, save::Decoding};
+use crate::viewer::wanted::{MethodShot, PassShot, WantedMethod};
+use skiagraph_gpu::{ExecuteError, Executor, Frame, FrameReport, device::Gpu};
+use skiagraph_graph::{Graph, LinkedPass, Origin, Plan, ResourceKind, Sources};
+use skiagraph_passes::{SceneProvider, registry};
+use std::{sync::Arc, time::Duration};
+
+/// The device is of no more use.
+pub struct Lost;
+
+/// What a plan was made for.
+#[derive(Clone, PartialEq)]
+struct PlannedFor {
+    wanted: WantedMethod,
+    size: [u32; 2],
+    light: &'static str,
+    reads: u64,
+}
+
+/// One method.
+pub struct Slot {
+    name: String,
+    preset: Option<Preset>,
+    executor: Option<Executor>,
+    planned: Option<PlannedFor>,
+    /// What could not be planned or run: it is not tried again.
+    refused: Option<PlannedFor>,
+    /// What is wrong with the files.
+    faults: Option<String>,
+    /// What is wrong with what was refused.
+    error: Option<String>,
+    /// Of what was read last, whether it was good or not.
+    texts: Option<Fingerprint>,
+    reads: u64,
+    last: MethodShot,
+}
+
+impl Slot {
+    /// Of a preset or path.
+    pub fn new(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            preset: None,
+            executor: None,
+            planned: None,
+            refused: None,
+            faults: None,
+            error: None,
+            texts: None,
+            reads: 0,
+            last: MethodShot::default(),
+        }
+    }
+
+    /// The preset or path.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The graph that runs.
+    pub fn graph(&self) -> Option<&Graph> {
+        self.preset.as_ref().map(|preset| &preset.graph)
+    }
+
+    /// Reads the files; says whether anything in them has changed.
+    pub fn read(&mut self, sources: &dyn Sources) -> bool {
+        let recorded = RecordedSources::new(sources);
+        let read = preset::locate(&self.name, &recorded)
+            .map_err(|error| error.to_string())
+            .and_then(|path| {
+                Graph::load(&path, &registry(), &recorded).map_err(|found| found.render(false))
+            });
+        let texts = Some(recorded.fingerprint());
+        let faults = read.as_ref().err().cloned();
+        if texts == self.texts && faults == self.faults {
+            return false;
+        }
+        (self.texts, self.faults) = (texts, faults);
+        if let Ok(graph) = read {
+            self.reads += 1;
+            self.preset = Some(Preset {
+                name: self.name.clone(),
+                graph,
+                fingerprint: recorded.fingerprint(),
+            });
+        }
+        true
+    }
+
+    /// Gives up what belongs to a device or a scene that is gone.
+    pub fn forget_device(&mut self) {
+        self.executor = None;
+        self.planned = None;
+    }
+
+    /// Runs a frame, of the graph as it is wanted if that can be, else of the last one that ran.
+    ///
+    /// # Errors
+    /// The device is lost.
+    pub fn shoot(
+        &mut self,
+        gpu: &Gpu,
+        provider: &mut SceneProvider,
+        wanted: &WantedMethod,
+        how: &How,
+    ) -> Result<MethodShot, Lost> {
+        let planned = PlannedFor {
+            wanted: wanted.clone(),
+            size: how.size,
+            light: provider.light().word(),
+            reads: self.reads,
+        };
+        if self.refused.as_ref() != Some(&planned) {
+            self.error = None;
+            if let Err(refusal) = self.make(gpu, provider, &planned) {
+                self.refuse(planned, refusal)?;
+            }
+        }
+        if self.executor.is_some() {
+            match self.run(gpu, provider, how) {
+                Ok(shot) => self.last = shot,
+                Err(error) => {
+                    if let Some(planned) = self.planned.clone() {
+                        self.refuse(planned, Refusal::of(error))?;
+                    }
+                    self.forget_device();
+                }
+            }
+        }
+        let mut shot = self.last.clone();
+        shot.name.clone_from(&self.name);
+        shot.reads = self.reads;
+        let errors = [&self.faults, &self.error];
+        let errors: Vec<&str> = errors.into_iter().flatten().map(String::as_str).collect();
+        shot.error = (!errors.is_empty()).then(|| errors.join("\n"));
+        Ok(shot)
+    }
+
+    fn refuse(&mut self, planned: PlannedFor, refusal: Refusal) -> Result<(), Lost> {
+        self.refused = Some(planned);
+        self.error = Some(refusal.text);
+        match refusal.is_fatal {
+            true => Err(Lost),
+            false => Ok(()),
+        }
+    }
+
+    /// Brings the executor to what is wanted.
+    fn make(
+        &mut self,
+        gpu: &Gpu,
+        provider: &mut SceneProvider,
+        next: &PlannedFor,
+    ) -> Result<(), Refusal> {
+        let Some(preset) = &self.preset else {
+            return Ok(());
+        };
+        if self.planned.as_ref() == Some(next)
+            && let Some(executor) = &mut self.executor
+            && executor.refresh(provider).is_ok()
+        {
+            return Ok(());
+        }
+        if let (Some(executor), Some(planned)) = (&mut self.executor, &self.planned)
+            && planned.only_sets_params(next)
+        {
+            executor.refresh(provider).map_err(Refusal::of)?;
+            for (name, value) in &next.wanted.params {
+                let set = executor.set_param(name, value.clone(), provider);
+                set.map_err(Refusal::of)?;
+            }
+        } else {
+            let plan = plan(preset, next, Capabilities::of(gpu), provider)?;
+            match &mut self.executor {
+                Some(executor) => {
+                    executor
+                        .replace_graph(plan, provider)
+                        .map_err(Refusal::of)?;
+                }
+                None => {
+                    let made = frame::executor(gpu, plan, provider);
+                    self.executor = Some(made.map_err(Refusal::of)?);
+                }
+            }
+        }
+        self.planned = Some(next.clone());
+        Ok(())
+    }
+
+    fn run(
+        &mut self,
+        gpu: &Gpu,
+        provider: &mut SceneProvider,
+        how: &How,
+    ) -> Result<MethodShot, ExecuteError> {
+        let (Some(executor), Some(preset)) = (&mut self.executor, &self.preset) else {
+            return Ok(self.last.clone());
+        };
+        frame::grow(gpu, executor, provider)?;
+        let names: Vec<String> = executor
+            .plan()
+            .outputs()
+            .into_iter()
+            .map(|it| it.name)
+            .collect();
+        let read: Vec<&str> = names.iter().map(String::as_str).collect();
+        let wanted = Frame {
+            timing: how.timing,
+            all: how.all_passes,
+            read: &read,
+            seconds: how.seconds,
+        };
+        let (report, wall) = frame::run(gpu, executor, &wanted)?;
+        Ok(shot(preset, executor.plan(), report, wall, how.planes))
+    }
+}
+
+/// How a frame is to be run.
+pub struct How {
+    /// In how many pixels.
+    pub size: [u32; 2],
+    /// Take GPU timestamps.
+    pub timing: bool,
+    /// Run passes that have no reason to run, too.
+    pub all_passes: bool,
+    /// The time of what is shown.
+    pub seconds: f32,
+    /// The camera's.
+    pub planes: ClipPlanes,
+}
+
+/// Why something cannot be as wanted.
+struct Refusal {
+    text: String,
+    is_fatal: bool,
+}
+
+impl Refusal {
+    fn of(error: ExecuteError) -> Self {
+        Self {
+            text: match &error {
+                ExecuteError::Plan(found) => found.render(false),
+                error => explain(error),
+            },
+            is_fatal: is_fatal(&error),
+        }
+    }
+}
+
+impl PlannedFor {
+    /// Whether the next plan is this one with other values of params, and no default comes back.
+    fn only_sets_params(&self, next: &Self) -> bool {
+        let known = |name| next.wanted.params.contains_key(name);
+        let with_params = Self {
+            wanted: WantedMethod {
+                params: next.wanted.params.clone(),
+                ..self.wanted.clone()
+            },
+            ..self.clone()
+        };
+        with_params == *next && self.wanted.params.keys().all(known)
+    }
+}
+
+/// A shadow method is planned for what it is judged by, so that times are those of `compare`; any
+/// other graph for all that it hands out.
+fn plan(
+    preset: &Preset,
+    next: &PlannedFor,
+    capabilities: Capabilities,
+    provider: &SceneProvider,
+) -> Result<Plan, Refusal> {
+    let mut request = capabilities.request(next.size, provider);
+    request.params = next.wanted.params.clone();
+    request.captures = next.wanted.material.iter().cloned().collect();
+    let judged = preset.judged();
+    if judged.contains(&VISIBILITY) {
+        request.outputs = Some(judged.into_iter().map(str::to_owned).collect());
+    }
+    let plan = preset.graph.plan(&request);
+    plan.map_err(|found| Refusal {
+        text: found.render(false),
+        is_fatal: false,
+    })
+}
+
+/// What a frame brought, as the window shows it.
+fn shot(
+    preset: &Preset,
+    plan: &Plan,
+    report: FrameReport,
+    wall: Duration,
+    planes: ClipPlanes,
+) -> MethodShot {
+    let ms = |time: Duration| time.as_secs_f64() * 1e3;
+    let timing = report.timing.as_ref();
+    let gpu_of = |name: &str| {
+        let mut passes = timing?.passes.iter();
+        passes.find(|pass| pass.name == name)?.gpu.map(ms)
+    };
+    let pass = |pass: &LinkedPass| PassShot {
+        name: pass.name.value.clone(),
+        kind: pass.kind.to_owned(),
+        writes: written(plan, pass),
+        skipped: report.skipped.contains(&pass.name.value),
+        gpu_ms: gpu_of(&pass.name.value),
+    };
+    let values = preset.graph.params().iter().filter_map(|param| {
+        let name = &param.name.value;
+        Some((name.clone(), plan.param(name)?.clone()))
+    });
+    let readings = plan.outputs().into_iter().map(|output| {
+        let reading = Decoding::of(plan, &output.name, planes);
+        (output.name, reading)
+    });
+    MethodShot {
+        name: preset.name.clone(),
+        description: preset.graph.description().to_owned(),
+        params: preset.graph.params().to_vec(),
+        values: values.collect(),
+        passes: plan.live().map(pass).collect(),
+        memory: [plan.memory_bytes(), plan.saved_bytes()],
+        gpu_ms: timing.and_then(|timing| timing.gpu()).map(ms),
+        wall_ms: ms(wall),
+        readings: readings.collect(),
+        contents: Arc::new(frame::contents(report.readbacks)),
+        error: None,
+        reads: 0,
+    }
+}
+
+/// The materials of the graph's own that a pass writes and that can be read back.
+fn written(plan: &Plan, pass: &LinkedPass) -> Vec<String> {
+    let mut names = Vec::new();
+    if pass.is_capture() {
+        return names;
+    }
+    for access in pass.accesses.iter().filter(|access| access.writes) {
+        let resource = plan.resource(access.resource);
+        let is_shown = match &resource.kind {
+            ResourceKind::Texture(texture) => texture.samples == 1,
+            ResourceKind::Buffer(_) => resource.declared.is_some(),
+            _ => false,
+        };
+        let is_new = is_shown && resource.origin == Origin::Own && !names.contains(&resource.name);
+        if is_new {
+            names.push(resource.name.clone());
+        }
+    }
+    names
+}

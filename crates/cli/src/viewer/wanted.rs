@@ -1,0 +1,121 @@
+//! What is to be seen, and what came of it: what the window and the thread of the graphs tell each
+//! other.
+
+use crate::graphs::method::ParamValues;
+use crate::measuring::frame::Contents;
+use crate::pictures::save::Decoding;
+use skiagraph_graph::{Capture, Param, ParamValue};
+use skiagraph_reference::Reference;
+use skiagraph_scene::{Camera, LightKind, Scene, View};
+use std::{collections::BTreeMap, sync::Arc};
+
+/// What is to be seen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wanted {
+    /// The scene, as on the command line.
+    pub scene: String,
+    /// From where, and under which light; `None`: the scene's first view.
+    pub view: Option<View>,
+    /// In how many pixels the methods run.
+    pub size: [u32; 2],
+    /// One, or two side by side.
+    pub methods: Vec<WantedMethod>,
+    /// Run passes that have no reason to run, too.
+    pub all_passes: bool,
+    /// Counts up to ask for another frame of the same.
+    pub frame: u64,
+}
+
+/// A method as it is wanted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WantedMethod {
+    /// Preset or path.
+    pub name: String,
+    /// Params that are not at their defaults.
+    pub params: ParamValues,
+    /// A material besides the outputs.
+    pub material: Option<Capture>,
+}
+
+/// What the thread of the graphs tells.
+pub enum Event {
+    /// A scene was loaded, or could not be.
+    Scene(String, Result<Loaded, String>),
+    /// A frame.
+    Frame(Box<Shot>),
+    /// Nothing more can be drawn.
+    Broken(String),
+}
+
+/// A scene that is there.
+#[derive(Clone)]
+pub struct Loaded {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// Its views.
+    pub views: Vec<View>,
+}
+
+/// A frame of each method.
+pub struct Shot {
+    /// What it shows.
+    pub wanted: Wanted,
+    /// From where.
+    pub camera: Camera,
+    /// Under which light.
+    pub light: LightKind,
+    /// Which of the view's lights that is.
+    pub light_number: usize,
+    /// Of which mesh.
+    pub scene: Arc<Scene>,
+    /// The primitive of each pixel.
+    pub primitives: Arc<Vec<u32>>,
+    /// What faces the light, as if nothing stood in its way.
+    pub facing: Arc<Reference>,
+    /// One for each method.
+    pub methods: Vec<MethodShot>,
+}
+
+/// A frame of one method.
+#[derive(Clone, Default)]
+pub struct MethodShot {
+    /// The method as it was wanted.
+    pub name: String,
+    /// What its document says of itself.
+    pub description: String,
+    /// What its document declares.
+    pub params: Vec<Param>,
+    /// The value of each.
+    pub values: BTreeMap<String, ParamValue>,
+    /// The live passes in their order.
+    pub passes: Vec<PassShot>,
+    /// Bytes of the graph's own memory, and what sharing saved.
+    pub memory: [u64; 2],
+    /// GPU time of the frame, milliseconds.
+    pub gpu_ms: Option<f64>,
+    /// Time from the begin of encoding to the end of the frame, milliseconds.
+    pub wall_ms: f64,
+    /// What was read back.
+    pub contents: Arc<Contents>,
+    /// How depths and buffers among it are to be read.
+    pub readings: BTreeMap<String, Decoding>,
+    /// Why it is not as wanted: what is shown is the last that ran.
+    pub error: Option<String>,
+    /// How often it was read from its files.
+    pub reads: u64,
+}
+
+/// A pass of a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PassShot {
+    /// Its name.
+    pub name: String,
+    /// Its kind, as documents write it.
+    pub kind: String,
+    /// The materials that it writes.
+    pub writes: Vec<String>,
+    /// Whether it had no reason to run.
+    pub skipped: bool,
+    /// GPU time, milliseconds.
+    pub gpu_ms: Option<f64>,
+}

@@ -1,0 +1,288 @@
+//! The thread of the graphs: it loads scenes and methods, and runs a frame whenever something else
+//! is wanted. It has a device of its own, so that the window never waits for a method.
+
+use crate::args::shared::{GpuArgs, SceneArgs};
+use crate::error::{CliError, explain, with_causes};
+use crate::measuring::{
+    device, frame, reference::PrimaryVisibility, scene_selection::SceneSelection,
+};
+use crate::pictures::colours::ClipPlanes;
+use crate::viewer::slot::{How, Lost, Slot};
+use crate::viewer::wanted::{Event, Loaded, Shot, Wanted};
+use skiagraph_gpu::{Content, Executor, device::Gpu, timing::Trust};
+use skiagraph_graph::Sources;
+use skiagraph_passes::SceneProvider;
+use skiagraph_reference::{Progress, unshadowed};
+use skiagraph_scene::{Camera, View};
+use std::{
+    sync::{Arc, mpsc},
+    time::Instant,
+};
+
+/// What the window tells the thread.
+pub enum Order {
+    /// Show this.
+    Show(Box<Wanted>),
+    /// Files may have changed.
+    Reload,
+}
+
+/// How the thread tells the window something.
+pub type Tell = Box<dyn Fn(Event) + Send>;
+
+/// The scene that is there, and what stands on it.
+struct Stage {
+    name: String,
+    loaded: Loaded,
+    provider: SceneProvider,
+    /// Draws the primitive ids, in pictures of that size.
+    primitives: Option<(Executor, [u32; 2])>,
+}
+
+/// The thread's own.
+pub struct Worker {
+    args: GpuArgs,
+    scene_args: SceneArgs,
+    gpu: Gpu,
+    timing: bool,
+    sources: Box<dyn Sources>,
+    stage: Option<Stage>,
+    /// A scene that could not be loaded.
+    failed_scene: Option<String>,
+    slots: Vec<Slot>,
+    began: Instant,
+    tell: Tell,
+}
+
+impl Worker {
+    /// On a GPU. What the arguments say of camera and light holds for the scene that they name.
+    pub fn new(
+        gpu: Gpu,
+        args: (&GpuArgs, &SceneArgs),
+        sources: Box<dyn Sources>,
+        tell: Tell,
+    ) -> Self {
+        let (args, scene_args) = (args.0.clone(), args.1.clone());
+        Self {
+            timing: device::timestamp_trust(&gpu) == Trust::Trusted,
+            args,
+            scene_args,
+            gpu,
+            sources,
+            stage: None,
+            failed_scene: None,
+            slots: Vec::new(),
+            began: Instant::now(),
+            tell,
+        }
+    }
+
+    /// Works until nobody gives orders any more.
+    pub fn work(mut self, orders: &mpsc::Receiver<Order>) {
+        let mut wanted: Option<Wanted> = None;
+        while let Ok(first) = orders.recv() {
+            let mut is_changed = false;
+            let mut reload = false;
+            // Of several the last one counts.
+            for order in [first].into_iter().chain(orders.try_iter()) {
+                match order {
+                    Order::Show(next) => (wanted, is_changed) = (Some(*next), true),
+                    Order::Reload => reload = true,
+                }
+            }
+            if reload {
+                for slot in &mut self.slots {
+                    is_changed |= slot.read(&*self.sources);
+                }
+            }
+            if let Some(wanted) = wanted.as_ref().filter(|_| is_changed)
+                && let Err(error) = self.show(wanted)
+            {
+                (self.tell)(Event::Broken(error.to_string()));
+            }
+        }
+    }
+
+    fn show(&mut self, wanted: &Wanted) -> Result<(), CliError> {
+        if !self.load(wanted) {
+            return Ok(());
+        }
+        self.fill_slots(wanted)?;
+        // A device that a method has lost is opened anew once, without that method.
+        for _ in 0..=wanted.methods.len() {
+            match self.shoot(wanted)? {
+                Ok(shot) => {
+                    (self.tell)(Event::Frame(Box::new(shot)));
+                    return Ok(());
+                }
+                Err(Lost) => self.reopen()?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Loads the scene, if it is another one; says whether there is one.
+    fn load(&mut self, wanted: &Wanted) -> bool {
+        if self
+            .stage
+            .as_ref()
+            .is_some_and(|stage| stage.name == wanted.scene)
+        {
+            return true;
+        }
+        if self.failed_scene.as_ref() == Some(&wanted.scene) {
+            return false;
+        }
+        let args = match self.scene_args.scene == wanted.scene {
+            true => self.scene_args.clone(),
+            false => SceneArgs::of(&wanted.scene),
+        };
+        match SceneSelection::load(&args) {
+            Ok(SceneSelection { scene, views }) => {
+                let scene = Arc::new(scene);
+                let mut all = views;
+                let others = scene.views.iter();
+                let others: Vec<View> = others
+                    .filter(|view| all.iter().all(|known| known.name != view.name))
+                    .cloned()
+                    .collect();
+                all.extend(others);
+                let loaded = Loaded { scene, views: all };
+                (self.tell)(Event::Scene(wanted.scene.clone(), Ok(loaded.clone())));
+                self.slots.iter_mut().for_each(Slot::forget_device);
+                self.failed_scene = None;
+                self.stage = Some(Stage {
+                    name: wanted.scene.clone(),
+                    provider: SceneProvider::new(loaded.scene.clone()),
+                    loaded,
+                    primitives: None,
+                });
+                true
+            }
+            Err(error) => {
+                self.failed_scene = Some(wanted.scene.clone());
+                let event = Event::Scene(wanted.scene.clone(), Err(with_causes(&error)));
+                (self.tell)(event);
+                false
+            }
+        }
+    }
+
+    /// A slot for each method; the device gets the features that they can make use of.
+    fn fill_slots(&mut self, wanted: &Wanted) -> Result<(), CliError> {
+        let mut before = std::mem::take(&mut self.slots);
+        for method in &wanted.methods {
+            let known = before.iter().position(|slot| slot.name() == method.name);
+            self.slots.push(match known {
+                Some(known) => before.swap_remove(known),
+                None => {
+                    let mut slot = Slot::new(&method.name);
+                    slot.read(&*self.sources);
+                    slot
+                }
+            });
+        }
+        let graphs = self.slots.iter().filter_map(Slot::graph);
+        let useful = graphs.fold(wgpu::Features::empty(), |all, it| all | it.features());
+        let experimental = wgpu::Features::all_experimental_mask();
+        let missing = (useful & self.gpu.adapter.features()) - self.gpu.device.features();
+        match (missing - experimental).is_empty() {
+            true => Ok(()),
+            false => self.reopen(),
+        }
+    }
+
+    /// Opens the device anew, with what the methods can make use of.
+    fn reopen(&mut self) -> Result<(), CliError> {
+        let graphs: Vec<_> = self.slots.iter().filter_map(Slot::graph).collect();
+        let gpu = device::open(&self.args, graphs)?;
+        self.gpu = gpu;
+        self.slots.iter_mut().for_each(Slot::forget_device);
+        if let Some(stage) = &mut self.stage {
+            stage.provider = SceneProvider::new(stage.loaded.scene.clone());
+            stage.primitives = None;
+        }
+        Ok(())
+    }
+
+    fn shoot(&mut self, wanted: &Wanted) -> Result<Result<Shot, Lost>, CliError> {
+        let Some(stage) = &mut self.stage else {
+            return Err(CliError::Input("there is no scene".into()));
+        };
+        let view = wanted.view.as_ref().or(stage.loaded.views.first());
+        let Some(view) = view.cloned() else {
+            return Err(CliError::Input(format!("{} has no view", stage.name)));
+        };
+        view.check().map_err(CliError::Input)?;
+        stage.provider.set_view(&view, wanted.size);
+        let camera = view.camera(wanted.size);
+        let primitives = stage.primitives(&self.gpu, &*self.sources, wanted.size)?;
+        let light = stage.provider.light();
+        let facing = stage.facing(&camera, &primitives)?;
+        let how = How {
+            size: wanted.size,
+            timing: self.timing,
+            all_passes: wanted.all_passes,
+            seconds: self.began.elapsed().as_secs_f32(),
+            planes: ClipPlanes::of(&view),
+        };
+        let mut methods = Vec::new();
+        for (slot, method) in self.slots.iter_mut().zip(&wanted.methods) {
+            match slot.shoot(&self.gpu, &mut stage.provider, method, &how) {
+                Ok(shot) => methods.push(shot),
+                Err(lost) => return Ok(Err(lost)),
+            }
+        }
+        Ok(Ok(Shot {
+            wanted: wanted.clone(),
+            camera,
+            light,
+            light_number: stage.provider.light_number(),
+            scene: stage.loaded.scene.clone(),
+            primitives: Arc::new(primitives),
+            facing: Arc::new(facing),
+            methods,
+        }))
+    }
+}
+
+impl Stage {
+    /// The primitive that each pixel shows.
+    fn primitives(
+        &mut self,
+        gpu: &Gpu,
+        sources: &dyn Sources,
+        size: [u32; 2],
+    ) -> Result<Vec<u32>, CliError> {
+        let wrong = |why: String| CliError::Input(format!("no picture of the scene: {why}"));
+        let provider = &mut self.provider;
+        if self.primitives.as_ref().is_none_or(|(_, of)| *of != size) {
+            let plan = PrimaryVisibility::load(sources)?.plan(gpu, size, provider)?;
+            let executor = frame::executor(gpu, plan, provider);
+            self.primitives = Some((executor.map_err(|error| wrong(explain(&error)))?, size));
+        }
+        let Some((executor, _)) = &mut self.primitives else {
+            return Ok(Vec::new());
+        };
+        let read = executor
+            .refresh(provider)
+            .and_then(|_| frame::read(gpu, executor, &["primitive"]));
+        let contents = read.map_err(|error| {
+            self.primitives = None;
+            wrong(explain(&error))
+        })?;
+        let ids = contents.get("primitive").and_then(Content::as_u32);
+        ids.ok_or_else(|| wrong("its primitives are no integers".into()))
+    }
+
+    /// What faces the light.
+    fn facing(
+        &self,
+        camera: &Camera,
+        primitives: &[u32],
+    ) -> Result<skiagraph_reference::Reference, CliError> {
+        let (mesh, light) = (&self.loaded.scene.mesh, self.provider.light());
+        unshadowed(mesh, camera, &light, primitives, Progress::default())
+            .map_err(|error| CliError::Input(error.to_string()))
+    }
+}

@@ -267,7 +267,6 @@ mod tests {
             "skiagraph compare --oracle offset:-1",
             "skiagraph compare --oracle embree",
             "skiagraph profile",
-            "skiagraph profile rt nsm",
             "skiagraph profile nsm --frames 0",
             "skiagraph check a.ron --format yaml",
             "skiagraph chart",

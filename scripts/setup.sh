@@ -21,7 +21,7 @@ check_toolchain() {
     fi
     # A distribution's old cargo stops at the manifest with a message that does not say so.
     local needed found
-    needed=$(sed -n 's/^rust-version *= *"\(.*\)"/\1/p' Cargo.toml)
+    needed=$(sed -n 's/^rust-version *= *"\([^"]*\)".*/\1/p' crates/cli/Cargo.toml)
     found=$(cargo --version | cut -d ' ' -f 2)
     if [ "$(printf '%s\n' "$needed" "$found" | sort -V | head -n 1)" != "$needed" ]; then
         say "Skiagraph needs Rust $needed or later, this is $found; type:  rustup update"

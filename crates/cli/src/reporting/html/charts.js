@@ -58,7 +58,7 @@ function drawFront() {
   const exact = rows.filter((row) => error(of, row) === 0);
   const wrong = rows.filter((row) => error(of, row) > 0);
   const bottom = wrong.length > 0 ? (isNarrow ? 260 : 320) : top;
-  const lanes = exact.length > 0 ? 22 * exact.length + 14 : 0;
+  const lanes = exact.length > 0 ? 22 * exact.length + 24 : 0;
   const floor = bottom + lanes, height = floor + 46;
   const x = logAxis(rows.map(time), left, right);
   const picture = svg('svg', { viewBox: `0 0 ${width} ${height}`, role: 'img',
@@ -88,7 +88,7 @@ function drawFront() {
       of.hard ? (isNarrow ? 'wrong pixels outside the band' : 'wrong pixels outside the band, of those that face the light') : 'RMSE of the shares of light'));
   }
   const byTime = (one, other) => time(one) - time(other);
-  const lane = (row) => bottom + 18 + 22 * [...exact].sort(byTime).indexOf(row);
+  const lane = (row) => bottom + 32 + 22 * [...exact].sort(byTime).indexOf(row);
   const place = (row) => [x.place(time(row)), error(of, row) === 0 ? lane(row) : y.place(error(of, row))];
   const front = paretoFront(of, rows).sort(byTime);
   if (front.length > 1) {

@@ -247,7 +247,7 @@ fn several_stand_beside_each_other() {
         "nsm@cull=none",
         "bench_side",
         "24x16",
-        "map 32",
+        "map 16",
         "whole frame",
     ] {
         assert!(shown.contains(part), "{part}: {shown}");

@@ -98,7 +98,9 @@ pub enum Command {
     #[command(
         after_help = "Examples:\n  skiagraph check my_method.ron pipelines/*.ron\n  \
         skiagraph check my_method.ron --adapter llvmpipe\n  \
-        skiagraph check my_method.ron --format json\n\n\
+        skiagraph check my_method.ron --format json\n  \
+        skiagraph check my_method.ron --watch   \
+            # beside an editor: again after each change\n\n\
         The JSON is {\"schema\": 1, \"files\": [{\"file\", \"passes\", \"diagnostics\": \
             [{\"code\", \"severity\", \"message\", \"labels\",\n\
         \"help\"}]}]}; `passes` is null where there are errors. A label is {\"file\", \"line\", \

@@ -335,6 +335,10 @@ pub struct CheckArgs {
     /// How diagnostics are printed: text on standard error, or json on standard output.
     #[arg(long, value_enum, default_value_t = CheckFormat::Text)]
     pub format: CheckFormat,
+    /// Check again whenever a document, shader or picture beside the graphs or in ./pipelines or
+    /// ./shaders changes, until Ctrl-C.
+    #[arg(long)]
+    pub watch: bool,
 }
 
 /// How diagnostics are printed.

@@ -4,6 +4,7 @@ use crate::args::commands::{CheckArgs, CheckFormat};
 use crate::args::shared::GpuArgs;
 use crate::error::CliError;
 use crate::files::json::to_text;
+use crate::files::watch::{self, Watch};
 use crate::graphs::faults::{GraphFaults, warn};
 use crate::graphs::idle_params;
 use crate::graphs::light_kinds;
@@ -11,17 +12,51 @@ use crate::graphs::planning::{self, Capabilities};
 use crate::graphs::preset;
 use crate::measuring::device;
 use crate::records::check::{CheckReport, FileReport};
-use crate::terminal::console::{note, print};
+use crate::terminal::console::{note, print, report};
+use crate::terminal::interrupt;
 use skiagraph_graph::{Diagnostics, Graph, Plan, Sources};
 use skiagraph_passes::{names::LIGHT, registry};
+use std::{sync::mpsc, time::Duration};
+
+/// How soon Ctrl-C is heard.
+const LISTENING: Duration = Duration::from_millis(100);
 
 /// Loads and plans each graph and says what is wrong with it: on whatever adapter, or on the one
-/// that the arguments name.
+/// that the arguments name; with `--watch` again after every change, until Ctrl-C.
 ///
 /// # Errors
 /// Every fault of every graph together; warnings are printed and are no error. No adapter of that
-/// name.
+/// name. While it watches: only that it cannot.
 pub fn check(args: &CheckArgs, gpu: &GpuArgs) -> Result<(), CliError> {
+    if !args.watch {
+        return check_once(args, gpu);
+    }
+    interrupt::install()?;
+    let (sender, changes) = mpsc::channel();
+    let folders = watch::folders(args.graphs.iter().map(String::as_str));
+    let listen = move || {
+        // Nobody listens any more only when this command ends.
+        let _ = sender.send(());
+    };
+    let _watch = Watch::start(&folders, listen).map_err(|error| {
+        CliError::Input(format!(
+            "cannot watch files here: {error}; without --watch they are checked once"
+        ))
+    })?;
+    loop {
+        if let Err(error) = check_once(args, gpu) {
+            report(&error);
+        }
+        while changes.recv_timeout(LISTENING).is_err() {
+            if interrupt::raised() {
+                return Ok(());
+            }
+        }
+        while changes.try_recv().is_ok() {}
+    }
+}
+
+fn check_once(args: &CheckArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let sources = preset::sources();
     let registry = registry();
     let paths: Vec<_> = args
@@ -110,7 +145,7 @@ fn refused_lights(graph: &Graph, plan: &Plan) -> String {
 }
 
 fn json(found: &[Found]) -> Result<(), CliError> {
-    let report = |(argument, checked): &Found| match checked {
+    let of = |(argument, checked): &Found| match checked {
         Ok((graph, plan)) => {
             let warnings = graph.warnings().iter().chain(plan.warnings());
             FileReport::new(argument, Some(plan.passes().len()), warnings)
@@ -118,7 +153,7 @@ fn json(found: &[Found]) -> Result<(), CliError> {
         Err(Fault::Graph(diagnostics)) => FileReport::new(argument, None, diagnostics.iter()),
         Err(Fault::Missing(message)) => FileReport::missing(argument, message.clone()),
     };
-    let report = CheckReport::new(found.iter().map(report).collect());
+    let report = CheckReport::new(found.iter().map(of).collect());
     print(&to_text(&report))?;
     let faulty = found.iter().filter(|(_, checked)| checked.is_err()).count();
     match faulty {

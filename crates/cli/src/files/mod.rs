@@ -5,4 +5,5 @@ pub mod csv;
 pub mod fingerprint;
 pub mod json;
 pub mod picture_sources;
+pub mod watch;
 pub mod write;

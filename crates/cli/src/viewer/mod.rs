@@ -14,7 +14,6 @@ mod tests;
 mod texels;
 mod ui;
 mod wanted;
-mod watch;
 mod window;
 mod worker;
 

@@ -3,13 +3,13 @@
 use crate::args::commands::ViewArgs;
 use crate::args::shared::GpuArgs;
 use crate::error::CliError;
+use crate::files::watch::{self, Watch};
 use crate::graphs::variants::{self, MethodArgument};
 use crate::graphs::{method, preset};
 use crate::measuring::device;
 use crate::viewer::judge::Judge;
 use crate::viewer::state::{Choices, Lines, Viewer};
 use crate::viewer::wanted::{Wanted, WantedMethod};
-use crate::viewer::watch::{self, Watch};
 use crate::viewer::worker::{Order, Worker};
 use skiagraph_gpu::timing::Trust;
 use skiagraph_scene::SceneLibrary;

@@ -3,8 +3,9 @@
 use crate::args::commands::ViewArgs;
 use crate::args::shared::GpuArgs;
 use crate::error::CliError;
+use crate::files::watch::Watch;
 use crate::viewer::state::Viewer;
-use crate::viewer::{start::start, ui, watch::Watch};
+use crate::viewer::{start::start, ui};
 use egui::ViewportId;
 use egui_wgpu::{
     RendererOptions, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew, winit::Painter,

@@ -258,6 +258,17 @@ pub fn any_program() -> impl Strategy<Value = Program> {
                 // What ran once stays as it is only while the same passes make it.
                 pass.optional &= RUNS[runs[pass.target]] != "Once";
             }
+            // A pass that comes may make others needed: a history that one of those reads would
+            // begin with that plan.
+            if passes.iter().any(|pass| {
+                pass.reads
+                    .iter()
+                    .any(|read| matches!(read, Read::Before(_)))
+            }) {
+                for pass in passes.iter_mut().filter(|pass| pass.optional) {
+                    pass.reads.retain(|read| !matches!(read, Read::Now(_)));
+                }
+            }
             // What only a pass reads that goes would be lost with it.
             if passes.iter().any(|pass| pass.optional) {
                 outputs.extend(0..MATERIALS);

@@ -2,7 +2,7 @@
 //! that itself.
 
 fn main() {
-    for folder in ["../../pipelines", "../../shaders"] {
+    for folder in ["pipelines", "shaders"] {
         println!("cargo::rerun-if-changed={folder}");
     }
 }

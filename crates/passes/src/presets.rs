@@ -5,8 +5,8 @@ use include_dir::{Dir, include_dir};
 use skiagraph_graph::{Registry, Sources};
 use std::sync::Arc;
 
-static PIPELINES: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../pipelines");
-static SHADERS: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../shaders");
+static PIPELINES: Dir = include_dir!("$CARGO_MANIFEST_DIR/pipelines");
+static SHADERS: Dir = include_dir!("$CARGO_MANIFEST_DIR/shaders");
 
 /// `pipelines/…` and `shaders/…` as they were when the crate was compiled. Put it below a
 /// `FolderSources` in a `LayeredSources` to let files on disk win.

@@ -29,17 +29,14 @@ const SCENE_FILE: Limit = Limit {
 
 /// Scene files that are part of the program: name and text.
 const BUILT_IN: [(&str, &str); 8] = [
-    ("avenue", include_str!("../../../scenes/avenue.ron")),
-    ("bench", include_str!("../../../scenes/bench.ron")),
-    ("city", include_str!("../../../scenes/city.ron")),
-    ("forest", include_str!("../../../scenes/forest.ron")),
-    ("park", include_str!("../../../scenes/park.ron")),
-    ("park_soft", include_str!("../../../scenes/park_soft.ron")),
-    ("sponza", include_str!("../../../scenes/sponza.ron")),
-    (
-        "sponza_masked",
-        include_str!("../../../scenes/sponza_masked.ron"),
-    ),
+    ("avenue", include_str!("../scenes/avenue.ron")),
+    ("bench", include_str!("../scenes/bench.ron")),
+    ("city", include_str!("../scenes/city.ron")),
+    ("forest", include_str!("../scenes/forest.ron")),
+    ("park", include_str!("../scenes/park.ron")),
+    ("park_soft", include_str!("../scenes/park_soft.ron")),
+    ("sponza", include_str!("../scenes/sponza.ron")),
+    ("sponza_masked", include_str!("../scenes/sponza_masked.ron")),
 ];
 
 /// What a user asked for.

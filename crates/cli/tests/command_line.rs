@@ -496,7 +496,7 @@ fn published_charts_say_what_is_missing() {
             1,
             "there is no folder nowhere",
         ),
-        ("good --beside D:d.csv", 2, "--out <FILE.svg|DIR>"),
+        ("good --beside D:d.csv", 2, "--out <FILE.svg|FILE.png|DIR>"),
         (
             "good --beside D:d.csv --out charts --kind front",
             2,

@@ -113,16 +113,12 @@ pub enum SceneError {
         farthest: f64,
     },
     /// A scene file is not valid RON, or its content makes no scene.
-    #[error("{file}:{line}:{column}: {reason}")]
+    #[error("{}", lines(file, mistakes))]
     SceneFile {
         /// The scene file, or `<built-in NAME>`.
         file: String,
-        /// Line, from 1.
-        line: usize,
-        /// Column, from 1.
-        column: usize,
-        /// What is wrong.
-        reason: String,
+        /// All that is wrong with it, in the order of the text; one at least.
+        mistakes: Vec<SceneMistake>,
     },
     /// The mesh of a scene file is in none of the places searched.
     #[error(
@@ -385,4 +381,27 @@ fn shorten(names: &[String]) -> String {
         text += &format!(", … ({} in all)", names.len());
     }
     text
+}
+
+/// What is wrong at a place of a scene file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SceneMistake {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column, from 1.
+    pub column: usize,
+    /// What is wrong.
+    pub reason: String,
+}
+
+fn lines(file: &str, mistakes: &[SceneMistake]) -> String {
+    let lines = mistakes.iter().map(|mistake| {
+        let SceneMistake {
+            line,
+            column,
+            reason,
+        } = mistake;
+        format!("{file}:{line}:{column}: {reason}")
+    });
+    lines.collect::<Vec<_>>().join("\n")
 }

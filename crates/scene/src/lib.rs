@@ -13,6 +13,8 @@ mod builder;
 pub mod bvh;
 pub mod camera;
 pub mod error;
+#[cfg(feature = "files")]
+mod fields;
 pub mod generate;
 #[cfg(feature = "files")]
 pub mod gltf;
@@ -50,7 +52,7 @@ pub mod weld;
 pub use adjacency::{Adjacency, NO_NEIGHBOUR};
 pub use bvh::{Bvh, BvhNode, LightSpace, LightSpaceNode};
 pub use camera::{Camera, View};
-pub use error::SceneError;
+pub use error::{SceneError, SceneMistake};
 #[cfg(feature = "files")]
 pub use gltf::load_gltf;
 pub use indexed::{Indexed, IndexedError};

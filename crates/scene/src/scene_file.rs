@@ -22,6 +22,7 @@
 use crate::{
     camera::View,
     error::SceneError,
+    fields::{Field, Reader},
     generate::Generator,
     light::DirectionalLight,
     light_kind::{Light, LightKind, PointLight, SpotLight},
@@ -34,32 +35,39 @@ use serde::{Deserialize, Deserializer, de::Error};
 use std::collections::HashSet;
 
 /// What a scene file says. Everything in it is checked, but no mesh is loaded yet.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct SceneFile {
-    /// Version of the format: 1.
-    #[serde(deserialize_with = "format")]
-    pub format: u32,
     /// Name shown in tables and results.
     pub name: String,
     /// One line for `skiagraph scenes`.
-    #[serde(default)]
     pub description: String,
     /// Where the triangles come from.
     pub mesh: MeshSource,
-    /// What a file says that has one light; [`lights`](Self::lights) holds it then.
-    #[serde(default, deserialize_with = "light")]
-    light: Option<Light>,
     /// The lights of all views that have none of their own: at least one, no two of the same name.
-    #[serde(default, deserialize_with = "lights")]
     pub lights: Vec<Light>,
     /// At least one view, no two of the same name.
-    #[serde(deserialize_with = "views")]
     pub views: Vec<View>,
     /// Ways that a camera takes, no two of the same name.
-    #[serde(default, deserialize_with = "paths")]
     pub paths: Vec<CameraPath>,
 }
+
+/// All of a scene file but its lists.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename = "scene")]
+struct SceneText {
+    /// Version of the format: 1.
+    #[serde(rename = "format", deserialize_with = "format")]
+    _format: (),
+    name: String,
+    #[serde(default)]
+    description: String,
+    mesh: MeshSource,
+    #[serde(default, deserialize_with = "light")]
+    light: Option<Light>,
+}
+
+/// Fields of a scene file that are lists.
+const LISTS: [&str; 3] = ["lights", "views", "paths"];
 
 /// Where a scene's triangles come from.
 #[derive(Clone, Debug, Deserialize)]
@@ -103,30 +111,122 @@ impl SceneFile {
     /// Reads the text of a scene file; `file` only serves messages.
     ///
     /// # Errors
-    /// [`SceneError::SceneFile`] with line and column for anything that is not RON, not a scene's
-    /// field, or makes no camera or light.
+    /// [`SceneError::SceneFile`] with line and column of all that is not RON, not a scene's field,
+    /// or makes no camera or light.
     pub fn parse(text: &str, file: &str) -> Result<Self, SceneError> {
-        let options = ron::Options::default();
-        let error = |line, column, reason| SceneError::SceneFile {
-            file: file.to_owned(),
-            line,
-            column,
-            reason,
+        let mut reader = Reader::new(text);
+        let scene = Self::read(text, &mut reader);
+        reader.finish(file, scene)
+    }
+
+    fn read<'a>(text: &'a str, reader: &mut Reader<'a>) -> Option<Self> {
+        let (lists, head): (Vec<Field<'_>>, Vec<Field<'_>>) = reader
+            .fields(text)?
+            .into_iter()
+            .partition(|(name, _)| LISTS.contains(name));
+        let list = |name| {
+            lists
+                .iter()
+                .find(|field| field.0 == name)
+                .map(|field| field.1)
         };
-        let mut scene: Self = options.from_str(text).map_err(|found| {
-            let start = found.span.start;
-            error(start.line, start.col, found.code.to_string())
-        })?;
-        let reason = match (scene.light.take(), scene.lights.is_empty()) {
-            (Some(light), true) => {
-                scene.lights = vec![light];
-                return Ok(scene);
+        let one_light = head.iter().find(|field| field.0 == "light");
+        let lights = match (one_light, list("lights")) {
+            (_, Some(list)) => named(reader, list),
+            (None, None) => {
+                reader.wrong(text, "a scene needs a `light`, or `lights`");
+                None
             }
-            (None, false) => return Ok(scene),
-            (None, true) => "a scene needs a `light`, or `lights`",
-            (Some(_), false) => "a scene has one `light`, or `lights`, not both",
+            (Some(_), None) => Some(Vec::new()),
         };
-        Err(error(text.lines().count(), 1, reason.to_owned()))
+        if let (Some((name, _)), Some(_)) = (one_light, list("lights")) {
+            reader.wrong(name, "a scene has one `light`, or `lights`, not both");
+        }
+        let views = list("views").map(|list| named(reader, list));
+        if views.is_none() {
+            reader.wrong(
+                text,
+                "a scene needs at least one view: the field `views` is missing",
+            );
+        }
+        let paths = list("paths").map_or(Some(Vec::new()), |list| named(reader, list));
+        let head: Option<SceneText> = reader.record_of(text, head, &LISTS);
+        let (head, lights) = (head?, lights?);
+        Some(Self {
+            name: head.name,
+            description: head.description,
+            mesh: head.mesh,
+            lights: head.light.into_iter().chain(lights).collect(),
+            views: views??,
+            paths: paths?,
+        })
+    }
+}
+
+/// The items of a list, which have names, no two the same.
+fn named<'a, T: Item>(reader: &mut Reader<'a>, list: &'a str) -> Option<Vec<T>> {
+    let items = reader.list(list)?;
+    if items.is_empty() && T::NEEDED {
+        reader.wrong(list, format!("`{}` is empty; a scene needs one", T::LIST));
+    }
+    let (mut names, mut read) = (HashSet::new(), Vec::new());
+    let mut complete = true;
+    for part in items {
+        let Some(item) = T::read(reader, part) else {
+            complete = false;
+            continue;
+        };
+        if !names.insert(item.name().to_owned()) {
+            let (list, name) = (T::LIST, item.name());
+            reader.wrong(part, format!("two {list} are called {name:?}"));
+        }
+        read.push(item);
+    }
+    complete.then_some(read)
+}
+
+/// What stands in a list of a scene file.
+trait Item: Sized {
+    /// The list's name.
+    const LIST: &str;
+    /// Whether it may not be empty.
+    const NEEDED: bool;
+    fn read<'a>(reader: &mut Reader<'a>, part: &'a str) -> Option<Self>;
+    fn name(&self) -> &str;
+}
+
+impl Item for Light {
+    const LIST: &str = "lights";
+    const NEEDED: bool = true;
+    fn read<'a>(reader: &mut Reader<'a>, part: &'a str) -> Option<Self> {
+        let light = Self::from(reader.value::<NamedLightText>(part)?);
+        let checked = light.check().map_err(|reason| reader.wrong(part, reason));
+        checked.ok().map(|()| light)
+    }
+    fn name(&self) -> &str {
+        &self.name
+    }
+}
+
+impl Item for View {
+    const LIST: &str = "views";
+    const NEEDED: bool = true;
+    fn read<'a>(reader: &mut Reader<'a>, part: &'a str) -> Option<Self> {
+        reader.record(part)
+    }
+    fn name(&self) -> &str {
+        &self.name
+    }
+}
+
+impl Item for CameraPath {
+    const LIST: &str = "paths";
+    const NEEDED: bool = false;
+    fn read<'a>(reader: &mut Reader<'a>, part: &'a str) -> Option<Self> {
+        reader.record(part)
+    }
+    fn name(&self) -> &str {
+        &self.view.name
     }
 }
 
@@ -404,9 +504,9 @@ fn given<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
     T::deserialize(deserializer).map(Some)
 }
 
-fn format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
+fn format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<(), D::Error> {
     match u32::deserialize(deserializer)? {
-        1 => Ok(1),
+        1 => Ok(()),
         other => Err(D::Error::custom(format!(
             "format {other} is unknown; this program reads format 1"
         ))),
@@ -435,48 +535,4 @@ fn any_light<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DirectionalLi
         direction: text.direction.into(),
         angle_degrees: text.angle_degrees,
     })
-}
-
-fn lights<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Light>, D::Error> {
-    let lights: Vec<_> = Vec::<NamedLightText>::deserialize(deserializer)?
-        .into_iter()
-        .map(Light::from)
-        .collect();
-    if lights.is_empty() {
-        return Err(D::Error::custom("`lights` is empty; a scene needs one"));
-    }
-    let mut names = HashSet::new();
-    for light in &lights {
-        light.check().map_err(D::Error::custom)?;
-        if !names.insert(&light.name) {
-            let name = &light.name;
-            return Err(D::Error::custom(format!("two lights are called {name:?}")));
-        }
-    }
-    Ok(lights)
-}
-
-fn views<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<View>, D::Error> {
-    let views = Vec::<View>::deserialize(deserializer)?;
-    if views.is_empty() {
-        return Err(D::Error::custom("a scene needs at least one view"));
-    }
-    no_two(views.iter().map(|view| &view.name), "views")?;
-    Ok(views)
-}
-
-fn paths<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<CameraPath>, D::Error> {
-    let paths = Vec::<CameraPath>::deserialize(deserializer)?;
-    no_two(paths.iter().map(|path| &path.view.name), "paths")?;
-    Ok(paths)
-}
-
-fn no_two<'a, E: Error>(names: impl Iterator<Item = &'a String>, what: &str) -> Result<(), E> {
-    let mut known = HashSet::new();
-    for name in names {
-        if !known.insert(name) {
-            return Err(E::custom(format!("two {what} are called {name:?}")));
-        }
-    }
-    Ok(())
 }

@@ -143,8 +143,8 @@ pub struct ChartArgs {
         requires = "out"
     )]
     pub beside: Option<PublishedFile>,
-    /// File to write, or with --beside the folder. Without it: standard output.
-    #[arg(long, value_name = "FILE.svg|DIR")]
+    /// File to write, or with --beside the folder. Without it: standard output, as SVG.
+    #[arg(long, value_name = "FILE.svg|FILE.png|DIR")]
     pub out: Option<PathBuf>,
 }
 

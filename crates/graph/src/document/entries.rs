@@ -3,7 +3,7 @@
 use super::{
     fields::Mentions,
     raw::{Broken, RawEntry, RawMap, stem},
-    ron::{Field, Node, from_fields},
+    ron::{Field, Node, from_fields, from_some_fields},
     typed::{Entry, Include, Pass, Run, What},
 };
 use crate::{
@@ -57,6 +57,24 @@ struct Header {
 
 const HEADER: [&str; 4] = ["name", "if", "repeat", "run"];
 
+/// Fields of an include beside its own.
+const OF_INCLUDE: [&str; 6] = ["name", "if", "repeat", "run", "bind", "set"];
+
+/// Fields of a group.
+const OF_GROUP: [&str; 7] = ["name", "if", "repeat", "run", "bind", "set", "passes"];
+
+/// Fields of a pass beside those of its kind.
+pub(crate) const OF_PASS: [&str; 8] = [
+    "name",
+    "shader",
+    "bind",
+    "set",
+    "if",
+    "repeat",
+    "run",
+    "overwrites",
+];
+
 fn entry(
     mut raw: RawEntry,
     registry: &Registry,
@@ -74,7 +92,8 @@ fn entry(
     if let Some(passes) = raw.passes.take_if(|_| *raw.tag != "Group") {
         drop(passes);
         let name = Located::new("passes".to_owned(), raw.tag.span);
-        return Err(DocumentError::UnknownField(name, Vec::new()).diagnostic());
+        let known = OF_PASS.map(str::to_owned).to_vec();
+        return Err(DocumentError::UnknownField(name, known).diagnostic());
     }
     let (header, own): (Vec<Field>, Vec<Field>) = raw
         .fields
@@ -93,7 +112,7 @@ fn entry(
                 DocumentError::MissingField(raw.tag.span.clone(), missing).diagnostic()
             })?;
             if let Some(field) = own.first() {
-                let known = HEADER.map(str::to_owned).to_vec();
+                let known = OF_GROUP.map(str::to_owned).to_vec();
                 let error = DocumentError::UnknownField(field.name.clone(), known);
                 return Err(error.diagnostic());
             }
@@ -183,7 +202,7 @@ fn include(
         #[serde(default)]
         expose: Vec<Located<String>>,
     }
-    let fields: Fields = from_fields(own, &tag.span)?;
+    let fields: Fields = from_some_fields(own, &tag.span, &OF_INCLUDE)?;
     let is_named = name.is_some();
     let name = match name {
         Some(name) => name,

@@ -2,7 +2,7 @@
 
 use super::ron::{Field, from_fields};
 use crate::{
-    diagnostics::{diagnostic::Diagnostic, reports::Mistake},
+    diagnostics::{diagnostic::Diagnostic, reports::Mistake, suggest::likeness},
     errors::document::DocumentError,
     language::{
         name::Name,
@@ -355,7 +355,12 @@ impl Param {
                 let known = words.join(", ");
                 return match (words.contains(&word.as_str()), self.refused.get(word)) {
                     (true, _) => Ok(()),
-                    (_, None) => Err(ParamFault::Value(format!("must be one of {known}"))),
+                    (_, None) => {
+                        let likeness = likeness(word, &words);
+                        let likeness = likeness.map_or(String::new(), |it| format!("; {it}"));
+                        let why = format!("must be one of {known}{likeness}");
+                        Err(ParamFault::Value(why))
+                    }
                     (_, Some(why)) => Err(ParamFault::Value(format!(
                         "`{word}` is refused: {why}; must be one of {known}"
                     ))),

@@ -397,9 +397,20 @@ impl<'de> Deserialize<'de> for Word {
 /// One diagnostic: an unknown, missing or duplicate field, or a value of the wrong type, at its
 /// place.
 pub fn from_fields<T: DeserializeOwned>(fields: &[Field], whole: &Span) -> Result<T, Diagnostic> {
+    from_some_fields(fields, whole, &[])
+}
+
+/// [`from_fields`] of an entry that has `more` fields, which were taken out of it before: who
+/// misspells one is told of them, too.
+pub fn from_some_fields<T: DeserializeOwned>(
+    fields: &[Field],
+    whole: &Span,
+    more: &[&str],
+) -> Result<T, Diagnostic> {
     struct Access<'a> {
         fields: std::slice::Iter<'a, Field>,
         value: Option<&'a Field>,
+        more: &'a [&'a str],
     }
     impl<'de> MapAccess<'de> for Access<'de> {
         type Error = ron::Error;
@@ -414,7 +425,20 @@ pub fn from_fields<T: DeserializeOwned>(fields: &[Field], whole: &Span) -> Resul
             let name: &str = &field.name.value;
             seed.deserialize(IntoDeserializer::<ron::Error>::into_deserializer(name))
                 .map(Some)
-                .inspect_err(|error| fail(|_| Some(explain(error, field.name.span.clone()))))
+                .inspect_err(|error| {
+                    let place = field.name.span.clone();
+                    fail(|_| {
+                        Some(match error {
+                            ron::Error::NoSuchStructField { expected, .. } => {
+                                let known = expected.iter().chain(self.more);
+                                let known = known.map(|&name| name.to_owned()).collect();
+                                let name = Located::new(field.name.value.clone(), place);
+                                DocumentError::UnknownField(name, known).diagnostic()
+                            }
+                            error => explain(error, place),
+                        })
+                    });
+                })
         }
         fn next_value_seed<V: DeserializeSeed<'de>>(
             &mut self,
@@ -457,6 +481,7 @@ pub fn from_fields<T: DeserializeOwned>(fields: &[Field], whole: &Span) -> Resul
         let access = Access {
             fields: fields.iter(),
             value: None,
+            more,
         };
         T::deserialize(serde::de::value::MapAccessDeserializer::new(access))
     })

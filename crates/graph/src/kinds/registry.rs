@@ -6,7 +6,10 @@ use super::{
 };
 use crate::{
     diagnostics::diagnostic::Diagnostic,
-    document::ron::{Field, from_fields},
+    document::{
+        entries::OF_PASS,
+        ron::{Field, from_some_fields},
+    },
     source::span::Span,
 };
 use serde::de::DeserializeOwned;
@@ -43,7 +46,8 @@ impl Registry {
     /// are.
     pub fn register<K: PassKind + DeserializeOwned + 'static>(&mut self, tag: &'static str) {
         self.kinds.retain(|kind| kind.name != tag);
-        let parse: Parse = |fields, whole| Ok(Arc::new(from_fields::<K>(fields, whole)?));
+        let parse: Parse =
+            |fields, whole| Ok(Arc::new(from_some_fields::<K>(fields, whole, &OF_PASS)?));
         self.kinds.push(Kind { name: tag, parse });
     }
 

@@ -115,9 +115,20 @@ pub(super) fn validation_error(
     };
     let mut places: Vec<(Span, String)> = error.spans().filter_map(place).collect();
     if places.is_empty() {
-        let place = match error.as_inner() {
-            ValidationError::EntryPoint { name, .. } => function_span(source, name),
-            _ => source.file.span(0..0),
+        use ValidationError as V;
+        let span = match error.as_inner() {
+            V::Type { handle, .. } => module.types.get_span(*handle),
+            V::ConstExpression { handle, .. } => module.global_expressions.get_span(*handle),
+            V::Constant { handle, .. } => module.constants.get_span(*handle),
+            V::Override { handle, .. } => module.overrides.get_span(*handle),
+            V::GlobalVariable { handle, .. } => module.global_variables.get_span(*handle),
+            V::Function { handle, .. } => module.functions.get_span(*handle),
+            _ => naga::Span::UNDEFINED,
+        };
+        let place = match (span.to_range(), error.as_inner()) {
+            (Some(range), _) => source.locate(range),
+            (None, V::EntryPoint { name, .. }) => function_span(source, name),
+            (None, _) => source.file.span(0..0),
         };
         places.push((place, String::new()));
     }

@@ -118,7 +118,7 @@ impl<'a> Reader<'a> {
         mut fields: Vec<Field<'a>>,
         more: &[&str],
     ) -> Option<T> {
-        let mut left_out = Vec::new();
+        let (mut left_out, mut misspelt) = (Vec::new(), false);
         loop {
             let failed = RefCell::default();
             let access = Access {
@@ -136,12 +136,16 @@ impl<'a> Reader<'a> {
                     let (name, value) = fields.remove(index);
                     match of_value {
                         Some(error) => self.explain(value, &error),
-                        None => self.wrong(name, unknown_field(&error, more)),
+                        None => {
+                            misspelt = true;
+                            self.wrong(name, unknown_field(&error, more));
+                        }
                     }
                     left_out.push(name);
                 }
+                // What is missing then is what was misspelt, or could not be read.
                 (None, RonError::MissingStructField { field, .. })
-                    if left_out.contains(&field.as_ref()) =>
+                    if misspelt || left_out.contains(&field.as_ref()) =>
                 {
                     return None;
                 }

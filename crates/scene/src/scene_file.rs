@@ -56,8 +56,8 @@ pub struct SceneFile {
 #[serde(deny_unknown_fields, rename = "scene")]
 struct SceneText {
     /// Version of the format: 1.
-    #[serde(rename = "format", deserialize_with = "format")]
-    _format: (),
+    #[serde(rename = "format")]
+    _format: u32,
     name: String,
     #[serde(default)]
     description: String,
@@ -120,8 +120,19 @@ impl SceneFile {
     }
 
     fn read<'a>(text: &'a str, reader: &mut Reader<'a>) -> Option<Self> {
-        let (lists, head): (Vec<Field<'_>>, Vec<Field<'_>>) = reader
-            .fields(text)?
+        let fields = reader.fields(text)?;
+        if let Some((_, format)) = fields.iter().find(|(name, _)| *name == "format") {
+            match reader.value::<u32>(format)? {
+                1 => {}
+                // Everything else in it would be a mistake, too.
+                other => {
+                    let reason = "is unknown; this program reads format 1";
+                    reader.wrong(format, format!("format {other} {reason}"));
+                    return None;
+                }
+            }
+        }
+        let (lists, head): (Vec<Field<'_>>, Vec<Field<'_>>) = fields
             .into_iter()
             .partition(|(name, _)| LISTS.contains(name));
         let list = |name| {
@@ -502,15 +513,6 @@ fn given<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<T>, D::Error> {
     T::deserialize(deserializer).map(Some)
-}
-
-fn format<'de, D: Deserializer<'de>>(deserializer: D) -> Result<(), D::Error> {
-    match u32::deserialize(deserializer)? {
-        1 => Ok(()),
-        other => Err(D::Error::custom(format!(
-            "format {other} is unknown; this program reads format 1"
-        ))),
-    }
 }
 
 fn generator<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Generator, D::Error> {

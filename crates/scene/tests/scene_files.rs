@@ -60,50 +60,93 @@ fn a_view_may_have_a_light_of_its_own() {
 
 #[test]
 fn broken_files_are_explained_with_line_and_column() {
-    assert_snapshot!(error("near: 1", "naer: 1"), @"garden.ron:7:78: Unexpected field named \
-        `naer` in `View`, expected one of `name`, `eye`, `direction`, `up`, `fov_y_degrees`, \
-        `near`, `far`, or `light` instead");
+    assert_snapshot!(error("near: 1", "naer: 1"), @"garden.ron:7:78: \
+        unknown field `naer`; known here: name, eye, direction, up, fov_y_degrees, near, far, \
+        light");
     let own_light = |text: &str| error("far: 100", &format!("far: 100, light: ({text})"));
-    assert_snapshot!(own_light("direction: (0, 0, 0)"), @"garden.ron:7:126: view \"a\": the \
-        light's direction [0, 0, 0] must be finite and longer than 0");
-    assert_snapshot!(own_light("towards: (0, 1, 0)"), @"garden.ron:7:105: Unexpected field named \
-        `towards` in `Light`, expected either `direction` or `angle_degrees` \
-        instead");
-    assert_snapshot!(error("name: \"garden\",", ""), @"garden.ron:9:1: Unexpected missing field \
-        named `name` in `SceneFile`");
+    assert_snapshot!(own_light("direction: (0, 0, 0)"), @"garden.ron:7:9: view \
+        \"a\": the light's direction [0, 0, 0] must be finite and longer than 0");
+    assert_snapshot!(own_light("towards: (0, 1, 0)"), @"garden.ron:7:105: \
+        unknown field `towards`; known here: direction, angle_degrees");
+    assert_snapshot!(error("name: \"garden\",", ""), @"garden.ron:1:1: the \
+        field `name` is missing");
     assert_snapshot!(error("format: 1", "format: 2"), @"garden.ron:2:13: format 2 is unknown; \
         this program reads format 1");
-    assert_snapshot!(error("\"park\"", "\"parc\""), @"garden.ron:4:22: no generated mesh is called \
-        \"parc\"; there are: park, avenue, city:TRIANGLES, forest:TRIANGLES");
-    assert_snapshot!(error("Generated(", "Made("), @"garden.ron:4:11: Unexpected variant named \
-        `Made` in enum `MeshSource`, expected one of `Obj`, `Gltf`, or `Generated` instead");
-    assert_snapshot!(error("(0, -1, 0)", "(0, -1)"), @"garden.ron:5:30: Expected a tuple of size \
-        3 but found 2 elements instead");
-    assert_snapshot!(error("(0, -1, 0)", "(0, 0, 0)"), @"garden.ron:5:33: the light's direction \
-        [0, 0, 0] must be finite and longer than 0");
-    assert_snapshot!(error("(0, -1, 0)", "(0, -1, 0), angle_degrees: 180"), @"garden.ron:5:54: the \
-        light's angle_degrees is 180; expected at least 0 and less than 180, the angle that it \
-        takes up in the sky");
-    assert_snapshot!(own_light("direction: (0, 1, 0), angle_degrees: -1"), @"garden.ron:7:145: \
-        view \"a\": the light's angle_degrees is -1; expected at least 0 and less than 180, the \
+    assert_snapshot!(error("\"park\"", "\"parc\""), @"garden.ron:4:11: no \
+        generated mesh is called \"parc\"; there are: park, avenue, city:TRIANGLES, \
+        forest:TRIANGLES");
+    assert_snapshot!(error("Generated(", "Made("), @"garden.ron:4:11: \
+        unknown word `Made`; known here: Obj, Gltf, Generated");
+    assert_snapshot!(error("(0, -1, 0)", "(0, -1)"), @"garden.ron:5:30: 3 \
+        values are needed here, not 2");
+    assert_snapshot!(error("(0, -1, 0)", "(0, 0, 0)"), @"garden.ron:5:12: the \
+        light's direction [0, 0, 0] must be finite and longer than 0");
+    assert_snapshot!(error("(0, -1, 0)", "(0, -1, 0), angle_degrees: 180"), @"garden.ron:5:12: the \
+        light's angle_degrees is 180; expected at least 0 and less than 180, the angle that \
+        it takes up in the sky");
+    assert_snapshot!(own_light("direction: (0, 1, 0), angle_degrees: -1"), @"garden.ron:7:9: view \
+        \"a\": the light's angle_degrees is -1; expected at least 0 and less than 180, the \
         angle that it takes up in the sky");
-    assert_snapshot!(error("direction: (0, 0, 1)", "direction: (0, NaN, 1)"), @"garden.ron:7:97: \
-        view \"a\": direction [0, NaN, 1] and up [0, 1, 0] must be finite and longer than 0");
-    assert_snapshot!(error("direction: (0, 0, 1)", "direction: (0, -2, 0)"), @"garden.ron:7:96: \
-        view \"a\": up [0, 1, 0] is parallel to the direction [0, -2, 0]");
-    assert_snapshot!(error("fov_y_degrees: 60", "fov_y_degrees: 180"), @"garden.ron:7:96: view \
+    assert_snapshot!(error("direction: (0, 0, 1)", "direction: (0, NaN, 1)"), @"garden.ron:7:9: view \
+        \"a\": direction [0, NaN, 1] and up [0, 1, 0] must be finite and longer than 0");
+    assert_snapshot!(error("direction: (0, 0, 1)", "direction: (0, -2, 0)"), @"garden.ron:7:9: view \
+        \"a\": up [0, 1, 0] is parallel to the direction [0, -2, 0]");
+    assert_snapshot!(error("fov_y_degrees: 60", "fov_y_degrees: 180"), @"garden.ron:7:9: view \
         \"a\": fov_y_degrees is 180, expected more than 0 and less than 180");
-    assert_snapshot!(error("near: 1,", "near: 0,"), @"garden.ron:7:95: view \"a\": near is 0 and \
-        far is 100, expected 0 < near < far");
-    assert_snapshot!(error("far: 100", "far: 1"), @"garden.ron:7:93: view \"a\": near is 1 and far \
-        is 1, expected 0 < near < far");
-    assert_snapshot!(error("(0, 5, 0)", "(0, inf, 0)"), @"garden.ron:7:97: view \"a\": the eye [0, \
-        inf, 0] is not finite");
-    assert_snapshot!(error("    ],\n)", "    ],"), @"garden.ron:8:6: Unexpected end of RON");
+    assert_snapshot!(error("near: 1,", "near: 0,"), @"garden.ron:7:9: view \
+        \"a\": near is 0 and far is 100, expected 0 < near < far");
+    assert_snapshot!(error("far: 100", "far: 1"), @"garden.ron:7:9: view \
+        \"a\": near is 1 and far is 1, expected 0 < near < far");
+    assert_snapshot!(error("(0, 5, 0)", "(0, inf, 0)"), @"garden.ron:7:9: view \
+        \"a\": the eye [0, inf, 0] is not finite");
+    assert_snapshot!(error("    ],\n)", "    ],"), @"garden.ron:8:6: the \
+        text ends before its last bracket is closed");
     let view = GOOD.lines().nth(6).unwrap();
-    assert_snapshot!(error(view, ""), @"garden.ron:8:5: a scene needs at least one view");
-    assert_snapshot!(error(view, &format!("{view}\n{view}")), @"garden.ron:9:5: two views are \
-        called \"a\"");
+    assert_snapshot!(error(view, ""), @"garden.ron:6:12: \
+        `views` is empty; a scene needs one");
+    assert_snapshot!(error(view, &format!("{view}\n{view}")), @"garden.ron:8:9: two \
+        views are called \"a\"");
+}
+
+#[test]
+fn every_mistake_of_a_file_is_told() {
+    let text = r#"(
+    format: 1,
+    nam: "garden",
+    mesh: Generated("parc"),
+    light: (direction: (0, -1)),
+    views: [
+        (name: "a", eye: (0, 5), directoin: (0, 0, 1), fov_y_degrees: wide, near: 1, far: 100),
+        (name: "b", eye: (0, 5, 0), direction: (0, 0, 1), near: 1, far: 100),
+        // a comment, and a view that is right
+        (name: "c", eye: (0, 5, 0), direction: (0, 0, 1), fov_y_degrees: 9, near: 1, far: 100),
+        (name: "d", eye: (0, 5, 0), direction: (0, 0, 0), fov_y_degrees: 9, near: 1, far: 100),
+    ],
+    paths: walk,
+)"#;
+    let told = SceneFile::parse(text, "garden.ron")
+        .unwrap_err()
+        .to_string();
+    let told: Vec<&str> = told
+        .lines()
+        .map(|line| &line["garden.ron:".len()..])
+        .collect();
+    let expected = [
+        "3:5: unknown field `nam`; known here: format, name, description, mesh, \
+            light, lights, views, paths",
+        "4:11: no generated mesh is called \"parc\"; there are: park, avenue, \
+            city:TRIANGLES, forest:TRIANGLES",
+        "5:30: 3 values are needed here, not 2",
+        "7:31: 3 values are needed here, not 2",
+        "7:34: unknown field `directoin`; known here: name, eye, direction, up, \
+            fov_y_degrees, near, far, light",
+        "7:71: a number is needed",
+        "8:9: the field `fov_y_degrees` is missing",
+        "11:9: view \"d\": direction [0, 0, 0] and up [0, 1, 0] must be finite and \
+            longer than 0",
+        "13:12: a list `[…]` is needed",
+    ];
+    assert_eq!(told, expected);
 }
 
 const LAMPS: &str = r#"lights: [

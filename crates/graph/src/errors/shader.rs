@@ -75,8 +75,9 @@ pub(crate) enum ShaderError {
     #[error("`{file}` has more than {most} declarations, those of its imports included")]
     TooManyDeclarations { file: String, most: usize, at: Span },
     /// What naga says, with its places.
-    #[error("`{file}` {what}")]
+    #[error("{file} {what}")]
     Naga {
+        /// In backquotes, with the shader that imports it if it is not that itself.
         file: String,
         what: String,
         places: Vec<(Span, String)>,

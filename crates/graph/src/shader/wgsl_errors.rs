@@ -5,7 +5,7 @@ use crate::{errors::shader::ShaderError, source::span::Span};
 use naga::{
     Handle,
     common::wgsl::TypeContext,
-    valid::{EntryPointError, ValidationError},
+    valid::{EntryPointError, FunctionError, GlobalVariableError, TypeFlags, ValidationError},
 };
 
 /// The place of the name of a function.
@@ -42,6 +42,15 @@ fn collision(
     }
 }
 
+/// The file that the first of the places lies in, and which shader imports it.
+fn blamed(places: &[(Span, String)], source: &Expanded) -> String {
+    let shader = &source.file.name;
+    match places.first().map(|(span, _)| &span.file.name) {
+        Some(file) if file != shader => format!("`{file}`, imported by `{shader}`,"),
+        _ => format!("`{shader}`"),
+    }
+}
+
 pub(super) fn parse_error(error: &naga::front::wgsl::ParseError, source: &Expanded) -> ShaderError {
     let labels = error.labels();
     let place =
@@ -52,7 +61,7 @@ pub(super) fn parse_error(error: &naga::front::wgsl::ParseError, source: &Expand
         places.push((source.file.span(0..0), String::new()));
     }
     ShaderError::Naga {
-        file: source.file.name.to_string(),
+        file: blamed(&places, source),
         what: format!("does not compile: {}", error.message()),
         places,
         notes: error.notes().map(str::to_owned).collect(),
@@ -74,7 +83,8 @@ fn without_handles(what: &str, module: &naga::Module) -> String {
         rest = match number {
             Some((number, after)) => {
                 let ty = module.types.iter().nth(number);
-                if let Some((ty, _)) = ty.filter(|_| before.ends_with("type")) {
+                let is_type = before.ends_with("type") || before.ends_with("types like");
+                if let Some((ty, _)) = ty.filter(|_| is_type) {
                     said.push_str(&format!(" `{}`", module.to_ctx().type_to_string(ty)));
                 }
                 after
@@ -86,6 +96,54 @@ fn without_handles(what: &str, module: &naga::Module) -> String {
         };
     }
     said + rest
+}
+
+/// What naga can only say with its own numbers and flags.
+fn plainly(error: &ValidationError, module: &naga::Module) -> Option<String> {
+    let of_function = |name: &str, fault: &FunctionError| match fault {
+        FunctionError::InvalidReturnType {
+            expression,
+            expected_ty,
+        } => {
+            let ty = expected_ty.map(|ty| module.to_ctx().type_to_string(ty));
+            Some(match (ty, expression) {
+                (Some(ty), Some(_)) => format!("`{name}` returns something else than its `{ty}`"),
+                (Some(ty), None) => format!("`{name}` can end without returning its `{ty}`"),
+                (None, _) => format!("`{name}` returns a value, but declares none"),
+            })
+        }
+        _ => None,
+    };
+    match error {
+        ValidationError::Function { name, source, .. } => of_function(name, source),
+        ValidationError::EntryPoint {
+            name,
+            source: EntryPointError::Function(fault),
+            ..
+        } => of_function(name, fault),
+        ValidationError::GlobalVariable {
+            name,
+            source: GlobalVariableError::MissingTypeFlags { required, seen },
+            ..
+        } => {
+            let wanted = [
+                (TypeFlags::SIZED, "a size that is known when it is compiled"),
+                (
+                    TypeFlags::HOST_SHAREABLE,
+                    "a layout that the host can share: no `bool`",
+                ),
+                (TypeFlags::COPY, "values that can be copied"),
+                (TypeFlags::CREATION_RESOLVED, "a size without overrides"),
+                (TypeFlags::DATA, "plain data"),
+            ];
+            let missing = *required - *seen;
+            let lacks = wanted.iter().filter(|(flag, _)| missing.contains(*flag));
+            let lacks: Vec<&str> = lacks.map(|(_, words)| *words).collect();
+            let lacks = lacks.join(", ");
+            (!lacks.is_empty()).then(|| format!("the type of `{name}` needs {lacks}"))
+        }
+        _ => None,
+    }
 }
 
 pub(super) fn validation_error(
@@ -107,7 +165,11 @@ pub(super) fn validation_error(
         what.push_str(&format!(": {inner}"));
         cause = inner.source();
     }
-    let what = without_handles(&what, module);
+    let what = match plainly(error.as_inner(), module) {
+        Some(said) => format!("is not valid: {said}"),
+        // Only structs have names.
+        None => without_handles(&what, module).replace("Type '' is", "a type is"),
+    };
     let place = |(span, text): &(naga::Span, String)| {
         // Some spans are labelled with a handle of naga's, which tells an author nothing.
         let text = if text.starts_with("naga::") { "" } else { text };
@@ -133,7 +195,7 @@ pub(super) fn validation_error(
         places.push((place, String::new()));
     }
     ShaderError::Naga {
-        file: source.file.name.to_string(),
+        file: blamed(&places, source),
         what,
         places,
         notes: Vec::new(),

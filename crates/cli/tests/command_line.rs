@@ -458,6 +458,22 @@ fn chart_draws_kept_results_without_a_gpu() {
         svg.contains("park, view main, 512x256") && svg.contains("10⁵"),
         "{svg}"
     );
+    // The same chart in pixels, two for each of its units, with words in it: dark on white.
+    let output = skiagraph(folder, &["chart", "small", "--out", "front.png"]);
+    assert_exit(&output, 0);
+    let output = skiagraph(folder, &["chart", "small", "--out", "front.svg"]);
+    assert_exit(&output, 0);
+    let svg = fs::read_to_string(folder.join("front.svg")).unwrap();
+    let picture = image::open(folder.join("front.png")).unwrap().to_rgb8();
+    let [width, height] = [picture.width(), picture.height()].map(|side| side / 2);
+    assert!(svg.starts_with(&format!("<svg width=\"{width}\" height=\"{height}\"")));
+    let title = picture
+        .enumerate_pixels()
+        .filter(|(_, y, _)| *y < height / 5);
+    let dark = title
+        .filter(|(.., pixel)| pixel.0.iter().all(|&it| it < 100))
+        .count();
+    assert!(dark > 200, "{dark}");
 }
 
 #[test]

@@ -145,7 +145,7 @@ impl<'a> Reader<'a> {
                 }
                 // What is missing then is what was misspelt, or could not be read.
                 (None, RonError::MissingStructField { field, .. })
-                    if misspelt || left_out.contains(&field.as_ref()) =>
+                    if misspelt || left_out.contains(field) =>
                 {
                     return None;
                 }

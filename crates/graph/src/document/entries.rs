@@ -12,7 +12,11 @@ use crate::{
         reports::{Mistake, Reports},
     },
     errors::document::DocumentError,
-    kinds::{kind::Lowering, registry::Registry, step::Step},
+    kinds::{
+        kind::{Lowering, OF_PASS},
+        registry::Registry,
+        step::Step,
+    },
     language::{
         name::{Name, RESERVED},
         syntax::{Expr, Reference},
@@ -62,18 +66,6 @@ const OF_INCLUDE: [&str; 6] = ["name", "if", "repeat", "run", "bind", "set"];
 
 /// Fields of a group.
 const OF_GROUP: [&str; 7] = ["name", "if", "repeat", "run", "bind", "set", "passes"];
-
-/// Fields of a pass beside those of its kind.
-pub(crate) const OF_PASS: [&str; 8] = [
-    "name",
-    "shader",
-    "bind",
-    "set",
-    "if",
-    "repeat",
-    "run",
-    "overwrites",
-];
 
 fn entry(
     mut raw: RawEntry,

@@ -24,6 +24,18 @@ pub trait PassKind: fmt::Debug + Send + Sync {
     fn lower(&self, pass: &mut Lowering<'_>);
 }
 
+/// Fields of a pass beside those of its kind.
+pub(crate) const OF_PASS: [&str; 8] = [
+    "name",
+    "shader",
+    "bind",
+    "set",
+    "if",
+    "repeat",
+    "run",
+    "overwrites",
+];
+
 /// What a [`PassKind`] lowers with: the pass's name, shader and values in, steps and diagnostics
 /// out.
 pub struct Lowering<'a> {

@@ -1,15 +1,16 @@
 //! The pass kinds that documents may use: an open set.
 
 use super::{
-    clear::Clear, compute::Compute, copy::Copy, fullscreen::Fullscreen, kind::PassKind,
+    clear::Clear,
+    compute::Compute,
+    copy::Copy,
+    fullscreen::Fullscreen,
+    kind::{OF_PASS, PassKind},
     raster::Raster,
 };
 use crate::{
     diagnostics::diagnostic::Diagnostic,
-    document::{
-        entries::OF_PASS,
-        ron::{Field, from_some_fields},
-    },
+    document::ron::{Field, from_some_fields},
     source::span::Span,
 };
 use serde::de::DeserializeOwned;

@@ -57,6 +57,7 @@ fn main() -> ExitCode {
         Command::Presets(args) => commands::presets::presets(args),
         Command::New(args) => commands::new::new(args),
         Command::Show(args) => commands::show::show(args),
+        Command::Schema(args) => commands::schema::schema(args),
         Command::Scenes => commands::scenes::scenes(),
         Command::Doctor => commands::doctor::doctor(gpu),
         Command::View(args) => commands::view::view(args, gpu),

@@ -25,6 +25,8 @@ mod provided_kind;
 mod provider;
 mod request;
 mod resource;
+#[cfg(feature = "schema")]
+mod schema;
 mod shader;
 mod source;
 

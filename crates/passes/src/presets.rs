@@ -80,5 +80,7 @@ pub fn presets() -> Vec<Preset> {
 pub fn registry() -> Registry {
     let mut registry = Registry::standard();
     registry.register::<Trace>("Trace");
+    #[cfg(feature = "schema")]
+    registry.describe::<Trace>("Trace");
     registry
 }

@@ -12,6 +12,7 @@ use skiagraph_graph::{
 
 /// Which hit of a ray is recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Mode {
     /// The first one found: enough to know that there is one.
     Any,
@@ -21,6 +22,7 @@ pub enum Mode {
 
 /// What walks the rays through the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Engine {
     /// Compute shaders on a binary hierarchy; watertight, on every device.
     Hierarchy,
@@ -34,6 +36,7 @@ pub enum Engine {
 
 /// What all rays of a pass have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Direction {
     /// The direction of each is `to_light_from` its origin, to the bit: under a directional light
     /// `light.to_light`.
@@ -79,7 +82,7 @@ fn hierarchy() -> Chosen<Engine> {
     Chosen::Word(Engine::Hierarchy)
 }
 
-/// Body of a `Trace` pass:
+/// Follows rays through the scene:
 ///
 /// ```ron
 /// Trace(
@@ -88,40 +91,38 @@ fn hierarchy() -> Chosen<Engine> {
 /// )
 /// ```
 ///
-/// - `rays`: buffer of 32-byte items `origin: vec3<f32>, t_min: f32, direction: vec3<f32>, t_max:
-///   f32`; a hit counts if t_min < t ≤ t_max, t in units of `direction`, which need not be of unit
-///   length.
-/// - `hits`: buffer of 16-byte items `t: f32, primitive: u32, u: f32, v: f32`; u and v are the
-///   weights of the primitive's second and third corner. A ray that hits nothing gets its t_max and
-///   the primitive `0xffffffff`.
-/// - `count`: buffer of one u32, the number of rays; rays beyond the end of `rays` or `hits` are
-///   left out.
-/// - `groups` (optional): buffer of three u32, the workgroups of 64 rays, folded to two dimensions,
-///   that `count` comes to, as `dispatch_arguments.wgsl` makes them; without it the pass counts
-///   them once more.
-/// - `skip` (optional): buffer of one u32 per ray, the primitive that the ray does not see, such as
-///   its own.
-/// - `mode`: `Any` or `Closest`.
-/// - `engine` (optional): an [`Engine`], `Hierarchy` without it, or in quotes a `Choice` param of
-///   [`Engine::WORDS`]. Rays of `RayQuery` need t_min ≥ 0 and finite numbers; others hit nothing.
-/// - `direction` (optional): `Light` is your word that all rays go towards the light, without which
-///   `LightSpace` is refused. A ray that does not is recorded as a miss with t = −1.
-///
 /// Triangles are two-sided; those without area are never hit, and a masked one only where its mask
 /// is opaque.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Trace {
+    /// Buffer of 32-byte items `origin: vec3<f32>, t_min: f32, direction: vec3<f32>, t_max: f32`; a
+    /// hit counts if t_min < t ≤ t_max, t in units of `direction`, which need not be of unit
+    /// length.
     rays: Reference,
+    /// Buffer of 16-byte items `t: f32, primitive: u32, u: f32, v: f32`; u and v are the weights of
+    /// the primitive's second and third corner. A ray that hits nothing gets its t_max and the
+    /// primitive `0xffffffff`.
     hits: Reference,
+    /// Buffer of one u32, the number of rays; rays beyond the end of `rays` or `hits` are left out.
     count: Reference,
+    /// Buffer of three u32, the workgroups of 64 rays, folded to two dimensions, that `count` comes
+    /// to, as `dispatch_arguments.wgsl` makes them; without it the pass counts them once more.
     #[serde(default)]
     groups: Option<Reference>,
+    /// Buffer of one u32 per ray, the primitive that the ray does not see, such as its own.
     #[serde(default)]
     skip: Option<Reference>,
+    /// Which hit is recorded.
     mode: Mode,
+    /// What walks the rays, `Hierarchy` without it, or in quotes a `Choice` of `hierarchy`,
+    /// `ray_query`, `light_space`. Rays of `RayQuery` need t_min ≥ 0 and finite numbers; others hit
+    /// nothing.
     #[serde(default = "hierarchy")]
     engine: Chosen<Engine>,
+    /// `Light` is your word that all rays go towards the light, without which `LightSpace` is
+    /// refused. A ray that does not is recorded as a miss with t = −1.
     #[serde(default)]
     direction: Option<Direction>,
 }

@@ -4,7 +4,7 @@
 use crate::args::{
     commands::{
         ChartArgs, CheckArgs, CompareArgs, GraphArgs, NewArgs, PresetsArgs, ProfileArgs,
-        ReportArgs, RunArgs, ShowArgs, StressArgs, ViewArgs,
+        ReportArgs, RunArgs, SchemaArgs, ShowArgs, StressArgs, ViewArgs,
     },
     shared::GpuArgs,
 };
@@ -130,6 +130,15 @@ pub enum Command {
     #[command(after_help = "Examples:\n  skiagraph show nsm\n  \
         skiagraph show shared/light.wgsl\n  skiagraph show crsma_full --flat")]
     Show(ShowArgs),
+    /// Print what documents may be: a JSON Schema for editors and programs that write documents, or
+    /// the reference of the language.
+    #[command(
+        after_help = "Examples:\n  skiagraph schema > skiagraph.schema.json\n  \
+        skiagraph schema --format markdown\n\n\
+        In the schema `Kind(field: value)` is {\"Kind\": {\"field\": value}}, a bare word is a \
+        text, a tuple is a list."
+    )]
+    Schema(SchemaArgs),
     /// List the scenes and their views.
     #[command(after_help = "Example:\n  skiagraph scenes")]
     Scenes,

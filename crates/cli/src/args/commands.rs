@@ -194,6 +194,23 @@ pub struct ShowArgs {
     pub flat: bool,
 }
 
+/// `skiagraph schema`.
+#[derive(Args, Debug)]
+pub struct SchemaArgs {
+    /// What is printed.
+    #[arg(long, value_enum, default_value_t = SchemaFormat::Json)]
+    pub format: SchemaFormat,
+}
+
+/// How the language is described.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SchemaFormat {
+    /// A JSON Schema (draft 2020-12).
+    Json,
+    /// Tables for a reader.
+    Markdown,
+}
+
 /// `skiagraph run`.
 #[derive(Args, Debug)]
 pub struct RunArgs {

@@ -12,6 +12,7 @@ pub mod report;
 pub mod run;
 pub mod run_sequence;
 pub mod scenes;
+pub mod schema;
 pub mod show;
 pub mod stress;
 pub mod view;

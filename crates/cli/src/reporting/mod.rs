@@ -5,6 +5,7 @@ pub mod charts;
 pub mod columns;
 pub mod graded;
 pub mod html;
+pub mod language;
 pub mod markdown;
 pub mod notes;
 pub mod profile_csv;

@@ -48,15 +48,44 @@ pub(super) fn read(
 
 /// What every entry has.
 #[derive(Deserialize)]
-struct Header {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(crate) struct Header {
+    /// What it is called; an include without one has the name of its file.
     #[serde(default)]
     name: Option<Located<Name>>,
+    /// Whether it is there.
     #[serde(default, rename = "if")]
     condition: Option<Expr>,
+    /// How often it stands here one after another, each time with its `index`.
     #[serde(default)]
     repeat: Option<Expr>,
+    /// In which frames it runs; without it, as what is around it.
     #[serde(default)]
     run: Option<Run>,
+}
+
+/// What every pass has beside its kind's fields.
+#[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(crate) struct PassFields {
+    /// The shader without folder and ending; the pass's name without it.
+    #[serde(default)]
+    shader: Option<Located<String>>,
+    /// What the pass writes in every texel or item, which no reflection sees.
+    #[serde(default)]
+    overwrites: Vec<Reference>,
+}
+
+/// Runs another document as a part of this one.
+#[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub(crate) struct IncludeFields {
+    /// The document: the name of a preset, or a path.
+    graph: Located<String>,
+    /// Its params that are params here, too.
+    #[serde(default)]
+    expose: Vec<Located<String>>,
 }
 
 const HEADER: [&str; 4] = ["name", "if", "repeat", "run"];
@@ -144,17 +173,10 @@ fn pass(
     own: Vec<Field>,
     registry: &Registry,
 ) -> Result<Pass, Diagnostic> {
-    #[derive(Deserialize)]
-    struct Common {
-        #[serde(default)]
-        shader: Option<Located<String>>,
-        #[serde(default)]
-        overwrites: Vec<Reference>,
-    }
     let (common, own): (Vec<Field>, Vec<Field>) = own
         .into_iter()
         .partition(|field| matches!(field.name.as_str(), "shader" | "overwrites"));
-    let common: Common = from_fields(&common, &tag.span)?;
+    let common: PassFields = from_fields(&common, &tag.span)?;
     let kind = registry
         .get(tag)
         .ok_or_else(|| DocumentError::UnknownKind(tag.clone(), Vec::new()).diagnostic())?;
@@ -187,14 +209,7 @@ fn include(
     own: &[Field],
     name: Option<Located<Name>>,
 ) -> Result<(Include, Located<Name>), Diagnostic> {
-    #[derive(Deserialize)]
-    #[serde(deny_unknown_fields)]
-    struct Fields {
-        graph: Located<String>,
-        #[serde(default)]
-        expose: Vec<Located<String>>,
-    }
-    let fields: Fields = from_some_fields(own, &tag.span, &OF_INCLUDE)?;
+    let fields: IncludeFields = from_some_fields(own, &tag.span, &OF_INCLUDE)?;
     let is_named = name.is_some();
     let name = match name {
         Some(name) => name,

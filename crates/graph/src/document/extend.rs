@@ -10,7 +10,7 @@ use std::collections::HashMap;
 type Entries = Vec<Result<RawEntry, Broken>>;
 
 /// Where an entry that is no edit comes to stand.
-const PLACES: [&str; 3] = ["before", "after", "instead"];
+pub(crate) const PLACES: [&str; 3] = ["before", "after", "instead"];
 
 /// `base` with the edits of `own`. What cannot be done is reported and left out.
 pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports) -> RawDocument {

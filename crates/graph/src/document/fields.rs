@@ -182,6 +182,7 @@ impl<'de> Deserialize<'de> for Load {
 
 /// A comparison, true where the new value stands in this relation to the stored one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) enum Compare {
     Never,
     #[default]

@@ -63,20 +63,26 @@ impl Material {
     }
 }
 
-/// A texture as the document writes it.
+/// A texture: what passes draw into, write and read.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TextureEntry {
+    /// What passes and shaders call it.
     pub name: Located<Name>,
+    /// Its texels.
     pub format: FormatEntry,
     /// Size of mip 0: one number (a square), two, or three (a 3D texture). Where none is given, the
     /// viewport's, or the file's.
     #[serde(default)]
     pub size: Option<Expr>,
+    /// Number of mips, one without it; `All` goes down to one texel.
     #[serde(default)]
     pub mips: Mips,
+    /// Number of layers; with it the texture is an array.
     #[serde(default)]
     pub layers: Option<Expr>,
+    /// Samples of a texel, one without it.
     #[serde(default)]
     pub samples: Option<Expr>,
     /// The picture that the texture holds; it is never written then.
@@ -125,10 +131,12 @@ impl<'de> Deserialize<'de> for FormatEntry {
     }
 }
 
-/// A buffer as the document writes it.
+/// A buffer; the layout of an item comes from the shaders that bind it.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct BufferEntry {
+    /// What passes and shaders call it.
     pub name: Located<Name>,
     /// Number of items of the runtime-sized array that the shaders see; none where they see a fixed
     /// size.
@@ -137,14 +145,21 @@ pub(crate) struct BufferEntry {
     /// The items that the buffer holds; it is never written then.
     #[serde(default)]
     pub data: Option<Located<Data>>,
+    /// How it grows between frames.
     #[serde(default)]
     pub grow: Option<GrowEntry>,
 }
 
-/// How a buffer grows between frames: `counter` says how many items the frame would have needed.
+/// How a buffer grows between frames.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "Growth")
+)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct GrowEntry {
+    /// The buffer, or item of one, whose first u32 says how many items a frame would have needed.
     pub counter: Reference,
     /// Most items.
     pub max: Expr,
@@ -183,15 +198,17 @@ fn flatten(tuple: &Node, numbers: &mut Vec<f64>) -> Option<()> {
     Some(())
 }
 
-/// A sampler as the document writes it.
+/// A sampler: how shaders read a texture between its texels.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SamplerEntry {
+    /// What passes and shaders call it.
     pub name: Located<Name>,
-    /// Minification, magnification and mip filter.
+    /// Minification, magnification and mip filter; `Nearest` without it.
     #[serde(default)]
     pub filter: Filter,
-    /// Addressing in all directions.
+    /// What lies outside, in all directions; `ClampToEdge` without it.
     #[serde(default)]
     pub address: Address,
     /// Makes it a comparison sampler.
@@ -201,6 +218,7 @@ pub(crate) struct SamplerEntry {
 
 /// A sampler's filter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Filter {
     /// The nearest texel.
     #[default]
@@ -211,6 +229,7 @@ pub enum Filter {
 
 /// What lies outside a texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Address {
     /// The border texels go on.
     #[default]
@@ -258,24 +277,35 @@ impl InputKind {
     }
 }
 
+/// A texture that the includer, or the host, gives.
 #[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
-pub(super) struct TextureInput {
+pub(crate) struct TextureInput {
+    /// What it is called here.
     name: Located<Name>,
+    /// The format that it must have; any without it.
     #[serde(default)]
     format: Option<FormatEntry>,
 }
 
+/// A buffer that the includer, or the host, gives.
 #[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
-pub(super) struct BufferInput {
+pub(crate) struct BufferInput {
+    /// What it is called here.
     name: Located<Name>,
 }
 
+/// A sampler that the includer, or the host, gives.
 #[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
-pub(super) struct SamplerInput {
+pub(crate) struct SamplerInput {
+    /// What it is called here.
     name: Located<Name>,
+    /// Whether it is a comparison sampler.
     #[serde(default)]
     compare: bool,
 }
@@ -317,7 +347,7 @@ impl From<SamplerInput> for Input {
 
 macro_rules! formats {
     ($($name:ident)*) => {
-        const FORMATS: &[&str] = &[$(stringify!($name)),*];
+        pub(crate) const FORMATS: &[&str] = &[$(stringify!($name)),*];
         fn format_named(name: &str) -> Option<wgt::TextureFormat> {
             match name {
                 $(stringify!($name) => Some(wgt::TextureFormat::$name),)*

@@ -115,28 +115,43 @@ pub enum ParamFault {
     Value(String),
 }
 
+/// A param: a value from outside.
 #[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
-struct Fields {
+pub(crate) struct ParamFields {
+    /// As in `params.NAME` of a shader and `--set NAME=…`.
     name: Located<Name>,
+    /// The words of a `Choice`.
     #[serde(default)]
     words: Vec<Located<Name>>,
+    /// The value where nothing else is asked for. It may name the params above it and the viewport;
+    /// without one somebody is asked.
     #[serde(default)]
     default: Option<Expr>,
+    /// Least value of a number, or of each component of a vector.
     #[serde(default)]
     min: Option<f64>,
+    /// Greatest value of a number, or of each component of a vector.
     #[serde(default)]
     max: Option<f64>,
+    /// What it does, shown to who may set it.
     #[serde(default)]
     description: String,
+    /// Words that a `Choice` has elsewhere but not here, each with the reason.
     #[serde(default)]
     refused: BTreeMap<String, String>,
 }
 
+/// The types of params, as documents write them.
+pub(crate) const TYPES: [&str; 8] = [
+    "F32", "I32", "U32", "Bool", "Vec2", "Vec3", "Vec4", "Choice",
+];
+
 impl Param {
     /// Reads the entry of a param: its type, and its fields.
     pub(super) fn read(tag: &Located<String>, fields: &[Field]) -> Result<Self, Diagnostic> {
-        let fields: Fields = from_fields(fields, &tag.span)?;
+        let fields: ParamFields = from_fields(fields, &tag.span)?;
         let wrong = |why: &str| DocumentError::Param {
             name: fields.name.clone(),
             why: why.to_owned(),

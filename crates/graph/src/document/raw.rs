@@ -14,7 +14,7 @@ use std::collections::{HashMap, HashSet};
 const MOST_ENTRIES: usize = 4096;
 
 /// The document format that is read.
-const FORMAT: u32 = 2;
+pub(crate) const FORMAT: u32 = 2;
 
 /// A map as it is written, each key once.
 pub(crate) type RawMap = Vec<(Located<String>, Node)>;
@@ -106,19 +106,29 @@ pub(crate) fn stem(path: &str) -> &str {
     file.strip_suffix(".ron").unwrap_or(file)
 }
 
-const SECTIONS: [&str; 12] = [
-    "format",
-    "extends",
-    "description",
-    "requires",
-    "params",
-    "set",
-    "inputs",
-    "materials",
-    "passes",
-    "outputs",
-    "lights",
-    "claims",
+/// The sections of a document, and what each holds.
+pub(crate) const SECTIONS: [(&str, &str); 12] = [
+    ("format", "The version of the language, 2."),
+    ("extends", "Another document, of which this one is an edit."),
+    ("description", "A sentence, shown by `skiagraph presets`."),
+    (
+        "requires",
+        "Features of the device, by wgpu's names, without which the graph does not run.",
+    ),
+    ("params", "Values from outside."),
+    (
+        "set",
+        "Other defaults for params of the extended document, or of included ones that are exposed.",
+    ),
+    ("inputs", "Materials that the includer gives, or the host."),
+    ("materials", "What passes share."),
+    ("passes", "What is done, in this order."),
+    ("outputs", "What comes out."),
+    ("lights", "The kinds of light that the method takes."),
+    (
+        "claims",
+        "What the method promises, by `exact` and `certain`.",
+    ),
 ];
 
 /// Splits a document into its sections. What is wrong with some of them is reported.
@@ -164,8 +174,9 @@ pub(crate) fn split(file: SourceFile, reports: &mut Reports) -> Result<RawDocume
 fn sections(fields: Vec<Field>, reports: &mut Reports) -> HashMap<String, Node> {
     let mut sections = HashMap::new();
     for field in fields {
-        if !SECTIONS.contains(&field.name.as_str()) {
-            let known = SECTIONS.map(str::to_owned).to_vec();
+        let mut known = SECTIONS.iter().map(|(name, _)| *name);
+        if !known.any(|known| *known == **field.name) {
+            let known = SECTIONS.map(|(name, _)| name.to_owned()).to_vec();
             reports.report(DocumentError::UnknownField(field.name, known));
             continue;
         }

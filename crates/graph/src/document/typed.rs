@@ -58,16 +58,21 @@ pub(crate) struct ClaimEntry {
     pub because: String,
 }
 
+/// What a method promises, with the reason.
+#[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename = "claim", deny_unknown_fields)]
+pub(crate) struct ClaimFields {
+    /// Under which params; always without it.
+    #[serde(default, rename = "if")]
+    condition: Option<Expr>,
+    /// Why it holds, or ends.
+    #[serde(default)]
+    because: String,
+}
+
 impl<'de> Deserialize<'de> for ClaimEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(rename = "claim", deny_unknown_fields)]
-        struct Long {
-            #[serde(default, rename = "if")]
-            condition: Option<Expr>,
-            #[serde(default)]
-            because: String,
-        }
         let (text, _) = raw(deserializer)?;
         if !text.starts_with('(') {
             return Ok(Self {
@@ -75,7 +80,7 @@ impl<'de> Deserialize<'de> for ClaimEntry {
                 because: String::new(),
             });
         }
-        let long: Long = read(text)?;
+        let long: ClaimFields = read(text)?;
         Ok(Self {
             condition: long.condition,
             because: long.because,
@@ -92,17 +97,23 @@ pub(crate) struct Output {
     pub condition: Option<Expr>,
 }
 
+/// What comes out.
+#[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub(crate) struct OutputFields {
+    /// What includer and host call it.
+    name: Located<Name>,
+    /// The material; the one of that name without it.
+    #[serde(default)]
+    material: Option<Reference>,
+    /// Whether it is there.
+    #[serde(default, rename = "if")]
+    condition: Option<Expr>,
+}
+
 impl<'de> Deserialize<'de> for Output {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(deny_unknown_fields)]
-        struct Long {
-            name: Located<Name>,
-            #[serde(default)]
-            material: Option<Reference>,
-            #[serde(default, rename = "if")]
-            condition: Option<Expr>,
-        }
         let named = |name: Located<Name>, material: Option<Reference>, condition| Self {
             material: material.unwrap_or_else(|| Reference::of(name.clone())),
             name,
@@ -110,7 +121,7 @@ impl<'de> Deserialize<'de> for Output {
         };
         short_or_long(
             deserializer,
-            |long: Long| named(long.name, long.material, long.condition),
+            |long: OutputFields| named(long.name, long.material, long.condition),
             |short: Reference| {
                 let name = short.segments[0].name.clone();
                 named(name, Some(short), None)
@@ -177,7 +188,13 @@ impl Include {
 }
 
 /// In which frames a pass runs.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Deserialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "Run")
+)]
+#[serde(rename = "run")]
 pub(crate) enum Run {
     /// In every frame.
     #[default]
@@ -188,25 +205,6 @@ pub(crate) enum Run {
     OnChange,
     /// In frames where an expression over params is true.
     When(Expr),
-}
-
-impl<'de> Deserialize<'de> for Run {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(rename = "run")]
-        enum Words {
-            Always,
-            Once,
-            OnChange,
-            When(Expr),
-        }
-        Ok(match Words::deserialize(deserializer)? {
-            Words::Always => Self::Always,
-            Words::Once => Self::Once,
-            Words::OnChange => Self::OnChange,
-            Words::When(expr) => Self::When(expr),
-        })
-    }
 }
 
 impl Document {

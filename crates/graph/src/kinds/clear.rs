@@ -7,10 +7,12 @@ use super::{
 use crate::language::syntax::{Expr, Reference};
 use serde::Deserialize;
 
-/// Body of a `Clear` pass.
+/// Sets a texture to a value, or a buffer to zero.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct Clear {
+    /// The texture or buffer, or a part of one.
     target: Reference,
     /// One value for all channels; four; a depth and a stencil.
     #[serde(default)]

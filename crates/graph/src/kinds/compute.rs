@@ -13,20 +13,32 @@ use crate::{
 };
 use serde::Deserialize;
 
-/// Body of a `Compute` pass.
+/// One dispatch of a compute shader.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct Compute {
+    /// How many threads or workgroups.
     dispatch: Size,
+    /// The entry point, where the shader has several.
     #[serde(default)]
     entry: Option<Located<String>>,
 }
 
+/// How many threads or workgroups a dispatch has.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "Dispatch")
+)]
 #[serde(rename = "dispatch")]
 enum Size {
+    /// A thread for each of so many items, or for each texel of a size.
     Over(Expr),
+    /// So many workgroups.
     Groups(Expr, Expr, Expr),
+    /// Three u32 in a buffer.
     Indirect(Reference),
 }
 

@@ -8,11 +8,14 @@ use super::{
 use crate::language::syntax::Reference;
 use serde::Deserialize;
 
-/// Body of a `Copy` pass.
+/// Copies a texture or buffer onto another of equal format and size.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct Copy {
+    /// Source; may be last frame's, `"history.previous"`.
     from: Reference,
+    /// Destination.
     to: Reference,
 }
 

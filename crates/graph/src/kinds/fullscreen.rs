@@ -8,16 +8,21 @@ use super::{
 use crate::{language::syntax::Expr, source::span::Located};
 use serde::Deserialize;
 
-/// Body of a `Fullscreen` pass.
+/// Runs a fragment shader once for each pixel of its targets.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct Fullscreen {
+    /// Colour attachments, in the order of the shader's locations.
     #[serde(default)]
     color: Vec<ColorEntry>,
+    /// Stencil attachment.
     #[serde(default)]
     stencil: Option<StencilEntry>,
+    /// The texels that are drawn, `(x, y, width, height)`; all without it.
     #[serde(default)]
     area: Option<Expr>,
+    /// The fragment entry point, where the shader has several.
     #[serde(default)]
     fragment: Option<Located<String>>,
 }

@@ -15,25 +15,35 @@ use crate::{
 };
 use serde::{Deserialize, Deserializer};
 
-/// Body of a `Raster` pass.
+/// One draw call, whose vertices the shader pulls by their index.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct Raster {
+    /// The number of vertices, or `Indirect("buffer")`: four u32 in a buffer.
     draw: Call,
+    /// How often they are drawn; once without it.
     #[serde(default)]
     instances: Option<Expr>,
+    /// Colour attachments, in the order of the shader's locations.
     #[serde(default)]
     color: Vec<ColorEntry>,
+    /// Depth attachment.
     #[serde(default)]
     depth: Option<DepthEntry>,
+    /// Stencil attachment.
     #[serde(default)]
     stencil: Option<StencilEntry>,
+    /// The texels that are drawn, `(x, y, width, height)`; all without it.
     #[serde(default)]
     area: Option<Expr>,
+    /// The triangles that are left out, none without it, or in quotes a `Choice` of `none`, `front`, `back`.
     #[serde(default = "no_culling")]
     cull: Chosen<Face>,
+    /// Which triangles show their front: `Ccw`, counter-clockwise ones, without it.
     #[serde(default)]
     front_face: Winding,
+    /// What vertices make; `TriangleList` without it.
     #[serde(default)]
     topology: Topology,
     /// Whether a pixel that a triangle touches anywhere counts, not only one whose centre it
@@ -43,8 +53,10 @@ pub(super) struct Raster {
     /// Whether what lies before the near or behind the far plane is drawn, its depth clamped.
     #[serde(default)]
     unclipped: bool,
+    /// The vertex entry point, where the shader has several.
     #[serde(default)]
     vertex: Option<Located<String>>,
+    /// The fragment entry point, where the shader has several.
     #[serde(default)]
     fragment: Option<Located<String>>,
 }
@@ -60,22 +72,31 @@ enum Call {
     Indirect(Reference),
 }
 
+#[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename = "draw")]
+pub(super) enum CallWords {
+    /// Four u32 in a buffer.
+    Indirect(Reference),
+}
+
 impl<'de> Deserialize<'de> for Call {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(rename = "draw")]
-        enum Words {
-            Indirect(Reference),
-        }
         let (text, _) = raw(deserializer)?;
         match text.starts_with(|c: char| c.is_alphabetic()) {
-            true => read(text).map(|Words::Indirect(buffer)| Self::Indirect(buffer)),
+            true => read(text).map(|CallWords::Indirect(buffer)| Self::Indirect(buffer)),
             false => read(text).map(Self::Vertices),
         }
     }
 }
 
+/// Which triangles are left out.
 #[derive(Clone, Copy, Debug, Deserialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "Cull")
+)]
 enum Face {
     None,
     Front,
@@ -89,14 +110,18 @@ const FACES: [(&str, Face); 3] = [
     ("back", Face::Back),
 ];
 
+/// Which triangles show their front.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 enum Winding {
     #[default]
     Ccw,
     Cw,
 }
 
+/// What vertices make.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 enum Topology {
     #[default]
     TriangleList,
@@ -164,3 +189,13 @@ impl PassKind for Raster {
         pass.step(Step::Draw(draw));
     }
 }
+
+#[cfg(feature = "schema")]
+crate::schema::written!(Call, "Call", generator => {
+    let count = generator.subschema_for::<Expr>();
+    let words = <CallWords as schemars::JsonSchema>::json_schema(generator);
+    schemars::json_schema!({
+        "description": "A number of vertices, or arguments in a buffer.",
+        "anyOf": [count, words],
+    })
+});

@@ -22,7 +22,14 @@ type Parse = fn(&[Field], &Span) -> Result<Arc<dyn PassKind>, Diagnostic>;
 pub(crate) struct Kind {
     pub name: &'static str,
     pub parse: Parse,
+    /// What its fields may be, where that was said.
+    #[cfg(feature = "schema")]
+    pub schema: Option<Described>,
 }
+
+/// What the fields of a kind may be.
+#[cfg(feature = "schema")]
+type Described = fn(&mut schemars::SchemaGenerator) -> schemars::Schema;
 
 /// The pass kinds that documents may use.
 #[derive(Default)]
@@ -39,6 +46,14 @@ impl Registry {
         registry.register::<Compute>("Compute");
         registry.register::<Copy>("Copy");
         registry.register::<Clear>("Clear");
+        #[cfg(feature = "schema")]
+        {
+            registry.describe::<Raster>("Raster");
+            registry.describe::<Fullscreen>("Fullscreen");
+            registry.describe::<Compute>("Compute");
+            registry.describe::<Copy>("Copy");
+            registry.describe::<Clear>("Clear");
+        }
         registry
     }
 
@@ -49,7 +64,30 @@ impl Registry {
         self.kinds.retain(|kind| kind.name != tag);
         let parse: Parse =
             |fields, whole| Ok(Arc::new(from_some_fields::<K>(fields, whole, &OF_PASS)?));
-        self.kinds.push(Kind { name: tag, parse });
+        self.kinds.push(Kind {
+            name: tag,
+            parse,
+            #[cfg(feature = "schema")]
+            schema: None,
+        });
+    }
+
+    /// Says for [`schema`](Self::schema) what the fields of a registered kind may be; those of
+    /// others are anything there.
+    #[cfg(feature = "schema")]
+    pub fn describe<K: schemars::JsonSchema>(&mut self, tag: &str) {
+        if let Some(kind) = self.kinds.iter_mut().find(|kind| kind.name == tag) {
+            kind.schema = Some(K::json_schema);
+        }
+    }
+
+    /// What documents of these kinds may be, as a JSON Schema (draft 2020-12). RON has no schemas
+    /// of its own; for it `Kind(field: value)` is `{"Kind": {"field": value}}`, a bare word is a
+    /// text, a tuple is a list. Which names there are, and what expressions come to, it does not
+    /// know: `skiagraph check` does.
+    #[cfg(feature = "schema")]
+    pub fn schema(&self) -> serde_json::Value {
+        crate::schema::document(&self.kinds)
     }
 
     pub(crate) fn get(&self, tag: &str) -> Option<&Kind> {

@@ -28,22 +28,30 @@ pub(super) struct ColorEntry {
     resolve: Option<Reference>,
 }
 
+/// A colour attachment.
+#[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub(super) struct ColorFields {
+    /// The texture, or one mip or layer of it.
+    target: Reference,
+    /// What is done to it before the first draw; cleared to zero without it.
+    #[serde(default)]
+    load: Option<Load>,
+    /// How what is drawn is mixed with what is there; it replaces it without this.
+    #[serde(default)]
+    blend: Option<Blend>,
+    /// The channels that are written, such as `rg`; all without it.
+    #[serde(default)]
+    write: WriteMask,
+    /// The texture that a multisampled target is resolved into.
+    #[serde(default)]
+    resolve: Option<Reference>,
+}
+
 impl<'de> Deserialize<'de> for ColorEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(deny_unknown_fields)]
-        struct Long {
-            target: Reference,
-            #[serde(default)]
-            load: Option<Load>,
-            #[serde(default)]
-            blend: Option<Blend>,
-            #[serde(default)]
-            write: WriteMask,
-            #[serde(default)]
-            resolve: Option<Reference>,
-        }
-        let long = |long: Long| Self {
+        let long = |long: ColorFields| Self {
             target: long.target,
             load: long.load,
             blend: long.blend,
@@ -61,7 +69,9 @@ impl<'de> Deserialize<'de> for ColorEntry {
     }
 }
 
+/// How what is drawn is mixed with what is there.
 #[derive(Clone, Copy, Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 enum Blend {
     Alpha,
     Premultiplied,
@@ -137,22 +147,30 @@ pub(super) struct DepthEntry {
     bias: BiasEntry,
 }
 
+/// A depth attachment.
+#[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub(super) struct DepthFields {
+    /// The texture, or one mip or layer of it.
+    target: Reference,
+    /// What is done to it before the first draw; cleared to one without it.
+    #[serde(default)]
+    load: Option<Load>,
+    /// Which depths pass; smaller ones without it.
+    #[serde(default)]
+    compare: Compare,
+    /// Whether depth is written.
+    #[serde(default = "yes")]
+    write: bool,
+    /// What the rasteriser adds to depth.
+    #[serde(default)]
+    bias: BiasEntry,
+}
+
 impl<'de> Deserialize<'de> for DepthEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(deny_unknown_fields)]
-        struct Long {
-            target: Reference,
-            #[serde(default)]
-            load: Option<Load>,
-            #[serde(default)]
-            compare: Compare,
-            #[serde(default = "yes")]
-            write: bool,
-            #[serde(default)]
-            bias: BiasEntry,
-        }
-        let long = |long: Long| Self {
+        let long = |long: DepthFields| Self {
             target: long.target,
             load: long.load,
             compare: long.compare,
@@ -176,31 +194,51 @@ fn yes() -> bool {
 
 /// Depth bias of the rasteriser, as wgpu defines it.
 #[derive(Clone, Debug, Default, Deserialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "Bias")
+)]
 #[serde(deny_unknown_fields)]
 struct BiasEntry {
+    /// In steps of the format.
     #[serde(default)]
     constant: i32,
+    /// Times the triangle's greatest slope.
     #[serde(default)]
     slope_scale: Option<Expr>,
+    /// Most that is added; no bound where it is 0.
     #[serde(default)]
     clamp: f32,
 }
 
 /// A stencil attachment: `(target: "ds", load: …, front: …, back: …, …)`.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "Stencil")
+)]
 #[serde(deny_unknown_fields)]
 pub(super) struct StencilEntry {
+    /// The texture, or one mip or layer of it; the depth attachment's, where there are both.
     target: Reference,
+    /// What is done to it before the first draw; cleared to zero without it.
     #[serde(default)]
     load: Option<Load>,
+    /// Triangles that show their front.
     #[serde(default)]
     front: FaceEntry,
+    /// Triangles that show their back.
     #[serde(default)]
     back: FaceEntry,
+    /// The bits that are compared.
     #[serde(default = "all_ones")]
     read_mask: u32,
+    /// The bits that are written.
     #[serde(default = "all_ones")]
     write_mask: u32,
+    /// What is compared with and written by `Replace`; 0 without it.
     #[serde(default)]
     reference: Option<Expr>,
 }
@@ -211,14 +249,23 @@ fn all_ones() -> u32 {
 
 /// Test and operations of one side.
 #[derive(Clone, Copy, Debug, Deserialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "StencilFace")
+)]
 #[serde(deny_unknown_fields)]
 struct FaceEntry {
+    /// The test of `reference` against what is stored; `Always` without it.
     #[serde(default = "always")]
     compare: Compare,
+    /// What is done where the test fails; `Keep` without it, as below.
     #[serde(default)]
     fail: StencilOperation,
+    /// Where it passes and that of depth fails.
     #[serde(default)]
     depth_fail: StencilOperation,
+    /// Where both pass.
     #[serde(default)]
     pass: StencilOperation,
 }
@@ -238,8 +285,9 @@ fn always() -> Compare {
     Compare::Always
 }
 
-/// wgpu's `StencilOperation`, which has the same names.
+/// What is done to a stencil value; wgpu's names.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 enum StencilOperation {
     #[default]
     Keep,
@@ -376,4 +424,18 @@ pub(super) fn area(entry: &Expr, pass: &mut Lowering<'_>) -> Option<[u32; 4]> {
         pass.report(DocumentError::Area(entry.span.clone()).diagnostic());
     }
     area
+}
+
+#[cfg(feature = "schema")]
+mod schema {
+    use super::{ColorEntry, ColorFields, DepthEntry, DepthFields, WriteMask};
+    use crate::schema::{short_or_long, written};
+    use schemars::json_schema;
+
+    short_or_long!(ColorEntry, "Color", ColorFields);
+    short_or_long!(DepthEntry, "Depth", DepthFields);
+    written!(WriteMask, "Channels", _generator => json_schema!({
+        "description": "`true`, `false`, or channels: `rg`.",
+        "anyOf": [{ "type": "boolean" }, { "type": "string", "pattern": "^[rgba]+$" }],
+    }));
 }

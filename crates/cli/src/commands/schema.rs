@@ -1,0 +1,32 @@
+//! `skiagraph schema`: what documents may be, for editors and for readers.
+
+use crate::args::commands::{SchemaArgs, SchemaFormat};
+use crate::error::CliError;
+use crate::reporting::language;
+use crate::terminal::console::print;
+
+/// Prints the JSON Schema of documents, or the reference of the language.
+///
+/// # Errors
+/// Standard output.
+pub fn schema(args: &SchemaArgs) -> Result<(), CliError> {
+    let schema = skiagraph_passes::registry().schema();
+    match args.format {
+        SchemaFormat::Json => print(&format!("{schema:#}\n")),
+        SchemaFormat::Markdown => print(&language::markdown(&schema)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_reference_of_the_language_is_that_of_its_types() {
+        let written = include_str!("../../../../docs/reference.md");
+        let page = crate::reporting::language::markdown(&skiagraph_passes::registry().schema());
+        let same = written == page;
+        assert!(
+            same,
+            "skiagraph schema --format markdown > docs/reference.md"
+        );
+    }
+}

@@ -1,0 +1,252 @@
+//! The reference of the language, in Markdown, from the JSON Schema of documents.
+
+use serde_json::{Map, Value};
+use std::collections::BTreeSet;
+
+/// What is said before the tables.
+const HEAD: &str = "# The language of documents: reference
+
+Format 2, as the types that read it have it: `skiagraph schema --format markdown` made this page,
+`skiagraph schema` is the same as a JSON Schema. [Writing a graph](authoring.md) explains it.
+
+Fields in **bold** must be given; the others may be left out.
+";
+
+/// The reference of the language that a schema of documents describes.
+pub fn markdown(schema: &Value) -> String {
+    let mut page = Page {
+        text: HEAD.to_owned(),
+        defs: &schema["$defs"],
+        told: BTreeSet::new(),
+    };
+    page.heading("## Document");
+    page.table(schema, &BTreeSet::new());
+    for section in ["params", "inputs", "materials"] {
+        page.heading(&format!("## `{section}`"));
+        page.tags(&schema["properties"][section]);
+    }
+    page.heading("## `passes`");
+    for common in ["EveryEntry", "EveryPass"] {
+        page.description(&page.defs[common]);
+        page.table(&page.defs[common], &BTreeSet::new());
+        page.told.insert(common.to_owned());
+    }
+    page.tags(&page.defs["Entries"]);
+    page.heading("## Values");
+    page.values();
+    page.text
+}
+
+struct Page<'s> {
+    text: String,
+    defs: &'s Value,
+    /// Names of definitions that have a heading of their own already.
+    told: BTreeSet<String>,
+}
+
+impl<'s> Page<'s> {
+    fn heading(&mut self, heading: &str) {
+        self.text += &format!("\n{heading}\n");
+    }
+
+    fn description(&mut self, of: &Value) {
+        if let Some(description) = of["description"].as_str() {
+            self.prose(description);
+        }
+    }
+
+    fn prose(&mut self, text: &str) {
+        self.text += &format!("\n{}\n", wrapped(text, ""));
+    }
+
+    /// The fields of a struct but those that it has in common with others, those first that must be
+    /// given.
+    fn table(&mut self, of: &Value, common: &BTreeSet<&String>) {
+        let fields = of["properties"].as_object();
+        let must = |name: &str| {
+            let required = of["required"].as_array();
+            required.is_some_and(|required| required.iter().any(|field| field == name))
+        };
+        let own = |(name, _): &(&String, &Value)| !common.contains(name);
+        let mut fields: Vec<_> = fields.into_iter().flatten().filter(own).collect();
+        if fields.is_empty() {
+            return;
+        }
+        fields.sort_by_key(|(name, _)| !must(name));
+        self.text += "\n| field | value | |\n|---|---|---|\n";
+        for (name, schema) in fields {
+            let name = match must(name) {
+                true => format!("**`{name}`**"),
+                false => format!("`{name}`"),
+            };
+            let value = self.value(schema);
+            let what = schema["description"].as_str().unwrap_or_default();
+            let row = [name, value, what.to_owned()].map(|cell| cell.replace('|', "\\|"));
+            self.text += &format!("| {} |\n", row.join(" | "));
+        }
+    }
+
+    /// The entries of a list of `Tag(…)`, those together that are described by the same.
+    fn tags(&mut self, list: &Value) {
+        let defs = self.defs;
+        let mut groups: Vec<(Vec<&str>, &str)> = Vec::new();
+        for (tag, fields) in list["items"]["properties"]
+            .as_object()
+            .into_iter()
+            .flatten()
+        {
+            let name = named(fields).unwrap_or_default();
+            match groups.last_mut().filter(|(_, last)| *last == name) {
+                Some((tags, _)) => tags.push(tag),
+                None => groups.push((vec![tag], name)),
+            }
+        }
+        let common = ["EveryEntry", "EveryPass"].map(|name| &defs[name]["properties"]);
+        for (tags, name) in groups {
+            let of = &defs[name];
+            let tags: Vec<String> = tags.iter().map(|tag| format!("`{tag}`")).collect();
+            self.heading(&format!("### {}", tags.join(", ")));
+            self.description(of);
+            let has = |common: &&Value| {
+                let mut names = common.as_object().into_iter().flat_map(Map::keys);
+                names.all(|name| of["properties"].get(name).is_some())
+            };
+            let names = common.iter().copied().filter(has);
+            let names = names.filter_map(Value::as_object).flat_map(Map::keys);
+            self.table(of, &names.collect());
+            self.told.insert(name.to_owned());
+        }
+    }
+
+    /// What stands in fields: every definition that has not been told of.
+    fn values(&mut self) {
+        let defs = self.defs.as_object();
+        for (name, of) in defs.into_iter().flatten() {
+            if self.told.contains(name) || name == "Entries" {
+                continue;
+            }
+            self.heading(&format!("### {name}"));
+            self.description(of);
+            let alternatives = either(of);
+            if of["properties"].is_object() {
+                self.table(of, &BTreeSet::new());
+            } else if let Some(words) = of["enum"].as_array() {
+                let words: Vec<String> = words.iter().map(quoted).collect();
+                self.prose(&words.join(", "));
+            } else {
+                for one in alternatives.into_iter().flatten() {
+                    self.alternative(one);
+                }
+            }
+        }
+    }
+
+    /// One of several things that a value may be: an item of a list, or a table.
+    fn alternative(&mut self, one: &Value) {
+        if one["properties"].is_object() && variant(one).is_none() {
+            self.text += "\nOr with fields, `(name: …)`:\n";
+            return self.table(one, &BTreeSet::new());
+        }
+        let value = self.value(one);
+        let what = one["description"].as_str();
+        let what = what.map_or_else(String::new, |what| format!(": {what}"));
+        // A list begins after an empty line.
+        let is_in_list = |last: &str| last.starts_with("- ") || last.starts_with("  ");
+        let gap = match self.text.lines().last().is_some_and(is_in_list) {
+            true => "",
+            false => "\n",
+        };
+        self.text += &format!("{gap}- {}\n", wrapped(&format!("{value}{what}"), "  "));
+    }
+
+    /// What a value may be, in a few words.
+    fn value(&self, of: &Value) -> String {
+        if let Some(name) = named(of) {
+            return match name {
+                "Entries" => "list of entries".to_owned(),
+                _ => format!("[{name}](#{})", name.to_lowercase()),
+            };
+        }
+        if let Some(constant) = of.get("const") {
+            return quoted(constant);
+        }
+        if let Some(words) = of["enum"].as_array() {
+            return words.iter().map(quoted).collect::<Vec<_>>().join(", ");
+        }
+        if let Some(several) = either(of) {
+            let several: Vec<String> = several.iter().map(|one| self.value(one)).collect();
+            return several.join(" or ");
+        }
+        if let Some((tag, inner)) = variant(of) {
+            return match inner["prefixItems"].as_array() {
+                Some(parts) => {
+                    let parts: Vec<String> = parts.iter().map(|part| self.value(part)).collect();
+                    format!("`{tag}`({})", parts.join(", "))
+                }
+                None => format!("`{tag}`({})", self.value(inner)),
+            };
+        }
+        match of["type"].as_str() {
+            Some("array") if of["items"]["properties"].is_object() => {
+                let tags = of["items"]["properties"].as_object().into_iter().flatten();
+                let tags: Vec<String> = tags.map(|(tag, _)| format!("`{tag}`")).collect();
+                format!("list of {}", tags.join(", "))
+            }
+            Some("array") => format!("list of {}", self.value(&of["items"])),
+            Some("object") => format!(
+                "map of names to {}",
+                self.value(&of["additionalProperties"])
+            ),
+            Some("boolean") => "`true`, `false`".to_owned(),
+            Some("integer") => "whole number".to_owned(),
+            Some("number") => "number".to_owned(),
+            Some("string") if of["not"].is_object() => "expression in quotes".to_owned(),
+            _ => "text".to_owned(),
+        }
+    }
+}
+
+/// The name of the definition that a schema refers to.
+fn named(of: &Value) -> Option<&str> {
+    of["$ref"].as_str()?.strip_prefix("#/$defs/")
+}
+
+/// The tag and body of `Tag(…)`.
+fn variant(of: &Value) -> Option<(&str, &Value)> {
+    let fields = of["properties"].as_object()?;
+    let (tag, body) = fields.iter().next()?;
+    let is_tag = fields.len() == 1 && tag.starts_with(|c: char| c.is_uppercase());
+    is_tag.then_some((tag, body))
+}
+
+/// The alternatives that a value has.
+fn either(of: &Value) -> Option<&Vec<Value>> {
+    ["anyOf", "oneOf"]
+        .iter()
+        .find_map(|key| of[*key].as_array())
+}
+
+/// Text in lines of at most 100 columns, those after the first indented.
+fn wrapped(text: &str, indent: &str) -> String {
+    let (mut lines, mut width) = (String::new(), indent.len());
+    for word in text.split(' ') {
+        let letters = word.chars().count();
+        if width + 1 + letters > 100 {
+            lines += &format!("\n{indent}");
+            width = indent.len();
+        } else if !lines.is_empty() {
+            lines.push(' ');
+            width += 1;
+        }
+        lines += word;
+        width += letters;
+    }
+    lines
+}
+
+fn quoted(word: &Value) -> String {
+    match word.as_str() {
+        Some(word) => format!("`{word}`"),
+        None => format!("`{word}`"),
+    }
+}

@@ -1,0 +1,380 @@
+//! What documents may be, as a JSON Schema made from the types that read them.
+
+use crate::{
+    document::{
+        entries::{Header, IncludeFields, PassFields},
+        extend::PLACES,
+        fields::{Chosen, Load},
+        materials::{
+            BufferEntry, BufferInput, Data, FORMATS, FormatEntry, Mips, SamplerEntry, SamplerInput,
+            TextureEntry, TextureInput,
+        },
+        params::{ParamFields, TYPES},
+        raw::{FORMAT, SECTIONS},
+        typed::{ClaimEntry, ClaimFields, Output, OutputFields},
+    },
+    kinds::registry::Kind,
+    language::{
+        name::Name,
+        syntax::{Expr, Reference},
+    },
+    source::span::Located,
+};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde_json::{Map, Value, json};
+use std::borrow::Cow;
+
+/// A word of the language, to which a text in quotes is no alternative.
+const WORD: &str = "^[A-Z][A-Za-z0-9]*$";
+
+/// A type that reads itself from text: its name and what it may be.
+macro_rules! written {
+    ($type:ty, $name:literal, $generator:ident => $schema:expr) => {
+        impl schemars::JsonSchema for $type {
+            fn schema_name() -> std::borrow::Cow<'static, str> {
+                $name.into()
+            }
+            fn json_schema($generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+                $schema
+            }
+        }
+    };
+}
+pub(crate) use written;
+
+/// The same for one that is a reference alone, or has fields.
+macro_rules! short_or_long {
+    ($type:ty, $name:literal, $long:ty) => {
+        $crate::schema::written!($type, $name, generator => {
+            let long = <$long>::json_schema(generator);
+            let reference = generator.subschema_for::<$crate::Reference>();
+            schemars::json_schema!({ "anyOf": [reference, long] })
+        });
+    };
+}
+pub(crate) use short_or_long;
+
+impl<T: JsonSchema> JsonSchema for Located<T> {
+    fn inline_schema() -> bool {
+        T::inline_schema()
+    }
+    fn schema_name() -> Cow<'static, str> {
+        T::schema_name()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        T::json_schema(generator)
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for Chosen<T> {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        T::schema_name()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let word = generator.subschema_for::<T>();
+        json_schema!({ "anyOf": [word, { "type": "string", "not": { "pattern": WORD } }] })
+    }
+}
+
+written!(Name, "Name", _generator => json_schema!({
+    "description": "Small letters, digits and `_`; it begins with a letter and has no `__`. In a \
+        shader it is the same.",
+    "type": "string",
+    "pattern": "^[a-z](_?[a-z0-9])*_?$",
+}));
+
+written!(Reference, "Reference", _generator => json_schema!({
+    "description": "A material or a part of one: `\"image\"`, `\"maps[2]\"`, `\"maps[0..2]\"`, \
+        `\"image.mip[1]\"`, `\"left.position\"`, `\"history.previous\"`.",
+    "type": "string",
+}));
+
+written!(Expr, "Expression", generator => {
+    let part = generator.subschema_for::<Self>();
+    json_schema!({
+        "description": "A number, `true` or `false`, a word, a tuple of these, or an expression in \
+            quotes: `\"ceil_div(viewport.width, 2)\"`.",
+        "type": ["number", "boolean", "string", "array"],
+        "items": part,
+    })
+});
+
+written!(Load, "Load", generator => {
+    let value = generator.subschema_for::<Expr>();
+    json_schema!({
+        "description": "What is done to an attachment before the first draw.",
+        "oneOf": [
+            { "const": "Load", "description": "Keeps what is there." },
+            {
+                "type": "object",
+                "description": "One value for all channels, or four.",
+                "properties": { "Clear": value },
+                "required": ["Clear"],
+                "additionalProperties": false,
+            },
+        ],
+    })
+});
+
+written!(Mips, "Mips", generator => {
+    let number = generator.subschema_for::<Expr>();
+    json_schema!({
+        "description": "A number of mips, or `All`: down to one texel.",
+        "anyOf": [{ "const": "All" }, number],
+    })
+});
+
+written!(FormatEntry, "Format", _generator => json_schema!({
+    "description": "A format by wgpu's name, or another's: `\"image.format\"`.",
+    "anyOf": [
+        { "type": "string", "enum": FORMATS },
+        { "type": "string", "not": { "pattern": WORD } },
+    ],
+}));
+
+written!(Data, "Data", _generator => json_schema!({
+    "description": "Numbers, or tuples of them, one per scalar of the shader's type.",
+    "type": "array",
+    "items": { "type": ["number", "array"] },
+}));
+
+short_or_long!(Output, "Output", OutputFields);
+
+written!(ClaimEntry, "Claim", generator => {
+    let long = ClaimFields::json_schema(generator);
+    let condition = generator.subschema_for::<Expr>();
+    json_schema!({ "anyOf": [condition, long] })
+});
+
+/// What documents of these kinds may be.
+pub(crate) fn document(kinds: &[Kind]) -> Value {
+    let mut generator = SchemaGenerator::default();
+    let mut sections = Map::new();
+    let mut kinds = Kinds {
+        kinds,
+        generator: &mut generator,
+        entries: Map::new(),
+    };
+    for (name, description) in SECTIONS {
+        let mut schema = kinds.section(name);
+        schema["description"] = description.into();
+        sections.insert(name.to_owned(), schema);
+    }
+    let entries = kinds.entries;
+    let mut defs = generator.take_definitions(true);
+    defs.extend(entries);
+    let mut document = json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Skiagraph document",
+        "type": "object",
+        "properties": sections,
+        "required": ["format"],
+        "additionalProperties": false,
+        "$defs": defs,
+    });
+    plain(&mut document);
+    document
+}
+
+/// What may be left out need not be null, too; descriptions have no line breaks.
+fn plain(schema: &mut Value) {
+    match schema {
+        Value::Object(fields) => {
+            if let Some(Value::String(description)) = fields.get_mut("description") {
+                *description = description.replace('\n', " ");
+            }
+            if let Some(Value::Array(types)) = fields.get_mut("type") {
+                types.retain(|name| name != "null");
+                if let [one] = &types[..] {
+                    let one = one.clone();
+                    fields["type"] = one;
+                }
+            }
+            if let Some(Value::Array(several)) = fields.get_mut("anyOf") {
+                several.retain(|one| one["type"] != "null");
+                if let [Value::Object(one)] = &several[..] {
+                    let one = one.clone();
+                    fields.remove("anyOf");
+                    for (name, value) in one {
+                        fields.entry(name).or_insert(value);
+                    }
+                }
+            }
+            fields.values_mut().for_each(plain);
+        }
+        Value::Array(parts) => parts.iter_mut().for_each(plain),
+        _ => {}
+    }
+}
+
+fn reference(name: &str) -> Value {
+    json!({ "$ref": format!("#/$defs/{name}") })
+}
+
+/// A list of `Tag(…)`, each with what its fields may be.
+fn tagged(tags: impl IntoIterator<Item = (String, Value)>) -> Value {
+    json!({
+        "type": "array",
+        "items": {
+            "type": "object",
+            "properties": Map::from_iter(tags),
+            "minProperties": 1,
+            "maxProperties": 1,
+            "additionalProperties": false,
+        },
+    })
+}
+
+struct Kinds<'k> {
+    kinds: &'k [Kind],
+    generator: &'k mut SchemaGenerator,
+    /// What entries of `passes` may be, and what they have in common.
+    entries: Map<String, Value>,
+}
+
+impl Kinds<'_> {
+    fn of<T: JsonSchema>(&mut self) -> Value {
+        self.generator.subschema_for::<T>().to_value()
+    }
+
+    fn list<T: JsonSchema>(&mut self) -> Value {
+        self.of::<Vec<T>>()
+    }
+
+    fn map<T: JsonSchema>(&mut self) -> Value {
+        json!({ "type": "object", "additionalProperties": self.of::<T>() })
+    }
+
+    fn section(&mut self, name: &str) -> Value {
+        match name {
+            "format" => json!({ "const": FORMAT }),
+            "requires" => self.list::<String>(),
+            "params" => {
+                let fields = self.of::<ParamFields>();
+                tagged(TYPES.map(|tag| (tag.to_owned(), fields.clone())))
+            }
+            "set" => self.map::<Expr>(),
+            "inputs" => tagged([
+                ("Texture".to_owned(), self.of::<TextureInput>()),
+                ("Buffer".to_owned(), self.of::<BufferInput>()),
+                ("Sampler".to_owned(), self.of::<SamplerInput>()),
+            ]),
+            "materials" => tagged([
+                ("Texture".to_owned(), self.of::<TextureEntry>()),
+                ("Buffer".to_owned(), self.of::<BufferEntry>()),
+                ("Sampler".to_owned(), self.of::<SamplerEntry>()),
+            ]),
+            "passes" => self.passes(),
+            "outputs" => self.list::<Output>(),
+            "lights" => self.list::<Name>(),
+            "claims" => self.map::<ClaimEntry>(),
+            // `extends`, `description`
+            _ => json!({ "type": "string" }),
+        }
+    }
+
+    fn passes(&mut self) -> Value {
+        let every_entry = self.every_entry();
+        let every_pass = self.fields::<PassFields>("What every pass has.");
+        let mut tags = Vec::new();
+        let mut entry = |tag: &str, own: Value, common: &[&Value], entries: &mut Map<_, _>| {
+            entries.insert(tag.to_owned(), joined(tag, own, common));
+            tags.push((tag.to_owned(), reference(tag)));
+        };
+        for kind in self.kinds {
+            let any = || json_schema!({ "type": "object", "additionalProperties": true });
+            let schema = kind.schema.map_or_else(any, |of| of(self.generator));
+            let common = [&every_entry, &every_pass];
+            entry(kind.name, schema.to_value(), &common, &mut self.entries);
+        }
+        let include = IncludeFields::json_schema(self.generator).to_value();
+        let group = json!({
+            "description": "Entries that have a name, a condition, a repetition in common.",
+            "type": "object",
+            "properties": {
+                "passes": { "description": "The entries.", "$ref": "#/$defs/Entries" },
+            },
+            "required": ["passes"],
+            "additionalProperties": false,
+        });
+        let path = json!({ "description": "Its path: `\"blur.x\"` is `x` of the group `blur`.",
+            "type": "string" });
+        let change = json!({
+            "description": "An entry of the extended document gets other fields, and more.",
+            "type": "object",
+            "properties": { "pass": path },
+            "required": ["pass"],
+            "additionalProperties": true,
+        });
+        let remove = json!({
+            "description": "An entry of the extended document is left out.",
+            "type": "object",
+            "properties": { "pass": path },
+            "required": ["pass"],
+            "additionalProperties": false,
+        });
+        entry("Include", include, &[&every_entry], &mut self.entries);
+        entry("Group", group, &[&every_entry], &mut self.entries);
+        entry("Change", change, &[], &mut self.entries);
+        entry("Remove", remove, &[], &mut self.entries);
+        let mut list = tagged(tags);
+        list["description"] = "Entries, in order.".into();
+        self.entries.insert("Entries".to_owned(), list);
+        self.entries.insert("EveryEntry".to_owned(), every_entry);
+        self.entries.insert("EveryPass".to_owned(), every_pass);
+        reference("Entries")
+    }
+
+    /// What a type's fields may be, with another sentence about them.
+    fn fields<T: JsonSchema>(&mut self, description: &str) -> Value {
+        let mut fields = T::json_schema(self.generator).to_value();
+        fields["description"] = description.into();
+        fields
+    }
+
+    /// What every entry has: the fields that are read with it, its maps, and its place in an edit.
+    fn every_entry(&mut self) -> Value {
+        let mut every = self.fields::<Header>("What every entry has.");
+        let properties = &mut every["properties"];
+        properties["bind"] = self.map::<Reference>();
+        properties["bind"]["description"] =
+            "Other materials for globals of the shader, or inputs of the document.".into();
+        properties["set"] = self.map::<Expr>();
+        properties["set"]["description"] =
+            "Values of the shader's params and constants, or the document's params.".into();
+        for place in PLACES {
+            let description = format!(
+                "In an edit: the entry that this one stands {place}{}.",
+                if place == "instead" { " of" } else { "" }
+            );
+            properties[place] = json!({ "description": description, "type": "string" });
+        }
+        every
+    }
+}
+
+/// Fields of an entry with those that it has in common with others. Only an include need have no
+/// name.
+fn joined(tag: &str, mut own: Value, common: &[&Value]) -> Value {
+    let Some(fields) = own.as_object_mut() else {
+        return own;
+    };
+    let properties = fields.entry("properties").or_insert_with(|| json!({}));
+    for more in common {
+        let more = more["properties"].as_object();
+        for (name, schema) in more.into_iter().flatten() {
+            properties[name] = schema.clone();
+        }
+    }
+    if !common.is_empty() && tag != "Include" {
+        let required = fields.entry("required").or_insert_with(|| json!([]));
+        required
+            .as_array_mut()
+            .into_iter()
+            .for_each(|it| it.push("name".into()));
+    }
+    own
+}

@@ -77,6 +77,41 @@ fn comment(text: &[u8]) -> usize {
     }
 }
 
+/// What a text declares.
+#[derive(Default)]
+pub(super) struct Declared<'t> {
+    /// Fields of its structs.
+    pub fields: Vec<&'t str>,
+    /// Functions, variables, constants, types, arguments.
+    pub names: Vec<&'t str>,
+}
+
+impl<'t> Declared<'t> {
+    pub fn of(text: &'t str) -> Self {
+        const BEFORE_A_NAME: [&str; 8] = [
+            "fn", "let", "var", "const", "override", "struct", "alias", ">",
+        ];
+        let (mut declared, mut at, mut is_struct) = (Self::default(), 0, false);
+        let (mut before, mut last) = ("", "");
+        while let Some((length, token)) = next(&text[at..]) {
+            at += length;
+            match token {
+                "struct" => is_struct = true,
+                "}" => is_struct = false,
+                ":" if is_struct => declared.fields.push(last),
+                // `for (var<private> name: …`, `fn f(name: …`, `let name = …`, `fn name(…`
+                ":" | "=" | "(" | "{" if BEFORE_A_NAME.contains(&before) => {
+                    declared.names.push(last);
+                }
+                ":" => declared.names.push(last),
+                _ => {}
+            }
+            (before, last) = (last, token);
+        }
+        declared
+    }
+}
+
 /// Where `word` stands in `text` as a whole word.
 pub(super) fn words<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = usize> + 'a {
     let is_part = |c: char| c.is_alphanumeric() || c == '_';

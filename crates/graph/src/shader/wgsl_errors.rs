@@ -1,7 +1,14 @@
 //! naga's errors as ours, at the author's places.
 
-use super::{expand::Expanded, text::words};
-use crate::{errors::shader::ShaderError, source::span::Span};
+use super::{
+    expand::Expanded,
+    text::{Declared, words},
+};
+use crate::{
+    diagnostics::suggest::{likeness, suggestion},
+    errors::shader::ShaderError,
+    source::span::Span,
+};
 use naga::{
     Handle,
     common::wgsl::TypeContext,
@@ -64,7 +71,22 @@ pub(super) fn parse_error(error: &naga::front::wgsl::ParseError, source: &Expand
         file: blamed(&places, source),
         what: format!("does not compile: {}", error.message()),
         places,
-        notes: error.notes().map(str::to_owned).collect(),
+        notes: error
+            .notes()
+            .map(str::to_owned)
+            .chain(meant(error.message(), &source.text))
+            .collect(),
+    }
+}
+
+/// What may have been meant by a field or name that there is not.
+fn meant(message: &str, text: &str) -> Option<String> {
+    let word = message.split('`').nth(1)?;
+    let declared = Declared::of(text);
+    match message.split('`').next()? {
+        "invalid field accessor " => suggestion(word, declared.fields),
+        "no definition in scope for identifier: " => likeness(word, declared.names),
+        _ => None,
     }
 }
 
@@ -146,6 +168,29 @@ fn plainly(error: &ValidationError, module: &naga::Module) -> Option<String> {
     }
 }
 
+/// The place of what has a type that is written where it is used.
+fn user_of(ty: Handle<naga::Type>, module: &naga::Module, source: &Expanded) -> Option<Span> {
+    let located = |span: naga::Span| Some(source.locate(span.to_range()?));
+    let mut globals = module.global_variables.iter();
+    if let Some((global, _)) = globals.find(|(_, global)| global.ty == ty) {
+        return located(module.global_variables.get_span(global));
+    }
+    let functions = module.functions.iter().map(|(_, function)| function);
+    let mut functions = functions.chain(module.entry_points.iter().map(|entry| &entry.function));
+    functions.find_map(|function| {
+        let mut locals = function.local_variables.iter();
+        if let Some((local, _)) = locals.find(|(_, local)| local.ty == ty) {
+            return located(function.local_variables.get_span(local));
+        }
+        let arguments = function.arguments.iter().map(|argument| argument.ty);
+        let mut types = arguments.chain(function.result.iter().map(|result| result.ty));
+        let name = function.name.as_deref()?;
+        types
+            .any(|it| it == ty)
+            .then(|| function_span(source, name))
+    })
+}
+
 pub(super) fn validation_error(
     error: &naga::WithSpan<ValidationError>,
     module: &naga::Module,
@@ -190,6 +235,9 @@ pub(super) fn validation_error(
         let place = match (span.to_range(), error.as_inner()) {
             (Some(range), _) => source.locate(range),
             (None, V::EntryPoint { name, .. }) => function_span(source, name),
+            (None, V::Type { handle, .. }) => {
+                user_of(*handle, module, source).unwrap_or_else(|| source.file.span(0..0))
+            }
             (None, _) => source.file.span(0..0),
         };
         places.push((place, String::new()));

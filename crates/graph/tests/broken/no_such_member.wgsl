@@ -1,0 +1,6 @@
+struct Params { gain: f32 }
+var<uniform> params: Params;
+
+@fragment fn fragment() -> @location(0) f32 {
+    return params.gian;
+}

@@ -1,5 +1,6 @@
 //! Numbers, suggestions and command lines in words.
 
+use skiagraph_graph::diagnostics::closest;
 use std::ffi::OsString;
 
 /// Three significant digits or milliseconds to the microsecond, whichever is shorter.
@@ -71,16 +72,6 @@ pub fn frames(count: u32) -> String {
 /// Width and height in pixels: `512x256`.
 pub fn size([width, height]: [u32; 2]) -> String {
     format!("{width}x{height}")
-}
-
-/// The name most like `wanted`, if one is like it at all.
-pub fn closest<'a>(wanted: &str, names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    names
-        .map(|name| (strsim::damerau_levenshtein(wanted, name), name))
-        // A third of the letters wrong is a misspelling, more is another word.
-        .filter(|(distance, name)| *distance <= wanted.len().max(name.len()).div_ceil(3))
-        .min()
-        .map(|(_, name)| name)
 }
 
 /// What goes behind a message about a name that is not there: the [`closest`] one, if any.

@@ -6,6 +6,7 @@ use crate::error::CliError;
 use crate::graphs::preset::Preset;
 use crate::wording::did_you_mean;
 use skiagraph_graph::ParamType;
+use std::path::Path;
 
 /// The param that `--map-size` sets.
 pub const MAP_SIZE: &str = "map_size";
@@ -26,7 +27,8 @@ impl MethodArgument {
     /// Of a word of the command line. A comma also stands in the values of vectors, so that what
     /// has no `=` belongs to the value before it.
     pub fn new(word: &str) -> Self {
-        let split = word.split_once('@');
+        // Folders have any name.
+        let split = word.split_once('@').filter(|_| !Path::new(word).is_file());
         let Some((preset, own)) = split.filter(|(name, own)| !name.is_empty() && own.contains('='))
         else {
             return Self {
@@ -222,6 +224,17 @@ mod tests {
             [""],
             "rt has no such param"
         );
+    }
+
+    #[test]
+    fn a_file_below_a_folder_of_any_name_has_no_setting() {
+        let folder = tempfile::tempdir().unwrap();
+        let odd = folder.path().join("dir@a=b");
+        std::fs::create_dir(&odd).unwrap();
+        std::fs::write(odd.join("x.ron"), "").unwrap();
+        let word = odd.join("x.ron").display().to_string();
+        let argument = MethodArgument::new(&word);
+        assert_eq!((argument.preset, argument.own.len()), (word, 0));
     }
 
     #[test]

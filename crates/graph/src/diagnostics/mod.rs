@@ -15,4 +15,4 @@ pub use diagnostic::{Diagnostic, Label, Severity};
 pub use list::Diagnostics;
 #[cfg(feature = "render")]
 pub use render::render;
-pub use suggest::suggestion;
+pub use suggest::{closest, suggestion};

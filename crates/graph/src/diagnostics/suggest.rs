@@ -1,30 +1,39 @@
 //! "Did you mean …?"
 
+/// Names that a misspelt one is compared with: a document may hold thousands, and as many mistakes.
+const COMPARED: usize = 1024;
+
+/// Bytes of a name that can be compared, which takes time by the square, and that is worth a place
+/// in a list.
+const LONGEST: usize = 80;
+
+/// Names in a list.
+const SHOWN: usize = 16;
+
+/// The name that a misspelt `word` is most like, if it is like one at all.
+pub fn closest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
+    if word.len() > LONGEST {
+        return None;
+    }
+    let known = known.into_iter().filter(|name| name.len() <= LONGEST);
+    let likeness = known
+        .take(COMPARED)
+        .map(|name| (strsim::jaro_winkler(word, name), name));
+    // Below 0.8 two short names share little more than a letter or two; a list helps more than a
+    // wild guess.
+    let like = likeness.filter(|(likeness, _)| *likeness >= 0.8);
+    let best = like.max_by(|a, b| a.0.total_cmp(&b.0));
+    best.map(|(_, name)| name)
+}
+
 /// "did you mean …" for a misspelt `word`, or the list of what is known.
 pub fn suggestion<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) -> Option<String> {
-    /// Names that a misspelt one is compared with: a document may hold thousands, and as many
-    /// mistakes.
-    const COMPARED: usize = 1024;
-    /// Bytes of a name that can be compared, which takes time by the square, and that is worth a
-    /// place in a list.
-    const LONGEST: usize = 80;
-    /// Names in a list.
-    const SHOWN: usize = 16;
     let known: Vec<S> = known.into_iter().collect();
     let count = known.len();
     let short = |name: &&str| name.len() <= LONGEST;
     let known: Vec<&str> = known.iter().map(AsRef::as_ref).filter(short).collect();
-    if word.len() <= LONGEST {
-        let best = known
-            .iter()
-            .take(COMPARED)
-            .map(|name| (strsim::jaro_winkler(word, name), *name))
-            .max_by(|a, b| a.0.total_cmp(&b.0));
-        // Below 0.8 two short names share little more than a letter or two; a list helps more than
-        // a wild guess.
-        if let Some((_, name)) = best.filter(|(likeness, _)| *likeness >= 0.8) {
-            return Some(format!("did you mean `{name}`?"));
-        }
+    if let Some(name) = closest(word, known.iter().copied()) {
+        return Some(format!("did you mean `{name}`?"));
     }
     if known.is_empty() {
         return None;

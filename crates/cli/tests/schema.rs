@@ -162,7 +162,18 @@ fn every_preset_is_a_document() {
             count += 1;
         }
     }
-    assert!(count > 30, "{count} documents");
+    assert!(count > 25, "{count} documents");
+}
+
+#[test]
+fn the_reference_of_the_language_is_that_of_its_types() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/reference.md");
+    let output = skiagraph(Path::new("."), "schema --format markdown");
+    let same = fs::read(page).unwrap() == output.stdout;
+    assert!(
+        same,
+        "skiagraph schema --format markdown > docs/reference.md"
+    );
 }
 
 /// A document with one pass, material and param, into which mistakes are put.

@@ -60,6 +60,7 @@ pub fn useful_features() -> wgpu::Features {
     wgpu::Features::TIMESTAMP_QUERY
         | wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS
         | wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES
+        | wgpu::Features::PIPELINE_STATISTICS_QUERY
         | wgpu::Features::FLOAT32_FILTERABLE
         | wgpu::Features::SUBGROUP
         | wgpu::Features::DEPTH_CLIP_CONTROL

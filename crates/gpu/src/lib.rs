@@ -19,4 +19,4 @@ pub use error::ExecuteError;
 pub use frame::{Executor, Frame, FrameReport, Prepared, Preparer, ReplanReport};
 pub use provider::{Provider, ProviderError};
 pub use readback::{Content, Readback};
-pub use timing::{FrameTiming, PassTiming};
+pub use timing::{FrameTiming, PassStatistics, PassTiming};

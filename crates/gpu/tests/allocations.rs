@@ -15,7 +15,10 @@ use std::{
     cell::Cell,
     collections::HashMap,
     ffi::c_void,
-    sync::atomic::{AtomicI64, Ordering},
+    sync::{
+        Mutex,
+        atomic::{AtomicI64, Ordering},
+    },
 };
 use support::{Files, Triangle};
 use tiny::{GPU, encoder, made};
@@ -231,10 +234,14 @@ fn frame(executor: &mut Executor, wanted: &Frame<'_>, count: &mut dyn FnMut(&mut
     finished.unwrap_or_else(|error| panic!("{error}"));
 }
 
+/// All threads' memory is counted, so the tests run one after the other.
+static ALONE: Mutex<()> = Mutex::new(());
+
 /// A frame allocates nothing once all that it needs is there, also one that is timed and read back
 /// until its report is handed out.
 #[test]
 fn a_steady_frame_allocates_nothing_of_ours() {
+    let _alone = ALONE.lock();
     let read = ["copy", "items", "sum"];
     let timed = Frame {
         timing: true,
@@ -267,6 +274,7 @@ fn a_steady_frame_allocates_nothing_of_ours() {
 /// Neither memory nor anything on the device becomes more over a thousand frames.
 #[test]
 fn a_thousand_frames_are_as_large_as_one() {
+    let _alone = ALONE.lock();
     let wanted = Frame {
         timing: true,
         read: &["sum"],

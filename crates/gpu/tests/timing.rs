@@ -120,3 +120,68 @@ fn a_frame_that_is_not_done_in_time_is_waited_for_again() {
     let sums: Vec<u32> = (0..4096).map(expected).collect();
     assert_eq!(u32s(&report.readbacks[0].content), sums);
 }
+
+/// What the shaders of each pass did is counted where the device can; no frame has another's counts.
+#[test]
+fn runs_of_shaders_are_counted_by_pass() {
+    let files = Files::graph(
+        r#"
+    materials: [
+        Texture(name: "image", format: R32Float),
+        Texture(name: "copy", format: R32Float),
+        Buffer(name: "items", count: 100),
+    ],
+    passes: [
+        Fullscreen(name: "number", color: ["image"]),
+        Copy(name: "keep", from: "image", to: "copy"),
+        Compute(name: "fill", dispatch: Over("items.count")),
+        Fullscreen(name: "again", shader: "number", color: ["copy"], area: (0, 0, 4, 4)),
+    ],
+    outputs: ["copy", "items"],
+"#,
+    )
+    .with("number.wgsl", NUMBER)
+    .with(
+        "fill.wgsl",
+        "var<storage, read_write> items: array<u32>;
+         @compute @workgroup_size(64) fn fill(@builtin(global_invocation_id) id: vec3<u32>) {
+             if id.x < arrayLength(&items) { items[id.x] = id.x; }
+         }",
+    );
+    let mut executor = made(&files);
+    for statistics in [true, false, true, true] {
+        let mut encoder = encoder();
+        let wanted = Frame {
+            statistics,
+            ..Frame::default()
+        };
+        let encoded = executor.encode(&mut encoder, &wanted);
+        encoded.unwrap_or_else(|error| panic!("{error}"));
+        GPU.queue.submit([encoder.finish()]);
+        let report = executor.finish();
+        let report = report.unwrap_or_else(|error| panic!("{error}"));
+        let counts = GPU
+            .device
+            .features()
+            .contains(wgpu::Features::PIPELINE_STATISTICS_QUERY);
+        assert_eq!(report.statistics.is_some(), statistics && counts);
+        let Some(passes) = report.statistics else {
+            continue;
+        };
+        let names: Vec<&str> = passes.iter().map(|pass| pass.name.as_str()).collect();
+        assert_eq!(names, ["number", "keep", "fill", "again"]);
+        let [number, keep, fill, again] = &passes[..] else {
+            unreachable!()
+        };
+        // A device may count what it runs beside the pixels that are asked for.
+        assert!(
+            (13 * 7..=4 * 13 * 7).contains(&number.fragments),
+            "{number:?}"
+        );
+        assert!((16..13 * 7).contains(&again.fragments), "{again:?}");
+        assert_eq!([number.vertices, number.threads], [3, 0]);
+        assert!(number.primitives > 0, "{number:?}");
+        assert_eq!([keep.fragments, keep.threads], [0, 0]);
+        assert_eq!([fill.fragments, fill.threads], [0, 128], "two workgroups");
+    }
+}

@@ -94,7 +94,14 @@ fn hierarchy() -> Chosen<Engine> {
 /// Triangles are two-sided; those without area are never hit, and a masked one only where its mask
 /// is opaque.
 #[derive(Clone, Debug, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(
+        description = "Follows rays through the scene. Triangles are two-sided; those without \
+            area are never hit, and a masked one only where its mask is opaque."
+    )
+)]
 #[serde(deny_unknown_fields)]
 pub struct Trace {
     /// Buffer of 32-byte items `origin: vec3<f32>, t_min: f32, direction: vec3<f32>, t_max: f32`; a

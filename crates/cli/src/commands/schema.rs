@@ -16,17 +16,3 @@ pub fn schema(args: &SchemaArgs) -> Result<(), CliError> {
         SchemaFormat::Markdown => print(&language::markdown(&schema)),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn the_reference_of_the_language_is_that_of_its_types() {
-        let written = include_str!("../../../../docs/reference.md");
-        let page = crate::reporting::language::markdown(&skiagraph_passes::registry().schema());
-        let same = written == page;
-        assert!(
-            same,
-            "skiagraph schema --format markdown > docs/reference.md"
-        );
-    }
-}

@@ -341,6 +341,7 @@ impl MeasureContext<'_> {
         let remade = remade(&before, provider.built());
         let request = Frame {
             timing: true,
+            statistics: false,
             all,
             read,
             seconds: path.seconds(index),

@@ -213,6 +213,7 @@ impl Slot {
         let read: Vec<&str> = names.iter().map(String::as_str).collect();
         let wanted = Frame {
             timing: how.timing,
+            statistics: true,
             all: how.all_passes,
             read: &read,
             seconds: how.seconds,
@@ -305,12 +306,17 @@ fn shot(
         let mut passes = timing?.passes.iter();
         passes.find(|pass| pass.name == name)?.gpu.map(ms)
     };
+    let counted = |name: &str| {
+        let mut passes = report.statistics.iter().flatten();
+        passes.find(|pass| pass.name == name).cloned()
+    };
     let pass = |pass: &LinkedPass| PassShot {
         name: pass.name.value.clone(),
         kind: pass.kind.to_owned(),
         writes: written(plan, pass),
         skipped: report.skipped.contains(&pass.name.value),
         gpu_ms: gpu_of(&pass.name.value),
+        statistics: counted(&pass.name.value),
     };
     let values = preset.graph.params().iter().filter_map(|param| {
         let name = &param.name.value;

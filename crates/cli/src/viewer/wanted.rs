@@ -4,6 +4,7 @@
 use crate::graphs::method::ParamValues;
 use crate::measuring::frame::Contents;
 use crate::pictures::save::Decoding;
+use skiagraph_gpu::PassStatistics;
 use skiagraph_graph::{Capture, Param, ParamValue};
 use skiagraph_reference::Reference;
 use skiagraph_scene::{Camera, LightKind, Scene, View};
@@ -118,4 +119,6 @@ pub struct PassShot {
     pub skipped: bool,
     /// GPU time, milliseconds.
     pub gpu_ms: Option<f64>,
+    /// How often its shaders ran, where the adapter counts.
+    pub statistics: Option<PassStatistics>,
 }

@@ -2,10 +2,17 @@
 
 use crate::{
     pipelines::handles::{GpuAttachment, GpuOperand, GpuProgram, Handles, PipelineKind},
-    timing::timer::Timer,
+    timing::{statistics::Counters, timer::Timer},
 };
 use skiagraph_graph::step::{Dispatch, Draw, DrawCall, Groups, Step};
 use smallvec::SmallVec;
+
+/// What is taken of a pass.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Meters<'t> {
+    pub timer: Option<&'t Timer>,
+    pub counters: Option<&'t Counters>,
+}
 
 /// Encodes the steps of a pass, under its name in captures. A single draw or dispatch bears it as
 /// the label of its render or compute pass; a debug group around that would say it twice, and costs
@@ -14,16 +21,17 @@ pub(super) fn encode_all(
     steps: &[Step<Handles>],
     name: &str,
     encoder: &mut wgpu::CommandEncoder,
-    timer: Option<&Timer>,
+    meters: Meters<'_>,
 ) {
+    let timer = meters.timer;
     let labelled = matches!(steps, [Step::Draw(_) | Step::Dispatch(_)]);
     if !labelled {
         encoder.push_debug_group(name);
     }
     for step in steps {
         match step {
-            Step::Draw(draw) => encode_draw(draw, name, encoder, timer),
-            Step::Dispatch(dispatch) => encode_dispatch(dispatch, name, encoder, timer),
+            Step::Draw(draw) => encode_draw(draw, name, encoder, meters),
+            Step::Dispatch(dispatch) => encode_dispatch(dispatch, name, encoder, meters),
             Step::Copy { from, to } => {
                 let query = timer.map(|timer| timer.profiler().begin_query(name, encoder));
                 copy(from, to, encoder);
@@ -41,7 +49,7 @@ fn encode_dispatch(
     dispatch: &Dispatch<Handles>,
     name: &str,
     encoder: &mut wgpu::CommandEncoder,
-    timer: Option<&Timer>,
+    Meters { timer, counters }: Meters<'_>,
 ) {
     let GpuProgram {
         pipeline: PipelineKind::Compute(pipeline),
@@ -65,11 +73,18 @@ fn encode_dispatch(
         for (index, group) in groups {
             pass.set_bind_group(*index, group, &[]);
         }
+        let counted = counters.and_then(Counters::next);
+        if let Some((set, index)) = counted {
+            pass.begin_pipeline_statistics_query(set, index);
+        }
         match &dispatch.groups {
             Groups::Direct([x, y, z]) => pass.dispatch_workgroups(*x, *y, *z),
             Groups::Indirect((buffer, offset)) => {
                 pass.dispatch_workgroups_indirect(buffer, *offset);
             }
+        }
+        if counted.is_some() {
+            pass.end_pipeline_statistics_query();
         }
     }
     end(timer, query, encoder);
@@ -255,7 +270,7 @@ fn encode_draw(
     draw: &Draw<Handles>,
     name: &str,
     encoder: &mut wgpu::CommandEncoder,
-    timer: Option<&Timer>,
+    Meters { timer, counters }: Meters<'_>,
 ) {
     let GpuProgram {
         pipeline: PipelineKind::Render(pipeline),
@@ -299,12 +314,19 @@ fn encode_draw(
         for (index, group) in groups {
             pass.set_bind_group(*index, group, &[]);
         }
+        let counted = counters.and_then(Counters::next);
+        if let Some((set, index)) = counted {
+            pass.begin_pipeline_statistics_query(set, index);
+        }
         match &draw.call {
             DrawCall::Direct {
                 vertices,
                 instances,
             } => pass.draw(0..*vertices, 0..*instances),
             DrawCall::Indirect((buffer, offset)) => pass.draw_indirect(buffer, *offset),
+        }
+        if counted.is_some() {
+            pass.end_pipeline_statistics_query();
         }
     }
     end(timer, query, encoder);

@@ -12,7 +12,7 @@ use crate::{
     memory::{memory::Maker, physical::PingPong},
     pipelines::pipelines::Pipelines,
     provider::Provider,
-    timing::timer::Timer,
+    timing::{statistics::Counters, timer::Timer},
 };
 use skiagraph_graph::Plan;
 use std::{
@@ -135,6 +135,9 @@ impl Executor {
             flight.timer = Some(Timer::new(device, &self.queue)?);
         }
         flight.is_timed = frame.timing;
+        if frame.statistics {
+            flight.counters = Counters::new(&state.plan, device)?;
+        }
         Ok(())
     }
 
@@ -153,6 +156,9 @@ impl Executor {
         state.encode(&self.turn, flight, encoder);
         if let Some(timer) = flight.timer.as_mut().filter(|_| flight.is_timed) {
             timer.resolve(encoder);
+        }
+        if let Some(counters) = &flight.counters {
+            counters.resolve(encoder);
         }
         flight.fetches.iter().for_each(|fetch| fetch.copy(encoder));
         for watch in &mut state.watches {

@@ -10,6 +10,7 @@ use crate::{
     error::{ExecuteError, check_device_lost, poll},
     signal::{Progress, Signal},
     timing::{
+        statistics::Counters,
         timer::{Timer, times},
         times::FrameTiming,
     },
@@ -24,6 +25,8 @@ pub(super) struct Flight {
     /// Of a frame that is timed, and kept for the next one that is.
     pub timer: Option<Timer>,
     pub is_timed: bool,
+    /// Of a frame of which it is asked how often its shaders run.
+    pub counters: Option<Counters>,
     /// If it is timed: the passes that run, with the time that encoding them took. Names, because
     /// the next plan may have other passes.
     pub cpu: Vec<(Arc<str>, Duration)>,
@@ -43,7 +46,7 @@ pub(super) struct Flights {
 
 impl Flight {
     fn is_asked(&self) -> bool {
-        self.is_timed || !self.fetches.is_empty()
+        self.is_timed || self.counters.is_some() || !self.fetches.is_empty()
     }
 
     /// Starts the mapping of its timestamps, once the GPU is done with it, and takes them; `None`
@@ -88,6 +91,7 @@ impl Flights {
         flight.cpu.clear();
         flight.skipped.clear();
         flight.is_timed = false;
+        flight.counters = None;
         self.spare.push(flight);
     }
 
@@ -144,11 +148,15 @@ impl Flights {
                 .drain(..)
                 .map(|fetch| fetch.take(&mut self.staging))
                 .collect();
-            let report = fetched.map(|readbacks| FrameReport {
-                index: flight.index,
-                timing,
-                skipped: names(&flight.skipped),
-                readbacks,
+            let counted = flight.counters.as_mut().map(Counters::take).transpose();
+            let report = fetched.and_then(|readbacks| {
+                Ok(FrameReport {
+                    index: flight.index,
+                    timing,
+                    statistics: counted?,
+                    skipped: names(&flight.skipped),
+                    readbacks,
+                })
             });
             self.put_aside(flight);
             if report.is_err() {

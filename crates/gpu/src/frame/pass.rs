@@ -1,6 +1,6 @@
 //! One pass on the device: pipelines, params, and what is bound whoever's turn it is.
 
-use super::encode::encode_all;
+use super::encode::{Meters, encode_all};
 use crate::{
     error::{ExecuteError, named, scoped},
     memory::{
@@ -131,7 +131,7 @@ impl GpuPass {
         scoped(device, &pass.name, || {
             let mut encoder =
                 device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            encode_all(&steps, &pass.name, &mut encoder, None);
+            encode_all(&steps, &pass.name, &mut encoder, Meters::default());
             encoder.finish()
         })
         .map_err(refused)?;

@@ -2,7 +2,7 @@
 
 use super::{
     contents::{Contents, HostCopy},
-    encode::encode_all,
+    encode::{Meters, encode_all},
     fetch::Readable,
     flight::Flight,
     pass::GpuPass,
@@ -16,6 +16,7 @@ use crate::{
         physical::PingPong,
     },
     pipelines::pipelines::Pipelines,
+    timing::statistics::Counters,
 };
 use skiagraph_graph::{Origin, Plan, ResourceId, ResourceKind};
 use std::{sync::Arc, time::Instant};
@@ -137,6 +138,7 @@ impl State {
     /// Encodes the passes that run; the others are `skipped`. Of a timed flight it takes the times.
     pub fn encode(&self, turn: &Turn, flight: &mut Flight, encoder: &mut wgpu::CommandEncoder) {
         let timer = flight.timer.as_ref().filter(|_| flight.is_timed);
+        let counters = &mut flight.counters;
         for (at, pass) in self.passes.iter().enumerate() {
             if !turn.runs[at] {
                 flight.skipped.push(pass.name.clone());
@@ -147,7 +149,15 @@ impl State {
                 poison.fill(at, &turn.ping_pong, encoder);
             }
             let steps = pass.steps(&turn.ping_pong).unwrap_or_default();
-            encode_all(steps, &pass.name, encoder, timer);
+            let first = counters.as_ref().map_or(0, Counters::used);
+            let meters = Meters {
+                timer,
+                counters: counters.as_ref(),
+            };
+            encode_all(steps, &pass.name, encoder, meters);
+            if let Some(counters) = counters {
+                counters.pass(pass.name.clone(), first);
+            }
             if let Some(start) = start {
                 flight.cpu.push((pass.name.clone(), start.elapsed()));
             }

@@ -16,14 +16,17 @@ pub fn closest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
         return None;
     }
     let known = known.into_iter().filter(|name| name.len() <= LONGEST);
-    let likeness = known
-        .take(COMPARED)
-        .map(|name| (strsim::jaro_winkler(word, name), name));
-    // Below 0.8 two short names share little more than a letter or two; a list helps more than a
-    // wild guess.
-    let like = likeness.filter(|(likeness, _)| *likeness >= 0.8);
-    let best = like.max_by(|a, b| a.0.total_cmp(&b.0));
-    best.map(|(_, name)| name)
+    let likeness = known.take(COMPARED).map(|name| {
+        let likeness = strsim::jaro_winkler(word, name);
+        // It has no eye for a slip in a short name; the share of letters that stay has.
+        let stays = strsim::normalized_damerau_levenshtein(word, name);
+        (likeness, stays, name)
+    });
+    // Below that two names share little more than a letter or two; a list helps more than a wild
+    // guess.
+    let like = likeness.filter(|(likeness, stays, _)| *likeness >= 0.8 || *stays > 0.66);
+    let best = like.max_by(|a, b| (a.0 + a.1).total_cmp(&(b.0 + b.1)));
+    best.map(|(.., name)| name)
 }
 
 /// "did you mean …" for a misspelt `word`, or the list of what is known.

@@ -2,6 +2,7 @@
 
 use crate::{
     diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    document::params::TYPES,
     language::name::{Name, NameFault, RESERVED},
     source::span::{Located, SourceFile, Span},
 };
@@ -84,12 +85,7 @@ pub(crate) enum DocumentError {
 /// What an entry of a section looks like, and the kinds that there are.
 fn kinds(section: &str) -> (&'static str, &'static [&'static str]) {
     match section {
-        "params" => (
-            "for example `U32(name: \"…\", default: 1)`",
-            &[
-                "F32", "I32", "U32", "Bool", "Vec2", "Vec3", "Vec4", "Choice",
-            ],
-        ),
+        "params" => ("for example `U32(name: \"…\", default: 1)`", &TYPES),
         "passes" => ("for example `Compute(name: \"…\", …)`", &[]),
         _ => (
             "for example `Texture(name: \"…\", …)`",

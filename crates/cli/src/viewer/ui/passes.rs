@@ -3,8 +3,9 @@
 use crate::viewer::drawn::Show;
 use crate::viewer::state::{HISTORY, Viewer};
 use crate::viewer::wanted::MethodShot;
-use crate::wording::bytes;
+use crate::wording::{bytes, thousands};
 use egui::{Grid, Pos2, RichText, ScrollArea, Sense, Shape, Stroke, Ui, Vec2};
+use skiagraph_gpu::PassStatistics;
 use skiagraph_graph::Capture;
 
 pub fn show(ui: &mut Ui, viewer: &mut Viewer) {
@@ -29,7 +30,7 @@ fn one(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
         .show(ui, |ui| {
             Grid::new(("grid", index))
                 .striped(true)
-                .num_columns(4)
+                .num_columns(5)
                 .show(ui, |ui| {
                     for pass in &method.passes {
                         ui.label(&pass.name);
@@ -39,6 +40,8 @@ fn one(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
                             (false, Some(ms)) => format!("{ms:.3} ms"),
                             (false, None) => "–".to_owned(),
                         });
+                        ui.weak(pass.statistics.as_ref().map_or(String::new(), counted))
+                            .on_hover_text(COUNTED);
                         ui.horizontal(|ui| {
                             for material in &pass.writes {
                                 let capture = Capture {
@@ -73,6 +76,23 @@ fn summary(method: &MethodShot) -> String {
         bytes(memory),
         bytes(saved)
     )
+}
+
+/// What the counts of a pass are of.
+const COUNTED: &str = "Runs of its shaders, as the adapter counts them; triangles are those left \
+    after clipping.";
+
+/// What a pass's shaders did: only what there was.
+fn counted(pass: &PassStatistics) -> String {
+    let counts = [
+        (pass.vertices, "vertices"),
+        (pass.primitives, "triangles"),
+        (pass.fragments, "fragments"),
+        (pass.threads, "threads"),
+    ];
+    let counts = counts.iter().filter(|(count, _)| *count > 0);
+    let counts = counts.map(|(count, of)| format!("{} {of}", thousands(*count)));
+    counts.collect::<Vec<_>>().join(", ")
 }
 
 /// The times of the last frames, from 0 to the longest.

@@ -1,0 +1,142 @@
+//! Pipeline statistics of frames: how much work the shaders of each pass did.
+
+use crate::{
+    error::{ExecuteError, scoped},
+    signal::{Progress, Signal},
+};
+use skiagraph_graph::{Plan, step::Step};
+use std::{cell::Cell, mem::size_of, ops::Range, sync::Arc};
+
+/// How often the shaders of a pass ran in a frame, as the device counted.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PassStatistics {
+    /// The pass.
+    pub name: String,
+    /// Runs of vertex shaders; a device may share them among triangles.
+    pub vertices: u64,
+    /// Primitives that were left after clipping, which may cut one into several.
+    pub primitives: u64,
+    /// Runs of fragment shaders; a device may count helpers, too.
+    pub fragments: u64,
+    /// Runs of compute shaders, those of threads beyond the end of a size, too.
+    pub threads: u64,
+}
+
+/// What is counted: wgpu writes one u64 for each, in this order.
+const COUNTED: wgpu::PipelineStatisticsTypes =
+    wgpu::PipelineStatisticsTypes::VERTEX_SHADER_INVOCATIONS
+        .union(wgpu::PipelineStatisticsTypes::CLIPPER_PRIMITIVES_OUT)
+        .union(wgpu::PipelineStatisticsTypes::FRAGMENT_SHADER_INVOCATIONS)
+        .union(wgpu::PipelineStatisticsTypes::COMPUTE_SHADER_INVOCATIONS);
+
+/// Bytes of a query.
+const BYTES: u64 = 4 * size_of::<u64>() as u64;
+
+/// Counts in one frame after the other: a query for each draw and dispatch.
+pub(crate) struct Counters {
+    set: wgpu::QuerySet,
+    resolved: wgpu::Buffer,
+    staging: wgpu::Buffer,
+    mapped: Signal,
+    count: u32,
+    used: Cell<u32>,
+    passes: Vec<(Arc<str>, Range<u32>)>,
+}
+
+impl Counters {
+    /// For the frames of a plan; `None` if the device does not count.
+    pub fn new(plan: &Plan, device: &wgpu::Device) -> Result<Option<Self>, ExecuteError> {
+        let steps = plan.live().flat_map(|pass| &pass.steps);
+        let counted = steps.filter(|step| matches!(step, Step::Draw(_) | Step::Dispatch(_)));
+        // What is beyond is not counted.
+        let count = counted.take(wgpu::QUERY_SET_MAX_QUERIES as usize).count() as u32;
+        let features = device.features();
+        if count == 0 || !features.contains(wgpu::Features::PIPELINE_STATISTICS_QUERY) {
+            return Ok(None);
+        }
+        let name = "pipeline statistics";
+        let buffer = |usage| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(name),
+                size: u64::from(count) * BYTES,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
+        let make = || Self {
+            set: device.create_query_set(&wgpu::QuerySetDescriptor {
+                label: Some(name),
+                ty: wgpu::QueryType::PipelineStatistics(COUNTED),
+                count,
+            }),
+            resolved: buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC),
+            staging: buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST),
+            mapped: Signal::default(),
+            count,
+            used: Cell::new(0),
+            passes: Vec::new(),
+        };
+        scoped(device, name, make).map(Some)
+    }
+
+    /// The query of the next draw or dispatch, while there are some left.
+    pub fn next(&self) -> Option<(&wgpu::QuerySet, u32)> {
+        let index = self.used.get();
+        (index < self.count).then(|| {
+            self.used.set(index + 1);
+            (&self.set, index)
+        })
+    }
+
+    /// How many queries there were so far.
+    pub fn used(&self) -> u32 {
+        self.used.get()
+    }
+
+    /// Says that the queries since `first` are those of a pass.
+    pub fn pass(&mut self, name: Arc<str>, first: u32) {
+        self.passes.push((name, first..self.used.get()));
+    }
+
+    /// Encodes what brings the counts back when the encoder is submitted.
+    pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
+        let used = self.used.get();
+        if used > 0 {
+            encoder.resolve_query_set(&self.set, 0..used, &self.resolved, 0);
+            let bytes = u64::from(used) * BYTES;
+            encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.staging, 0, bytes);
+        }
+        self.mapped
+            .when_mapped(&self.staging, wgpu::MapMode::Read, encoder);
+    }
+
+    /// The counts of a frame that is done, in the order of its passes.
+    pub fn take(&mut self) -> Result<Vec<PassStatistics>, ExecuteError> {
+        let failed = || ExecuteError::Readback {
+            name: "pipeline statistics".to_owned(),
+        };
+        if self.mapped.progress() != Progress::Done {
+            return Err(failed());
+        }
+        let bytes = self.staging.get_mapped_range(..).map_err(|_| failed())?;
+        let words = bytes.chunks_exact(size_of::<u64>());
+        let words: Vec<u64> = words
+            .filter_map(|word| Some(u64::from_ne_bytes(word.try_into().ok()?)))
+            .collect();
+        let sum = |queries: &Range<u32>, at: usize| -> u64 {
+            let queries = queries.clone();
+            queries.map(|query| words[4 * query as usize + at]).sum()
+        };
+        let passes = self.passes.iter().map(|(name, queries)| PassStatistics {
+            name: name.to_string(),
+            vertices: sum(queries, 0),
+            primitives: sum(queries, 1),
+            fragments: sum(queries, 2),
+            threads: sum(queries, 3),
+        });
+        let passes = passes.collect();
+        drop(bytes);
+        self.staging.unmap();
+        Ok(passes)
+    }
+}

@@ -9,11 +9,13 @@ use crate::{
             BufferEntry, BufferInput, Data, FORMATS, FormatEntry, Mips, SamplerEntry, SamplerInput,
             TextureEntry, TextureInput,
         },
-        params::{ParamFields, TYPES},
+        params::ParamFields,
         raw::{FORMAT, SECTIONS},
         typed::{ClaimEntry, ClaimFields, Output, OutputFields},
+        written::{short_or_long, written},
     },
-    kinds::registry::Kind,
+    errors::document::PARAM_TYPES,
+    kinds::registry::{Kind, Registry},
     language::{
         name::Name,
         syntax::{Expr, Reference},
@@ -26,33 +28,6 @@ use std::borrow::Cow;
 
 /// A word of the language, to which a text in quotes is no alternative.
 const WORD: &str = "^[A-Z][A-Za-z0-9]*$";
-
-/// A type that reads itself from text: its name and what it may be.
-macro_rules! written {
-    ($type:ty, $name:literal, $generator:ident => $schema:expr) => {
-        impl schemars::JsonSchema for $type {
-            fn schema_name() -> std::borrow::Cow<'static, str> {
-                $name.into()
-            }
-            fn json_schema($generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
-                $schema
-            }
-        }
-    };
-}
-pub(crate) use written;
-
-/// The same for one that is a reference alone, or has fields.
-macro_rules! short_or_long {
-    ($type:ty, $name:literal, $long:ty) => {
-        $crate::schema::written!($type, $name, generator => {
-            let long = <$long>::json_schema(generator);
-            let reference = generator.subschema_for::<$crate::Reference>();
-            schemars::json_schema!({ "anyOf": [reference, long] })
-        });
-    };
-}
-pub(crate) use short_or_long;
 
 impl<T: JsonSchema> JsonSchema for Located<T> {
     fn inline_schema() -> bool {
@@ -149,8 +124,18 @@ written!(ClaimEntry, "Claim", generator => {
     json_schema!({ "anyOf": [condition, long] })
 });
 
+impl Registry {
+    /// What documents of these kinds may be, as a JSON Schema (draft 2020-12). RON has no schemas
+    /// of its own; for it `Kind(field: value)` is `{"Kind": {"field": value}}`, a bare word is a
+    /// text, a tuple is a list. Which names there are, and what expressions come to, it does not
+    /// know: `skiagraph check` does.
+    pub fn schema(&self) -> Value {
+        document(self.all())
+    }
+}
+
 /// What documents of these kinds may be.
-pub(crate) fn document(kinds: &[Kind]) -> Value {
+fn document(kinds: &[Kind]) -> Value {
     let mut generator = SchemaGenerator::default();
     let mut sections = Map::new();
     let mut kinds = Kinds {
@@ -254,7 +239,7 @@ impl Kinds<'_> {
             "requires" => self.list::<String>(),
             "params" => {
                 let fields = self.of::<ParamFields>();
-                tagged(TYPES.map(|tag| (tag.to_owned(), fields.clone())))
+                tagged(PARAM_TYPES.map(|tag| (tag.to_owned(), fields.clone())))
             }
             "set" => self.map::<Expr>(),
             "inputs" => tagged([

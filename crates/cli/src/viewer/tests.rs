@@ -8,7 +8,7 @@ use crate::args::commands::ViewArgs;
 use crate::args::shared::{GpuArgs, SceneArgs};
 use crate::args::values::Size;
 use crate::files::watch::Watch;
-use egui::{Modifiers, Vec2};
+use egui::{Modifiers, Vec2, accesskit::Role};
 use egui_kittest::{Harness, kittest::Queryable};
 use skiagraph_graph::ParamValue;
 use std::{
@@ -124,6 +124,41 @@ fn a_param_moved_changes_the_picture_and_defaults_bring_it_back() {
     desk.get_by_label("Defaults").click();
     settled(&mut desk);
     assert_ne!(shown(&desk, 0).values["bias"], bias);
+}
+
+#[test]
+fn a_lamp_is_moved_and_its_cone_narrowed() {
+    let mut arguments = arguments(&["rt"]);
+    arguments.scene = SceneArgs::of("lamps");
+    let mut desk = desk_with(&arguments);
+    settled(&mut desk);
+    let lit = output(&desk, 0, "visibility");
+    let lamp = |desk: &Harness<Desk>| match desk.state().viewer.light().unwrap().1 {
+        skiagraph_scene::LightKind::Spot(lamp) => lamp,
+        other => panic!("{other:?}"),
+    };
+    let before = lamp(&desk);
+    let cone = desk.get_by_role_and_label(Role::Slider, "cone");
+    cone.focus();
+    desk.step();
+    (0..8).for_each(|_| desk.key_press(egui::Key::ArrowLeft));
+    settled(&mut desk);
+    let narrow = lamp(&desk);
+    assert!(
+        narrow.cone_degrees < before.cone_degrees - 1.0,
+        "{narrow:?}"
+    );
+    let moved = [narrow.position, narrow.direction];
+    assert_eq!(moved, [before.position, before.direction]);
+    assert_ne!(output(&desk, 0, "visibility"), lit);
+    // What each pass did stands beside its time, where the adapter counts.
+    if shown(&desk, 0)
+        .passes
+        .iter()
+        .any(|pass| pass.statistics.is_some())
+    {
+        desk.get_all_by_label_contains(" fragments").next().unwrap();
+    }
 }
 
 #[test]

@@ -10,6 +10,8 @@ pub(crate) mod raw;
 pub(crate) mod read;
 pub(crate) mod ron;
 pub(crate) mod typed;
+#[cfg(feature = "schema")]
+pub(crate) mod written;
 
 pub use fields::Chosen;
 pub use materials::{Address, Filter};

@@ -143,11 +143,6 @@ pub(crate) struct ParamFields {
     refused: BTreeMap<String, String>,
 }
 
-/// The types of params, as documents write them.
-pub(crate) const TYPES: [&str; 8] = [
-    "F32", "I32", "U32", "Bool", "Vec2", "Vec3", "Vec4", "Choice",
-];
-
 impl Param {
     /// Reads the entry of a param: its type, and its fields.
     pub(super) fn read(tag: &Located<String>, fields: &[Field]) -> Result<Self, Diagnostic> {

@@ -2,7 +2,6 @@
 
 use crate::{
     diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
-    document::params::TYPES,
     language::name::{Name, NameFault, RESERVED},
     source::span::{Located, SourceFile, Span},
 };
@@ -82,10 +81,15 @@ pub(crate) enum DocumentError {
     Param { name: Located<Name>, why: String },
 }
 
+/// The types of params, as documents write them.
+pub(crate) const PARAM_TYPES: [&str; 8] = [
+    "F32", "I32", "U32", "Bool", "Vec2", "Vec3", "Vec4", "Choice",
+];
+
 /// What an entry of a section looks like, and the kinds that there are.
 fn kinds(section: &str) -> (&'static str, &'static [&'static str]) {
     match section {
-        "params" => ("for example `U32(name: \"…\", default: 1)`", &TYPES),
+        "params" => ("for example `U32(name: \"…\", default: 1)`", &PARAM_TYPES),
         "passes" => ("for example `Compute(name: \"…\", …)`", &[]),
         _ => (
             "for example `Texture(name: \"…\", …)`",

@@ -37,7 +37,8 @@ pub(super) struct Raster {
     /// The texels that are drawn, `(x, y, width, height)`; all without it.
     #[serde(default)]
     area: Option<Expr>,
-    /// The triangles that are left out, none without it, or in quotes a `Choice` of `none`, `front`, `back`.
+    /// The triangles that are left out, none without it, or in quotes a `Choice` of `none`,
+    /// `front`, `back`.
     #[serde(default = "no_culling")]
     cull: Chosen<Face>,
     /// Which triangles show their front: `Ccw`, counter-clockwise ones, without it.
@@ -191,7 +192,7 @@ impl PassKind for Raster {
 }
 
 #[cfg(feature = "schema")]
-crate::schema::written!(Call, "Call", generator => {
+crate::document::written::written!(Call, "Call", generator => {
     let count = generator.subschema_for::<Expr>();
     let words = <CallWords as schemars::JsonSchema>::json_schema(generator);
     schemars::json_schema!({

@@ -81,13 +81,9 @@ impl Registry {
         }
     }
 
-    /// What documents of these kinds may be, as a JSON Schema (draft 2020-12). RON has no schemas
-    /// of its own; for it `Kind(field: value)` is `{"Kind": {"field": value}}`, a bare word is a
-    /// text, a tuple is a list. Which names there are, and what expressions come to, it does not
-    /// know: `skiagraph check` does.
     #[cfg(feature = "schema")]
-    pub fn schema(&self) -> serde_json::Value {
-        crate::schema::document(&self.kinds)
+    pub(crate) fn all(&self) -> &[Kind] {
+        &self.kinds
     }
 
     pub(crate) fn get(&self, tag: &str) -> Option<&Kind> {

@@ -427,15 +427,11 @@ pub(super) fn area(entry: &Expr, pass: &mut Lowering<'_>) -> Option<[u32; 4]> {
 }
 
 #[cfg(feature = "schema")]
-mod schema {
-    use super::{ColorEntry, ColorFields, DepthEntry, DepthFields, WriteMask};
-    use crate::schema::{short_or_long, written};
-    use schemars::json_schema;
-
-    short_or_long!(ColorEntry, "Color", ColorFields);
-    short_or_long!(DepthEntry, "Depth", DepthFields);
-    written!(WriteMask, "Channels", _generator => json_schema!({
-        "description": "`true`, `false`, or channels: `rg`.",
-        "anyOf": [{ "type": "boolean" }, { "type": "string", "pattern": "^[rgba]+$" }],
-    }));
-}
+crate::document::written::short_or_long!(ColorEntry, "Color", ColorFields);
+#[cfg(feature = "schema")]
+crate::document::written::short_or_long!(DepthEntry, "Depth", DepthFields);
+#[cfg(feature = "schema")]
+crate::document::written::written!(WriteMask, "Channels", _generator => schemars::json_schema!({
+    "description": "`true`, `false`, or channels: `rg`.",
+    "anyOf": [{ "type": "boolean" }, { "type": "string", "pattern": "^[rgba]+$" }],
+}));

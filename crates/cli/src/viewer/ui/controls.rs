@@ -1,12 +1,11 @@
 //! The panel at the left: scene, view, light, reference and methods.
 
-use super::{fault, params};
+use super::{fault, light, params};
 use crate::viewer::saving;
 use crate::viewer::state::{Drag, Viewer};
 use crate::wording::size;
 use egui::{ComboBox, RichText, Ui};
-use glam::DVec3;
-use skiagraph_scene::{DirectionalLight, Light, LightKind, SceneLibrary, View};
+use skiagraph_scene::{SceneLibrary, View};
 
 /// Edges that methods may run at.
 const SIZES: [[u32; 2]; 6] = [
@@ -22,7 +21,7 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer) {
     ui.add_space(4.0);
     scene(ui, viewer);
     pointer(ui, viewer);
-    light(ui, viewer);
+    light::show(ui, viewer);
     ui.separator();
     running(ui, viewer);
     let mut index = 0;
@@ -127,61 +126,6 @@ fn saved(scene: &str, view: &View) -> (String, bool) {
             )
         }
         Err(error) => (crate::error::with_causes(&error), true),
-    }
-}
-
-/// Where a sun stands: degrees around up, and above the horizon.
-fn place_of(sun: &DirectionalLight) -> [f64; 2] {
-    let to = sun.to_light();
-    [
-        to.x.atan2(to.z).to_degrees(),
-        to.y.clamp(-1.0, 1.0).asin().to_degrees(),
-    ]
-}
-
-fn light(ui: &mut Ui, viewer: &mut Viewer) {
-    let Some((name, kind)) = viewer.light() else {
-        return;
-    };
-    let LightKind::Directional(sun) = kind else {
-        let place = kind.position().unwrap_or_default();
-        ui.label(format!("{} light `{name}` at {place:.2}", kind.word()));
-        return;
-    };
-    let before = place_of(&sun);
-    let [mut around, mut above] = before;
-    let mut angle = sun.angle_degrees;
-    ui.add(
-        egui::Slider::new(&mut around, -180.0..=180.0)
-            .suffix("°")
-            .text("light from"),
-    );
-    ui.add(
-        egui::Slider::new(&mut above, -89.0..=89.0)
-            .suffix("°")
-            .text("above"),
-    );
-    ui.add(
-        egui::Slider::new(&mut angle, 0.0..=20.0)
-            .suffix("°")
-            .text("wide"),
-    );
-    if [around, above, angle] == [before[0], before[1], sun.angle_degrees] {
-        return;
-    }
-    let (around, above) = (around.to_radians(), above.to_radians());
-    let to = DVec3::new(
-        around.sin() * above.cos(),
-        above.sin(),
-        around.cos() * above.cos(),
-    );
-    let kind = LightKind::from(DirectionalLight {
-        direction: -to,
-        angle_degrees: angle,
-    });
-    if let Some(mut view) = viewer.wanted.view.clone() {
-        view.light = Some(Light { name, kind });
-        viewer.look_from(view);
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod controls;
 mod fault;
+mod light;
 mod params;
 mod passes;
 mod picture;

@@ -129,7 +129,10 @@ fn a_param_moved_changes_the_picture_and_defaults_bring_it_back() {
 #[test]
 fn a_lamp_is_moved_and_its_cone_narrowed() {
     let mut arguments = arguments(&["rt"]);
-    arguments.scene = SceneArgs::of("lamps");
+    arguments.scene = SceneArgs::of(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../scenes/lamps.ron"
+    ));
     let mut desk = desk_with(&arguments);
     settled(&mut desk);
     let lit = output(&desk, 0, "visibility");

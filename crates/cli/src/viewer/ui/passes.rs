@@ -40,8 +40,6 @@ fn one(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
                             (false, Some(ms)) => format!("{ms:.3} ms"),
                             (false, None) => "–".to_owned(),
                         });
-                        ui.weak(pass.statistics.as_ref().map_or(String::new(), counted))
-                            .on_hover_text(COUNTED);
                         ui.horizontal(|ui| {
                             for material in &pass.writes {
                                 let capture = Capture {
@@ -55,6 +53,8 @@ fn one(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
                                 }
                             }
                         });
+                        ui.weak(pass.statistics.as_ref().map_or(String::new(), counted))
+                            .on_hover_text(COUNTED);
                         ui.end_row();
                     }
                 });
@@ -85,13 +85,16 @@ const COUNTED: &str = "Runs of its shaders, as the adapter counts them; triangle
 /// What a pass's shaders did: only what there was.
 fn counted(pass: &PassStatistics) -> String {
     let counts = [
-        (pass.vertices, "vertices"),
-        (pass.primitives, "triangles"),
-        (pass.fragments, "fragments"),
-        (pass.threads, "threads"),
+        (pass.vertices, "vertex", "vertices"),
+        (pass.primitives, "triangle", "triangles"),
+        (pass.fragments, "fragment", "fragments"),
+        (pass.threads, "thread", "threads"),
     ];
-    let counts = counts.iter().filter(|(count, _)| *count > 0);
-    let counts = counts.map(|(count, of)| format!("{} {of}", thousands(*count)));
+    let counts = counts.iter().filter(|(count, ..)| *count > 0);
+    let counts = counts.map(|(count, one, several)| match count {
+        1 => format!("1 {one}"),
+        _ => format!("{} {several}", thousands(*count)),
+    });
     counts.collect::<Vec<_>>().join(", ")
 }
 

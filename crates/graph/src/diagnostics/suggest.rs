@@ -24,8 +24,7 @@ pub fn closest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
     });
     // Below that two names share little more than a letter or two; a list helps more than a wild
     // guess.
-    let is_like = |likeness: f64, stays: f64| likeness >= 0.8 && stays > 0.5 || stays > 0.66;
-    let like = likeness.filter(|(likeness, stays, _)| is_like(*likeness, *stays));
+    let like = likeness.filter(|(likeness, stays, _)| *likeness >= 0.8 || *stays > 0.66);
     let best = like.max_by(|a, b| (a.0 + a.1).total_cmp(&(b.0 + b.1)));
     best.map(|(.., name)| name)
 }

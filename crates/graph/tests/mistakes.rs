@@ -17,7 +17,11 @@ fn text<T>(result: Result<T, Diagnostics>) -> String {
 
 #[test]
 fn a_document_that_is_not_there() {
-    let found = text(Graph::load("photographs.ron", &Registry::standard(), &folder()));
+    let found = text(Graph::load(
+        "photographs.ron",
+        &Registry::standard(),
+        &folder(),
+    ));
     insta::assert_snapshot!("missing_document", found);
 }
 

@@ -19,20 +19,19 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENES = ["city", "forest"]
-METHODS = ["rt", "nsm", "crsma_full", "light_buffer"]
 
 
 def arguments():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("methods", nargs="*", default=METHODS, metavar="METHOD")
+    parser.add_argument("methods", nargs="*", metavar="METHOD", help="as `skiagraph compare` takes them")
     sizes = [10_000, 100_000, 1_000_000, 10_000_000]
     parser.add_argument("--sizes", type=integers, default=sizes, metavar="N,…")
     parser.add_argument("--scenes", type=lambda text: text.split(","), default=SCENES, metavar="NAME,…")
     parser.add_argument("--view", default="overview", help="a view of the scenes, or all")
     parser.add_argument("--viewport", default="1920x1080", metavar="WxH")
-    parser.add_argument("--map-size", type=int, default=2048, metavar="N")
+    parser.add_argument("--map-size", type=int, default=2048, metavar="N", help="where no method is named")
     parser.add_argument("--frames", type=int, default=5, metavar="N", help="timed, after one that is not")
     parser.add_argument("--out", type=Path, default=Path("out/scaling"), metavar="DIR")
     parser.add_argument("--program", metavar="FILE", help="a skiagraph that is built already")
@@ -51,9 +50,12 @@ def skiagraph(args, *words):
 
 
 def compare(args, scene, triangles, folder):
+    # light_buffer chooses its grid.
+    with_maps = [f"{name}@map_size={args.map_size}" for name in ("nsm", "crsma_full")]
+    methods = args.methods or ["rt", *with_maps, "light_buffer"]
     return skiagraph(
-        args, "compare", *args.methods, "--scene", f"{scene}:{triangles}", "--view", args.view,
-        "--size", args.viewport, "--map-size", args.map_size, "--frames", args.frames, "--warmup", 1,
+        args, "compare", *methods, "--scene", f"{scene}:{triangles}", "--view", args.view,
+        "--size", args.viewport, "--frames", args.frames, "--warmup", 1,
         "--cached-frames", 0, "--images", "none", "--timeout", 3600, "--resume", "--out", folder,
     )  # fmt: skip
 

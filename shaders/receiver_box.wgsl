@@ -1,5 +1,5 @@
 // Stage to find the box, across light space, around the receivers that face the light, of each
-// layer of the map; one thread per pixel.
+// layer of the map.
 
 #import "shared/receiver.wgsl"
 #import "shared/map_layers.wgsl"
@@ -9,17 +9,25 @@
 var<storage, read_write> receiver_box: array<atomic<u32>, 4>;
 var<storage, read_write> receiver_boxes: array<array<atomic<u32>, 4>>;
 
+// A thread of `main` takes a pixel of each of 16 tiles of 8 by 8 pixels.
+const TILES_PER_ROW: u32 = 4u;
+const TILES: u32 = 16u;
+
 @compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
-    let receiver = receiver_of(thread.xy);
-    if !faces_light(receiver) {
-        return;
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_id) local: vec3<u32>,
+) {
+    var most = vec4(0u);
+    for (var number = 0u; number < TILES; number++) {
+        let tile = TILES_PER_ROW * group.xy + vec2(number % TILES_PER_ROW, number / TILES_PER_ROW);
+        let receiver = receiver_of(8u * tile + local.xy);
+        most = max(most, select(vec4(0u), shares_of(receiver.xyz), faces_light(receiver)));
     }
-    let shares = shares_of(receiver.xyz);
     for (var side = 0u; side < 4u; side++) {
-        // Asked first: hardly any of many receivers needs to queue.
-        if atomicLoad(&receiver_box[side]) < shares[side] {
-            atomicMax(&receiver_box[side], shares[side]);
+        // Asked first: hardly any thread needs to queue.
+        if atomicLoad(&receiver_box[side]) < most[side] {
+            atomicMax(&receiver_box[side], most[side]);
         }
     }
 }

@@ -1,16 +1,29 @@
 // Stage to find, for each texel of the grid, the farthest receiver that faces the light; one thread
-// per pixel.
+// for 16 pixels.
 
 #import "shared/receiver.wgsl"
 #import "shared/light_buffer.wgsl"
+#import "shared/pixel_tiles.wgsl"
 
 // Of each texel: bits of an f32, which are in the order of the depths; 0 where nobody is. Behind
 // them is what mark_tiles.wgsl writes.
 var<storage, read_write> farthest: array<atomic<u32>>;
 
+// Of a workgroup.
+const TILES_PER_ROW: u32 = 4u;
+const TILES: u32 = 16u;
+
 @compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
-    let pixel = thread.xy;
+fn main(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_id) local: vec3<u32>,
+) {
+    for (var tile = 0u; tile < TILES; tile++) {
+        mark(pixel_of(group.xy, tile, TILES_PER_ROW, local.xy));
+    }
+}
+
+fn mark(pixel: vec2<u32>) {
     if any(pixel >= textureDimensions(position)) {
         return;
     }

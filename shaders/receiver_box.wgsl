@@ -3,13 +3,14 @@
 
 #import "shared/receiver.wgsl"
 #import "shared/map_layers.wgsl"
+#import "shared/pixel_tiles.wgsl"
 
 // Of each layer bits of f32 from 0 to 1, which are in the order of the numbers: the greatest x, y,
 // 1 - x and 1 - y in shares of the scene's edge. All 0 if there is no receiver.
 var<storage, read_write> receiver_box: array<atomic<u32>, 4>;
 var<storage, read_write> receiver_boxes: array<array<atomic<u32>, 4>>;
 
-// A thread of `main` takes a pixel of each of 16 tiles of 8 by 8 pixels.
+// Of a workgroup of `main`.
 const TILES_PER_ROW: u32 = 4u;
 const TILES: u32 = 16u;
 
@@ -19,9 +20,8 @@ fn main(
     @builtin(local_invocation_id) local: vec3<u32>,
 ) {
     var most = vec4(0u);
-    for (var number = 0u; number < TILES; number++) {
-        let tile = TILES_PER_ROW * group.xy + vec2(number % TILES_PER_ROW, number / TILES_PER_ROW);
-        let receiver = receiver_of(8u * tile + local.xy);
+    for (var tile = 0u; tile < TILES; tile++) {
+        let receiver = receiver_of(pixel_of(group.xy, tile, TILES_PER_ROW, local.xy));
         most = max(most, select(vec4(0u), shares_of(receiver.xyz), faces_light(receiver)));
     }
     for (var side = 0u; side < 4u; side++) {

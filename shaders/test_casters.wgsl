@@ -1,10 +1,11 @@
 // Stage to ask, for each receiver, the casters that are listed in its texel, by the tracer's own
-// test; one thread per pixel. What no complete list answers is left to a ray.
+// test; one thread for 4 pixels. What no complete list answers is left to a ray.
 
 #import "shared/answer.wgsl"
 #import "shared/camera.wgsl"
 #import "shared/receiver.wgsl"
 #import "shared/light_buffer.wgsl"
+#import "shared/pixel_tiles.wgsl"
 #import "shared/ray_triangle.wgsl"
 
 struct Params {
@@ -25,6 +26,10 @@ var<storage, read> entries: array<Entry>;
 // Workgroups of fill_rays in x, y, z.
 var<storage, read_write> fill_groups: array<atomic<u32>, 3>;
 
+// Of a workgroup.
+const TILES_PER_ROW: u32 = 2u;
+const TILES: u32 = 4u;
+
 @compute @workgroup_size(8, 8)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -33,7 +38,12 @@ fn main(
     // Blocks of 4 by 2 pixels: neighbours that run in step have like lists.
     let column = (lane & 3u) | (lane >> 1u & 4u);
     let row = (lane >> 2u & 1u) | (lane >> 3u & 6u);
-    let pixel = 8u * group.xy + vec2(column, row);
+    for (var tile = 0u; tile < TILES; tile++) {
+        answer(pixel_of(group.xy, tile, TILES_PER_ROW, vec2(column, row)));
+    }
+}
+
+fn answer(pixel: vec2<u32>) {
     if any(pixel >= textureDimensions(primitive)) {
         return;
     }

@@ -11,11 +11,11 @@ struct Params {
     longest_list: u32,
 }
 
-struct List {
-    // Number of its first entry; LIST_FULL if one had no room.
-    head: atomic<u32>,
-    // Entries that it should have.
+struct BinnedTexel {
+    farthest: u32,
     length: atomic<u32>,
+    head: atomic<u32>,
+    cover: atomic<u32>,
 }
 
 struct Large {
@@ -25,13 +25,14 @@ struct Large {
 }
 
 var<uniform> params: Params;
-// As mark_receivers.wgsl and mark_tiles.wgsl have it.
-var<storage, read> farthest: array<u32>;
-// Of each texel; the last one's head is LIST_FULL if a part of a large triangle had no room.
-var<storage, read_write> lists: array<List>;
+// As mark_tiles.wgsl has them.
+var<storage, read> tiles: array<vec4<u32>>;
+// Of the grid; behind them one that says LIST_LACKS if a part of a large triangle had no room.
+var<storage, read_write> texels: array<BinnedTexel>;
 // Those included for which there is no room.
 var<storage, read_write> entry_count: atomic<u32>;
-var<storage, read_write> entries: array<Entry>;
+// As `Texel` has it.
+var<storage, read_write> entries: array<vec4<u32>>;
 var<storage, read_write> large: Large;
 // Workgroups in x, y, z: one for each part.
 var<storage, read_write> large_groups: array<atomic<u32>, 3>;
@@ -41,7 +42,13 @@ const ALONE: u32 = 32u;
 // Tiles of a part.
 const PART: u32 = 2048u;
 
-struct Caster {
+// Whether a caster is there wherever its triangle is, and depths are those of the light's space: no
+// mask, a directional light.
+override has_covers: bool = false;
+// A texel that is larger by 4 times the slack on every side is inside of what covers it.
+const COVERING: f32 = 1.046875;
+
+struct Binned {
     primitive: u32,
     // Its corners are counter-clockwise where y is up: inside is to the left of its edges.
     triangle: LightTriangle,
@@ -49,8 +56,6 @@ struct Caster {
     // The first and the last of the map's texels under its box, in each direction.
     first: vec2<u32>,
     last: vec2<u32>,
-    // Bits of its least depth.
-    least: u32,
     // How far the centre of a texel that the triangle overlaps may be beyond the lines of ab, bc
     // and ca, times their lengths.
     reach: vec3<f32>,
@@ -101,7 +106,7 @@ fn parts(thread: Thread) {
 fn append_part(part: Part) {
     let slot = atomicAdd(&large.count, 1u);
     if slot >= arrayLength(&large.parts) {
-        atomicStore(&lists[arrayLength(&lists) - 1u].head, LIST_FULL);
+        atomicStore(&texels[arrayLength(&texels) - 1u].length, LIST_LACKS);
         return;
     }
     large.parts[slot] = part;
@@ -110,7 +115,7 @@ fn append_part(part: Part) {
     atomicMax(&large_groups[2], 1u);
 }
 
-fn caster_of(primitive: u32) -> Caster {
+fn caster_of(primitive: u32) -> Binned {
     if light_kind != LIGHT_DIRECTIONAL {
         return caster_of_face(primitive);
     }
@@ -123,7 +128,7 @@ fn caster_over(
     projected: LightTriangle,
     plane: DepthPlane,
     slack: f32,
-) -> Caster {
+) -> Binned {
     var triangle = projected;
     if triangle.area < 0.0 {
         triangle = LightTriangle(triangle.a, triangle.c, triangle.b, -triangle.area);
@@ -142,12 +147,12 @@ fn caster_over(
         reach_of(c.xy - b.xy, slack),
         reach_of(a.xy - c.xy, slack),
     );
-    return Caster(primitive, triangle, plane, first, last, depth_bits(plane.least), reach, slack);
+    return Binned(primitive, triangle, plane, first, last, reach, slack);
 }
 
 // In a face of a spot or point light's map: where the corners are projected to, if all are before
 // the light; depths are those of the corners, since a plane's are not linear there.
-fn caster_of_face(primitive: u32) -> Caster {
+fn caster_of_face(primitive: u32) -> Binned {
     let a = light_homogeneous(corner_position(3u * primitive), binned_layer);
     let b = light_homogeneous(corner_position(3u * primitive + 1u), binned_layer);
     let c = light_homogeneous(corner_position(3u * primitive + 2u), binned_layer);
@@ -190,13 +195,12 @@ fn caster_of_whole_face(
     b: vec4<f32>,
     c: vec4<f32>,
     plane: DepthPlane,
-) -> Caster {
+) -> Binned {
     let beside = is_beside(a, b, c);
     let first = select(vec2(0u), vec2(1u), beside);
     let last = select(vec2(u32(map_fit.size) - 1u), vec2(0u), beside);
     let nowhere = LightTriangle(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
-    let least = depth_bits(plane.least);
-    return Caster(primitive, nowhere, plane, first, last, least, vec3(3e38), SLACK);
+    return Binned(primitive, nowhere, plane, first, last, vec3(3e38), SLACK);
 }
 
 fn reach_of(edge: vec2<f32>, slack: f32) -> f32 {
@@ -204,14 +208,14 @@ fn reach_of(edge: vec2<f32>, slack: f32) -> f32 {
 }
 
 // Columns and rows of tiles under its box.
-fn tiles_of(caster: Caster) -> vec2<u32> {
+fn tiles_of(caster: Binned) -> vec2<u32> {
     return caster.last / TILE - caster.first / TILE + 1u;
 }
 
 // Appends the caster to the lists of the texels in those tiles under its box whose numbers are
 // `first`, `first + step`, … below `end`. Threads run in step, and some adapters run what any of
 // them could need: so each looks for its next tile, then for the texels in it, in short loops.
-fn bin(caster: Caster, first: u32, end: u32, step: u32) {
+fn bin(caster: Binned, first: u32, end: u32, step: u32) {
     let columns = tiles_of(caster).x;
     let corner = caster.first / TILE;
     var tile = corner + vec2(first % columns, first / columns);
@@ -219,75 +223,90 @@ fn bin(caster: Caster, first: u32, end: u32, step: u32) {
     let advance = vec2(step % columns, step / columns);
     var number = first;
     loop {
-        var texels = vec2(0u);
+        var inside = vec2(0u);
         var at = tile;
-        while all(texels == vec2(0u)) && number < end {
+        while all(inside == vec2(0u)) && number < end {
             at = tile;
-            texels = texels_in(caster, tile);
+            inside = texels_in(caster, tile);
             number += step;
             tile += advance;
             tile = select(tile, vec2(tile.x - columns, tile.y + 1u), tile.x >= corner.x + columns);
         }
-        if all(texels == vec2(0u)) {
+        if all(inside == vec2(0u)) {
             return;
         }
         // All texels of the tile first, as threads differ in which of them they are in.
-        var overlapped = vec2(0u);
+        var listed = vec2(0u);
         loop {
-            let texel = at * TILE + first_of(texels);
-            let bit = first_bit(texels);
-            let centre = vec2<f32>(texel) + 0.5;
-            let deepest = farthest[texel_number(binned_layer, texel)];
-            let is_overlapped = all(inward_of(caster.triangle, centre) >= -caster.reach)
-                && depth_bits(least_depth(caster, centre)) <= deepest;
-            overlapped |= select(vec2(0u), bit, is_overlapped);
-            texels &= ~bit;
-            if all(texels == vec2(0u)) {
+            let bit = first_bit(inside);
+            if is_listed(caster, at * TILE + first_of(inside)) {
+                listed |= bit;
+            }
+            inside &= ~bit;
+            if all(inside == vec2(0u)) {
                 break;
             }
         }
-        while any(overlapped != vec2(0u)) {
-            let texel = at * TILE + first_of(overlapped);
-            overlapped &= ~first_bit(overlapped);
-            let centre = vec2<f32>(texel) + 0.5;
-            let inward = inward_of(caster.triangle, centre);
-            let key = key_of(caster, least_depth(caster, centre), inward);
-            append(texel_number(binned_layer, texel), caster.primitive, key);
+        if all(listed == vec2(0u)) {
+            continue;
+        }
+        let entries_here = countOneBits(listed.x) + countOneBits(listed.y);
+        var slot = atomicAdd(&entry_count, entries_here);
+        while any(listed != vec2(0u)) {
+            append(caster, at * TILE + first_of(listed), slot);
+            listed &= ~first_bit(listed);
+            slot += 1u;
         }
     }
 }
 
-// Of the texels of a tile that have a bit: the first one's place in the tile, and its bit.
-fn first_of(texels: vec2<u32>) -> vec2<u32> {
-    let bit = countTrailingZeros(select(texels.x, texels.y, texels.x == 0u));
-    return vec2(bit % TILE, bit / TILE + select(0u, 4u, texels.x == 0u));
+// Whether a texel's list gets the caster; counts it.
+fn is_listed(caster: Binned, texel: vec2<u32>) -> bool {
+    let number = texel_number(binned_layer, texel);
+    let centre = vec2<f32>(texel) + 0.5;
+    let inward = inward_of(caster.triangle, centre);
+    let may_shade = depth_bits(least_depth(caster, centre)) <= texels[number].farthest;
+    if !(all(inward >= -caster.reach) && may_shade) {
+        return false;
+    }
+    let covers = caster.plane.margin >= 0.0 && all(inward >= COVERING * caster.reach);
+    if has_covers && covers {
+        atomicMax(&texels[number].cover, ~depth_bits(covered_depth(caster.plane, centre)));
+    }
+    // Nobody reads a list that is longer.
+    return (atomicAdd(&texels[number].length, 1u) & ~LIST_LACKS) < params.longest_list;
 }
 
-fn first_bit(texels: vec2<u32>) -> vec2<u32> {
-    let lowest = texels & (~texels + 1u);
-    return vec2(lowest.x, select(0u, lowest.y, texels.x == 0u));
+// Whoever is farther from the light, in a texel that the caster covers, has all of its triangle
+// before it, wherever rounding may have either, and the tracer finds it: its weights err as the
+// plane's slope does, its distance by 8 half ulps of the corners'.
+fn covered_depth(plane: DepthPlane, centre: vec2<f32>) -> f32 {
+    let slope = abs(plane.slope);
+    let farthest = plane_depth(plane, centre) + (0.5 + 4.0 * plane.margin) * (slope.x + slope.y);
+    let rounding = 8.0 * HALF_ULP * (plane.greatest - plane.least);
+    return saturate(clamp(farthest, plane.least, plane.greatest) + rounding);
 }
 
 // In a texel.
-fn least_depth(caster: Caster, centre: vec2<f32>) -> f32 {
+fn least_depth(caster: Binned, centre: vec2<f32>) -> f32 {
     // Of -0, too.
     return abs(depth_bound(caster.plane, centre, 0.5, NEAREST));
 }
 
 // A bit for each texel of the tile that is under the triangle's box and has a receiver in it; none
 // if the triangle is not in the tile, or farther from the light than all its receivers.
-fn texels_in(caster: Caster, tile: vec2<u32>) -> vec2<u32> {
-    let words = tile_number(binned_layer, tile);
+fn texels_in(caster: Binned, tile: vec2<u32>) -> vec2<u32> {
+    let marked = tiles[tile_number(binned_layer, tile)];
     let middle = (vec2<f32>(tile) + 0.5) * f32(TILE);
     let depth = depth_bound(caster.plane, middle, 0.5 * f32(TILE), NEAREST);
-    let may_shade = depth_bits(depth) <= farthest[words]
+    let may_shade = depth_bits(depth) <= marked.x
         && all(inward_of(caster.triangle, middle) >= -f32(TILE) * caster.reach);
     let low = max(caster.first, tile * TILE) - tile * TILE;
     let high = min(caster.last - tile * TILE, vec2(TILE - 1u));
     let columns = (0xffu << low.x) & (0xffu >> (TILE - 1u - high.x));
     let rows = (0xffu << low.y) & (0xffu >> (TILE - 1u - high.y));
-    let texels = vec2(bytes_of(rows & 0xfu), bytes_of(rows >> 4u)) * columns;
-    return select(vec2(0u), texels & vec2(farthest[words + 1u], farthest[words + 2u]), may_shade);
+    let bits = vec2(bytes_of(rows & 0xfu), bytes_of(rows >> 4u)) * columns;
+    return select(vec2(0u), bits & marked.yz, may_shade);
 }
 
 // 1 in each byte whose bit is set in a number of four bits.
@@ -304,38 +323,39 @@ fn inward_of(triangle: LightTriangle, point: vec2<f32>) -> vec3<f32> {
     );
 }
 
-// Of its edges, the one that cuts most off the texel makes the key.
-fn key_of(caster: Caster, depth: f32, inward: vec3<f32>) -> u32 {
+fn append(caster: Binned, texel: vec2<u32>, slot: u32) {
+    let number = texel_number(binned_layer, texel);
+    if slot >= arrayLength(&entries) {
+        atomicOr(&texels[number].length, LIST_LACKS);
+        return;
+    }
+    let centre = vec2<f32>(texel) + 0.5;
     let triangle = caster.triangle;
-    // An edge without length is no line.
+    let inward = inward_of(triangle, centre);
+    let ab = edge_of(triangle.b.xy - triangle.a.xy, inward.x, caster.slack);
+    let bc = edge_of(triangle.c.xy - triangle.b.xy, inward.y, caster.slack);
+    let ca = edge_of(triangle.a.xy - triangle.c.xy, inward.z, caster.slack);
+    // The one that cuts least off the texel is left out.
     let share = select(inward / caster.reach, vec3(3e38), caster.reach == vec3(0.0));
-    var edge = triangle.b.xy - triangle.a.xy;
-    var distance = inward.x;
-    if share.y < share.x && share.y <= share.z {
-        edge = triangle.c.xy - triangle.b.xy;
-        distance = inward.y;
-    } else if share.z < share.x {
-        edge = triangle.a.xy - triangle.c.xy;
-        distance = inward.z;
+    var one = ab;
+    var other = ca;
+    if share.x >= max(share.y, share.z) {
+        one = bc;
+    } else if share.z > share.y {
+        other = bc;
     }
-    let longest = max(abs(edge.x), abs(edge.y));
-    if longest == 0.0 {
-        return entry_key(depth, vec2(1.0, 0.0), 1.0);
-    }
-    let room = 2.0 * (caster.slack - SLACK);
-    return entry_key(depth, vec2(-edge.y, edge.x) / longest, distance / longest + room);
+    let key = entry_key(least_depth(caster, centre), one, other);
+    let next = atomicExchange(&texels[number].head, slot + 1u);
+    entries[slot] = vec4(next, caster.primitive, key);
 }
 
-fn append(texel: u32, primitive: u32, key: u32) {
-    // Nobody reads a list that is longer.
-    if atomicAdd(&lists[texel].length, 1u) >= params.longest_list {
-        return;
+// `inward`: as of `inward_of`.
+fn edge_of(edge: vec2<f32>, inward: f32, slack: f32) -> Edge {
+    let longest = max(abs(edge.x), abs(edge.y));
+    // Without length it is no line.
+    if longest < 1e-30 {
+        return Edge(vec2(0.0), 1.0);
     }
-    let slot = atomicAdd(&entry_count, 1u);
-    if slot >= arrayLength(&entries) {
-        atomicStore(&lists[texel].head, LIST_FULL);
-        return;
-    }
-    let next = atomicExchange(&lists[texel].head, slot + 1u);
-    entries[slot] = Entry(next, key, primitive);
+    let room = 2.0 * (slack - SLACK);
+    return Edge(vec2(-edge.y, edge.x) / longest, inward / longest + room);
 }

@@ -5,9 +5,14 @@
 #import "shared/light_buffer.wgsl"
 #import "shared/pixel_tiles.wgsl"
 
-// Of each texel: bits of an f32, which are in the order of the depths; 0 where nobody is. Behind
-// them is what mark_tiles.wgsl writes.
-var<storage, read_write> farthest: array<atomic<u32>>;
+struct MarkedTexel {
+    farthest: atomic<u32>,
+    length: u32,
+    head: u32,
+    cover: u32,
+}
+
+var<storage, read_write> texels: array<MarkedTexel>;
 
 // Of a workgroup.
 const TILES_PER_ROW: u32 = 4u;
@@ -18,12 +23,13 @@ fn main(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_id) local: vec3<u32>,
 ) {
+    let summed = light_clip_summands_of_scene();
     for (var tile = 0u; tile < TILES; tile++) {
-        mark(pixel_of(group.xy, tile, TILES_PER_ROW, local.xy));
+        mark(pixel_of(group.xy, tile, TILES_PER_ROW, local.xy), summed);
     }
 }
 
-fn mark(pixel: vec2<u32>) {
+fn mark(pixel: vec2<u32>, summed: vec2<f32>) {
     if any(pixel >= textureDimensions(position)) {
         return;
     }
@@ -31,12 +37,12 @@ fn mark(pixel: vec2<u32>) {
     if !faces_light(receiver) {
         return;
     }
-    let place = place_of(receiver.xyz);
+    let place = place_of(receiver.xyz, summed);
     if place.texel == NO_TEXEL {
         return;
     }
     // Asked first: many receivers of one texel need not queue for it.
-    if atomicLoad(&farthest[place.texel]) < place.depth {
-        atomicMax(&farthest[place.texel], place.depth);
+    if atomicLoad(&texels[place.texel].farthest) < place.depth {
+        atomicMax(&texels[place.texel].farthest, place.depth);
     }
 }

@@ -3,8 +3,8 @@
 
 #import "shared/light_buffer.wgsl"
 
-// Of each texel, as mark_receivers.wgsl has it, then three words for each tile.
-var<storage, read_write> farthest: array<u32>;
+var<storage, read> texels: array<Texel>;
+var<storage, read_write> tiles: array<vec4<u32>>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
@@ -22,15 +22,12 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
         for (var column = 0u; column < TILE; column++) {
             let texel = tile * TILE + vec2(column, row);
             if all(texel < vec2(size)) {
-                let texel_depth = farthest[texel_number(layer, texel)];
+                let texel_depth = texels[texel_number(layer, texel)].farthest;
                 depth = max(depth, texel_depth);
                 taken_in_row |= select(0u, 1u << column, texel_depth != 0u);
             }
         }
         taken[row / 4u] |= taken_in_row << (8u * (row % 4u));
     }
-    let words = tile_number(layer, tile);
-    farthest[words] = depth;
-    farthest[words + 1u] = taken.x;
-    farthest[words + 2u] = taken.y;
+    tiles[tile_number(layer, tile)] = vec4(depth, taken, 0u);
 }

@@ -1,56 +1,87 @@
 // Stage to ask, for each receiver, the casters that are listed in its texel, by the tracer's own
-// test; one thread for 4 pixels. What no complete list answers is left to a ray.
+// test; `main`: one thread for 16 pixels, which leaves those with long lists to `long`: one thread
+// per pixel. What no complete list answers is left to a ray.
 
 #import "shared/answer.wgsl"
 #import "shared/camera.wgsl"
+#import "shared/groups.wgsl"
 #import "shared/receiver.wgsl"
 #import "shared/light_buffer.wgsl"
-#import "shared/pixel_tiles.wgsl"
 #import "shared/ray_triangle.wgsl"
 
 struct Params {
     longest_list: u32,
 }
 
-struct List {
-    head: u32,
-    length: u32,
-}
-
 var<uniform> params: Params;
-// As mark_receivers.wgsl has it.
-var<storage, read> farthest: array<u32>;
-// As bin_casters.wgsl has them.
-var<storage, read> lists: array<List>;
-var<storage, read> entries: array<Entry>;
+// As bin_casters.wgsl leaves them: each a `Texel`, the last one LIST_LACKS for all.
+var<storage, read> texels: array<vec4<u32>>;
+var<storage, read> entries: array<vec4<u32>>;
+// Of pixels with long lists, how many there are, then which.
+var<storage, read_write> long_pixels: array<atomic<u32>>;
 // Workgroups of fill_rays in x, y, z.
 var<storage, read_write> fill_groups: array<atomic<u32>, 3>;
 
-// Of a workgroup.
-const TILES_PER_ROW: u32 = 2u;
-const TILES: u32 = 4u;
+// A workgroup of `main` takes 32 by 32 pixels, a thread those of 16 blocks of 4 by 2, since some
+// adapters take as long to start a thread as it takes for a pixel; neighbours that run in step have
+// like lists.
+const BLOCKS: u32 = 16u;
+// So that no thread's loops run for more than 65,535 rounds, see docs/light_buffer.md.
+const LONG_LIST: u32 = 224u;
+// Besides those of `status`: the pixel is one for `long`.
+const IS_LONG: u32 = 0xffffffffu;
+
+// What receivers have in common.
+struct Shared {
+    // The rays of a directional light.
+    rays: Sheared,
+    // See `place_of`.
+    summed: vec2<f32>,
+    // A part of a large triangle is in no list.
+    lists_lack: bool,
+}
 
 @compute @workgroup_size(8, 8)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    // Blocks of 4 by 2 pixels: neighbours that run in step have like lists.
-    let column = (lane & 3u) | (lane >> 1u & 4u);
-    let row = (lane >> 2u & 1u) | (lane >> 3u & 6u);
-    for (var tile = 0u; tile < TILES; tile++) {
-        answer(pixel_of(group.xy, tile, TILES_PER_ROW, vec2(column, row)));
+    let facts = what_all_share();
+    let first = 32u * group.xy + vec2(lane & 3u, 4u * (lane / 8u) + (lane / 4u & 1u));
+    for (var block = 0u; block < BLOCKS; block++) {
+        let pixel = first + vec2(4u * (block % 8u), 2u * (block / 8u));
+        if all(pixel < textureDimensions(primitive)) {
+            answer(pixel, facts, min(params.longest_list, LONG_LIST));
+        }
     }
 }
 
-fn answer(pixel: vec2<u32>) {
-    if any(pixel >= textureDimensions(primitive)) {
+@compute @workgroup_size(GROUP_SIZE)
+fn long(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let slot = thread_number(group, lane);
+    if slot >= atomicLoad(&long_pixels[0]) {
         return;
     }
+    let width = textureDimensions(primitive).x;
+    let number = atomicLoad(&long_pixels[slot + 1u]);
+    answer(vec2(number % width, number / width), what_all_share(), params.longest_list);
+}
+
+// `longest`: the longest list that is walked at once.
+fn answer(pixel: vec2<u32>, facts: Shared, longest: u32) {
     let receiver = textureLoad(position, pixel, 0);
     var pixel_status = initial_status(pixel, receiver);
     if pixel_status == STATUS_UNCERTAIN {
-        pixel_status = test_casters(receiver.xyz, textureLoad(primitive, pixel, 0).x);
+        let own = textureLoad(primitive, pixel, 0).x;
+        pixel_status = test_casters(receiver.xyz, own, facts, longest);
+    }
+    if pixel_status == IS_LONG {
+        let slot = atomicAdd(&long_pixels[0], 1u);
+        atomicStore(&long_pixels[slot + 1u], pixel.y * textureDimensions(primitive).x + pixel.x);
+        return;
     }
     if pixel_status == STATUS_UNCERTAIN {
         ask_rays();
@@ -70,71 +101,63 @@ fn ask_rays() {
     atomicStore(&fill_groups[2], 1u);
 }
 
-fn test_casters(receiver: vec3<f32>, own: u32) -> u32 {
-    let place = place_of(receiver);
-    // A part of a large triangle that had no room is in no list.
-    if place.texel == NO_TEXEL || lists[arrayLength(&lists) - 1u].head == LIST_FULL {
+fn what_all_share() -> Shared {
+    let rays = sheared(Ray(vec3(0.0), 0.0, light.to_light, light.max_distance));
+    let lists_lack = texels[arrayLength(&texels) - 1u].y != 0u;
+    return Shared(rays, light_clip_summands_of_scene(), lists_lack);
+}
+
+fn test_casters(receiver: vec3<f32>, own: u32, facts: Shared, longest: u32) -> u32 {
+    let place = place_of(receiver, facts.summed);
+    if place.texel == NO_TEXEL || facts.lists_lack {
         return STATUS_UNCERTAIN;
     }
+    let texel = texels[place.texel];
     // Two shaders may round a receiver to different texels: then nobody has marked this one.
-    if place.depth > farthest[place.texel] {
+    if place.depth > texel.x || texel.y > params.longest_list {
         return STATUS_UNCERTAIN;
     }
-    let list = lists[place.texel];
-    if list.length == 0u {
-        return STATUS_LIGHT;
-    }
-    if list.length > params.longest_list || list.head == LIST_FULL {
-        return STATUS_UNCERTAIN;
-    }
-    var walk = Walk(list.head, coarse_depth(bitcast<f32>(place.depth)), place.offset, own);
     let t_min = receiver_error_bound(receiver, camera.eye);
-    let end = light_distance(receiver);
-    let ray = sheared(Ray(receiver, t_min, to_light_from(receiver), end));
-    var hit = Hit(end, NO_PRIMITIVE, 0.0, 0.0);
-    var is_hit = false;
-    // Testing costs the most: threads that run in step do it together.
-    loop {
-        let candidate = next_candidate(&walk);
-        is_hit = candidate != NO_PRIMITIVE && intersect(ray, candidate, t_min, &hit);
-        if is_hit || !is_entry(walk.number) {
-            break;
-        }
-    }
-    if is_hit {
+    let depth = bitcast<f32>(place.depth);
+    // Twice what a hit must be away, for the tracer's rounding.
+    let nearest = depth - place.rounding - 2.0 * t_min / light.extent.z;
+    if nearest > 0.0 && bitcast<u32>(nearest) > ~texel.w {
         return STATUS_SHADOW;
     }
-    return select(STATUS_UNCERTAIN, STATUS_LIGHT, walk.number == LIST_END);
-}
-
-// A receiver's way through its list.
-struct Walk {
-    // Of the next entry.
-    number: u32,
-    // Of the receiver.
-    depth: u32,
-    offset: vec2<f32>,
-    own: u32,
-}
-
-// The next caster that could be hit; NO_PRIMITIVE if there is none. Only while there are entries.
-fn next_candidate(walk: ptr<function, Walk>) -> u32 {
-    var candidate = NO_PRIMITIVE;
+    if texel.y > longest {
+        return IS_LONG;
+    }
+    if texel.z == LIST_END {
+        return STATUS_LIGHT;
+    }
+    let end = light_distance(receiver);
+    var ray = Sheared(receiver, facts.rays.longest, facts.rays.shear);
+    if light_kind != LIGHT_DIRECTIONAL {
+        ray = sheared(Ray(receiver, t_min, to_light_from(receiver), end));
+    }
+    let coarse = coarse_depth(depth);
+    let offset = vec2<i32>(round(place.offset * 256.0));
+    var hit = Hit(end, NO_PRIMITIVE, 0.0, 0.0);
+    var is_hit = false;
+    var number = texel.z;
+    // Testing costs the most: threads that run in step do it together.
     loop {
-        let at = (*walk).number - 1u;
-        let key = entries[at].key;
-        let primitive = entries[at].primitive;
-        let may_hit = primitive != (*walk).own && key_depth(key) <= (*walk).depth
-            && !cuts_off(key, (*walk).offset);
-        candidate = select(NO_PRIMITIVE, primitive, may_hit);
-        (*walk).number = entries[at].next;
-        if may_hit || !is_entry((*walk).number) {
+        var candidate = NO_PRIMITIVE;
+        loop {
+            let entry = entries[number - 1u];
+            number = entry.x;
+            let may_hit = (entry.y != own)
+                & (entry.z >> 16u <= coarse)
+                & is_inside(entry.zw, offset);
+            candidate = select(NO_PRIMITIVE, entry.y, may_hit);
+            if may_hit || number == LIST_END {
+                break;
+            }
+        }
+        is_hit = candidate != NO_PRIMITIVE && intersect(ray, candidate, t_min, &hit);
+        if is_hit || number == LIST_END {
             break;
         }
     }
-    return candidate;
-}
-
-fn is_entry(number: u32) -> bool {
-    return number != LIST_END && number != LIST_FULL;
+    return select(STATUS_LIGHT, STATUS_SHADOW, is_hit);
 }

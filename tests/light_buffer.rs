@@ -68,14 +68,7 @@ struct Bench {
 
 const FITS: [&str; 3] = ["scene", "eye", "receivers"];
 
-const CAPTURED: [&str; 6] = [
-    "position",
-    "primitive",
-    "map_fit",
-    "farthest",
-    "lists",
-    "entries",
-];
+const CAPTURED: [&str; 5] = ["position", "primitive", "map_fit", "texels", "entries"];
 
 impl Bench {
     fn new(scene: &Arc<Scene>) -> Self {
@@ -166,7 +159,7 @@ fn mixed(seed: u64) -> Arc<Scene> {
 #[test]
 fn lists_hold_each_caster_that_shades_a_receiver_and_no_stranger() {
     for fit in FITS {
-        let mut shading = 0;
+        let [mut shading, mut covered] = [0; 2];
         for (seed, map_size) in [(3, 8), (1, 8), (2, 31), (3, 64), (4, 150), (5, 16)] {
             let scene = mixed(seed);
             let mut bench = Bench::new(&scene);
@@ -174,16 +167,21 @@ fn lists_hold_each_caster_that_shades_a_receiver_and_no_stranger() {
             let report = frame(&bench.gpu, &mut executor, &CAPTURED);
             let fit = MapFit::of(&report, &scene);
             assert_eq!(fit.size, map_size);
-            shading += check_lists(&scene, &fit, &report);
+            let (pairs, texels) = check_lists(&scene, &fit, &report);
+            (shading, covered) = (shading + pairs, covered + texels);
         }
         assert!(shading > 10_000, "{fit}: {shading}");
+        assert!(covered > 10, "{fit}: {covered}");
     }
 }
 
-/// Checks all lists; returns how many pairs of a receiver and a caster there were.
-fn check_lists(scene: &Scene, fit: &MapFit, report: &FrameReport) -> usize {
-    let (heads, entries) = (values(report, "lists"), values(report, "entries"));
-    let (farthest, own) = (values(report, "farthest"), values(report, "primitive"));
+/// Checks all lists and covers; returns how many pairs of a receiver and a caster there were, and
+/// how many covered texels.
+fn check_lists(scene: &Scene, fit: &MapFit, report: &FrameReport) -> (usize, usize) {
+    // Of a texel: the depth of its farthest receiver, the length of its list, where that begins, and
+    // the depth of its cover, inverted.
+    let (heads, entries) = (values(report, "texels"), values(report, "entries"));
+    let own = values(report, "primitive");
     let map_size = fit.size;
     let casters = (0..scene.mesh.triangles.len() as u32).map(|primitive| TexelTriangle {
         corners: scene.mesh.corners(primitive).map(|p| fit.texel(p)),
@@ -192,23 +190,34 @@ fn check_lists(scene: &Scene, fit: &MapFit, report: &FrameReport) -> usize {
     let texels = (map_size * map_size) as usize;
     let list = |texel: usize| {
         let mut list = Vec::new();
-        let mut number = heads[2 * texel];
+        let mut number = heads[4 * texel + 2];
         while number != 0 {
-            let entry = &entries[3 * (number as usize - 1)..];
-            (number, _) = (entry[0], list.push(entry[2]));
+            let entry = &entries[4 * (number as usize - 1)..];
+            (number, _) = (entry[0], list.push(entry[1]));
         }
         list
     };
     let lists: Vec<Vec<u32>> = (0..texels).map(list).collect();
+    let mut covered = 0;
     for (texel, list) in lists.iter().enumerate() {
         let known: BTreeSet<&u32> = list.iter().collect();
         assert_eq!(known.len(), list.len(), "a caster is in a list twice");
-        assert_eq!(heads[2 * texel + 1] as usize, list.len());
+        assert_eq!(heads[4 * texel + 1] as usize, list.len());
         let place = DVec2::new(
             (texel as u32 % map_size).into(),
             (texel as u32 / map_size).into(),
         );
-        let farthest = f64::from(f32::from_bits(farthest[texel]));
+        let cover = heads[4 * texel + 3];
+        if cover != 0 {
+            covered += 1;
+            let depth = f64::from(f32::from_bits(!cover));
+            let is_cover = |caster| greatest_over(caster, place).is_some_and(|z| z <= depth);
+            assert!(
+                casters.iter().any(is_cover),
+                "nobody covers {place} before {depth}"
+            );
+        }
+        let farthest = f64::from(f32::from_bits(heads[4 * texel]));
         for &primitive in list {
             let caster = &casters[primitive as usize];
             // The shader's slack, and as much for the corners' rounding.
@@ -255,7 +264,15 @@ fn check_lists(scene: &Scene, fit: &MapFit, report: &FrameReport) -> usize {
             }
         }
     }
-    shading
+    (shading, covered)
+}
+
+/// The greatest depth of a triangle over the texel from `corner` on, if it covers that.
+fn greatest_over(caster: &TexelTriangle, corner: DVec2) -> Option<f64> {
+    let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE].map(|by| corner + by);
+    corners.iter().try_fold(0.0, |greatest: f64, point| {
+        Some(greatest.max(depth_at(caster, *point)?))
+    })
 }
 
 /// Whether a triangle touches a texel that is larger by so much on every side.
@@ -383,6 +400,45 @@ fn lists_are_exact_before_and_after_they_have_grown() {
     assert!(second.visibility == rays);
     assert_eq!((second.entries, second.uncertain), (first.entries, 0));
     assert!(executor.grow(&mut bench.provider).unwrap().is_none());
+}
+
+/// Lists of some hundred casters, for which no thread takes several pixels.
+#[test]
+fn long_lists_are_walked() {
+    let scene = scene(crowd(0.8), DVec3::new(0.3, 1.2, 0.9), DVec3::NEG_Y);
+    let mut bench = Bench::new(&scene);
+    let rays = bench.by_rays();
+    for map_size in [24, 40] {
+        let params = [("map_size", map_size)];
+        let mut executor = bench.executor("receivers", &params, &["texels"]);
+        frame(&bench.gpu, &mut executor, &[]);
+        executor.grow(&mut bench.provider).unwrap();
+        let texels = values(&frame(&bench.gpu, &mut executor, &["texels"]), "texels");
+        let long = texels.chunks_exact(4).filter(|texel| texel[1] > 224).count();
+        assert!(long > 30, "map {map_size}: {long}");
+        let lists = bench.answer(&mut executor);
+        assert!(lists.visibility == rays, "map {map_size}");
+        assert_eq!(lists.uncertain, 0, "map {map_size}");
+    }
+}
+
+/// More parts of large triangles than there is room for: nobody knows whose lists lack them.
+#[test]
+fn parts_without_room_leave_all_to_rays() {
+    let corners = (0..70_000).flat_map(|layer| {
+        let height = 0.5 + 1e-6 * layer as f32;
+        [(-9.0, -9.0), (9.0, -9.0), (0.0, 9.0)].map(|(x, z)| Vec3::new(x, height, z))
+    });
+    let triangles = (0..70_000).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+    let sheets = mesh(corners.collect(), triangles.collect());
+    let sheets = joined(floor(1.0, -0.5), &sheets);
+    let scene = scene(sheets, DVec3::new(0.3, 0.2, 0.9), DVec3::NEG_Y);
+    let mut bench = Bench::of(&scene, [24, 24]);
+    let rays = bench.by_rays();
+    let lists = bench.by_lists("scene", &[("map_size", 48), ("longest_list", 16)]);
+    assert!(lists.visibility == rays);
+    assert_eq!((lists.lit, lists.shadow), (0, 0));
+    assert!(lists.uncertain > 50, "{}", lists.uncertain);
 }
 
 /// So many parts that one workgroup does not see them all.

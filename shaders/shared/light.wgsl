@@ -126,3 +126,9 @@ fn light_clip_summands(receiver: vec3<f32>) -> vec2<f32> {
     let across = max(dot(abs(matrix[0].xyz), size), dot(abs(matrix[1].xyz), size));
     return vec2(across + light.centre.w, dot(abs(matrix[2].xyz), size) + light.extent.w);
 }
+
+// The same, of any receiver in the scene: |receiver| is at most |centre| and half of the box.
+fn light_clip_summands_of_scene() -> vec2<f32> {
+    let half = vec2(light.centre.w, light.extent.w);
+    return light_clip_summands(light.centre.xyz) + half;
+}

@@ -5,18 +5,23 @@
 #import "shared/light_triangle.wgsl"
 #import "shared/map_layers.wgsl"
 
-// One caster in the list of a texel.
-struct Entry {
-    // Number of the next entry; LIST_END after the last one, LIST_FULL where a caster is missing.
-    next: u32,
-    // Whom it cannot shade, see `entry_key`.
-    key: u32,
-    primitive: u32,
+// One of the grid's texels. Receivers read it as one vec4.
+struct Texel {
+    // Of the receivers in it: bits of the depth of the farthest, see `Place`; 0 where nobody is.
+    farthest: u32,
+    // Entries that its list should have; and LIST_LACKS if one had no room.
+    length: u32,
+    // Number of its first entry; LIST_END where there is none.
+    head: u32,
+    // Bits of a depth, inverted: whoever is farther from the light is in the shadow of a caster that
+    // covers all of the texel. 0 where none does.
+    cover: u32,
 }
 
-// Entries count from 1, so that a cleared buffer holds empty lists.
+const LIST_LACKS: u32 = 0x80000000u;
+// An entry is a vec4: the number of the next one, the caster, and whom it cannot shade, see
+// `entry_key`. Entries count from 1, so that a cleared buffer holds empty lists.
 const LIST_END: u32 = 0u;
-const LIST_FULL: u32 = 0xffffffffu;
 
 // Some of the tiles under the box of a large triangle, from `first_tile` on.
 struct Part {
@@ -24,9 +29,8 @@ struct Part {
     first_tile: u32,
 }
 
-// Edge of a tile, texels. Behind the texels' depths in `farthest`, those of all layers, a tile has
-// three words: the farthest depth of its texels, and a bit for each of them, row by row, that
-// somebody is in.
+// Edge of a tile, texels. A tile is a vec4: the farthest depth of its texels, a bit for each of them,
+// row by row, that somebody is in, and nothing.
 const TILE: u32 = 8u;
 
 // The layer of the grid whose lists a pass makes; `map_fit` is its.
@@ -38,38 +42,50 @@ struct Place {
     texel: u32,
     // Bits of its depth, an f32 above 0. What is farther from the light does not shade it.
     depth: u32,
+    // What rounding may have added to that.
+    rounding: f32,
     // Relative to the texel's centre.
     offset: vec2<f32>,
 }
 
 const NO_TEXEL: u32 = 0xffffffffu;
 
-// In `farthest`: of a texel, and of the first word of a tile.
 fn texel_number(layer: u32, texel: vec2<u32>) -> u32 {
     let size = u32(map_fit.size);
     return (layer * size + texel.y) * size + texel.x;
 }
 
 fn tile_number(layer: u32, tile: vec2<u32>) -> u32 {
-    let size = u32(map_fit.size);
-    let tiles = (size + TILE - 1u) / TILE;
-    return map_layers * size * size + 3u * ((layer * tiles + tile.y) * tiles + tile.x);
+    let tiles = (u32(map_fit.size) + TILE - 1u) / TILE;
+    return (layer * tiles + tile.y) * tiles + tile.x;
 }
 
-fn place_of(receiver: vec3<f32>) -> Place {
+// Of the texels of a tile that have a bit: the first one's place in the tile, and its bit.
+fn first_of(texels: vec2<u32>) -> vec2<u32> {
+    let bit = countTrailingZeros(select(texels.x, texels.y, texels.x == 0u));
+    return vec2(bit % TILE, bit / TILE + select(0u, 4u, texels.x == 0u));
+}
+
+fn first_bit(texels: vec2<u32>) -> vec2<u32> {
+    let lowest = texels & (~texels + 1u);
+    return vec2(lowest.x, select(0u, lowest.y, texels.x == 0u));
+}
+
+// `summed`: of `light_clip_summands_of_scene`, the same for all.
+fn place_of(receiver: vec3<f32>, summed: vec2<f32>) -> Place {
     let layer = layer_of(receiver);
     let fit = fit_of(layer);
     let at = texel_of(fit, receiver);
-    let error = texel_error_bound_of(fit, receiver);
+    let error = texel_error_of_summands(fit, summed);
     // Half of the slack is for rounding, half for the tracer, to whom a point so near an edge may
     // be on it. NaN is outside.
     if is_outside_of(fit, at.xy) || !(error.x <= 0.5 * SLACK && abs(at.z) <= 2.0) {
-        return Place(NO_TEXEL, 0u, vec2(0.0));
+        return Place(NO_TEXEL, 0u, 0.0, vec2(0.0));
     }
     let texel = vec2<u32>(at.xy);
     // 0 says that nobody is there.
     let depth = max(depth_bits(at.z + error.y), 1u);
-    return Place(texel_number(layer, texel), depth, fract(at.xy) - 0.5);
+    return Place(texel_number(layer, texel), depth, 2.0 * error.y, fract(at.xy) - 0.5);
 }
 
 // In the order of the depths; of -0, too.
@@ -82,31 +98,43 @@ fn coarse_depth(depth: f32) -> u32 {
     return u32(depth * 65535.0);
 }
 
-// The line `distance + dot(inward, offset) = 0` cuts off the part of a texel in which an entry's
-// caster is not; the larger component of `inward` is 1 or -1. 16 bits for the least depth in the
-// texel, 2 for the larger component, 6 for the smaller one, 8 for the distance.
-fn entry_key(depth: f32, inward: vec2<f32>, distance: f32) -> u32 {
-    let steep = abs(inward.y) > abs(inward.x);
-    let larger = select(inward.x, inward.y, steep);
-    let smaller = select(inward.y, inward.x, steep);
-    // The slack in both directions, and 1/126 for the smaller component's rounding.
-    let generous = clamp(distance + 4.0 * SLACK, -1.0, 1.0);
-    return coarse_depth(depth) << 16u
-        | select(0u, 0x8000u, steep)
-        | select(0u, 0x4000u, larger < 0.0)
-        | u32(round((smaller + 1.0) * 31.5)) << 8u
-        | u32(ceil((generous + 1.0) * 127.5));
+// An edge of an entry's caster cuts off the part of the texel where `distance + dot(inward, offset)`
+// is negative, the larger component of `inward` being 1 or -1.
+struct Edge {
+    inward: vec2<f32>,
+    distance: f32,
 }
 
-fn key_depth(key: u32) -> u32 {
-    return key >> 16u;
+// 16 bits for the least depth in the texel, and two edges, whose numbers have a byte each, from -127
+// to 127 for -1 to 1.
+fn entry_key(depth: f32, one: Edge, other: Edge) -> vec2<u32> {
+    return vec2(
+        coarse_depth(depth) << 16u | byte_of(one.inward.x) << 8u | byte_of(one.inward.y),
+        distance_byte(one.distance) << 24u
+            | byte_of(other.inward.x) << 16u
+            | byte_of(other.inward.y) << 8u
+            | distance_byte(other.distance),
+    );
 }
 
-fn cuts_off(key: u32, offset: vec2<f32>) -> bool {
-    let steep = (key & 0x8000u) != 0u;
-    let larger = select(offset.x, offset.y, steep);
-    let smaller = select(offset.y, offset.x, steep);
-    let distance = f32(key & 0xffu) / 127.5 - 1.0;
-    let slope = f32(key >> 8u & 0x3fu) / 31.5 - 1.0;
-    return distance + select(larger, -larger, (key & 0x4000u) != 0u) + slope * smaller < 0.0;
+fn byte_of(share: f32) -> u32 {
+    return u32(i32(round(share * 127.0))) & 0xffu;
+}
+
+// The slack in both directions, and what rounding of `inward` and `offset` takes: 0.006.
+fn distance_byte(distance: f32) -> u32 {
+    return u32(i32(ceil(clamp(distance + 4.0 * SLACK, -1.0, 1.0) * 127.0))) & 0xffu;
+}
+
+// Whether no edge cuts off that place, in 256ths of a texel.
+fn is_inside(key: vec2<u32>, offset: vec2<i32>) -> bool {
+    let one = signed_byte(key.x, 1u) * offset.x + signed_byte(key.x, 0u) * offset.y;
+    let other = signed_byte(key.y, 2u) * offset.x + signed_byte(key.y, 1u) * offset.y;
+    let to_one = one + 256 * signed_byte(key.y, 3u);
+    let to_other = other + 256 * signed_byte(key.y, 0u);
+    return min(to_one, to_other) >= 0;
+}
+
+fn signed_byte(word: u32, byte: u32) -> i32 {
+    return i32(word << (24u - 8u * byte)) >> 24u;
 }

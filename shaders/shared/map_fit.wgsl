@@ -96,12 +96,16 @@ fn light_texel_error_bound(receiver: vec3<f32>) -> vec2<f32> {
 }
 
 fn texel_error_bound_of(fit: MapFit, receiver: vec3<f32>) -> vec2<f32> {
+    return texel_error_of_summands(fit, light_clip_summands(receiver));
+}
+
+// `summed`: of `light_clip_summands`; not asked for under a spot or point light.
+fn texel_error_of_summands(fit: MapFit, summed: vec2<f32>) -> vec2<f32> {
     if light_kind != LIGHT_DIRECTIONAL {
         // Of the receiver alone, where |x| and |y| are at most w: its casters differ in theirs.
         let across = fit.scale * (2.0 + 4.0 * light_spread()) + fit.reach;
         return CLIP_ROUNDING * vec2(across, 2.0 + 2.0 * light.max_distance / light.range);
     }
-    let summed = light_clip_summands(receiver);
     let across = fit.scale * summed.x + fit.reach;
     return CLIP_ROUNDING * vec2(across, summed.y + 2.0);
 }

@@ -223,11 +223,26 @@ fn storage_size(module: &naga::Module, ty: Handle<naga::Type>, size: u64) -> (u6
 }
 
 /// A type's memory layout in words, equal for equal layouts:
-/// `array<{0: vec3<f32>, 12: f32}, 16 bytes each>`. Names of members do not count.
+/// `array<{0: vec3<f32>, 12: f32}, 16 bytes each>`. Names of members do not count, and two or four
+/// scalars are the vector of them: one shader may count atomics that another reads as one.
 fn layout(module: &naga::Module, ty: Handle<naga::Type>) -> String {
     let mut text = String::new();
     write_layout(module, ty, &mut text, 0);
     text
+}
+
+/// The scalar of which a struct has two or four, one after the other, and nothing else.
+fn only_scalar(module: &naga::Module, members: &[naga::StructMember]) -> Option<naga::Scalar> {
+    let scalar = |member: &naga::StructMember| match module.types[member.ty].inner {
+        TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => Some(scalar),
+        _ => None,
+    };
+    let first = scalar(members.first()?)?;
+    let is_next = |(index, member): (usize, &naga::StructMember)| {
+        member.offset as usize == index * usize::from(first.width) && scalar(member) == Some(first)
+    };
+    let is_vector = matches!(members.len(), 2 | 4) && members.iter().enumerate().all(is_next);
+    is_vector.then_some(first)
 }
 
 fn write_layout(module: &naga::Module, ty: Handle<naga::Type>, text: &mut String, depth: usize) {
@@ -266,6 +281,10 @@ fn write_layout(module: &naga::Module, ty: Handle<naga::Type>, text: &mut String
             text.push_str(&format!(", {stride} bytes each>"));
         }
         TypeInner::Struct { members, .. } => {
+            if let Some(kind) = only_scalar(module, members) {
+                text.push_str(&format!("vec{}<{}>", members.len(), scalar(kind)));
+                return;
+            }
             for (index, member) in members.iter().enumerate() {
                 let open = if index == 0 { "{" } else { ", " };
                 text.push_str(&format!("{open}{}: ", member.offset));

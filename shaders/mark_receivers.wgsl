@@ -3,7 +3,7 @@
 
 #import "shared/receiver.wgsl"
 #import "shared/light_buffer.wgsl"
-#import "shared/pixel_tiles.wgsl"
+#import "shared/pixel_blocks.wgsl"
 
 struct MarkedTexel {
     farthest: atomic<u32>,
@@ -14,18 +14,14 @@ struct MarkedTexel {
 
 var<storage, read_write> texels: array<MarkedTexel>;
 
-// Of a workgroup.
-const TILES_PER_ROW: u32 = 4u;
-const TILES: u32 = 16u;
-
 @compute @workgroup_size(8, 8)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(local_invocation_id) local: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
 ) {
     let summed = light_clip_summands_of_scene();
-    for (var tile = 0u; tile < TILES; tile++) {
-        mark(pixel_of(group.xy, tile, TILES_PER_ROW, local.xy), summed);
+    for (var block = 0u; block < BLOCKS; block++) {
+        mark(pixel_of(group.xy, lane, block), summed);
     }
 }
 

@@ -3,25 +3,21 @@
 
 #import "shared/receiver.wgsl"
 #import "shared/map_layers.wgsl"
-#import "shared/pixel_tiles.wgsl"
+#import "shared/pixel_blocks.wgsl"
 
 // Of each layer bits of f32 from 0 to 1, which are in the order of the numbers: the greatest x, y,
 // 1 - x and 1 - y in shares of the scene's edge. All 0 if there is no receiver.
 var<storage, read_write> receiver_box: array<atomic<u32>, 4>;
 var<storage, read_write> receiver_boxes: array<array<atomic<u32>, 4>>;
 
-// Of a workgroup of `main`.
-const TILES_PER_ROW: u32 = 4u;
-const TILES: u32 = 16u;
-
 @compute @workgroup_size(8, 8)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(local_invocation_id) local: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
 ) {
     var most = vec4(0u);
-    for (var tile = 0u; tile < TILES; tile++) {
-        let receiver = receiver_of(pixel_of(group.xy, tile, TILES_PER_ROW, local.xy));
+    for (var block = 0u; block < BLOCKS; block++) {
+        let receiver = receiver_of(pixel_of(group.xy, lane, block));
         most = max(most, select(vec4(0u), shares_of(receiver.xyz), faces_light(receiver)));
     }
     for (var side = 0u; side < 4u; side++) {

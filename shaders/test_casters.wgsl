@@ -7,6 +7,7 @@
 #import "shared/groups.wgsl"
 #import "shared/receiver.wgsl"
 #import "shared/light_buffer.wgsl"
+#import "shared/pixel_blocks.wgsl"
 #import "shared/ray_triangle.wgsl"
 
 struct Params {
@@ -22,10 +23,6 @@ var<storage, read_write> long_pixels: array<atomic<u32>>;
 // Workgroups of fill_rays in x, y, z.
 var<storage, read_write> fill_groups: array<atomic<u32>, 3>;
 
-// A workgroup of `main` takes 32 by 32 pixels, a thread those of 16 blocks of 4 by 2, since some
-// adapters take as long to start a thread as it takes for a pixel; neighbours that run in step have
-// like lists.
-const BLOCKS: u32 = 16u;
 // So that no thread's loops run for more than 65,535 rounds, see docs/light_buffer.md.
 const LONG_LIST: u32 = 224u;
 // Besides those of `status`: the pixel is one for `long`.
@@ -47,9 +44,8 @@ fn main(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let facts = what_all_share();
-    let first = 32u * group.xy + vec2(lane & 3u, 4u * (lane / 8u) + (lane / 4u & 1u));
     for (var block = 0u; block < BLOCKS; block++) {
-        let pixel = first + vec2(4u * (block % 8u), 2u * (block / 8u));
+        let pixel = pixel_of(group.xy, lane, block);
         if all(pixel < textureDimensions(primitive)) {
             answer(pixel, facts, min(params.longest_list, LONG_LIST));
         }

@@ -122,7 +122,7 @@ fn fit_over_rectangle(axes: Axes, over: Rectangle, size: f32, rounding: f32) -> 
     );
 }
 
-// The greatest MapFit.scale for which `light_texel_error_bound` is at most `rounding`, anywhere in
+// The greatest MapFit.scale for which `texel_error_bound_of` is at most `rounding`, anywhere in
 // the scene. Of a map within the scene |x.z| is no more than the scale; `beyond` is how many texels
 // more.
 fn greatest_scale(beyond: f32, rounding: f32) -> f32 {

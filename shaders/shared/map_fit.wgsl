@@ -91,10 +91,6 @@ fn spot_texel_error(fit: MapFit, position: vec3<f32>) -> f32 {
 // What rounding may move a receiver and the corners of its casters by, together, in texels and in
 // depth: on the way to clip space, and from there on, 4 half ulps of all that is summed up. The map
 // may have been rounded itself; it is one for all. Of affine maps.
-fn light_texel_error_bound(receiver: vec3<f32>) -> vec2<f32> {
-    return texel_error_bound_of(map_fit, receiver);
-}
-
 fn texel_error_bound_of(fit: MapFit, receiver: vec3<f32>) -> vec2<f32> {
     return texel_error_of_summands(fit, light_clip_summands(receiver));
 }

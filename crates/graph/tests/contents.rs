@@ -360,6 +360,46 @@ fn items_of_buffers_are_bound_in_place() {
     );
 }
 
+/// Two or four scalars are laid out as the vector of them, so that one shader may count what another
+/// reads as one.
+#[test]
+fn structs_of_scalars_are_vectors() {
+    let files = |members: &str, seen: &str| {
+        let fill = format!(
+            "struct Item {{ count: atomic<u32>, {members} }}
+            var<storage, read_write> items: array<Item>;
+            @compute @workgroup_size(1) fn main() {{ atomicAdd(&items[0].count, 1u); }}"
+        );
+        let look = format!(
+            "var<storage, read> items: array<{seen}>; var<storage, read_write> found: array<u32>;
+            @compute @workgroup_size(1) fn main() {{ found[0] = u32(items[0].y); }}"
+        );
+        let sections = r#"
+            materials: [Buffer(name: "items", count: 2), Buffer(name: "found", count: 1)],
+            passes: [
+                Clear(name: "reset", target: "items"),
+                Compute(name: "fill", dispatch: Groups(1, 1, 1)),
+                Compute(name: "look", dispatch: Groups(1, 1, 1)),
+            ],
+            outputs: ["found"],"#;
+        Files::graph(sections)
+            .with("fill.wgsl", &fill)
+            .with("look.wgsl", &look)
+    };
+    for (members, seen) in [("b: u32, c: u32, d: u32", "vec4<u32>"), ("b: u32", "vec2<u32>")] {
+        assert_eq!(codes(&checked(&files(members, seen))), [], "{seen}");
+    }
+    for (members, seen) in [
+        ("b: u32, c: u32, d: u32", "vec4<i32>"),
+        ("b: u32, c: u32, d: f32", "vec4<u32>"),
+        ("b: u32, c: u32", "vec4<u32>"),
+        ("b: vec2<u32>, d: u32", "vec4<u32>"),
+    ] {
+        let found = codes(&checked(&files(members, seen)));
+        assert_eq!(found, [Code::LayoutMismatch], "{members}, {seen}");
+    }
+}
+
 /// A binding is visible to the stages whose entry points use it, and to no other.
 #[test]
 fn bindings_are_visible_to_the_stages_that_use_them() {

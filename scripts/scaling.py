@@ -4,6 +4,7 @@
 
     scripts/scaling.py                                      # hours on a software adapter
     scripts/scaling.py rt nsm --sizes 10000,100000 --viewport 640x360 --frames 1
+    scripts/scaling.py --sizes 1000000 --viewport 960x540,3840x2160 --map-size 1024,8192 --frames 1
 
 Every scene and size has a folder of its own below --out, with its results.json; what is there
 already is kept (`compare --resume`), so that an interrupted run goes on where it stopped. After
@@ -30,8 +31,8 @@ def arguments():
     parser.add_argument("--sizes", type=integers, default=sizes, metavar="N,…")
     parser.add_argument("--scenes", type=lambda text: text.split(","), default=SCENES, metavar="NAME,…")
     parser.add_argument("--view", default="overview", help="a view of the scenes, or all")
-    parser.add_argument("--viewport", default="1920x1080", metavar="WxH")
-    parser.add_argument("--map-size", type=int, default=2048, metavar="N", help="where no method is named")
+    parser.add_argument("--viewport", default="1920x1080", metavar="WxH,…")
+    parser.add_argument("--map-size", type=integers, default=[2048], metavar="N,…", help="where no method is named")
     parser.add_argument("--frames", type=int, default=5, metavar="N", help="timed, after one that is not")
     parser.add_argument("--out", type=Path, default=Path("out/scaling"), metavar="DIR")
     parser.add_argument("--program", metavar="FILE", help="a skiagraph that is built already")
@@ -50,8 +51,9 @@ def skiagraph(args, *words):
 
 
 def compare(args, scene, triangles, folder):
-    # light_buffer chooses its grid.
-    with_maps = [f"{name}@map_size={args.map_size}" for name in ("nsm", "crsma_full")]
+    # light_buffer chooses its grid, too.
+    mapped = ["nsm", "crsma_full"] + (["light_buffer"] if len(args.map_size) > 1 else [])
+    with_maps = [f"{name}@map_size={size}" for name in mapped for size in args.map_size]
     methods = args.methods or ["rt", *with_maps, "light_buffer"]
     return skiagraph(
         args, "compare", *methods, "--scene", f"{scene}:{triangles}", "--view", args.view,
@@ -77,16 +79,21 @@ def time(row):
     return float(row["gpu_ms"]) - float(row["gbuffer_gpu_ms"] or 0) if row["gpu_ms"] else ""
 
 
+def place(row):
+    return tuple(row[column] for column in ("scene", "triangles", "view", "width", "height"))
+
+
 def table(found):
-    """A line per method; the times of `rt` on the same scene and view stand for 1."""
-    rt = {(row["scene"], row["triangles"], row["view"]): time(row) for row in found if row["preset"] == "rt"}
+    """A line per method and map; the times of `rt` on the same scene, view and viewport stand for 1."""
+    rt = {place(row): time(row) for row in found if row["preset"] == "rt"}
     lines = [
-        "| scene | triangles | view | method | ms less G-buffer | of `rt` | G-buffer ms | MB graph | MB scene | wrong % | in band % | uncertain % |",
-        "|---|---|---|---|---|---|---|---|---|---|---|---|",
+        "| scene | triangles | view | pixels | method | map | ms less G-buffer | of `rt` | G-buffer ms | MB graph | MB scene | wrong % | in band % | uncertain % |",
+        "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for row in found:
-        where = (row["scene"], row["triangles"], row["view"])
-        cells = [row["scene"], number(row["triangles"]), row["view"], f"`{row['preset']}`"]
+        where = place(row)
+        cells = [row["scene"], number(row["triangles"]), row["view"], f"{row['width']}×{row['height']}"]
+        cells += [f"`{row['preset']}`", row["map_size"] or "–"]
         if row["unavailable"]:
             lines.append("| " + " | ".join([*cells, row["unavailable"].replace("|", "/")]) + " | | | | | | | |")
             continue
@@ -113,6 +120,8 @@ def write(args, folders):
     for name, text in files.items():
         (args.out / f"{name}.part").write_text(text)
         os.replace(args.out / f"{name}.part", args.out / name)
+    if "," in args.viewport or len(args.map_size) > 1:
+        return 0  # The chart is that of triangles.
     return skiagraph(args, "chart", *folders, "--kind", "growth", "--out", args.out / "scaling.svg")
 
 

@@ -178,8 +178,8 @@ fn lists_hold_each_caster_that_shades_a_receiver_and_no_stranger() {
 /// Checks all lists and covers; returns how many pairs of a receiver and a caster there were, and
 /// how many covered texels.
 fn check_lists(scene: &Scene, fit: &MapFit, report: &FrameReport) -> (usize, usize) {
-    // Of a texel: the depth of its farthest receiver, the length of its list, where that begins, and
-    // the depth of its cover, inverted.
+    // Of a texel: the depth of its farthest receiver, the length of its list, where that begins,
+    // and the depth of its cover, inverted.
     let (heads, entries) = (values(report, "texels"), values(report, "entries"));
     let own = values(report, "primitive");
     let map_size = fit.size;
@@ -414,7 +414,10 @@ fn long_lists_are_walked() {
         frame(&bench.gpu, &mut executor, &[]);
         executor.grow(&mut bench.provider).unwrap();
         let texels = values(&frame(&bench.gpu, &mut executor, &["texels"]), "texels");
-        let long = texels.chunks_exact(4).filter(|texel| texel[1] > 224).count();
+        let long = texels
+            .chunks_exact(4)
+            .filter(|texel| texel[1] > 224)
+            .count();
         assert!(long > 30, "map {map_size}: {long}");
         let lists = bench.answer(&mut executor);
         assert!(lists.visibility == rays, "map {map_size}");

@@ -13,8 +13,8 @@ struct Texel {
     length: u32,
     // Number of its first entry; LIST_END where there is none.
     head: u32,
-    // Bits of a depth, inverted: whoever is farther from the light is in the shadow of a caster that
-    // covers all of the texel. 0 where none does.
+    // Bits of a depth, inverted: whoever is farther from the light is in the shadow of a caster
+    // that covers all of the texel. 0 where none does.
     cover: u32,
 }
 
@@ -29,8 +29,8 @@ struct Part {
     first_tile: u32,
 }
 
-// Edge of a tile, texels. A tile is a vec4: the farthest depth of its texels, a bit for each of them,
-// row by row, that somebody is in, and nothing.
+// Edge of a tile, texels. A tile is a vec4: the farthest depth of its texels, a bit for each of
+// them, row by row, that somebody is in, and nothing.
 const TILE: u32 = 8u;
 
 // The layer of the grid whose lists a pass makes; `map_fit` is its.
@@ -98,15 +98,15 @@ fn coarse_depth(depth: f32) -> u32 {
     return u32(depth * 65535.0);
 }
 
-// An edge of an entry's caster cuts off the part of the texel where `distance + dot(inward, offset)`
-// is negative, the larger component of `inward` being 1 or -1.
+// An edge of an entry's caster cuts off the part of the texel where `distance + dot(inward,
+// offset)` is negative, the larger component of `inward` being 1 or -1.
 struct Edge {
     inward: vec2<f32>,
     distance: f32,
 }
 
-// 16 bits for the least depth in the texel, and two edges, whose numbers have a byte each, from -127
-// to 127 for -1 to 1.
+// 16 bits for the least depth in the texel, and two edges, whose numbers have a byte each, from
+// -127 to 127 for -1 to 1.
 fn entry_key(depth: f32, one: Edge, other: Edge) -> vec2<u32> {
     return vec2(
         coarse_depth(depth) << 16u | byte_of(one.inward.x) << 8u | byte_of(one.inward.y),

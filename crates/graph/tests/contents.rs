@@ -360,8 +360,8 @@ fn items_of_buffers_are_bound_in_place() {
     );
 }
 
-/// Two or four scalars are laid out as the vector of them, so that one shader may count what another
-/// reads as one.
+/// Two or four scalars are laid out as the vector of them, so that one shader may count what
+/// another reads as one.
 #[test]
 fn structs_of_scalars_are_vectors() {
     let files = |members: &str, seen: &str| {
@@ -386,7 +386,10 @@ fn structs_of_scalars_are_vectors() {
             .with("fill.wgsl", &fill)
             .with("look.wgsl", &look)
     };
-    for (members, seen) in [("b: u32, c: u32, d: u32", "vec4<u32>"), ("b: u32", "vec2<u32>")] {
+    for (members, seen) in [
+        ("b: u32, c: u32, d: u32", "vec4<u32>"),
+        ("b: u32", "vec2<u32>"),
+    ] {
         assert_eq!(codes(&checked(&files(members, seen))), [], "{seen}");
     }
     for (members, seen) in [

@@ -10,6 +10,7 @@ use crate::{
     text::{BODY, HEAD, clean},
 };
 use plotters::{coord::cartesian::Cartesian2d, element::DashedPathElement, prelude::*};
+use std::cmp::Reverse;
 
 const STRIP: RGBColor = RGBColor(238, 238, 238);
 pub(crate) const GRID: [RGBColor; 2] = [RGBColor(205, 205, 205), RGBColor(234, 234, 234)];
@@ -95,9 +96,13 @@ pub(crate) fn draw(
         root.draw(&PathElement::new(way, FRONT.stroke_width(2)))
             .map_err(failed)?;
     }
-    for (index, (series, mark)) in marks.into_iter().enumerate() {
-        let full = panel.kind == Kind::Growth || best.contains(&index);
-        look(&series.name).draw(root, places[index], mark.size, full)?;
+    let is_full = |index: &usize| panel.kind == Kind::Growth || best.contains(index);
+    // So that no mark hides another: small ones lie on large ones.
+    let mut order: Vec<usize> = (0..marks.len()).collect();
+    order.sort_by_key(|index| (Reverse(marks[*index].1.size), is_full(index)));
+    for index in order {
+        let (series, mark) = marks[index];
+        look(&series.name).draw(root, places[index], mark.size, is_full(&index))?;
     }
     Ok(())
 }

@@ -238,6 +238,7 @@ fn zeros_stand_in_the_strip_each_series_in_a_lane_and_nothing_else_does() {
         })
         .collect();
     assert_eq!(lanes.len(), 6, "four of light_buffer, two of crsm");
+    lanes.sort_unstable();
     lanes.dedup();
     assert_eq!(lanes.len(), 2, "a lane each");
     assert!(
@@ -245,6 +246,31 @@ fn zeros_stand_in_the_strip_each_series_in_a_lane_and_nothing_else_does() {
             .iter()
             .any(|(text, place)| *text == "0" && in_strip(place[1]))
     );
+}
+
+/// Or what is on the front would be hidden by what is not.
+#[test]
+fn small_marks_lie_on_large_ones() {
+    let svg = svg(&Figure {
+        panels: time_against_error().panels[..1].to_vec(),
+        ..time_against_error()
+    });
+    let svg = Document::parse(&svg).unwrap();
+    let width = |node: Node| {
+        let points = node.attribute("points")?.split_whitespace();
+        let across = points.map(|point| point.split_once(',').unwrap().0.parse().unwrap());
+        let across: Vec<f64> = across.collect();
+        let least = across.iter().copied().fold(f64::INFINITY, f64::min);
+        Some(across.iter().copied().fold(0.0, f64::max) - least)
+    };
+    let polygons = svg
+        .descendants()
+        .filter(|node| node.has_tag_name("polygon"));
+    let widths: Vec<f64> = polygons.filter_map(width).collect();
+    // Four in the legend, then those of four methods in each of four maps.
+    let of_maps: Vec<f64> = widths[4..].chunks(4).map(|map| map.iter().sum()).collect();
+    assert_eq!(of_maps.len(), 4);
+    assert!(of_maps.is_sorted_by(|a, b| a > b), "{of_maps:?}");
 }
 
 /// Left, top, right and bottom of each bar, in the order in which they are drawn.

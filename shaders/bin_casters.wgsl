@@ -3,6 +3,7 @@
 // many tiles to `parts`: one workgroup per part of a large one, whose threads take its tiles in
 // turns. So no thread looks at more than 2,048 texels, however large a triangle is.
 
+#import "shared/camera.wgsl"
 #import "shared/groups.wgsl"
 #import "shared/light_buffer.wgsl"
 #import "shared/face_triangle.wgsl"
@@ -12,7 +13,7 @@ struct Params {
 }
 
 struct BinnedTexel {
-    farthest: u32,
+    farthest: atomic<u32>,
     length: atomic<u32>,
     head: atomic<u32>,
     cover: atomic<u32>,
@@ -250,10 +251,11 @@ fn bin(caster: Binned, first: u32, end: u32, step: u32) {
         if all(listed == vec2(0u)) {
             continue;
         }
+        let lines = lines_of(caster);
         let entries_here = countOneBits(listed.x) + countOneBits(listed.y);
         var slot = atomicAdd(&entry_count, entries_here);
         while any(listed != vec2(0u)) {
-            append(caster, at * TILE + first_of(listed), slot);
+            append(caster, at * TILE + first_of(listed), slot, lines);
             listed &= ~first_bit(listed);
             slot += 1u;
         }
@@ -265,13 +267,17 @@ fn is_listed(caster: Binned, texel: vec2<u32>) -> bool {
     let number = texel_number(binned_layer, texel);
     let centre = vec2<f32>(texel) + 0.5;
     let inward = inward_of(caster.triangle, centre);
-    let may_shade = depth_bits(least_depth(caster, centre)) <= texels[number].farthest;
+    let farthest = atomicLoad(&texels[number].farthest);
+    let may_shade = depth_bits(least_depth(caster, centre)) <= farthest;
     if !(all(inward >= -caster.reach) && may_shade) {
         return false;
     }
     let covers = caster.plane.margin >= 0.0 && all(inward >= COVERING * caster.reach);
     if has_covers && covers {
-        atomicMax(&texels[number].cover, ~depth_bits(covered_depth(caster.plane, centre)));
+        let depth = covered_depth(caster.plane, centre);
+        atomicMax(&texels[number].cover, ~depth_bits(depth));
+        // Nobody behind it asks a list.
+        atomicMin(&texels[number].farthest, depth_bits(depth + cover_margin()));
     }
     // Nobody reads a list that is longer.
     return (atomicAdd(&texels[number].length, 1u) & ~LIST_LACKS) < params.longest_list;
@@ -285,6 +291,16 @@ fn covered_depth(plane: DepthPlane, centre: vec2<f32>) -> f32 {
     let farthest = plane_depth(plane, centre) + (0.5 + 4.0 * plane.margin) * (slope.x + slope.y);
     let rounding = 8.0 * HALF_ULP * (plane.greatest - plane.least);
     return saturate(clamp(farthest, plane.least, plane.greatest) + rounding);
+}
+
+// How much deeper than a cover a receiver may be that test_casters.wgsl does not find behind it:
+// its rounding and twice its `receiver_error_bound`, of any in the scene, and what adding that up
+// errs by.
+fn cover_margin() -> f32 {
+    let placed = texel_error_of_summands(map_fit, light_clip_summands_of_scene()).y;
+    let centre = light.centre.xyz;
+    let ways = length(centre) + 2.0 * length(centre - camera.eye) + 3.0 * light.max_distance;
+    return 2.02 * (placed + HALF_ULP * ways / light.extent.z) + 4.0 * HALF_ULP;
 }
 
 // In a texel.
@@ -323,25 +339,26 @@ fn inward_of(triangle: LightTriangle, point: vec2<f32>) -> vec3<f32> {
     );
 }
 
-fn append(caster: Binned, texel: vec2<u32>, slot: u32) {
+fn append(caster: Binned, texel: vec2<u32>, slot: u32, lines: Lines) {
     let number = texel_number(binned_layer, texel);
     if slot >= arrayLength(&entries) {
         atomicOr(&texels[number].length, LIST_LACKS);
         return;
     }
     let centre = vec2<f32>(texel) + 0.5;
-    let triangle = caster.triangle;
-    let inward = inward_of(triangle, centre);
-    let ab = edge_of(triangle.b.xy - triangle.a.xy, inward.x, caster.slack);
-    let bc = edge_of(triangle.c.xy - triangle.b.xy, inward.y, caster.slack);
-    let ca = edge_of(triangle.a.xy - triangle.c.xy, inward.z, caster.slack);
-    // The one that cuts least off the texel is left out.
-    let share = select(inward / caster.reach, vec3(3e38), caster.reach == vec3(0.0));
+    let inward = inward_of(caster.triangle, centre);
+    let distances = inward * lines.per_length + lines.room;
+    let ab = Edge(lines.inward.x, distances.x);
+    let bc = Edge(lines.inward.y, distances.y);
+    let ca = Edge(lines.inward.z, distances.z);
+    // The one that cuts the least area off the texel is left out: about the part of the edge that
+    // is near it, times how far the texel reaches beyond.
+    let cut = (caster.reach - inward) * lines.per_near;
     var one = ab;
     var other = ca;
-    if share.x >= max(share.y, share.z) {
+    if cut.x <= min(cut.y, cut.z) {
         one = bc;
-    } else if share.z > share.y {
+    } else if cut.z < cut.y {
         other = bc;
     }
     let key = entry_key(least_depth(caster, centre), one, other);
@@ -349,13 +366,48 @@ fn append(caster: Binned, texel: vec2<u32>, slot: u32) {
     entries[slot] = vec4(next, caster.primitive, key);
 }
 
-// `inward`: as of `inward_of`.
-fn edge_of(edge: vec2<f32>, inward: f32, slack: f32) -> Edge {
-    let longest = max(abs(edge.x), abs(edge.y));
-    // Without length it is no line.
-    if longest < 1e-30 {
-        return Edge(vec2(0.0), 1.0);
+// What keys say of a triangle's edges ab, bc and ca that is the same in all texels.
+struct Lines {
+    // As `Edge` has it.
+    inward: vec3<u32>,
+    // 1 / the longer component of each; 0 of one without length, which is no line.
+    per_length: vec3<f32>,
+    // Distances that lines are moved outward by.
+    room: vec3<f32>,
+    // 1 / the length of the part of each that is near a texel, about.
+    per_near: vec3<f32>,
+}
+
+fn lines_of(caster: Binned) -> Lines {
+    let triangle = caster.triangle;
+    let edges = array(
+        triangle.b.xy - triangle.a.xy,
+        triangle.c.xy - triangle.b.xy,
+        triangle.a.xy - triangle.c.xy,
+    );
+    let apart = apart_of(caster.slack);
+    var lines: Lines;
+    for (var i = 0u; i < 3u; i++) {
+        let size = abs(edges[i]);
+        let longest = max(size.x, size.y);
+        let is_line = longest >= 1e-30;
+        let per_length = select(0.0, 1.0 / longest, is_line);
+        lines.inward[i] = inward_bytes(vec2(-edges[i].y, edges[i].x) * per_length);
+        lines.per_length[i] = per_length;
+        lines.room[i] = select(1.0, apart * (size.x + size.y) * per_length, is_line);
     }
-    let room = 2.0 * (slack - SLACK);
-    return Edge(vec2(-edge.y, edge.x) / longest, inward / longest + room);
+    lines.per_near = 1.0 / max(2.0 * caster.reach, vec3(1.0));
+    return lines;
+}
+
+// What a receiver may be beyond an edge by, in texels in each direction, and the tracer not tell:
+// docs/light_buffer.md. Of a directional light mostly less than the slack.
+fn apart_of(slack: f32) -> f32 {
+    let most = slack + SLACK;
+    if light_kind != LIGHT_DIRECTIONAL {
+        return most;
+    }
+    let placed = texel_error_of_summands(map_fit, light_clip_summands_of_scene()).x;
+    let clip = light.max_distance / min(light.extent.x, light.extent.y);
+    return min(most, placed + 24.0 * HALF_ULP * map_fit.scale * clip);
 }

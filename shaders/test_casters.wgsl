@@ -5,7 +5,7 @@
 #import "shared/answer.wgsl"
 #import "shared/camera.wgsl"
 #import "shared/groups.wgsl"
-#import "shared/receiver.wgsl"
+#import "shared/facing.wgsl"
 #import "shared/light_buffer.wgsl"
 #import "shared/pixel_blocks.wgsl"
 #import "shared/ray_triangle.wgsl"
@@ -15,10 +15,13 @@ struct Params {
 }
 
 var<uniform> params: Params;
+// As mark_receivers.wgsl reads it.
+var position: texture_storage_2d<rgba32float, read>;
 // As bin_casters.wgsl leaves them: each a `Texel`, the last one LIST_LACKS for all.
 var<storage, read> texels: array<vec4<u32>>;
 var<storage, read> entries: array<vec4<u32>>;
-// Of pixels with long lists, how many there are, then which.
+// Of pixels with long lists, how many there are, then which: one buffer, as eight are all that a
+// stage is sure to have.
 var<storage, read_write> long_pixels: array<atomic<u32>>;
 // Workgroups of fill_rays in x, y, z.
 var<storage, read_write> fill_groups: array<atomic<u32>, 3>;
@@ -68,7 +71,7 @@ fn long(
 
 // `longest`: the longest list that is walked at once.
 fn answer(pixel: vec2<u32>, facts: Shared, longest: u32) {
-    let receiver = textureLoad(position, pixel, 0);
+    let receiver = textureLoad(position, pixel);
     var pixel_status = initial_status(pixel, receiver);
     if pixel_status == STATUS_UNCERTAIN {
         let own = textureLoad(primitive, pixel, 0).x;
@@ -109,16 +112,16 @@ fn test_casters(receiver: vec3<f32>, own: u32, facts: Shared, longest: u32) -> u
         return STATUS_UNCERTAIN;
     }
     let texel = texels[place.texel];
-    // Two shaders may round a receiver to different texels: then nobody has marked this one.
-    if place.depth > texel.x || texel.y > params.longest_list {
-        return STATUS_UNCERTAIN;
-    }
     let t_min = receiver_error_bound(receiver, camera.eye);
     let depth = bitcast<f32>(place.depth);
     // Twice what a hit must be away, for the tracer's rounding.
     let nearest = depth - place.rounding - 2.0 * t_min / light.extent.z;
     if nearest > 0.0 && bitcast<u32>(nearest) > ~texel.w {
         return STATUS_SHADOW;
+    }
+    // Two shaders may round a receiver to different texels: then nobody has marked this one.
+    if place.depth > texel.x || texel.y > params.longest_list {
+        return STATUS_UNCERTAIN;
     }
     if texel.y > longest {
         return IS_LONG;
@@ -132,7 +135,7 @@ fn test_casters(receiver: vec3<f32>, own: u32, facts: Shared, longest: u32) -> u
         ray = sheared(Ray(receiver, t_min, to_light_from(receiver), end));
     }
     let coarse = coarse_depth(depth);
-    let offset = vec2<i32>(round(place.offset * 256.0));
+    let offset = vec2<i32>(round(place.offset * 4096.0));
     var hit = Hit(end, NO_PRIMITIVE, 0.0, 0.0);
     var is_hit = false;
     var number = texel.z;
@@ -142,9 +145,8 @@ fn test_casters(receiver: vec3<f32>, own: u32, facts: Shared, longest: u32) -> u
         loop {
             let entry = entries[number - 1u];
             number = entry.x;
-            let may_hit = (entry.y != own)
-                & (entry.z >> 16u <= coarse)
-                & is_inside(entry.zw, offset);
+            let inside = inside_of(entry.zw, offset) | behind_of(entry.zw, coarse);
+            let may_hit = (entry.y != own) & (inside >= 0);
             candidate = select(NO_PRIMITIVE, entry.y, may_hit);
             if may_hit || number == LIST_END {
                 break;

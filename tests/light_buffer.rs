@@ -198,6 +198,10 @@ fn check_lists(scene: &Scene, fit: &MapFit, report: &FrameReport) -> (usize, usi
         list
     };
     let lists: Vec<Vec<u32>> = (0..texels).map(list).collect();
+    let cover = |texel: usize| {
+        let inverted = heads[4 * texel + 3];
+        (inverted != 0).then(|| f64::from(f32::from_bits(!inverted)))
+    };
     let mut covered = 0;
     for (texel, list) in lists.iter().enumerate() {
         let known: BTreeSet<&u32> = list.iter().collect();
@@ -207,17 +211,16 @@ fn check_lists(scene: &Scene, fit: &MapFit, report: &FrameReport) -> (usize, usi
             (texel as u32 % map_size).into(),
             (texel as u32 / map_size).into(),
         );
-        let cover = heads[4 * texel + 3];
-        if cover != 0 {
+        let farthest = f64::from(f32::from_bits(heads[4 * texel]));
+        if let Some(depth) = cover(texel) {
             covered += 1;
-            let depth = f64::from(f32::from_bits(!cover));
+            assert!(farthest <= depth + 1e-5, "{place} asks behind its cover");
             let is_cover = |caster| greatest_over(caster, place).is_some_and(|z| z <= depth);
             assert!(
                 casters.iter().any(is_cover),
                 "nobody covers {place} before {depth}"
             );
         }
-        let farthest = f64::from(f32::from_bits(heads[4 * texel]));
         for &primitive in list {
             let caster = &casters[primitive as usize];
             // The shader's slack, and as much for the corners' rounding.
@@ -227,7 +230,9 @@ fn check_lists(scene: &Scene, fit: &MapFit, report: &FrameReport) -> (usize, usi
             );
             let least = caster.corners.map(|corner| corner.z);
             let least = least.into_iter().fold(f64::INFINITY, f64::min);
-            assert!(least <= farthest + 1e-5, "{primitive} is behind {place}");
+            // Those listed before a cover was found may be behind that.
+            let is_asked = cover(texel).is_some() || least <= farthest + 1e-5;
+            assert!(is_asked, "{primitive} is behind {place}");
         }
     }
     let positions = report
@@ -254,6 +259,9 @@ fn check_lists(scene: &Scene, fit: &MapFit, report: &FrameReport) -> (usize, usi
             "{position} is outside"
         );
         let texel = place.y as usize * map_size as usize + place.x as usize;
+        if cover(texel).is_some_and(|depth| at.z > depth) {
+            continue;
+        }
         for (primitive, caster) in (0u32..).zip(&casters) {
             if primitive != own && depth_at(caster, at.truncate()).is_some_and(|z| z < at.z) {
                 shading += 1;
@@ -332,22 +340,19 @@ fn what_has_no_room_is_a_ray() {
     let with = |bench: &mut Bench, most: u32| {
         bench.by_lists("receivers", &[("map_size", 64), ("max_entries", most)])
     };
+    // About: what lies behind a cover is listed if it came before that.
     let needed = with(&mut bench, 65_536).entries;
-    assert!(needed < 65_536, "{needed}");
-    for (most, is_short) in [
-        (1, true),
-        (needed / 2, true),
-        (needed - 1, true),
-        (needed, false),
-    ] {
+    assert!(needed < 32_768, "{needed}");
+    for (most, is_short) in [(1, true), (needed / 2, true), (2 * needed, false)] {
         let lists = with(&mut bench, most);
         assert!(lists.visibility == rays, "{most} of {needed} entries");
         assert_eq!(lists.uncertain > 0, is_short, "{most} of {needed} entries");
-        assert_eq!(lists.entries, needed);
+        assert_eq!(lists.entries > most, is_short, "{most} of {needed} entries");
     }
-    // One entry too few leaves one texel to rays.
-    let [all, most] = [1, needed - 1].map(|most| with(&mut bench, most).uncertain);
-    assert!(10 * most < all, "{most} of {all}");
+    // Where some have room, some receivers need no ray.
+    let [all, most] = [1, needed / 10 * 9].map(|most| with(&mut bench, most));
+    assert!(most.visibility == rays);
+    assert!(most.uncertain < all.uncertain, "{}", most.uncertain);
 }
 
 #[test]
@@ -398,7 +403,7 @@ fn lists_are_exact_before_and_after_they_have_grown() {
     assert!(executor.grow(&mut bench.provider).unwrap().is_some());
     let second = bench.answer(&mut executor);
     assert!(second.visibility == rays);
-    assert_eq!((second.entries, second.uncertain), (first.entries, 0));
+    assert_eq!(second.uncertain, 0);
     assert!(executor.grow(&mut bench.provider).unwrap().is_none());
 }
 

@@ -8,6 +8,7 @@
 // One of the grid's texels. Receivers read it as one vec4.
 struct Texel {
     // Of the receivers in it: bits of the depth of the farthest, see `Place`; 0 where nobody is.
+    // Behind a cover none is looked for.
     farthest: u32,
     // Entries that its list should have; and LIST_LACKS if one had no room.
     length: u32,
@@ -101,38 +102,45 @@ fn coarse_depth(depth: f32) -> u32 {
 // An edge of an entry's caster cuts off the part of the texel where `distance + dot(inward,
 // offset)` is negative, the larger component of `inward` being 1 or -1.
 struct Edge {
-    inward: vec2<f32>,
+    // As `inward_bytes` has it.
+    inward: u32,
     distance: f32,
 }
 
-// 16 bits for the least depth in the texel, and two edges, whose numbers have a byte each, from
-// -127 to 127 for -1 to 1.
+// A byte for either component, x above y, from -127 to 127 for -1 to 1.
+fn inward_bytes(inward: vec2<f32>) -> u32 {
+    let bytes = vec2<u32>(vec2<i32>(round(inward * 127.0))) & vec2(0xffu);
+    return bytes.x << 8u | bytes.y;
+}
+
+// 16 bits for the least depth in the texel, and two edges of 24 bits: `inward`, and in the top byte
+// of a word the distance, in the same numbers.
 fn entry_key(depth: f32, one: Edge, other: Edge) -> vec2<u32> {
+    let low = (one.inward & 0xff00u) << 8u | coarse_depth(depth);
+    let high = (one.inward & 0xffu) << 16u | other.inward;
     return vec2(
-        coarse_depth(depth) << 16u | byte_of(one.inward.x) << 8u | byte_of(one.inward.y),
-        distance_byte(one.distance) << 24u
-            | byte_of(other.inward.x) << 16u
-            | byte_of(other.inward.y) << 8u
-            | distance_byte(other.distance),
+        distance_byte(one.distance, low) << 24u | low,
+        distance_byte(other.distance, high) << 24u | high,
     );
 }
 
-fn byte_of(share: f32) -> u32 {
-    return u32(i32(round(share * 127.0))) & 0xffu;
+// Rounded up, the bits `below` it taken for its fraction, as `inside_of` does; and 0.0023 for the
+// rounding of `inward` and `offset`.
+fn distance_byte(distance: f32, below: u32) -> u32 {
+    let least = i32(ceil(clamp(distance + 0.0023, -1.0, 1.0) * 127.0 * 4096.0));
+    return u32((least - i32(below >> 12u) + 4095) >> 12u) & 0xffu;
 }
 
-// The slack in both directions, and what rounding of `inward` and `offset` takes: 0.006.
-fn distance_byte(distance: f32) -> u32 {
-    return u32(i32(ceil(clamp(distance + 4.0 * SLACK, -1.0, 1.0) * 127.0))) & 0xffu;
+// Negative if an edge cuts off that place, in 4096ths of a texel.
+fn inside_of(key: vec2<u32>, offset: vec2<i32>) -> i32 {
+    let one = signed_byte(key.x, 2u) * offset.x + signed_byte(key.y, 2u) * offset.y;
+    let other = signed_byte(key.y, 1u) * offset.x + signed_byte(key.y, 0u) * offset.y;
+    return (one + (i32(key.x) >> 12u)) | (other + (i32(key.y) >> 12u));
 }
 
-// Whether no edge cuts off that place, in 256ths of a texel.
-fn is_inside(key: vec2<u32>, offset: vec2<i32>) -> bool {
-    let one = signed_byte(key.x, 1u) * offset.x + signed_byte(key.x, 0u) * offset.y;
-    let other = signed_byte(key.y, 2u) * offset.x + signed_byte(key.y, 1u) * offset.y;
-    let to_one = one + 256 * signed_byte(key.y, 3u);
-    let to_other = other + 256 * signed_byte(key.y, 0u);
-    return min(to_one, to_other) >= 0;
+// Negative if a receiver of that `coarse_depth` is nearer to the light.
+fn behind_of(key: vec2<u32>, coarse: u32) -> i32 {
+    return i32(coarse) - i32(key.x & 0xffffu);
 }
 
 fn signed_byte(word: u32, byte: u32) -> i32 {

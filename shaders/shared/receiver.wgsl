@@ -1,21 +1,7 @@
 // What each pixel shows of the scene, as shared/gbuffer.ron makes it, and its status before any map
 // lookup or ray.
 
-#import "shared/ids.wgsl"
+#import "shared/facing.wgsl"
 
-var primitive: texture_2d<u32>;
 // The receiver of the pixel, where `scene_positions` are; w: dot(n, l), 0 where there is none.
 var position: texture_2d<f32>;
-
-fn faces_light(receiver: vec4<f32>) -> bool {
-    return receiver.w > 0.0;
-}
-
-// The status before any map lookup or ray: STATUS_UNCERTAIN where the `receiver` (of `position`)
-// faces the light.
-fn initial_status(pixel: vec2<u32>, receiver: vec4<f32>) -> u32 {
-    if textureLoad(primitive, pixel, 0).x == NO_PRIMITIVE {
-        return STATUS_BACKGROUND;
-    }
-    return select(STATUS_FACING_AWAY, STATUS_UNCERTAIN, faces_light(receiver));
-}

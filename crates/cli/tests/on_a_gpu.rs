@@ -1030,3 +1030,30 @@ fn poison_finds_what_reads_memory_that_nothing_wrote() {
         "{text}"
     );
 }
+
+#[test]
+fn poison_does_not_take_the_order_of_threads_for_memory_that_nothing_wrote() {
+    let folder = tempfile::tempdir().unwrap();
+    let racing = LIT
+        .replace(
+            "materials: [",
+            "materials: [Buffer(name: \"turns\", count: 262144), Buffer(name: \"next\"),",
+        )
+        .replace(
+            "passes: [",
+            "passes: [Clear(name: \"first\", target: \"next\"),
+             Compute(name: \"take_turns\", dispatch: Over(\"turns.count\"), \
+             overwrites: [\"turns\"]),",
+        )
+        .replace("outputs: [", "outputs: [\"turns\", ");
+    let shader = "var<storage, read_write> next: atomic<u32>;
+        var<storage, read_write> turns: array<u32>;
+        @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+            turns[atomicAdd(&next, 1u)] = id.x;
+        }";
+    fs::write(folder.path().join("racing.ron"), racing).unwrap();
+    fs::write(folder.path().join("take_turns.wgsl"), shader).unwrap();
+    let output = skiagraph(folder.path(), "run racing.ron --size 64x48 --poison");
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains("no output depends"), "{text}");
+}

@@ -238,7 +238,8 @@ pub struct RunArgs {
           value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub jitter: Option<u32>,
     /// Fill all memory that a frame has not written with two patterns, one after the other, and
-    /// fail if an output differs: the graph then reads what no pass has written.
+    /// fail if an output differs: the graph then reads what no pass has written. An output that
+    /// differs in the same memory, too, depends on the order of threads and is not judged.
     #[arg(long)]
     pub poison: bool,
 }

@@ -46,9 +46,6 @@ const PART: u32 = 2048u;
 // Whether a caster is there wherever its triangle is, and depths are those of the light's space: no
 // mask, a directional light.
 override has_covers: bool = false;
-// A texel that is larger by 4 times the slack on every side is inside of what covers it.
-const COVERING: f32 = 1.046875;
-
 struct Binned {
     primitive: u32,
     // Its corners are counter-clockwise where y is up: inside is to the left of its edges.
@@ -60,8 +57,10 @@ struct Binned {
     // How far the centre of a texel that the triangle overlaps may be beyond the lines of ab, bc
     // and ca, times their lengths.
     reach: vec3<f32>,
-    // What a texel is taken larger by on each side: SLACK, and more near a light.
+    // What a texel is taken larger by on each side: SLACK, and more in fine grids and near a light.
     slack: f32,
+    // What the tracer may find it nearer to the light by, or farther from it, in depth.
+    room: f32,
 }
 
 struct Thread {
@@ -121,7 +120,32 @@ fn caster_of(primitive: u32) -> Binned {
         return caster_of_face(primitive);
     }
     let triangle = light_triangle(primitive);
-    return caster_over(primitive, triangle, depth_plane(triangle), SLACK);
+    var plane = depth_plane(triangle);
+    let slack = max(SLACK, apart());
+    plane.margin *= slack / SLACK;
+    let room = TRACED * light.max_distance / light.extent.z + max(plane.margin, 0.0) * steepest();
+    return caster_over(primitive, triangle, plane, slack, room);
+}
+
+// What the tracer's view of a triangle may differ from its corners by, in any direction, as a share
+// of the longest way, twice the diagonal of the scene's box: docs/light_buffer.md.
+const TRACED: f32 = 16.0 * HALF_ULP;
+
+// How far a receiver may be beyond an edge, in texels in each direction, and the tracer not tell.
+// Of a directional light.
+fn apart() -> f32 {
+    let placed = texel_error_of_summands(map_fit, light_clip_summands_of_scene()).x;
+    let clip = light.max_distance / min(light.extent.x, light.extent.y);
+    return placed + TRACED * map_fit.scale * clip;
+}
+
+// Depth that the way along the longest axis of the light's direction changes by in a texel's width:
+// by up to sqrt(2) times that, whatever the triangle's slope.
+fn steepest() -> f32 {
+    let texels = vec2(length(map_fit.x.xy), length(map_fit.y.xy));
+    let widest = max(light.extent.x, light.extent.y) / min(texels.x, texels.y);
+    let narrowest = min(light.extent.x, light.extent.y) / max(texels.x, texels.y);
+    return 1.5 * widest * (widest / narrowest) / light.extent.z;
 }
 
 fn caster_over(
@@ -129,6 +153,7 @@ fn caster_over(
     projected: LightTriangle,
     plane: DepthPlane,
     slack: f32,
+    room: f32,
 ) -> Binned {
     var triangle = projected;
     if triangle.area < 0.0 {
@@ -148,7 +173,7 @@ fn caster_over(
         reach_of(c.xy - b.xy, slack),
         reach_of(a.xy - c.xy, slack),
     );
-    return Binned(primitive, triangle, plane, first, last, reach, slack);
+    return Binned(primitive, triangle, plane, first, last, reach, slack, room);
 }
 
 // In a face of a spot or point light's map: where the corners are projected to, if all are before
@@ -160,23 +185,24 @@ fn caster_of_face(primitive: u32) -> Binned {
     let least = saturate(min(a.z, min(b.z, c.z)));
     let greatest = saturate(max(a.z, max(b.z, c.z)));
     let nearest = min(a.w, min(b.w, c.w));
-    // What projection makes of rounding, and of what the tracer takes to be on an edge: 8 half ulps
-    // of the longest way there is, seen from the nearest corner.
+    // What projection makes of rounding, and of what the tracer's view may differ by, seen from the
+    // nearest corner.
     let aside = max(farthest_aside(a), max(farthest_aside(b), farthest_aside(c)));
     let spread = light_spread();
-    let rounding = 8.0 * HALF_ULP * light.max_distance * spread / nearest
+    let rounding = TRACED * light.max_distance * (1.0 + spread) / nearest
         + CLIP_ROUNDING * (2.0 + 4.0 * spread) * (1.0 + aside) * (1.0 + aside);
     let slack = SLACK + map_fit.scale * rounding;
+    let room = TRACED * light.max_distance / light.range;
     if !(nearest > 0.0 && slack < 0.125 * map_fit.size) {
         let plane = DepthPlane(vec3(0.0), vec2(0.0), -1.0, least, greatest, 0.0);
-        return caster_of_whole_face(primitive, a, b, c, plane);
+        return caster_of_whole_face(primitive, a, b, c, plane, room);
     }
     let p = face_texel(a);
     let q = face_texel(b);
     let r = face_texel(c);
     let triangle = LightTriangle(p, q, r, cross_2d(q.xy - p.xy, r.xy - p.xy));
     let plane = DepthPlane(p, vec2(0.0), -1.0, least, greatest, 0.0);
-    return caster_over(primitive, triangle, plane, slack);
+    return caster_over(primitive, triangle, plane, slack, room);
 }
 
 fn face_texel(seen: vec4<f32>) -> vec3<f32> {
@@ -196,12 +222,13 @@ fn caster_of_whole_face(
     b: vec4<f32>,
     c: vec4<f32>,
     plane: DepthPlane,
+    room: f32,
 ) -> Binned {
     let beside = is_beside(a, b, c);
     let first = select(vec2(0u), vec2(1u), beside);
     let last = select(vec2(u32(map_fit.size) - 1u), vec2(0u), beside);
     let nowhere = LightTriangle(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
-    return Binned(primitive, nowhere, plane, first, last, vec3(3e38), SLACK);
+    return Binned(primitive, nowhere, plane, first, last, vec3(1e30), SLACK, room);
 }
 
 fn reach_of(edge: vec2<f32>, slack: f32) -> f32 {
@@ -272,9 +299,11 @@ fn is_listed(caster: Binned, texel: vec2<u32>) -> bool {
     if !(all(inward >= -caster.reach) && may_shade) {
         return false;
     }
-    let covers = caster.plane.margin >= 0.0 && all(inward >= COVERING * caster.reach);
+    // The texel, larger by 4 times the slack on every side, is inside of what covers it.
+    let enlarged = (1.0 + 6.0 * caster.slack) * caster.reach;
+    let covers = caster.plane.margin >= 0.0 && all(inward >= enlarged);
     if has_covers && covers {
-        let depth = covered_depth(caster.plane, centre);
+        let depth = covered_depth(caster, centre);
         atomicMax(&texels[number].cover, ~depth_bits(depth));
         // Nobody behind it asks a list.
         atomicMin(&texels[number].farthest, depth_bits(depth + cover_margin()));
@@ -284,29 +313,33 @@ fn is_listed(caster: Binned, texel: vec2<u32>) -> bool {
 }
 
 // Whoever is farther from the light, in a texel that the caster covers, has all of its triangle
-// before it, wherever rounding may have either, and the tracer finds it: its weights err as the
-// plane's slope does, its distance by 8 half ulps of the corners'.
-fn covered_depth(plane: DepthPlane, centre: vec2<f32>) -> f32 {
+// before it, wherever rounding may have either, and the tracer finds it; and none of its own
+// receivers is.
+fn covered_depth(caster: Binned, centre: vec2<f32>) -> f32 {
+    let plane = caster.plane;
     let slope = abs(plane.slope);
     let farthest = plane_depth(plane, centre) + (0.5 + 4.0 * plane.margin) * (slope.x + slope.y);
-    let rounding = 8.0 * HALF_ULP * (plane.greatest - plane.least);
+    let rounding = 4.0 * caster.room + farthest_receiver_error() / light.extent.z;
     return saturate(clamp(farthest, plane.least, plane.greatest) + rounding);
 }
 
-// How much deeper than a cover a receiver may be that test_casters.wgsl does not find behind it:
-// its rounding and twice its `receiver_error_bound`, of any in the scene, and what adding that up
-// errs by.
-fn cover_margin() -> f32 {
-    let placed = texel_error_of_summands(map_fit, light_clip_summands_of_scene()).y;
+// `receiver_error_bound` of any in the scene, whose corners are as far from the eye as may be.
+fn farthest_receiver_error() -> f32 {
     let centre = light.centre.xyz;
     let ways = length(centre) + 2.0 * length(centre - camera.eye) + 3.0 * light.max_distance;
-    return 2.02 * (placed + HALF_ULP * ways / light.extent.z) + 4.0 * HALF_ULP;
+    return HALF_ULP * ways;
+}
+
+// How much deeper than a cover a receiver may be that test_casters.wgsl does not find behind it:
+// its rounding and twice its `receiver_error_bound`, and what adding that up errs by.
+fn cover_margin() -> f32 {
+    let placed = texel_error_of_summands(map_fit, light_clip_summands_of_scene()).y;
+    return 2.02 * (placed + farthest_receiver_error() / light.extent.z) + 4.0 * HALF_ULP;
 }
 
 // In a texel.
 fn least_depth(caster: Binned, centre: vec2<f32>) -> f32 {
-    // Of -0, too.
-    return abs(depth_bound(caster.plane, centre, 0.5, NEAREST));
+    return max(depth_bound(caster.plane, centre, 0.5, NEAREST) - caster.room, 0.0);
 }
 
 // A bit for each texel of the tile that is under the triangle's box and has a receiver in it; none
@@ -314,7 +347,7 @@ fn least_depth(caster: Binned, centre: vec2<f32>) -> f32 {
 fn texels_in(caster: Binned, tile: vec2<u32>) -> vec2<u32> {
     let marked = tiles[tile_number(binned_layer, tile)];
     let middle = (vec2<f32>(tile) + 0.5) * f32(TILE);
-    let depth = depth_bound(caster.plane, middle, 0.5 * f32(TILE), NEAREST);
+    let depth = depth_bound(caster.plane, middle, 0.5 * f32(TILE), NEAREST) - caster.room;
     let may_shade = depth_bits(depth) <= marked.x
         && all(inward_of(caster.triangle, middle) >= -f32(TILE) * caster.reach);
     let low = max(caster.first, tile * TILE) - tile * TILE;
@@ -385,7 +418,10 @@ fn lines_of(caster: Binned) -> Lines {
         triangle.c.xy - triangle.b.xy,
         triangle.a.xy - triangle.c.xy,
     );
-    let apart = apart_of(caster.slack);
+    var beyond = caster.slack + SLACK;
+    if light_kind == LIGHT_DIRECTIONAL {
+        beyond = apart();
+    }
     var lines: Lines;
     for (var i = 0u; i < 3u; i++) {
         let size = abs(edges[i]);
@@ -394,20 +430,8 @@ fn lines_of(caster: Binned) -> Lines {
         let per_length = select(0.0, 1.0 / longest, is_line);
         lines.inward[i] = inward_bytes(vec2(-edges[i].y, edges[i].x) * per_length);
         lines.per_length[i] = per_length;
-        lines.room[i] = select(1.0, apart * (size.x + size.y) * per_length, is_line);
+        lines.room[i] = select(1.0, beyond * (size.x + size.y) * per_length, is_line);
     }
     lines.per_near = 1.0 / max(2.0 * caster.reach, vec3(1.0));
     return lines;
-}
-
-// What a receiver may be beyond an edge by, in texels in each direction, and the tracer not tell:
-// docs/light_buffer.md. Of a directional light mostly less than the slack.
-fn apart_of(slack: f32) -> f32 {
-    let most = slack + SLACK;
-    if light_kind != LIGHT_DIRECTIONAL {
-        return most;
-    }
-    let placed = texel_error_of_summands(map_fit, light_clip_summands_of_scene()).x;
-    let clip = light.max_distance / min(light.extent.x, light.extent.y);
-    return min(most, placed + 24.0 * HALF_ULP * map_fit.scale * clip);
 }

@@ -85,7 +85,7 @@ fn lamps() -> Vec<LightKind> {
     points.into_iter().chain(spots).collect()
 }
 
-/// On the seams of faces, too, and whatever reaches behind the lamp.
+/// On the seams of faces, too, and whatever reaches behind the lamp: to the bit.
 #[test]
 fn lists_are_exact_under_lamps() {
     let mut certain = 0;
@@ -93,8 +93,11 @@ fn lists_are_exact_under_lamps() {
     for lamp in lamps() {
         let scene = scene(lamp);
         let mut bench = Bench::new(&scene, VIEWPORT);
+        let rays = bench.answers("rt", &[]).visibility;
         for map_size in [16, 100, 224] {
-            let counts = bench.judge("light_buffer", &[size(map_size)]);
+            let lists = bench.answers("light_buffer", &[size(map_size)]);
+            assert!(lists.visibility == rays, "{lamp:?} {map_size}");
+            let counts = lists.counts;
             assert_eq!(wrong(&counts), 0, "{lamp:?} {map_size}: {counts:?}");
             assert!(counts.indeterminate_share() < 0.02, "{lamp:?}: {counts:?}");
             certain += counts.pixels.facing_light - counts.uncertain;

@@ -193,18 +193,18 @@ fn check_lists(scene: &Scene, fit: &MapFit, report: &FrameReport) -> (usize, usi
         let mut number = heads[4 * texel + 2];
         while number != 0 {
             let entry = &entries[4 * (number as usize - 1)..];
-            (number, _) = (entry[0], list.push(entry[1]));
+            (number, _) = (entry[0], list.push((entry[1], [entry[2], entry[3]])));
         }
         list
     };
-    let lists: Vec<Vec<u32>> = (0..texels).map(list).collect();
+    let lists: Vec<Vec<(u32, [u32; 2])>> = (0..texels).map(list).collect();
     let cover = |texel: usize| {
         let inverted = heads[4 * texel + 3];
         (inverted != 0).then(|| f64::from(f32::from_bits(!inverted)))
     };
     let mut covered = 0;
     for (texel, list) in lists.iter().enumerate() {
-        let known: BTreeSet<&u32> = list.iter().collect();
+        let known: BTreeSet<u32> = list.iter().map(|(primitive, _)| *primitive).collect();
         assert_eq!(known.len(), list.len(), "a caster is in a list twice");
         assert_eq!(heads[4 * texel + 1] as usize, list.len());
         let place = DVec2::new(
@@ -221,7 +221,7 @@ fn check_lists(scene: &Scene, fit: &MapFit, report: &FrameReport) -> (usize, usi
                 "nobody covers {place} before {depth}"
             );
         }
-        for &primitive in list {
+        for &(primitive, _) in list {
             let caster = &casters[primitive as usize];
             // The shader's slack, and as much for the corners' rounding.
             assert!(
@@ -240,43 +240,77 @@ fn check_lists(scene: &Scene, fit: &MapFit, report: &FrameReport) -> (usize, usi
         .iter()
         .find(|found| found.name == "position");
     let positions = positions.unwrap().content.as_f32().unwrap();
-    let mut shading = 0;
+    let [mut shading, mut border] = [0; 2];
     for (receiver, &own) in positions.chunks_exact(4).zip(&own) {
         if receiver[3] <= 0.0 {
             continue;
         }
         let position = Vec3::from_slice(receiver).as_dvec3();
         let at = fit.texel(position);
-        // On the border of two texels either may be the receiver's.
-        let border = (at.truncate() - at.truncate().round()).abs().min_element();
-        if border < SLACK {
-            continue;
-        }
         let place = at.truncate();
         assert!(place.min_element() > 0.0, "{position} is outside");
         assert!(
             place.max_element() < map_size.into(),
             "{position} is outside"
         );
-        let texel = place.y as usize * map_size as usize + place.x as usize;
-        if cover(texel).is_some_and(|depth| at.z > depth) {
+        // On the border of two texels either may be the receiver's.
+        let by = [-1.0, 1.0].map(|sign| sign * 0.25 * SLACK);
+        let near = by.map(|x| by.map(|y| (place + DVec2::new(x, y)).max(DVec2::ZERO)));
+        let near: BTreeSet<[u32; 2]> = near
+            .into_iter()
+            .flatten()
+            .map(|place| [place.x as u32, place.y as u32].map(|at| at.min(map_size - 1)))
+            .collect();
+        let is_behind = |[x, y]: &[u32; 2]| {
+            cover((y * map_size + x) as usize).is_some_and(|depth| at.z > depth)
+        };
+        if near.iter().any(is_behind) {
             continue;
         }
+        border += usize::from(near.len() > 1);
         for (primitive, caster) in (0u32..).zip(&casters) {
-            if primitive != own && depth_at(caster, at.truncate()).is_some_and(|z| z < at.z) {
+            if primitive != own && depth_at(caster, place).is_some_and(|z| z < at.z) {
                 shading += 1;
+                let is_found = |[x, y]: &[u32; 2]| {
+                    let list = &lists[(y * map_size + x) as usize];
+                    let offset = place - DVec2::new((*x).into(), (*y).into()) - 0.5;
+                    let own_key = list.iter().find(|(listed, _)| *listed == primitive);
+                    own_key.is_some_and(|(_, key)| key_passes(*key, offset, at.z))
+                };
                 assert!(
-                    lists[texel].contains(&primitive),
-                    "{primitive} shades {position} and is not in the list of its texel"
+                    near.iter().any(is_found),
+                    "{primitive} shades {position}, and no list of {near:?} lets it"
                 );
             }
         }
     }
+    assert!(
+        map_size < 16 || border > 20,
+        "{border} receivers on borders"
+    );
     (shading, covered)
 }
 
-/// The greatest depth of a triangle over the texel from `corner` on, if it covers that.
+/// Whether an entry's key lets a receiver at `offset` from the texel's centre ask its caster: 16
+/// bits of depth, and two lines of which x, y and the distance from the centre have 8 bits each, in
+/// 127ths; what is below a distance counts as its fraction.
+fn key_passes(key: [u32; 2], offset: DVec2, depth: f64) -> bool {
+    let byte = |word: u32, shift: u32| f64::from((word >> shift) as u8 as i8);
+    let distance = |word: u32| f64::from(word as i32) / f64::from(1 << 24);
+    let one = byte(key[0], 16) * offset.x + byte(key[1], 16) * offset.y + distance(key[0]);
+    let other = byte(key[1], 8) * offset.x + byte(key[1], 0) * offset.y + distance(key[1]);
+    let is_behind = depth >= f64::from(key[0] & 0xffff) / 65535.0 - 1e-6;
+    one >= 0.0 && other >= 0.0 && is_behind
+}
+
+/// The greatest depth of a triangle over the texel from `corner` on, if it covers that, larger by 3
+/// times the slack.
 fn greatest_over(caster: &TexelTriangle, corner: DVec2) -> Option<f64> {
+    let around = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
+    let enlarged = around.map(|by| corner + 0.5 + (by - 0.5) * (1.0 + 6.0 * SLACK));
+    for point in enlarged {
+        depth_at(caster, point)?;
+    }
     let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE].map(|by| corner + by);
     corners.iter().try_fold(0.0, |greatest: f64, point| {
         Some(greatest.max(depth_at(caster, *point)?))
@@ -355,6 +389,30 @@ fn what_has_no_room_is_a_ray() {
     assert!(most.uncertain < all.uncertain, "{}", most.uncertain);
 }
 
+/// Nothing covers a texel before another caster, so that their order decides nothing.
+#[test]
+fn an_entry_without_room_leaves_one_texel_to_rays() {
+    let scene = scene(crowd(0.8), DVec3::new(0.3, 1.2, 0.9), DVec3::NEG_Y);
+    let mut bench = Bench::new(&scene);
+    let rays = bench.by_rays();
+    let with = |bench: &mut Bench, most: u32| {
+        let params = [
+            ("map_size", 64),
+            ("longest_list", 40),
+            ("max_entries", most),
+        ];
+        bench.by_lists("receivers", &params)
+    };
+    let all = with(&mut bench, 65_536);
+    let needed = all.entries;
+    assert!(needed < 65_536, "{needed}");
+    let short = with(&mut bench, needed - 1);
+    assert!(short.visibility == rays);
+    assert_eq!(short.entries, needed);
+    let more = short.uncertain - all.uncertain;
+    assert!((1..100).contains(&more), "{more}");
+}
+
 #[test]
 fn a_list_that_is_too_long_to_look_at_is_a_ray() {
     let scene = mixed(1);
@@ -387,6 +445,24 @@ fn a_crowded_texel_is_exact_and_takes_no_more_room_than_others() {
         assert!(lists.uncertain > 1000, "{}", lists.uncertain);
         assert!(lists.entries <= longest * map_size * map_size);
     }
+}
+
+/// More than 100,000 receivers ask the same list.
+#[test]
+fn receivers_crowd_one_texel() {
+    let casters = joined(floor(30.0, 0.0), &soup(40, 0.3, 5));
+    let scene = scene(casters, DVec3::new(0.3, 1.2, 0.9), DVec3::NEG_Y);
+    let mut bench = Bench::of(&scene, [448, 448]);
+    let rays = bench.by_rays();
+    let params = [("map_size", 9)];
+    let mut executor = bench.executor("scene", &params, &["texels"]);
+    let texels = values(&frame(&bench.gpu, &mut executor, &["texels"]), "texels");
+    let asked = texels.chunks_exact(4).filter(|texel| texel[0] > 0).count();
+    assert_eq!(asked, 1);
+    let lists = bench.answer(&mut executor);
+    assert!(lists.visibility == rays);
+    assert_eq!(lists.uncertain, 0);
+    assert!(lists.lit + lists.shadow > 100_000 && lists.shadow > 1000);
 }
 
 #[test]

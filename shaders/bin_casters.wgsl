@@ -121,9 +121,13 @@ fn caster_of(primitive: u32) -> Binned {
     }
     let triangle = light_triangle(primitive);
     var plane = depth_plane(triangle);
-    let slack = max(SLACK, apart());
+    let apart = apart();
+    let slack = max(SLACK, apart);
     plane.margin *= slack / SLACK;
-    let room = TRACED * light.max_distance / light.extent.z + max(plane.margin, 0.0) * steepest();
+    var room = TRACED * light.max_distance / light.extent.z;
+    if plane.margin >= 0.0 {
+        room += (apart + weights_error(triangle)) * steepest();
+    }
     return caster_over(primitive, triangle, plane, slack, room);
 }
 
@@ -137,6 +141,16 @@ fn apart() -> f32 {
     let placed = texel_error_of_summands(map_fit, light_clip_summands_of_scene()).x;
     let clip = light.max_distance / min(light.extent.x, light.extent.y);
     return placed + TRACED * map_fit.scale * clip;
+}
+
+// How far apart, in texels, what the tracer's weights say and where it hits may be: an area errs by
+// 4 half ulps of the longest edge's square, and three of them are summed up.
+fn weights_error(triangle: LightTriangle) -> f32 {
+    let ab = triangle.b.xy - triangle.a.xy;
+    let bc = triangle.c.xy - triangle.b.xy;
+    let ca = triangle.a.xy - triangle.c.xy;
+    let longest = sqrt(max(dot(ab, ab), max(dot(bc, bc), dot(ca, ca))));
+    return 12.0 * HALF_ULP * longest * longest * longest / abs(triangle.area);
 }
 
 // Depth that the way along the longest axis of the light's direction changes by in a texel's width:

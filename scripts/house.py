@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Checks what clippy does not: no import circle between the files of a crate, no line of Rust or of
-a preset's WGSL over 100 columns.
+"""Checks what clippy does not: no import circle between the files of a crate, no line of Rust, of
+a preset's WGSL or of the docs over 100 columns.
 
 An import is a path in a `use` or in code that begins with `crate`, `super`, `self` or a child
 module. It counts as one of the file of the deepest module that it names; tests are left out.
@@ -15,6 +15,7 @@ import sys
 from pathlib import Path
 
 WIDTH = 100
+WRITTEN_BY_TESTS = {"diagnostics.md", "reference.md"}
 ROOT = Path(__file__).resolve().parent.parent
 TOKENS = re.compile(
     r"""//[^\n]*|/\*.*?\*/|b?r(?P<h>\#*)".*?"(?P=h)|b?"(?:\\.|[^"\\])*"|'(?:\\.[^']*|[^'\\\n])'""",
@@ -152,6 +153,16 @@ def main():
             continue
         for number, line in enumerate(file.read_text().splitlines(), 1):
             if len(line) > WIDTH:
+                failed += 1
+                print(f"{file.relative_to(ROOT)}:{number}: {len(line)} columns")
+    for file in sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")]):
+        if file.name in WRITTEN_BY_TESTS:
+            continue
+        is_quoted = False
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            is_quoted ^= line.startswith("```")
+            # Tables, programs' words and pictures are as wide as they are.
+            if len(line) > WIDTH and not is_quoted and not line.startswith(("|", "    ", "![")):
                 failed += 1
                 print(f"{file.relative_to(ROOT)}:{number}: {len(line)} columns")
     print(f"house: {failed} faults" if failed else "house: no import circle, no long line")

@@ -1,4 +1,5 @@
-//! Experimental features of wgpu, the one place of this workspace with `unsafe` code.
+//! Experimental features of wgpu, the one place with `unsafe` code, but for the
+//! allocator of a test.
 
 #![allow(unsafe_code)]
 

@@ -46,6 +46,7 @@ const PART: u32 = 2048u;
 // Whether a caster is there wherever its triangle is, and depths are those of the light's space: no
 // mask, a directional light.
 override has_covers: bool = false;
+
 struct Binned {
     primitive: u32,
     // Its corners are counter-clockwise where y is up: inside is to the left of its edges.

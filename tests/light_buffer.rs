@@ -481,7 +481,7 @@ fn lists_are_exact_before_and_after_they_have_grown() {
     assert!(executor.grow(&mut bench.provider).unwrap().is_none());
 }
 
-/// Lists of some hundred casters, for which no thread takes several pixels.
+/// Lists of some hundred casters.
 #[test]
 fn long_lists_are_walked() {
     let scene = scene(crowd(0.8), DVec3::new(0.3, 1.2, 0.9), DVec3::NEG_Y);

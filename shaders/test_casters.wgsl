@@ -1,6 +1,6 @@
 // Stage to ask, for each receiver, the casters that are listed in its texel, by the tracer's own
-// test; a full-screen triangle, as some adapters read and write a pixel several times as fast there
-// as in a compute stage. What no complete list answers is left to a ray.
+// test; a full-screen triangle, as some adapters take long to write texels in a compute stage. What
+// no complete list answers is left to a ray.
 
 #import "shared/camera.wgsl"
 #import "shared/light_buffer.wgsl"

@@ -1,4 +1,4 @@
-//! What the fuzz targets and their stable twin (`tests/hostile.rs`) run: bytes in, an answer out,
+//! What the fuzz targets and their stable twin (`tests/it/hostile.rs`) run: bytes in, an answer out,
 //! and no panic on the way.
 
 use skiagraph_draw::Drawing;

@@ -4,9 +4,9 @@
 //! crates do inside a callback of wgpu's is ours. Counted are `encode`, `poll`, `touch`, `grow` and
 //! `output_view`; the host's own submission is not.
 
-#[path = "../../graph/tests/support/mod.rs"]
+#[path = "../../graph/tests/it/support/mod.rs"]
 mod support;
-#[path = "support/tiny.rs"]
+#[path = "it/support/tiny.rs"]
 mod tiny;
 
 use skiagraph_gpu::{Executor, Frame};

@@ -1,6 +1,6 @@
 //! CPU reference of `shaders/shared/predicates.wgsl` in f32, under every arithmetic that WGSL
 //! allows a compiler: what the bounds stated there are tested with. Points are (x, y); names are
-//! the shader's. `receiver_error_bound` is tested on receivers: tests/receivers.rs.
+//! the shader's. `receiver_error_bound` is tested on receivers: tests/it/receivers.rs.
 
 use glam::Vec3;
 

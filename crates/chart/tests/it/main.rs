@@ -1,0 +1,3 @@
+//! Tests of `crates/chart`, one module for each subject.
+
+mod figures;

@@ -1,0 +1,594 @@
+//! The program from outside: exit codes, messages, files.
+
+use std::{
+    ffi::OsStr,
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+/// Runs the program in `folder`, where nothing on disk stands before what is built in.
+fn skiagraph<A: AsRef<OsStr>>(folder: &Path, arguments: &[A]) -> Output {
+    program(folder, arguments)
+        .output()
+        .expect("the program was built for this test")
+}
+
+fn program<A: AsRef<OsStr>>(folder: &Path, arguments: &[A]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_skiagraph"));
+    command
+        .args(arguments)
+        .current_dir(folder)
+        .env("NO_COLOR", "1");
+    command
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[track_caller]
+fn assert_exit(output: &Output, code: i32) {
+    let status = output.status.code();
+    assert_eq!(
+        status,
+        Some(code),
+        "\nstdout:\n{}\nstderr:\n{}",
+        stdout(output),
+        stderr(output)
+    );
+}
+
+/// A graph that clears two textures and calls them a shadow method.
+const CLEARED: &str = include_str!("support/lit.ron");
+
+#[test]
+fn check_needs_no_gpu_and_shows_the_faults_of_all_files() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("good.ron"), CLEARED).unwrap();
+    fs::write(
+        folder.path().join("target.ron"),
+        CLEARED.replace("target: \"status\"", "target: \"satus\""),
+    )
+    .unwrap();
+    fs::write(
+        folder.path().join("field.ron"),
+        CLEARED.replace("value:", "valeu:"),
+    )
+    .unwrap();
+    let output = program(
+        folder.path(),
+        &["check", "good.ron", "target.ron", "field.ron"],
+    )
+    .env("VK_ICD_FILENAMES", "/nonexistent")
+    .env("VK_DRIVER_FILES", "/nonexistent")
+    .output()
+    .unwrap();
+    assert_exit(&output, 1);
+    assert!(
+        stdout(&output).contains("good.ron: fine"),
+        "{}",
+        stdout(&output)
+    );
+    let faults = stderr(&output);
+    for part in [
+        "target.ron:",
+        "`satus`",
+        "field.ron:",
+        "valeu",
+        "in 2 graphs",
+    ] {
+        assert!(faults.contains(part), "no {part:?} in\n{faults}");
+    }
+}
+
+#[test]
+fn check_tells_which_params_a_kind_of_light_has_no_use_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = skiagraph(folder.path(), &["check", "nsm", "crsm", "rt"]);
+    assert_exit(&output, 0);
+    let text = stdout(&output);
+    let line = |name: &str| text.lines().find(|line| line.starts_with(name)).unwrap();
+    let told = "; under a spot light fit has no effect; under a point light fit has no effect";
+    assert!(line("nsm:").ends_with(told), "{text}");
+    assert!(!line("rt:").contains("no effect"), "{text}");
+}
+
+#[test]
+fn check_tells_programs_what_it_tells_people() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("good.ron"), CLEARED).unwrap();
+    let misspelt = CLEARED.replace("target: \"status\"", "target: \"satus\"");
+    fs::write(folder.path().join("bad.ron"), &misspelt).unwrap();
+    let check = |arguments: &[&str], code| {
+        let output = skiagraph(folder.path(), arguments);
+        assert_exit(&output, code);
+        let report: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+        assert_eq!(report["schema"], 1);
+        report["files"].clone()
+    };
+    let fine = check(&["check", "--format", "json", "good.ron"], 0);
+    let expected = serde_json::json!([{ "file": "good.ron", "passes": 2, "diagnostics": [] }]);
+    assert_eq!(fine, expected);
+
+    let files = check(
+        &["check", "bad.ron", "good.ron", "nms", "--format", "json"],
+        1,
+    );
+    let names: Vec<_> = (0..3).map(|index| &files[index]["file"]).collect();
+    assert_eq!(names, ["bad.ron", "good.ron", "nms"]);
+    let bad = &files[0]["diagnostics"][0];
+    assert_eq!(
+        (&bad["code"], &bad["severity"], &files[0]["passes"]),
+        (&"unknown-resource".into(), &"error".into(), &().into())
+    );
+    let label = &bad["labels"][0];
+    let (line, text) = misspelt
+        .lines()
+        .enumerate()
+        .find(|(_, text)| text.contains("satus"))
+        .unwrap();
+    assert_eq!(label["file"], "bad.ron");
+    assert_eq!(label["line"], line + 1);
+    let columns = [&label["column"], &label["end_column"]].map(|c| c.as_u64().unwrap() as usize);
+    let word = &text[columns[0] - 1..columns[1] - 1];
+    assert_eq!(word.trim_matches('"'), "satus");
+    assert_eq!(files[2]["diagnostics"][0]["code"], "missing-file");
+}
+
+#[test]
+fn graph_draws_without_a_gpu_and_writes_whole_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let draw = |arguments: &[&str]| {
+        program(folder.path(), arguments)
+            .env("VK_ICD_FILENAMES", "/nonexistent")
+            .env("VK_DRIVER_FILES", "/nonexistent")
+            .output()
+            .unwrap()
+    };
+    let svg = draw(&["graph", "nsm", "--map-size", "4096", "--size", "640x480"]);
+    assert_exit(&svg, 0);
+    let text = stdout(&svg);
+    assert!(text.starts_with("<svg ") && text.trim_end().ends_with("</svg>"));
+    for part in ["nsm, viewport 640x480", "Depth32Float 4096×4096, 64.0 MiB"] {
+        assert!(text.contains(part), "no {part:?} in\n{text}");
+    }
+
+    let dot = draw(&["graph", "rt", "--format", "dot"]);
+    assert_exit(&dot, 0);
+    assert!(stdout(&dot).starts_with("digraph "), "{}", stdout(&dot));
+
+    // The ending of the file says what is wanted.
+    let json = draw(&["graph", "rt", "--outputs", "ray_count", "--out", "rt.json"]);
+    assert_exit(&json, 0);
+    assert_eq!(stdout(&json), "");
+    let text = fs::read_to_string(folder.path().join("rt.json")).unwrap();
+    let drawing: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let culled: Vec<&str> = drawing["passes"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|pass| !pass["culled"].is_null())
+        .filter_map(|pass| pass["name"].as_str())
+        .collect();
+    assert_eq!(
+        culled,
+        ["fill_rays.dispatch_arguments", "trace_rays", "fix_pixels"]
+    );
+}
+
+#[test]
+fn graph_names_what_is_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("target.ron"),
+        CLEARED.replace("target: \"status\"", "target: \"satus\""),
+    )
+    .unwrap();
+    for (arguments, part) in [
+        (&["graph", "target.ron"][..], "`satus`"),
+        (&["graph", "rt", "--outputs", "visibilty"], "`visibility`"),
+        (&["graph", "rt", "--set", "bias=1"], "no such param"),
+        (&["graph", "rt", "--out", "missing/rt.svg"], "rt.svg"),
+        (&["graph", "rtt"], "no preset `rtt`"),
+    ] {
+        let output = skiagraph(folder.path(), arguments);
+        assert_exit(&output, 1);
+        assert_eq!(stdout(&output), "");
+        let faults = stderr(&output);
+        assert!(faults.contains(part), "no {part:?} in\n{faults}");
+    }
+}
+
+#[test]
+fn check_takes_presets_and_all_of_ours_are_fine() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = skiagraph(
+        folder.path(),
+        &["check", "rt", "nsm", "pipelines/shared/gbuffer.ron"],
+    );
+    assert_exit(&output, 0);
+    assert_eq!(stdout(&output).lines().count(), 3);
+    assert_eq!(stderr(&output), "", "not even a warning");
+}
+
+#[test]
+fn show_writes_out_what_a_document_extends_with_its_origins() {
+    let folder = tempfile::tempdir().unwrap();
+    let show = |arguments: &[&str], code| {
+        let output = skiagraph(folder.path(), arguments);
+        assert_exit(&output, code);
+        stdout(&output) + &stderr(&output)
+    };
+    let own = show(&["show", "crsma_full"], 0);
+    assert!(own.contains("extends: \"crsm.ron\""), "{own}");
+    let flat = show(&["show", "crsma_full", "--flat"], 0);
+    let inner = flat
+        .lines()
+        .find(|line| line.contains("name: \"inner\", shader:"))
+        .unwrap();
+    for part in [
+        "inner_one_ring",
+        "pipelines/crsm.ron:",
+        "pipelines/crsma_full.ron:",
+    ] {
+        assert!(inner.contains(part), "{inner}");
+    }
+    // It reads as the document does, wherever its files are found.
+    fs::create_dir(folder.path().join("pipelines")).unwrap();
+    fs::write(folder.path().join("pipelines/flat.ron"), flat).unwrap();
+    let passes = |name| show(&["graph", name, "--format", "json"], 0).replace(name, "");
+    let drawn = |name| {
+        let mut drawn: serde_json::Value = serde_json::from_str(&passes(name)).unwrap();
+        for pass in drawn["passes"].as_array_mut().unwrap() {
+            pass["file"] = ().into();
+            pass["line"] = ().into();
+        }
+        drawn
+    };
+    assert_eq!(drawn("flat"), drawn("crsma_full"));
+    let shader = show(&["show", "shared/light.wgsl"], 0);
+    assert!(shader.contains("struct Light"), "{shader}");
+    assert!(show(&["show", "shadow_lookup", "--flat"], 2).contains("is a shader"));
+    assert!(show(&["show", "shadow_lokup"], 1).contains("did you mean `shadow_lookup"));
+}
+
+#[test]
+fn check_names_missing_files_and_misspelt_presets() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = skiagraph(folder.path(), &["check", "nowhere.ron", "nms"]);
+    assert_exit(&output, 1);
+    let text = stderr(&output);
+    assert!(
+        text.contains("no file `nowhere.ron`") && text.contains("did you mean `nsm`?"),
+        "{text}"
+    );
+}
+
+#[test]
+fn wrong_usage_has_exit_code_2() {
+    let folder = tempfile::tempdir().unwrap();
+    for line in [
+        &["compare", "--size", "big"][..],
+        &["run", "rt", "--save", "visibility=shadow.jpg"],
+        &[
+            "run",
+            "rt",
+            "--view",
+            "all",
+            "--save",
+            "visibility=shadow.png",
+        ],
+        &["frobnicate"],
+    ] {
+        assert_exit(&skiagraph(folder.path(), line), 2);
+    }
+}
+
+#[test]
+fn wrong_input_has_exit_code_1_and_says_what_there_is() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("other.ron"),
+        CLEARED.replace("outputs: [\"visibility\", ", "outputs: ["),
+    )
+    .unwrap();
+    let faults = [
+        (&["compare", "other.ron"][..], "no output `visibility`"),
+        (&["compare", "rt", "--set", "map_sise=4"], "no such param"),
+        (
+            &["compare", "nsm", "--set", "map_sise=4"],
+            "did you mean `map_size`?",
+        ),
+        (&["compare", "nsm", "--map-size", "many"], "invalid value"),
+        (&["compare", "crsn"], "no preset `crsn`"),
+        (&["compare", "--beside", "D:nowhere.csv"], "nowhere.csv"),
+        (&["compare", "--beside", "D:other.ron"], "other.ron:1:1"),
+    ];
+    for (line, part) in faults {
+        let output = skiagraph(folder.path(), line);
+        assert!(
+            stderr(&output).contains(part),
+            "{line:?}\n{}",
+            stderr(&output)
+        );
+        assert!(matches!(output.status.code(), Some(1 | 2)), "{line:?}");
+    }
+}
+
+#[test]
+fn without_an_adapter_every_gpu_command_ends_with_3_and_the_way_out() {
+    let folder = tempfile::tempdir().unwrap();
+    for line in [&["compare", "rt"][..], &["run", "rt"], &["doctor"]] {
+        let output = program(folder.path(), line)
+            .env("VK_ICD_FILENAMES", "/nonexistent")
+            .env("VK_DRIVER_FILES", "/nonexistent")
+            .output()
+            .unwrap();
+        assert_exit(&output, 3);
+        assert!(
+            stderr(&output).contains("mesa-vulkan-drivers"),
+            "{line:?}: {}",
+            stderr(&output)
+        );
+    }
+}
+
+#[test]
+fn files_that_would_overwrite_each_other_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let save = "run nsm --save visibility=x.png --save status=./x.png";
+    let save: Vec<&str> = save.split(' ').collect();
+    let output = skiagraph(folder.path(), &save);
+    assert_exit(&output, 2);
+    let text = stderr(&output);
+    assert!(
+        text.contains("visibility") && text.contains("status") && text.contains("x.png"),
+        "{text}"
+    );
+}
+
+#[test]
+fn check_tells_folders_and_other_files_from_presets() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("graphs")).unwrap();
+    fs::write(folder.path().join("facing.wgsl"), "").unwrap();
+    let output = skiagraph(folder.path(), &["check", "graphs", "facing.wgsl"]);
+    assert_exit(&output, 1);
+    let text = stderr(&output);
+    assert!(
+        text.contains("`graphs` is a folder") && text.contains("`facing.wgsl` is no .ron file"),
+        "{text}"
+    );
+}
+
+#[test]
+fn lists_are_printed_and_a_closed_pipe_is_no_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    let presets = skiagraph(folder.path(), &["presets"]);
+    assert_exit(&presets, 0);
+    assert!(
+        stdout(&presets).contains("--set map_size=1024"),
+        "{}",
+        stdout(&presets)
+    );
+    let scenes = skiagraph(folder.path(), &["scenes"]);
+    assert_exit(&scenes, 0);
+    assert!(stdout(&scenes).contains("park") && stdout(&scenes).contains("sponza"));
+
+    let mut child = program(folder.path(), &["presets"])
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+}
+
+#[test]
+fn a_scene_or_view_that_is_not_there_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = skiagraph(folder.path(), &["run", "rt", "--scene", "prak"]);
+    assert_exit(&scene, 1);
+    assert!(
+        stderr(&scene).contains("did you mean `park`?"),
+        "{}",
+        stderr(&scene)
+    );
+    let view = skiagraph(folder.path(), &["run", "rt", "--view", "bench_sid"]);
+    assert_exit(&view, 1);
+    assert!(
+        stderr(&view).contains("did you mean `bench_side`?"),
+        "{}",
+        stderr(&view)
+    );
+    let own = skiagraph(folder.path(), &["run", "rt", "--look", "0,1,0"]);
+    assert_exit(&own, 2);
+    assert!(stderr(&own).contains("parallel"), "{}", stderr(&own));
+}
+
+/// The results that a unit test pins, as `compare` would have kept them.
+fn kept(folder: &Path, change: impl FnOnce(&mut serde_json::Value)) {
+    let pinned = include_str!(
+        "../../src/records/snapshots/\
+         skiagraph__records__results__tests__the_schema_is_pinned_and_reads_back.snap"
+    );
+    let (_, text) = pinned.split_once("\n---\n").unwrap();
+    let mut results = serde_json::from_str(text).unwrap();
+    change(&mut results);
+    fs::create_dir_all(folder).unwrap();
+    fs::write(folder.join("results.json"), results.to_string()).unwrap();
+}
+
+#[test]
+fn chart_draws_kept_results_without_a_gpu() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let without_gpu_times = 1;
+    for (name, triangles) in [("small", 10_000), ("large", 1_000_000)] {
+        kept(&folder.join(name), |results| {
+            results["runs"]
+                .as_array_mut()
+                .unwrap()
+                .remove(without_gpu_times);
+            results["scene"]["triangles"] = triangles.into();
+        });
+    }
+    let output = skiagraph(folder, &["chart", "small"]);
+    assert_exit(&output, 0);
+    assert!(stdout(&output).starts_with("<svg") && stdout(&output).contains("map 1024²"));
+    assert!(stderr(&output).contains("not drawn: rt_hw: needs ray queries"));
+    let growth = [
+        "chart",
+        "large",
+        "small",
+        "--kind",
+        "growth",
+        "--out",
+        "growth.svg",
+    ];
+    let output = skiagraph(folder, &growth);
+    assert_exit(&output, 0);
+    assert_eq!(stdout(&output), "");
+    let svg = fs::read_to_string(folder.join("growth.svg")).unwrap();
+    assert!(
+        svg.contains("park, view main, 512x256") && svg.contains("10⁵"),
+        "{svg}"
+    );
+    // The same chart in pixels, two for each of its units, with words in it: dark on white.
+    let output = skiagraph(folder, &["chart", "small", "--out", "front.png"]);
+    assert_exit(&output, 0);
+    let output = skiagraph(folder, &["chart", "small", "--out", "front.svg"]);
+    assert_exit(&output, 0);
+    let svg = fs::read_to_string(folder.join("front.svg")).unwrap();
+    let picture = image::open(folder.join("front.png")).unwrap().to_rgb8();
+    let [width, height] = [picture.width(), picture.height()].map(|side| side / 2);
+    assert!(svg.starts_with(&format!("<svg width=\"{width}\" height=\"{height}\"")));
+    let title = picture
+        .enumerate_pixels()
+        .filter(|(_, y, _)| *y < height / 5);
+    let dark = title
+        .filter(|(.., pixel)| pixel.0.iter().all(|&it| it < 100))
+        .count();
+    assert!(dark > 200, "{dark}");
+}
+
+#[test]
+fn published_charts_say_what_is_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    kept(&folder.join("good"), |_| {});
+    let header = "scene,view,viewport,map_size,preset,quantity,value,source,note";
+    let figure = "park,main,512x256,1024,nsm,wrong_lit_percent,6.47,table 8,";
+    fs::write(folder.join("d.csv"), format!("{header}\n{figure}\n")).unwrap();
+    let faulty = format!(
+        "{header}\n{figure}\n{}\n",
+        figure.replace("wrong_lit", "wrong_light")
+    );
+    fs::write(folder.join("faulty.csv"), faulty).unwrap();
+    fs::write(folder.join("file"), "").unwrap();
+    for (arguments, code, message) in [
+        // One map is no chart.
+        (
+            "good --beside D:d.csv --out charts",
+            1,
+            "there is nothing to draw: D has no figures of two maps or viewports of these runs",
+        ),
+        (
+            "good --beside D:faulty.csv --out charts",
+            1,
+            "no quantity is called `wrong_light_percent`",
+        ),
+        (
+            "good --beside D:none.csv --out charts",
+            1,
+            "--beside none.csv",
+        ),
+        (
+            "nowhere --beside D:d.csv --out charts",
+            1,
+            "there is no folder nowhere",
+        ),
+        ("good --beside D:d.csv", 2, "--out <FILE.svg|FILE.png|DIR>"),
+        (
+            "good --beside D:d.csv --out charts --kind front",
+            2,
+            "cannot be used with",
+        ),
+    ] {
+        let arguments: Vec<&str> = ["chart"].into_iter().chain(arguments.split(' ')).collect();
+        let output = skiagraph(folder, &arguments);
+        assert_exit(&output, code);
+        let told = stderr(&output);
+        assert!(told.contains(message), "{arguments:?}: {told}");
+        assert!(!folder.join("charts").exists(), "{arguments:?}");
+    }
+    // A file is no folder; nothing is drawn before that is known.
+    let twice = format!(
+        "{header}\n{figure}\n{}\n",
+        figure.replace("1024,nsm", "512,nsm")
+    );
+    fs::write(folder.join("twice.csv"), twice).unwrap();
+    kept(&folder.join("two"), |results| {
+        let runs = results["runs"].as_array_mut().unwrap();
+        let mut small = runs[0].clone();
+        small["map_size"] = 512.into();
+        runs.push(small);
+    });
+    let into_file = ["chart", "two", "--beside", "D:twice.csv", "--out", "file"];
+    let output = skiagraph(folder, &into_file);
+    assert_exit(&output, 1);
+    assert!(stderr(&output).contains("file"), "{}", stderr(&output));
+    let into_folder = ["chart", "two", "--beside", "D:twice.csv", "--out", "charts"];
+    assert_exit(&skiagraph(folder, &into_folder), 0);
+    let svg = fs::read_to_string(folder.join("charts/wrong-by-map.svg")).unwrap();
+    assert!(
+        svg.contains("D: park, main, 512x256") && svg.contains("512²"),
+        "{svg}"
+    );
+}
+
+#[test]
+fn chart_says_what_is_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::create_dir(folder.join("empty")).unwrap();
+    fs::create_dir(folder.join("foreign")).unwrap();
+    fs::write(folder.join("foreign/results.json"), "{\"a\": 1}").unwrap();
+    kept(&folder.join("timeless"), |_| {});
+    kept(&folder.join("good"), |results| {
+        results["runs"].as_array_mut().unwrap().truncate(1);
+    });
+    let refused = |arguments: &[&str]| {
+        let output = skiagraph(folder, &[&["chart"], arguments].concat());
+        assert_exit(&output, 1);
+        assert_eq!(stdout(&output), "");
+        stderr(&output)
+    };
+    for (arguments, message) in [
+        (
+            &["good", "nowhere"][..],
+            "there is no folder nowhere; name a folder that",
+        ),
+        (
+            &["empty"],
+            "there is no results.json in empty; name a folder that",
+        ),
+        (&["foreign"], "`foreign/results.json` is no results.json"),
+        (&["timeless"], "timeless: there are no GPU times to draw"),
+        (
+            &["good", "--size", "1x1"],
+            "there is nothing to draw: no run of 1x1 has measurements",
+        ),
+        (
+            &["good", "--out", "nowhere/a.svg"],
+            "there is no folder nowhere",
+        ),
+    ] {
+        let told = refused(arguments);
+        assert!(told.contains(message), "{arguments:?}: {told}");
+    }
+}

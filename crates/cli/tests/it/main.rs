@@ -1,0 +1,20 @@
+//! Tests of `crates/cli`, one module for each subject.
+
+mod support;
+
+mod command_line;
+mod dissertation;
+mod endless_files;
+mod faults;
+mod new;
+mod on_a_gpu;
+mod paths;
+mod profile;
+mod recording;
+mod remembering;
+mod report;
+mod saves;
+mod schema;
+mod stress;
+mod tutorial;
+mod watch;

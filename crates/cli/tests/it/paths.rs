@@ -1,0 +1,223 @@
+//! `compare --path`: every frame of a camera path, judged. Needs an adapter.
+
+use crate::support::{results, skiagraph};
+use serde_json::Value;
+use std::fs;
+
+fn count(value: &Value) -> u64 {
+    value
+        .as_u64()
+        .unwrap_or_else(|| panic!("{value} is no count"))
+}
+
+#[test]
+fn every_frame_is_judged_and_exact_methods_do_not_shimmer() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "compare rt nsm light_buffer --path walk --size 64x64 --map-size 128 --warmup 1 \
+                --out out";
+    let (runs, table) = results(folder.path(), line);
+    assert_eq!(runs.len(), 3);
+    for heading in ["path walk", "25 frames", "shimmer", "worst frame"] {
+        assert!(table.contains(heading), "{heading}: {table}");
+    }
+    for run in &runs {
+        let sequence = &run["sequence"];
+        let frames = sequence["frames"].as_array().unwrap();
+        assert_eq!(frames.len(), 25);
+        let sum = |name: &str| -> u64 { frames.iter().map(|frame| count(&frame[name])).sum() };
+        assert_eq!(sum("facing_light"), count(&run["pixels"]["facing_light"]));
+        assert_eq!(sum("wrong"), count(&run["wrong"]["total"]));
+        assert!(frames[0]["shimmer"].is_null());
+        let changed: u64 = frames[1..]
+            .iter()
+            .map(|frame| count(&frame["shimmer"]["changed"]))
+            .sum();
+        let shimmer = &sequence["shimmer"];
+        assert_eq!(changed, count(&shimmer["changed"]));
+        let seen_twice = count(&shimmer["compared"]) as f64 / sum("facing_light") as f64;
+        assert!((0.4..0.96).contains(&seen_twice), "{shimmer}");
+        if run["preset"] == "nsm" {
+            assert!(
+                changed > 200 && sum("wrong_outside_band") > 2_000,
+                "{shimmer}"
+            );
+            let skipped = frames[5]["skipped"].to_string();
+            assert!(skipped.contains("create_shadow_map.draw"), "{skipped}");
+            for frame in frames {
+                let wall = frame["every_pass"]["wall_ms"].as_f64();
+                assert!(wall.is_some_and(|ms| ms > 0.0), "{frame}");
+            }
+            assert!(sequence["every_pass"]["wall_ms"]["median"].is_f64());
+            for line in ["as it is: slowest frame", "with every pass: slowest frame"] {
+                assert!(
+                    table.contains(&format!("nsm 128 {line}")),
+                    "{line}: {table}"
+                );
+            }
+        } else {
+            assert_eq!(
+                (changed, sum("wrong_outside_band")),
+                (0, 0),
+                "{}",
+                run["preset"]
+            );
+        }
+        for picture in run["images"].as_object().unwrap().values() {
+            let picture = folder.path().join("out").join(picture.as_str().unwrap());
+            assert!(picture.is_file(), "{}", picture.display());
+        }
+    }
+    let csv = fs::read_to_string(folder.path().join("out/results.csv")).unwrap();
+    let head = csv.lines().next().unwrap();
+    assert!(head.contains(",worst_frame,worst_frame_wrong,"), "{head}");
+    assert!(
+        head.contains(",slowest_frame,slowest_frame_ms,every_pass_gpu_ms,"),
+        "{head}"
+    );
+
+    let kept = skiagraph(folder.path(), &format!("{line} --resume"));
+    let told = String::from_utf8_lossy(&kept.stderr);
+    assert!(told.contains("3 of 3 runs are kept"), "{told}");
+}
+
+#[test]
+fn a_moving_light_is_followed_by_what_is_kept_and_by_the_reference() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "compare rt light_buffer nsm --path sunrise --size 64x64 --map-size 128 --warmup 1 \
+                --images none --out out";
+    let (runs, _) = results(folder.path(), line);
+    for run in &runs {
+        let frames = run["sequence"]["frames"].as_array().unwrap();
+        assert_eq!(frames.len(), 17);
+        let facing: Vec<u64> = frames.iter().map(|it| count(&it["facing_light"])).collect();
+        assert!(facing[0] > 500 && facing[0] != facing[14], "{facing:?}");
+        if run["preset"] != "nsm" {
+            let wrong = frames.iter().map(|it| count(&it["wrong_outside_band"]));
+            assert_eq!(wrong.sum::<u64>(), 0, "{}", run["preset"]);
+            continue;
+        }
+        // The map is drawn while the light moves, and kept in the two frames in which it stands.
+        for (index, frame) in frames.iter().enumerate() {
+            let skipped = frame["skipped"].to_string();
+            let is_kept = skipped.contains("create_shadow_map.draw");
+            assert_eq!(is_kept, index == 0 || index > 14, "{index}: {skipped}");
+        }
+    }
+}
+
+#[test]
+fn a_jittered_camera_is_followed_by_gbuffer_and_reference() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "compare rt light_buffer --path walk --size 64x64 --warmup 0 --images none \
+                --cached-frames 0 --out out";
+    let (plain, _) = results(folder.path(), line);
+    let (jittered, _) = results(folder.path(), &format!("{line} --jitter 8"));
+    for (plain, jittered) in plain.iter().zip(&jittered) {
+        assert_ne!(plain["pixels"], jittered["pixels"]);
+        assert_ne!(plain["fingerprint"], jittered["fingerprint"]);
+        let wrong = &jittered["wrong"];
+        assert_eq!(wrong["total"], wrong["in_band"], "{}", jittered["preset"]);
+        let band =
+            count(&jittered["band"]) as f64 / count(&jittered["pixels"]["facing_light"]) as f64;
+        assert!(band < 1e-3, "{band}");
+        assert!(jittered["sequence"]["every_pass"].is_null());
+    }
+}
+
+#[test]
+fn moving_parts_are_followed_by_what_is_kept_and_by_the_reference() {
+    let folder = tempfile::tempdir().unwrap();
+    // From frame to frame the lamp moves until the seventh, the tree always.
+    for (path, standing) in [("lamp", 7), ("wind", 9)] {
+        let line = format!(
+            "compare rt light_buffer nsm crsm --path {path} --size 64x64 --map-size 128 --warmup 1 \
+             --images none --replace --out out"
+        );
+        let (runs, _) = results(folder.path(), &line);
+        assert_eq!(runs.len(), 4);
+        for run in &runs {
+            let frames = run["sequence"]["frames"].as_array().unwrap();
+            assert_eq!(frames.len(), 9);
+            let facing: Vec<u64> = frames.iter().map(|it| count(&it["facing_light"])).collect();
+            assert!(facing[0] > 500, "{facing:?}");
+            let shimmer = &run["sequence"]["shimmer"];
+            assert!(count(&shimmer["compared"]) > 2_000, "{shimmer}");
+            if run["preset"] != "nsm" {
+                let wrong = frames.iter().map(|it| count(&it["wrong_outside_band"]));
+                let wrong: Vec<u64> = wrong.collect();
+                assert_eq!(wrong, [0; 9], "{path} {}", run["preset"]);
+                assert_eq!(count(&shimmer["changed"]), 0, "{path} {}", run["preset"]);
+            }
+            // What draws the mesh runs while it moves, and no longer.
+            for (index, frame) in frames.iter().enumerate() {
+                let skipped = frame["skipped"].to_string();
+                let expected = match run["preset"].as_str() {
+                    Some("nsm") => "create_shadow_map.draw",
+                    Some("crsm") => "create_shadow_map.layer[0].select",
+                    // They keep nothing: every pass of theirs reads the mesh or the eye.
+                    _ => {
+                        assert_eq!(skipped, "null", "{path} {}", run["preset"]);
+                        continue;
+                    }
+                };
+                let is_kept = skipped.contains(expected);
+                assert_eq!(
+                    is_kept,
+                    index == 0 || index >= standing,
+                    "{path} {} {index}: {skipped}",
+                    run["preset"]
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_part_that_is_not_there_is_refused_with_those_that_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = r#"(
+        format: 1, name: "own", mesh: Generated("park"), light: (direction: (0.7, -0.4, 0.5)),
+        views: [(
+            name: "v", eye: (-10, 60, 60), direction: (0.5, -0.7, -0.6), fov_y_degrees: 60,
+            near: 1, far: 400,
+        )],
+        paths: [(
+            name: "p", fov_y_degrees: 60, near: 1, far: 400,
+            keys: [
+                (at: 0, eye: (-10, 60, 60), direction: (0.5, -0.7, -0.6)),
+                (at: 0.1, eye: (-10, 60, 60), direction: (0.5, -0.7, -0.6)),
+            ],
+            moves: [Sway(part: "tree 9", axis: (1, 0, 0), degrees: 5, seconds: 2)],
+        )],
+    )"#;
+    fs::write(folder.path().join("own.ron"), scene).unwrap();
+    let output = skiagraph(folder.path(), "compare nsm --scene own.ron --path p");
+    assert_eq!(output.status.code(), Some(1));
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        told.contains("path \"p\": moves: no part of the mesh is called \"tree 9\"; known here:")
+            && told.contains("tree 1"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_path_that_is_not_there_is_refused_with_those_that_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |line: &str| {
+        let output = skiagraph(folder.path(), line);
+        assert_eq!(output.status.code(), Some(1), "{line}");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let unknown = refused("compare nsm --path wlak");
+    assert!(
+        unknown.contains("`park` has no path `wlak`; did you mean `walk`?")
+            && unknown.contains("paths: walk, sunrise, lamp, wind, or all of them: all"),
+        "{unknown}"
+    );
+    let none = refused("compare nsm --scene city:20000 --path walk");
+    assert!(
+        none.contains("`city` has no camera paths") && none.contains("keys:"),
+        "{none}"
+    );
+}

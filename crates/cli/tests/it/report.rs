@@ -1,0 +1,117 @@
+//! `report.html` in a browser: what it shows, and what happens on clicks, keys and wheel. Needs an
+//! adapter and Chromium (`chromium`, or what `CHROMIUM` names).
+
+use crate::support::{results, skiagraph};
+use serde_json::Value;
+use std::{fs, path::Path, process::Command};
+
+/// Runs in the page, ahead of its own scripts.
+const BEFORE: &str = "<script>window.faults = []; \
+     addEventListener('error', (event) => faults.push(event.message)); \
+     addEventListener('unhandledrejection', (event) => faults.push(String(event.reason))); \
+     console.error = (...words) => faults.push(words.join(' '));</script>";
+
+/// What the page comes to in a frame so wide under `script`, which ends by calling `done`.
+fn browsed(folder: &Path, page: &str, width: u32, is_dark: bool, script: &str) -> Value {
+    let html = fs::read_to_string(folder.join(page)).unwrap();
+    let html = html.replacen("<head>", &format!("<head>{BEFORE}"), 1);
+    let helpers = include_str!("report/helpers.js");
+    let html = html.replacen(
+        "</body>",
+        &format!("<script type=\"module\">{helpers}{script}</script></body>"),
+        1,
+    );
+    fs::write(folder.join("tried.html"), html).unwrap();
+    // A window has a least width, a frame has none; the outcome comes back as a message.
+    let frame = folder.join("frame.html");
+    let around = include_str!("report/frame.html").replace("WIDTH", &width.to_string());
+    fs::write(&frame, around).unwrap();
+    let program = std::env::var("CHROMIUM").unwrap_or_else(|_| "chromium".into());
+    let output = Command::new(&program)
+        .args(["--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"])
+        .arg(format!(
+            "--user-data-dir={}",
+            folder.join("browser").display()
+        ))
+        .arg("--window-size=1400,1000")
+        .arg(format!(
+            "--blink-settings=preferredColorScheme={}",
+            if is_dark { 0 } else { 1 }
+        ))
+        .arg("--virtual-time-budget=60000")
+        .arg(format!("file://{}", frame.display()))
+        .output()
+        .unwrap_or_else(|error| panic!("{program} cannot be started ({error}): install it"));
+    let dom = String::from_utf8_lossy(&output.stdout);
+    let (begin, end) = ("<pre id=\"outcome\">", "</pre>");
+    let at = dom.find(begin).unwrap_or_else(|| {
+        let told = String::from_utf8_lossy(&output.stderr);
+        panic!("the page came to no end: {told}")
+    });
+    let text = &dom[at + begin.len()..];
+    let text = text[..text.find(end).unwrap()]
+        .replace("&lt;", "<")
+        .replace("&gt;", ">");
+    serde_json::from_str(&text.replace("&amp;", "&")).unwrap()
+}
+
+/// A page of two sizes and maps, and one of two machines with the hard cases.
+fn pages(folder: &Path) {
+    let line = "compare rt nsm light_buffer pcf --scene park --size 64x64,96x64 --map-size 64,128 \
+                --frames 2 --warmup 1 --out out";
+    let (runs, _) = results(folder, line);
+    assert_eq!(runs.len(), 14, "four methods, one without a map, two sizes");
+    let output = skiagraph(
+        folder,
+        "stress rt nsm --case box_on_floor --size 48x48 --out hard",
+    );
+    assert!(output.status.success());
+    // Another machine's results.
+    fs::create_dir(folder.join("far")).unwrap();
+    let text = fs::read_to_string(folder.join("out/results.json")).unwrap();
+    let mut far: Value = serde_json::from_str(&text).unwrap();
+    far["adapter"]["name"] = "Far GPU".into();
+    fs::write(folder.join("far/results.json"), far.to_string()).unwrap();
+    let output = skiagraph(folder, "report out far hard --out all.html");
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        output.status.success() && told.contains("all.html"),
+        "{told}"
+    );
+}
+
+#[test]
+fn the_page_works_in_a_browser() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    pages(folder);
+    for (width, is_dark) in [(1280, false), (1280, true), (390, false), (390, true)] {
+        let script = include_str!("report/page.js");
+        let outcome = browsed(folder, "out/report.html", width, is_dark, script);
+        assert_eq!(outcome["faults"], Value::Array(Vec::new()), "{width}");
+        assert_eq!(outcome["failed"], Value::Array(Vec::new()), "{width}");
+        let theme = if is_dark { "dark" } else { "light" };
+        assert_eq!(outcome["theme"], theme);
+        assert_eq!(outcome["width"], width);
+    }
+    let outcome = browsed(
+        folder,
+        "all.html",
+        1280,
+        false,
+        include_str!("report/merged.js"),
+    );
+    assert_eq!(outcome["faults"], Value::Array(Vec::new()));
+    assert_eq!(outcome["failed"], Value::Array(Vec::new()));
+}
+
+#[test]
+fn a_page_of_nothing_says_what_is_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("empty")).unwrap();
+    let output = skiagraph(folder.path(), "report empty");
+    assert_eq!(output.status.code(), Some(1));
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(told.contains("there is no results.json in empty"), "{told}");
+    assert!(!folder.path().join("empty/report.html").exists());
+}

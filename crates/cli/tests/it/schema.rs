@@ -1,0 +1,232 @@
+//! `skiagraph schema`: all presets are documents by it, and what is misspelt is none.
+
+use crate::support::skiagraph;
+use jsonschema::Validator;
+use serde_json::{Map, Value};
+use std::{fs, path::Path};
+
+/// RON as JSON: `Kind(field: value)` is `{"Kind": {"field": value}}`, a bare word a text, a tuple a
+/// list.
+struct Ron<'t>(&'t str);
+
+impl<'t> Ron<'t> {
+    fn json(text: &str) -> Value {
+        let mut ron = Ron(text);
+        let value = ron.value();
+        ron.skip();
+        assert_eq!(ron.0, "", "what stands behind the document");
+        value
+    }
+
+    /// Passes white space and comments by.
+    fn skip(&mut self) {
+        loop {
+            self.0 = self.0.trim_start();
+            let Some(comment) = self.0.strip_prefix("//") else {
+                return;
+            };
+            self.0 = comment.split_once('\n').map_or("", |(_, rest)| rest);
+        }
+    }
+
+    fn next_is(&mut self, mark: char) -> bool {
+        self.skip();
+        let rest = self.0.strip_prefix(mark);
+        self.0 = rest.unwrap_or(self.0);
+        rest.is_some()
+    }
+
+    fn word(&mut self) -> &'t str {
+        let is_part = |c: char| c.is_alphanumeric() || "_.-+".contains(c);
+        let end = self.0.find(|c| !is_part(c)).unwrap_or(self.0.len());
+        let (word, rest) = self.0.split_at(end);
+        assert_ne!(word, "", "a value at {rest:.40}");
+        self.0 = rest;
+        word
+    }
+
+    fn string(&mut self) -> String {
+        let text = self.0;
+        let mut values = serde_json::Deserializer::from_str(text).into_iter::<String>();
+        let string = values.next().unwrap().unwrap();
+        self.0 = &text[values.byte_offset()..];
+        string
+    }
+
+    fn value(&mut self) -> Value {
+        self.skip();
+        match self.0.chars().next().unwrap() {
+            '"' => self.string().into(),
+            '[' => {
+                self.0 = &self.0[1..];
+                self.list(']').into()
+            }
+            '(' => self.brackets(),
+            '{' => {
+                self.0 = &self.0[1..];
+                let mut map = Map::new();
+                while !self.next_is('}') {
+                    self.skip();
+                    let key = self.string();
+                    assert!(self.next_is(':'));
+                    map.insert(key, self.value());
+                    self.next_is(',');
+                }
+                map.into()
+            }
+            _ => {
+                let word = self.word();
+                if let Ok(value) = serde_json::from_str(&word.replace('_', "")) {
+                    return value;
+                }
+                self.skip();
+                if !self.0.starts_with('(') {
+                    return word.into();
+                }
+                let body = match self.brackets() {
+                    Value::Array(mut one) if one.len() == 1 => one.remove(0),
+                    body => body,
+                };
+                Value::Object(Map::from_iter([(word.to_owned(), body)]))
+            }
+        }
+    }
+
+    fn list(&mut self, end: char) -> Vec<Value> {
+        let mut list = Vec::new();
+        while !self.next_is(end) {
+            list.push(self.value());
+            self.next_is(',');
+        }
+        list
+    }
+
+    /// A tuple, or fields with names.
+    fn brackets(&mut self) -> Value {
+        self.0 = &self.0[1..];
+        self.skip();
+        let inside = self.0;
+        let is_name = |c: char| c.is_alphanumeric() || c == '_';
+        let name = inside.trim_start_matches(is_name);
+        let has_names = name.len() < inside.len() && name.trim_start().starts_with(':');
+        if !has_names {
+            return self.list(')').into();
+        }
+        let mut fields = Map::new();
+        while !self.next_is(')') {
+            self.skip();
+            let name = self.word().to_owned();
+            assert!(self.next_is(':'), "no colon behind {name}");
+            fields.insert(name, self.value());
+            self.next_is(',');
+        }
+        fields.into()
+    }
+}
+
+fn validator() -> Validator {
+    let output = skiagraph(Path::new("."), "schema");
+    assert!(output.status.success());
+    let schema = serde_json::from_slice(&output.stdout).unwrap();
+    jsonschema::meta::validate(&schema).unwrap();
+    jsonschema::validator_for(&schema).unwrap()
+}
+
+/// What is wrong with a document, and where.
+fn mistakes(schema: &Validator, text: &str) -> Vec<String> {
+    let document = Ron::json(text);
+    let errors = schema.iter_errors(&document);
+    errors
+        .map(|error| format!("{}: {error:.300}", error.instance_path()))
+        .collect()
+}
+
+#[test]
+fn every_preset_is_a_document() {
+    let schema = validator();
+    let mut count = 0;
+    for folder in ["pipelines", "pipelines/shared", "tests/foreign/temporal"] {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../..")
+            .join(folder);
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_none_or(|ending| ending != "ron") {
+                continue;
+            }
+            let text = fs::read_to_string(&path).unwrap();
+            let mistakes = mistakes(&schema, &text);
+            assert!(mistakes.is_empty(), "{}: {mistakes:#?}", path.display());
+            count += 1;
+        }
+    }
+    assert!(count > 25, "{count} documents");
+}
+
+#[test]
+fn the_reference_of_the_language_is_that_of_its_types() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/reference.md");
+    let output = skiagraph(Path::new("."), "schema --format markdown");
+    let same = fs::read(page).unwrap() == output.stdout;
+    assert!(
+        same,
+        "skiagraph schema --format markdown > docs/reference.md"
+    );
+}
+
+/// A document with one pass, material and param, into which mistakes are put.
+const RIGHT: &str = r#"(
+    format: 2,
+    params: [F32(name: "gain", default: 1, min: 0)],
+    materials: [
+        Texture(name: "image", format: Rgba8Unorm, size: (64, 64), mips: All),
+        Buffer(name: "rays", count: "image.width", grow: (counter: "image", max: 100)),
+        Sampler(name: "smooth", filter: Linear),
+    ],
+    passes: [
+        Raster(
+            name: "draw", draw: "scene.indices.count", cull: Back, run: When("gain > 0"),
+            color: [(target: "image", load: Clear(0, 0, 0, 1), blend: Alpha, write: rgb)],
+        ),
+        Compute(name: "count", dispatch: Groups(1, 2, 3)),
+        Trace(name: "trace", rays: "rays", hits: "rays", count: "rays", mode: Any),
+        Group(name: "two", repeat: 2, passes: [Clear(name: "zero", target: "image")]),
+    ],
+    outputs: ["image", (name: "also", material: "image")],
+    claims: {"exact": true, "certain": (if: "gain > 0", because: "why")},
+)"#;
+
+#[test]
+fn what_is_misspelt_is_no_document() {
+    let schema = validator();
+    assert_eq!(mistakes(&schema, RIGHT), [""; 0]);
+    let misspelt = [
+        ("format: 2", "format: 1"),
+        ("params:", "parameters:"),
+        ("F32(", "Float("),
+        ("min: 0", "minimum: 0"),
+        (r#"name: "gain""#, r#"name: "Gain""#),
+        ("Rgba8Unorm", "Rgba8Unrom"),
+        ("mips: All", "mip: All"),
+        ("counter:", "count:"),
+        ("filter: Linear", "filter: Lineal"),
+        ("Raster(", "Rasterize("),
+        ("cull: Back", "cull: Backs"),
+        ("Clear(0, 0, 0, 1)", "Clean(0, 0, 0, 1)"),
+        ("blend: Alpha", "blend: Alhpa"),
+        ("write: rgb", "write: rgx"),
+        ("run: When(", "run: If("),
+        ("Groups(1, 2, 3)", "Groups(1, 2)"),
+        ("mode: Any", "mode: First"),
+        (r#"Trace(name: "trace","#, "Trace("),
+        ("repeat: 2", "repeats: 2"),
+        (r#"Clear(name: "zero""#, r#"Clear(nam: "zero""#),
+        (r#"material: "image")"#, r#"of: "image")"#),
+        ("because:", "reason:"),
+    ];
+    for (right, wrong) in misspelt {
+        let text = RIGHT.replacen(right, wrong, 1);
+        assert_ne!(text, RIGHT, "{right}");
+        assert_ne!(mistakes(&schema, &text), [""; 0], "{wrong} is accepted");
+    }
+}

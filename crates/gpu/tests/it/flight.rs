@@ -1,0 +1,238 @@
+//! Several frames under way at once: each brings what was asked of it, and nobody waits.
+
+use crate::support::Files;
+use crate::tiny;
+use crate::tiny::{GPU, encoder, image, made, u32s};
+use skiagraph_gpu::{Executor, Frame, FrameReport};
+use skiagraph_graph::{NoProvider, ParamValue};
+use std::time::{Duration, Instant};
+
+/// Every frame writes its number, and is slow with many items.
+///
+/// ```text
+/// frame ─▶ count ─▶ number
+///              └──▶ sums
+/// ```
+fn slow() -> Files {
+    Files::graph(
+        r#"
+    params: [U32(name: "items", default: 64)],
+    materials: [Buffer(name: "number", count: 1), Buffer(name: "sums", count: "items")],
+    passes: [Compute(name: "count", dispatch: Over("sums.count"))],
+    outputs: ["number", "sums"],
+"#,
+    )
+    .with(
+        "count.wgsl",
+        "struct Frame { index: u32, seconds: f32 }
+         var<uniform> frame: Frame;
+         var<storage, read_write> number: array<u32>;
+         var<storage, read_write> sums: array<u32>;
+         @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+             var sum = id.x;
+             for (var round = 0u; round < 20000u; round++) {
+                 sum = (sum ^ (sum >> 7u)) * 1664525u + round;
+             }
+             sums[id.x] = sum;
+             if id.x == 0u { number[0] = frame.index; }
+         }",
+    )
+}
+
+/// What the slow pass takes at least.
+const LONG: Duration = Duration::from_millis(150);
+
+/// An executor whose frames take long on the GPU, and how long.
+fn long() -> (Executor, Duration) {
+    let mut executor = made(&slow());
+    let mut items = 4096;
+    loop {
+        let value = ParamValue::U32(items);
+        let set = executor.set_param("items", value, &mut NoProvider);
+        set.unwrap_or_else(|error| panic!("{error}"));
+        // The first frame compiles shaders on some drivers.
+        let time = (0..2)
+            .map(|_| {
+                let began = Instant::now();
+                tiny::frame(&mut executor, false, &[]);
+                began.elapsed()
+            })
+            .min();
+        match time {
+            Some(time) if time >= LONG => return (executor, time),
+            _ => items *= 2,
+        }
+    }
+}
+
+/// Encodes and submits a frame; its number, and how long the graph's part of it took.
+fn submit(executor: &mut Executor, frame: &Frame<'_>) -> (u32, Duration) {
+    let mut encoder = encoder();
+    let began = Instant::now();
+    let index = executor.encode(&mut encoder, frame);
+    let took = began.elapsed();
+    GPU.queue.submit([encoder.finish()]);
+    (index.unwrap_or_else(|error| panic!("{error}")), took)
+}
+
+fn poll(executor: &mut Executor) -> Option<FrameReport> {
+    executor.poll().unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn has_timestamps() -> bool {
+    let features = GPU.device.features();
+    features.contains(wgpu::Features::TIMESTAMP_QUERY)
+}
+
+/// A frame's own number and, if it was timed, times that are its own: as long as the slow pass, and
+/// not as long as two of them.
+fn is_its_own(report: &FrameReport, index: u32, timing: bool, long: Duration) {
+    assert_eq!(report.index, index);
+    let names: Vec<&str> = report.readbacks.iter().map(|read| &*read.name).collect();
+    assert_eq!(names, ["number"]);
+    assert_eq!(u32s(&report.readbacks[0].content), [index]);
+    assert_eq!(report.timing.is_some(), timing);
+    if let Some(times) = &report.timing {
+        assert_eq!(times.passes.len(), 1);
+        assert_eq!(times.passes[0].name, "count");
+        if has_timestamps() {
+            let gpu = times.gpu().expect("a pass that dispatches has times");
+            assert!(gpu > long / 4, "frame {index}: {gpu:?} of {long:?}");
+        }
+    }
+}
+
+/// More frames than any queue of the host's is deep, some timed, all read: every one is there, in
+/// order, with its own content and times, and only `finish` waits.
+#[test]
+fn frames_in_flight_bring_what_is_theirs_and_nobody_waits() {
+    let (mut executor, long) = long();
+    let began = Instant::now();
+    let mut longest = Duration::ZERO;
+    let mut expected = Vec::new();
+    for at in 0..5 {
+        let wanted = Frame {
+            timing: at != 1,
+            read: &["number"],
+            ..Frame::default()
+        };
+        let (index, took) = submit(&mut executor, &wanted);
+        expected.push((index, wanted.timing));
+        let polling = Instant::now();
+        let early = poll(&mut executor);
+        longest = longest.max(took).max(polling.elapsed());
+        assert!(
+            early.is_none() || began.elapsed() >= long / 4,
+            "it cannot be done yet"
+        );
+        if let Some(early) = early {
+            let (index, timing) = expected.remove(0);
+            is_its_own(&early, index, timing, long);
+        }
+    }
+    assert_eq!(executor.under_way(), expected.len());
+    // The GPU is still busy with them.
+    assert!(
+        longest < long / 2,
+        "{longest:?} of {long:?}: somebody waited"
+    );
+    let mut polls = 0u32;
+    for (index, timing) in expected {
+        let report = loop {
+            let polling = Instant::now();
+            let report = poll(&mut executor);
+            longest = longest.max(polling.elapsed());
+            match report {
+                Some(report) => break report,
+                None => std::thread::sleep(Duration::from_millis(1)),
+            }
+            polls += 1;
+        };
+        is_its_own(&report, index, timing, long);
+    }
+    assert!(polls > 0, "the frames were no longer under way");
+    assert!(longest < long / 2, "{longest:?} of {long:?}: a poll waited");
+    assert!(poll(&mut executor).is_none());
+    assert_eq!(executor.under_way(), 0);
+}
+
+/// `finish` waits, and hands out one frame after the other.
+#[test]
+fn frames_in_flight_are_waited_for_one_by_one() {
+    let mut executor = made(&slow());
+    let wanted = Frame {
+        timing: true,
+        read: &["number"],
+        ..Frame::default()
+    };
+    // All are encoded before the first is submitted, and one of them asks for nothing.
+    let mut submissions = Vec::new();
+    for at in 0..4 {
+        let mut encoder = encoder();
+        let wanted = if at == 2 { Frame::default() } else { wanted };
+        let index = executor.encode(&mut encoder, &wanted);
+        submissions.push((index.unwrap_or_else(|error| panic!("{error}")), encoder));
+    }
+    assert_eq!(executor.under_way(), 3);
+    let mut expected = Vec::new();
+    for (at, (index, encoder)) in submissions.into_iter().enumerate() {
+        GPU.queue.submit([encoder.finish()]);
+        if at != 2 {
+            expected.push(index);
+        }
+    }
+    for index in expected {
+        let report = executor.finish().unwrap_or_else(|error| panic!("{error}"));
+        is_its_own(&report, index, true, Duration::ZERO);
+    }
+    let report = executor.finish().unwrap_or_else(|error| panic!("{error}"));
+    assert!(report.readbacks.is_empty() && report.timing.is_none());
+}
+
+/// A host that drops encoders, which it should not, gets all that it has submitted.
+#[test]
+fn frames_that_were_dropped_bring_nothing() {
+    let mut executor = made(&slow());
+    let wanted = Frame {
+        timing: true,
+        read: &["number"],
+        ..Frame::default()
+    };
+    let mut submitted = Vec::new();
+    for _ in 0..3 {
+        let mut dropped = encoder();
+        executor
+            .encode(&mut dropped, &wanted)
+            .unwrap_or_else(|error| panic!("{error}"));
+        drop(dropped);
+        submitted.push(submit(&mut executor, &wanted).0);
+    }
+    for index in submitted {
+        let report = executor.finish().unwrap_or_else(|error| panic!("{error}"));
+        is_its_own(&report, index, true, Duration::ZERO);
+    }
+    assert_eq!(executor.under_way(), 0);
+}
+
+/// A report that is under way outlives a change of the plan, whatever that makes of the output.
+#[test]
+fn what_is_under_way_outlives_a_change_of_the_plan() {
+    let mut executor = made(&image());
+    let wanted = Frame {
+        timing: true,
+        read: &["image"],
+        ..Frame::default()
+    };
+    submit(&mut executor, &wanted);
+    let resized = executor.resize([3, 2], &mut NoProvider);
+    resized.unwrap_or_else(|error| panic!("{error}"));
+    submit(&mut executor, &wanted);
+    for size in [tiny::SIZE, [3, 2]] {
+        let report = executor.finish().unwrap_or_else(|error| panic!("{error}"));
+        let content = &report.readbacks[0].content;
+        assert_eq!(content.size(), Some(size));
+        let numbered = tiny::pixels(size, |x, y| (x + 100 * y) as f32);
+        assert_eq!(tiny::f32s(content), numbered);
+        assert!(report.timing.is_some());
+    }
+}

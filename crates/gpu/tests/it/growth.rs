@@ -1,0 +1,419 @@
+//! Buffers that grow between frames.
+
+use crate::host;
+use crate::host::{GPU, encoder, executor, frame, planned, request, set, submit, words};
+use crate::support::Files;
+use skiagraph_gpu::{ExecuteError, Executor, Frame, Provider, ProviderError, ReplanReport, device};
+use skiagraph_graph::{
+    Describe, NoProvider, ParamValue, Plan, PlanRequest, Provided, ProvidedBinding, ResourceKind,
+};
+
+/// As many threads as are wanted count themselves, and write an item each while there is room.
+///
+/// ```text
+/// reset ─▶ fill ─▶ items
+///            └───▶ needed
+/// ```
+fn filled() -> Files {
+    Files::graph(
+        r#"
+    params: [U32(name: "wanted", default: 4), U32(name: "most", default: 64)],
+    materials: [
+        Buffer(name: "needed"),
+        Buffer(name: "items", count: 4, grow: (counter: "needed", max: "most")),
+    ],
+    passes: [
+        Clear(name: "reset", target: "needed"),
+        Compute(name: "fill", dispatch: Over("wanted")),
+    ],
+    outputs: ["items", "needed"],
+"#,
+    )
+    .with("fill.wgsl", FILL)
+}
+
+const FILL: &str = "
+    struct Params { wanted: u32 }
+    var<uniform> params: Params;
+    var<storage, read_write> needed: atomic<u32>;
+    var<storage, read_write> items: array<u32>;
+    @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+        if id.x >= params.wanted {
+            return;
+        }
+        atomicAdd(&needed, 1u);
+        if id.x < arrayLength(&items) {
+            items[id.x] = 100u + id.x;
+        }
+    }";
+
+fn wanting(wanted: u32) -> Executor {
+    let mut executor = executor(&filled(), &request(&NoProvider));
+    set(&mut executor, "wanted", ParamValue::U32(wanted));
+    executor
+}
+
+#[track_caller]
+fn grow(executor: &mut Executor) -> Option<ReplanReport> {
+    let report = executor.grow(&mut NoProvider);
+    report.unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// What the frame writes into so many items of which it wants so many; the rest is zero.
+fn numbered(wanted: u32, items: u32) -> Vec<u32> {
+    let number = |item: u32| if item < wanted { 100 + item } else { 0 };
+    (0..items).map(number).collect()
+}
+
+#[track_caller]
+fn shows(executor: &mut Executor, wanted: u32, items: u32) {
+    let report = frame(executor, &["items", "needed"]);
+    assert_eq!(words(&report, 0), numbered(wanted, items));
+    assert_eq!(words(&report, 1), [wanted]);
+}
+
+#[test]
+fn a_buffer_grows_to_what_a_frame_needs() {
+    let mut executor = wanting(4);
+    shows(&mut executor, 4, 4);
+    assert_eq!(grow(&mut executor), None, "there is room");
+    set(&mut executor, "wanted", ParamValue::U32(10));
+    shows(&mut executor, 10, 4);
+    let report = grow(&mut executor).expect("there is no room");
+    // The pipelines stay, and so does all other memory.
+    let only_items = ReplanReport {
+        resources: vec!["items".to_owned()],
+        ..ReplanReport::default()
+    };
+    assert_eq!(report, only_items);
+    for _ in 0..3 {
+        // A quarter more than the frame needed.
+        shows(&mut executor, 10, 12);
+        assert_eq!(grow(&mut executor), None, "there is room now");
+    }
+    set(&mut executor, "wanted", ParamValue::U32(12));
+    shows(&mut executor, 12, 12);
+    assert_eq!(grow(&mut executor), None, "the quarter is for this");
+    set(&mut executor, "wanted", ParamValue::U32(2));
+    frame(&mut executor, &[]);
+    assert_eq!(grow(&mut executor), None, "it does not shrink");
+    assert_eq!(executor.plan().grown()["items"], 12);
+}
+
+#[test]
+fn a_buffer_grows_no_further_than_it_may() {
+    let mut executor = wanting(1000);
+    frame(&mut executor, &[]);
+    assert!(grow(&mut executor).is_some());
+    shows(&mut executor, 1000, 64);
+    assert_eq!(grow(&mut executor), None);
+    // The device's limits bound it where the document's would not.
+    let mut request = request(&NoProvider);
+    request.limits.max_buffer_size = 40;
+    let mut executor = host::executor(&filled(), &request);
+    set(&mut executor, "wanted", ParamValue::U32(1000));
+    frame(&mut executor, &[]);
+    assert!(grow(&mut executor).is_some());
+    shows(&mut executor, 1000, 10);
+    assert_eq!(grow(&mut executor), None);
+}
+
+/// The counter of the first frame is on its way while others follow.
+#[test]
+fn frames_in_flight_are_not_waited_for() {
+    let mut executor = wanting(10);
+    let mut encoders = Vec::new();
+    for _ in 0..3 {
+        let mut encoder = encoder();
+        executor.encode(&mut encoder, &Frame::default()).unwrap();
+        encoders.push(encoder);
+        assert_eq!(grow(&mut executor), None, "nothing was submitted");
+    }
+    for encoder in encoders {
+        GPU.queue.submit([encoder.finish()]);
+    }
+    // What was submitted before is done behind this, or not; a frame between does no harm.
+    frame(&mut executor, &[]);
+    assert!(grow(&mut executor).is_some());
+    shows(&mut executor, 10, 12);
+    assert_eq!(grow(&mut executor), None);
+    // A frame that is dropped counts nothing, and the next one is counted.
+    set(&mut executor, "wanted", ParamValue::U32(20));
+    let mut dropped = encoder();
+    executor.encode(&mut dropped, &Frame::default()).unwrap();
+    drop(dropped);
+    assert_eq!(grow(&mut executor), None);
+    shows(&mut executor, 20, 12);
+    assert!(grow(&mut executor).is_some());
+    shows(&mut executor, 20, 25);
+}
+
+/// A host may change its plan in every frame, before a counter has arrived.
+#[test]
+fn a_count_on_its_way_outlives_a_change_of_the_plan() {
+    let mut executor = wanting(10);
+    frame(&mut executor, &[]);
+    set(&mut executor, "wanted", ParamValue::U32(11));
+    assert!(grow(&mut executor).is_some());
+    shows(&mut executor, 11, 12);
+    assert_eq!(grow(&mut executor), None);
+    // Of a frame that is encoded and not submitted, too.
+    set(&mut executor, "wanted", ParamValue::U32(20));
+    let mut encoder = encoder();
+    executor.encode(&mut encoder, &Frame::default()).unwrap();
+    executor.resize([9, 9], &mut NoProvider).unwrap();
+    GPU.queue.submit([encoder.finish()]);
+    executor.finish().unwrap();
+    assert!(grow(&mut executor).is_some());
+    shows(&mut executor, 20, 25);
+}
+
+/// Number of items that a plan gives a buffer.
+fn items(plan: &Plan, name: &str) -> u64 {
+    let mut resources = plan.resources().iter();
+    let found = resources.find(|resource| resource.name == name);
+    match &found.expect("it is there").kind {
+        ResourceKind::Buffer(buffer) => buffer.count.expect("it has a count"),
+        other => panic!("{name} is {other:?}"),
+    }
+}
+
+#[test]
+fn what_has_grown_stays() {
+    let mut executor = wanting(10);
+    frame(&mut executor, &[]);
+    assert!(grow(&mut executor).is_some());
+    let report = executor.resize([9, 9], &mut NoProvider).unwrap();
+    assert_eq!(report.resources, [""; 0]);
+    set(&mut executor, "wanted", ParamValue::U32(11));
+    shows(&mut executor, 11, 12);
+    // A graph that was loaded again, once with what is known and once without.
+    for known in [true, false] {
+        let mut request = request(&NoProvider);
+        request
+            .params
+            .insert("wanted".to_owned(), ParamValue::U32(11));
+        if known {
+            request.grown = executor.plan().grown().clone();
+        }
+        let again = planned(&filled(), &request);
+        executor.replace_graph(again, &mut NoProvider).unwrap();
+        let count = items(executor.plan(), "items");
+        assert_eq!(count, if known { 12 } else { 4 });
+    }
+    frame(&mut executor, &[]);
+    assert!(grow(&mut executor).is_some());
+    shows(&mut executor, 11, 13);
+}
+
+/// Where the host's limit for memory refuses it, frames go on with what there is.
+#[test]
+fn what_is_refused_is_not_tried_again() {
+    let mut request = request(&NoProvider);
+    request.memory_limit = Some(30);
+    let mut executor = executor(&filled(), &request);
+    set(&mut executor, "wanted", ParamValue::U32(10));
+    for _ in 0..3 {
+        shows(&mut executor, 10, 4);
+        assert_eq!(grow(&mut executor), None);
+    }
+    assert!(executor.plan().grown().is_empty());
+    // Another plan may have room.
+    let plan = executor.plan().with(|request| request.memory_limit = None);
+    executor
+        .replace_graph(plan.unwrap(), &mut NoProvider)
+        .unwrap();
+    frame(&mut executor, &[]);
+    assert!(grow(&mut executor).is_some());
+    shows(&mut executor, 10, 12);
+}
+
+#[test]
+fn passes_that_run_on_change_fill_the_larger_buffer() {
+    let files = filled()
+        .edited(
+            "graph.ron",
+            "target: \"needed\"",
+            "target: \"needed\", run: OnChange",
+        )
+        .edited(
+            "graph.ron",
+            "Over(\"wanted\")",
+            "Over(\"wanted\"), run: OnChange",
+        );
+    let mut executor = executor(&files, &request(&NoProvider));
+    set(&mut executor, "wanted", ParamValue::U32(10));
+    shows(&mut executor, 10, 4);
+    assert!(grow(&mut executor).is_some());
+    let report = frame(&mut executor, &["items"]);
+    assert_eq!(report.skipped, [""; 0]);
+    assert_eq!(words(&report, 0), numbered(10, 12));
+    for _ in 0..2 {
+        assert_eq!(grow(&mut executor), None);
+        let report = frame(&mut executor, &["items"]);
+        assert_eq!(report.skipped, ["reset", "fill"]);
+        assert_eq!(words(&report, 0), numbered(10, 12));
+    }
+}
+
+/// One buffer counts for two others; each grows by its own item.
+#[test]
+fn a_counter_may_be_an_item() {
+    let files = Files::graph(
+        r#"
+    materials: [
+        Buffer(name: "counts", count: 2),
+        Buffer(name: "few", count: 4, grow: (counter: "counts[0]", max: 64)),
+        Buffer(name: "many", count: 4, grow: (counter: "counts[1]", max: 64)),
+    ],
+    passes: [Compute(name: "fill", dispatch: Groups(1, 1, 1))],
+    outputs: ["few", "many"],
+"#,
+    )
+    .with(
+        "fill.wgsl",
+        "var<storage, read_write> counts: array<u32>;
+         var<storage, read_write> few: array<u32>;
+         var<storage, read_write> many: array<u32>;
+         @compute @workgroup_size(1) fn main() {
+             counts[0] = 3u;
+             counts[1] = 20u;
+             few[arrayLength(&few) - 1u] = 1u;
+             many[arrayLength(&many) - 1u] = 2u;
+         }",
+    );
+    let mut executor = executor(&files, &request(&NoProvider));
+    frame(&mut executor, &[]);
+    let report = grow(&mut executor).expect("one has no room");
+    assert_eq!(report.resources, ["many"]);
+    let report = frame(&mut executor, &["few", "many"]);
+    assert_eq!(words(&report, 0), [0, 0, 0, 1]);
+    assert_eq!((words(&report, 1).len(), words(&report, 1)[24]), (25, 2));
+    assert_eq!(grow(&mut executor), None);
+}
+
+/// Memory that is filled with a pattern before each frame, and times, know nothing of it.
+#[test]
+fn patterns_and_times_are_not_disturbed() {
+    let mut request = request(&NoProvider);
+    request.poison = Some(0xff);
+    let mut executor = executor(&filled(), &request);
+    set(&mut executor, "wanted", ParamValue::U32(10));
+    frame(&mut executor, &[]);
+    assert!(grow(&mut executor).is_some());
+    let timed = Frame {
+        timing: true,
+        read: &["items"],
+        ..Frame::default()
+    };
+    let report = submit(&mut executor, &timed);
+    let mut expected = numbered(10, 12);
+    expected[10..].fill(u32::MAX);
+    assert_eq!(words(&report, 0), expected);
+    let timing = report.timing.expect("it was asked for");
+    let passes: Vec<&str> = timing
+        .passes
+        .iter()
+        .map(|pass| pass.name.as_str())
+        .collect();
+    assert_eq!(passes, ["reset", "fill"]);
+    assert_eq!(grow(&mut executor), None);
+}
+
+/// Gives `host.wanted`, unless it is still loading.
+struct Wanted {
+    version: u64,
+    is_there: bool,
+}
+
+impl Describe for Wanted {
+    fn names(&self) -> Vec<String> {
+        vec!["host.wanted".to_owned()]
+    }
+
+    fn describe(&self, name: &str) -> Option<Provided> {
+        (name == "host.wanted").then_some(Provided {
+            items: Some(1),
+            stride: 4,
+            binding: ProvidedBinding::Storage,
+            kind: None,
+        })
+    }
+}
+
+impl Provider for Wanted {
+    fn version(&self, _: &str) -> u64 {
+        self.version
+    }
+
+    fn build(
+        &mut self,
+        _: &str,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<wgpu::Buffer, ProviderError> {
+        if !self.is_there {
+            return Err(ProviderError("it is still loading".to_owned()));
+        }
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: 4,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        queue.write_buffer(&buffer, 0, &10u32.to_ne_bytes());
+        Ok(buffer)
+    }
+}
+
+/// That is the host's affair, and no reason to give up.
+#[test]
+fn a_provider_that_fails_is_told_and_asked_again() {
+    let files = filled()
+        .edited("graph.ron", "Over(\"wanted\")", "Over(64)")
+        .edited("fill.wgsl", "struct Params { wanted: u32 }", "")
+        .edited(
+            "fill.wgsl",
+            "var<uniform> params: Params",
+            "var<storage, read> host_wanted: u32",
+        )
+        .edited("fill.wgsl", "params.wanted", "host_wanted");
+    let mut provider = Wanted {
+        version: 0,
+        is_there: true,
+    };
+    let plan = planned(&files, &request(&provider));
+    let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider).unwrap();
+    frame(&mut executor, &[]);
+    (provider.version, provider.is_there) = (1, false);
+    let error = executor
+        .grow(&mut provider)
+        .expect_err("it cannot be built");
+    assert!(matches!(error, ExecuteError::Provider { .. }), "{error}");
+    shows(&mut executor, 10, 4);
+    provider.is_there = true;
+    assert!(executor.grow(&mut provider).unwrap().is_some());
+    shows(&mut executor, 10, 12);
+}
+
+#[test]
+fn a_lost_device_is_no_panic() {
+    let gpu = device::open(None).unwrap_or_else(|error| panic!("{error}"));
+    let mut request = PlanRequest::new([8, 8], &NoProvider);
+    request
+        .params
+        .insert("wanted".to_owned(), ParamValue::U32(10));
+    let plan = planned(&filled(), &request);
+    let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut NoProvider).unwrap();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    executor.encode(&mut encoder, &Frame::default()).unwrap();
+    gpu.queue.submit([encoder.finish()]);
+    gpu.device.destroy();
+    for _ in 0..2 {
+        let grown = executor.grow(&mut NoProvider);
+        assert!(
+            matches!(grown, Ok(None) | Err(ExecuteError::DeviceLost(_))),
+            "{grown:?}"
+        );
+    }
+}

@@ -1,0 +1,154 @@
+//! What a device or a provider refuses comes back as an error with names, before anything is
+//! encoded.
+
+use crate::support::{Files, load, right};
+use crate::tiny::{GPU, encoder, executor, image, made, request};
+use skiagraph_gpu::{ExecuteError, Executor, Frame, Provider, ProviderError};
+use skiagraph_graph::{Describe, NoProvider, Provided, ProvidedBinding};
+
+#[test]
+fn an_output_that_the_plan_does_not_have() {
+    let mut executor = made(&image());
+    let wanted = Frame {
+        read: &["imgae"],
+        ..Frame::default()
+    };
+    let error = executor
+        .encode(&mut encoder(), &wanted)
+        .expect_err("there is none");
+    assert_eq!(
+        error.to_string(),
+        "the plan has no output `imgae`; it has image"
+    );
+}
+
+/// Right as WGSL, but this device was not opened with what it needs: an error that names the pass,
+/// and no panic.
+#[test]
+fn a_shader_that_the_device_refuses() {
+    let files = Files::graph(
+        r#"
+    materials: [Buffer(name: "total")],
+    passes: [Compute(name: "precise", dispatch: Groups(1, 1, 1))],
+    outputs: ["total"],
+"#,
+    )
+    .with(
+        "precise.wgsl",
+        "var<storage, read_write> total: f32;
+         @compute @workgroup_size(1) fn main() {
+             var sum: f64 = 1.0lf;
+             sum = sum * 0.1lf;
+             total = f32(sum);
+         }",
+    );
+    match executor(&files, &[]).expect_err("f64 was not asked for") {
+        ExecuteError::Gpu {
+            pass,
+            place,
+            message,
+        } => {
+            assert_eq!(pass, "precise");
+            assert!(place.starts_with("graph.ron:3:"), "{place}");
+            assert!(!message.is_empty());
+        }
+        other => panic!("{other}"),
+    }
+}
+
+/// Gives four items in a buffer without the usage that binding needs.
+struct Broken;
+
+impl Describe for Broken {
+    fn names(&self) -> Vec<String> {
+        vec!["items".to_owned()]
+    }
+
+    fn describe(&self, name: &str) -> Option<Provided> {
+        (name == "items").then_some(Provided {
+            items: Some(4),
+            stride: 4,
+            binding: ProvidedBinding::Storage,
+            kind: None,
+        })
+    }
+}
+
+impl Provider for Broken {
+    fn build(
+        &mut self,
+        _: &str,
+        device: &wgpu::Device,
+        _: &wgpu::Queue,
+    ) -> Result<wgpu::Buffer, ProviderError> {
+        Ok(device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("items"),
+            size: 16,
+            usage: wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        }))
+    }
+}
+
+/// What a provider hands out is checked when it is bound; what it refuses is told in its words.
+#[test]
+fn a_provider_that_fails() {
+    let files = Files::graph(
+        r#"
+    materials: [Buffer(name: "total")],
+    passes: [Compute(name: "sum", dispatch: Groups(1, 1, 1))],
+    outputs: ["total"],
+"#,
+    )
+    .with(
+        "sum.wgsl",
+        "var<storage, read> items: array<u32>;
+         var<storage, read_write> total: u32;
+         @compute @workgroup_size(1) fn main() { total = items[0]; }",
+    );
+    let plan = || right(right(load(&files)).plan(&request(&Broken)));
+    match Executor::new(&GPU.device, &GPU.queue, plan(), &mut Broken)
+        .expect_err("it cannot be bound")
+    {
+        ExecuteError::Gpu { pass, .. } => assert_eq!(pass, "sum"),
+        other => panic!("{other}"),
+    }
+    let error = Executor::new(&GPU.device, &GPU.queue, plan(), &mut NoProvider)
+        .expect_err("nothing is provided");
+    assert!(
+        matches!(&error, ExecuteError::Provider { name, .. } if name == "items"),
+        "{error}"
+    );
+}
+
+/// Terabytes: an error that names the texture, with the planner's table of what takes the most.
+#[test]
+fn more_memory_than_there_is() {
+    let limits = GPU.device.limits();
+    let (edge, layers) = (
+        limits.max_texture_dimension_2d,
+        limits.max_texture_array_layers,
+    );
+    let files = Files::graph(&format!(
+        r#"
+    materials: [
+        Texture(name: "image", format: Rgba32Float, size: {edge}, layers: {layers}),
+    ],
+    passes: [Clear(name: "reset", target: "image")],
+    outputs: ["image"],
+"#
+    ));
+    match executor(&files, &[]).expect_err("no device has as much") {
+        ExecuteError::OutOfMemory { name, table } => {
+            assert_eq!(name, "image");
+            let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
+            let gib = (u64::from(edge).pow(2) * u64::from(layers) * 16) >> 30;
+            let rows = [
+                format!("image {edge}×{edge}, {layers} layers Rgba32Float {gib}.00 GiB"),
+                format!("all together {gib}.00 GiB"),
+            ];
+            assert_eq!(table.lines().map(words).collect::<Vec<_>>(), rows);
+        }
+        other => panic!("{other}"),
+    }
+}

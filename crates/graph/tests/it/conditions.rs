@@ -1,0 +1,235 @@
+//! What is there and what is not: `if`, groups, what they say of names, and what `check` looks at.
+
+use crate::support::{Files, Triangle, checked, codes, load, names, plan, right};
+use skiagraph_graph::{Code, Diagnostic, PlanRequest, Run, Severity};
+
+const FILL: &str = "struct Params { value: f32 } var<uniform> params: Params;
+    @fragment fn fragment() -> @location(0) f32 { return params.value; }";
+
+const BLUR: &str = "var image: texture_2d<f32>;
+    @fragment fn fragment() -> @location(0) f32 { return textureLoad(image, vec2(0u), 0).x; }";
+
+/// Three textures, params of each type, and these passes.
+fn files(passes: &str, outputs: &str) -> Files {
+    let sections = format!(
+        r#"params: [
+            F32(name: "value", default: 1), U32(name: "radius", default: 2, max: 8),
+            Bool(name: "soft", default: true),
+            Choice(name: "engine", words: [plain, fancy], default: plain),
+        ],
+        materials: [
+            Texture(name: "image", format: R32Float), Texture(name: "blurred", format: R32Float),
+            Texture(name: "maps", format: R32Float, layers: 2),
+        ],
+        passes: [{passes}], outputs: [{outputs}]"#
+    );
+    Files::graph(&sections)
+        .with("fill.wgsl", FILL)
+        .with("blur.wgsl", BLUR)
+}
+
+const FIRST: &str = r#"Fullscreen(name: "fill", color: ["image"]),"#;
+
+fn with(condition: &str) -> Files {
+    let blur = format!(r#"Fullscreen(name: "blur", if: {condition}, color: ["blurred"]),"#);
+    let outputs = format!(r#""image", (name: "soft_image", material: "blurred", if: {condition})"#);
+    files(&format!("{FIRST} {blur}"), &outputs)
+}
+
+/// An entry or output whose `if` is false is not there; params, sizes and the device may decide.
+#[test]
+fn a_condition_decides_what_is_there() {
+    let outputs = |condition: &str, width, features| {
+        let graph = right(load(&with(condition)));
+        let mut request = PlanRequest::new([width, 8], &Triangle);
+        request.features = features;
+        let plan = right(graph.plan(&request));
+        assert_eq!(
+            graph.outputs(),
+            ["image", "soft_image"],
+            "declared all the same"
+        );
+        (names(&plan).len(), plan.outputs().len())
+    };
+    let (there, gone) = ((2, 2), (1, 1));
+    let none = wgt::Features::empty();
+    for (condition, expected) in [
+        ("true", there),
+        ("false", gone),
+        (r#""soft""#, there),
+        (r#""!soft""#, gone),
+        (r#""radius > 2""#, gone),
+        (r#""engine == plain && radius > 0""#, there),
+        (r#""engine == fancy""#, gone),
+        (r#""viewport.width >= 16""#, gone),
+        (r#""image.mips == 1""#, there),
+        (r#""has(SUBGROUP)""#, gone),
+    ] {
+        assert_eq!(outputs(condition, 8, none), expected, "{condition}");
+    }
+    assert_eq!(outputs(r#""viewport.width >= 16""#, 16, none), there);
+    assert_eq!(
+        outputs(r#""has(SUBGROUP)""#, 8, wgt::Features::SUBGROUP),
+        there
+    );
+    for (condition, code) in [
+        ("2", Code::Expression),
+        (r#""radius""#, Code::Expression),
+        (r#""radios > 1""#, Code::UnknownParam),
+        (r#""LIMIT > 1""#, Code::Expression),
+    ] {
+        let found = checked(&with(condition));
+        assert_eq!(
+            found.first().map(|found| found.code),
+            Some(code),
+            "{condition}: {found:?}"
+        );
+    }
+}
+
+/// `check` looks at each value that an `if` names: every word, true and false, the ends of the
+/// range, each feature.
+#[test]
+fn check_looks_at_every_value_of_a_condition() {
+    let told = |condition: &str| -> Vec<String> {
+        let blur = format!(r#"Fullscreen(name: "blur", if: {condition}, color: ["blurred"]),"#);
+        let passes = format!(
+            r#"{FIRST} {blur} Fullscreen(name: "last", shader: "blur",
+            bind: {{"image": "blurred"}}, color: ["image"]),"#
+        );
+        let found = checked(&files(&passes, r#""image""#));
+        let condition = |found: &Diagnostic| {
+            assert_eq!(found.code, Code::Condition, "{found:?}");
+            found
+                .message
+                .split_once(": ")
+                .expect("it says when")
+                .0
+                .to_owned()
+        };
+        let errors = found
+            .iter()
+            .filter(|found| found.severity == Severity::Error);
+        errors.map(condition).collect()
+    };
+    assert_eq!(told(r#""soft""#), ["with `soft` = false"]);
+    assert_eq!(told(r#""engine == plain""#), ["with `engine` = fancy"]);
+    assert_eq!(told(r#""radius < 8""#), ["with `radius` = 8"]);
+    assert_eq!(told(r#""!has(SUBGROUP)""#), ["with the feature SUBGROUP"]);
+    // Of a range without an end nothing is tried there.
+    assert_eq!(told(r#""value < 2.0""#), [""; 0]);
+    assert_eq!(told(r#""soft || radius < 9""#), [""; 0]);
+}
+
+/// A group's `if`, `repeat` and `run` are for all of its entries, its `bind` and `set` for each
+/// that asks for such a name.
+#[test]
+fn what_a_group_says() {
+    let passes = |group: &str, inside: &str| {
+        let passes = format!(
+            r#"Clear(name: "reset", target: "maps"), {FIRST} Group(name: "all", {group} passes: [
+                Fullscreen(name: "one", shader: "blur", color: ["blurred"]{inside}),
+                Fullscreen(name: "two", shader: "fill", color: ["spare"]),
+            ])"#
+        );
+        let files = files(&passes, r#""image", "blurred", "maps", "spare""#);
+        let spare = r#"materials: [Texture(name: "spare", format: R32Float),"#;
+        files.edited("graph.ron", "materials: [", spare)
+    };
+    let plan_of = |group: &str| right(plan(&passes(group, "")));
+    assert_eq!(names(&plan_of("")), ["reset", "fill", "all.one", "all.two"]);
+    let twice = plan_of("repeat: 2,");
+    let all: Vec<&str> = twice
+        .all_passes()
+        .iter()
+        .map(|pass| pass.name.as_str())
+        .collect();
+    let each = ["all[0].one", "all[0].two", "all[1].one", "all[1].two"];
+    assert_eq!(all[2..], each);
+    let none = passes("if: false,", "").edited(
+        "graph.ron",
+        r#", "blurred", "maps", "spare"]"#,
+        r#", "maps"]"#,
+    );
+    assert_eq!(names(&right(plan(&none))), ["reset", "fill"]);
+    let run = |group: &str, pass: usize| plan_of(group).all_passes()[pass].run.clone();
+    assert_eq!(
+        (run("", 2), run("run: Once,", 2), run("run: Once,", 1)),
+        (Run::Always, Run::Once, Run::Always)
+    );
+    let own = right(plan(&passes("run: Once,", ", run: OnChange")));
+    assert_eq!(
+        (&own.all_passes()[2].run, &own.all_passes()[3].run),
+        (&Run::OnChange, &Run::Once)
+    );
+    let bound = plan_of(r#"bind: {"image": "maps[1]"}, set: {"value": 5},"#);
+    let read = &bound.all_passes()[2].accesses[0];
+    assert_eq!(bound.resource(read.resource).name, "maps");
+    assert_eq!(read.part.layers, 1..2);
+    assert_eq!(
+        bound.all_passes()[3].steps[0]
+            .params()
+            .map(|b| b[..4].to_vec()),
+        Some(5f32.to_le_bytes().to_vec())
+    );
+    // What the entry says itself stands, and leaves nobody who asks the group.
+    let own = passes(
+        r#"bind: {"image": "maps[1]"},"#,
+        r#", bind: {"image": "image"}"#,
+    );
+    assert_eq!(codes(&checked(&own)), [Code::Unasked]);
+    for (group, code) in [
+        (r#"bind: {"picture": "image"},"#, Code::Unasked),
+        (r#"set: {"vlaue": 1},"#, Code::Unasked),
+        (r#"shader: "blur","#, Code::UnknownField),
+        ("repeat: -1,", Code::Expression),
+    ] {
+        let found = checked(&passes(group, ""));
+        assert_eq!(
+            found.first().map(|found| found.code),
+            Some(code),
+            "{group}: {found:?}"
+        );
+    }
+}
+
+/// A repeat of 0 is no entry at all; what is made inside is called by its number outside.
+#[test]
+fn repetitions_and_their_names() {
+    let take = |reference: &str, repeat: &str| {
+        let passes = format!(
+            r#"Group(name: "each", repeat: {repeat}, passes: [
+                Include(graph: "inner.ron"),
+                Copy(name: "keep", from: "made", to: "maps[index]"),
+            ]),
+            Copy(name: "take", from: "{reference}", to: "image")"#
+        );
+        files(&passes, r#""image""#).document(
+            "inner.ron",
+            r#"materials: [Texture(name: "made", format: R32Float)],
+            passes: [Clear(name: "make", target: "made")], outputs: ["made"]"#,
+        )
+    };
+    let found = right(plan(&take("each[1].made", "2")));
+    assert_eq!(names(&found), ["each[1].inner.make", "take"]);
+    let by_param = take("each[radius - 1].made", r#""radius""#);
+    assert_eq!(
+        names(&right(plan(&by_param))),
+        ["each[1].inner.make", "take"]
+    );
+    for (reference, repeat, code) in [
+        ("each[2].made", "2", Code::Range),
+        ("each[0].made", "0", Code::Range),
+        ("made", "2", Code::UnknownResource),
+        ("each.made", "2", Code::ResourceKind),
+    ] {
+        let found = checked(&take(reference, repeat));
+        let first = found.iter().find(|found| found.code == code);
+        assert!(first.is_some(), "{reference}: {found:?}");
+    }
+    assert_eq!(
+        codes(&checked(&take("image", "2"))).len(),
+        1,
+        "a copy onto itself"
+    );
+}

@@ -1,0 +1,363 @@
+//! What a pass can ask of the device, as it stands in the plan: stencil, areas, masks, samples.
+
+use crate::support::{Files, Triangle, checked, codes, load, names, right};
+use skiagraph_graph::{
+    Code, Ids, Plan, PlanRequest,
+    step::{Draw, DrawCall, Step},
+};
+use wgt::{ColorWrites, TextureAspect};
+
+/// Draws a triangle in whatever colour.
+const DRAW: &str = "@vertex fn vertex(@builtin(vertex_index) index: u32)
+        -> @builtin(position) vec4<f32> { return vec4(f32(index)); }
+    @fragment fn fragment() -> @location(0) vec4<f32> { return vec4(1.0); }
+    @fragment fn depth_only() {}";
+
+/// One pass over these materials, which are its outputs.
+fn files(materials: &str, passes: &str, outputs: &str) -> Files {
+    let sections = format!("materials: [{materials}], passes: [{passes}], outputs: [{outputs}]");
+    Files::graph(&sections).with("draw.wgsl", DRAW)
+}
+
+#[track_caller]
+fn planned(files: &Files) -> Plan {
+    let graph = right(load(files));
+    let mut request = PlanRequest::new([8, 8], &Triangle);
+    request.features = graph.features();
+    right(graph.plan(&request))
+}
+
+/// The draw of the first pass.
+#[track_caller]
+fn draw(plan: &Plan) -> &Draw<Ids> {
+    match &plan.all_passes()[0].steps[0] {
+        Step::Draw(draw) => draw,
+        other => panic!("no draw: {other:?}"),
+    }
+}
+
+const BOTH: &str = r#"Texture(name: "both", format: Depth24PlusStencil8)"#;
+
+#[test]
+fn tests_and_operations_of_a_stencil() {
+    let plan = planned(&files(
+        &format!("{BOTH}, Texture(name: \"image\", format: Rgba8Unorm)"),
+        r#"Raster(name: "draw", draw: 24, instances: 2, fragment: "fragment", color: ["image"],
+            depth: (target: "both", write: false, compare: Greater,
+                bias: (constant: 2, slope_scale: 1.5, clamp: 0.25)),
+            stencil: (target: "both", load: Clear(7), reference: 3, read_mask: 15, write_mask: 240,
+                front: (depth_fail: DecrementWrap, compare: Equal),
+                back: (depth_fail: IncrementWrap, fail: Zero, pass: Replace)))"#,
+        r#""image""#,
+    ));
+    let draw = draw(&plan);
+    let depth = draw.depth.as_ref().expect("it has one");
+    assert_eq!((depth.clear, depth.write), (Some(1.0), false));
+    assert_eq!(depth.compare, wgt::CompareFunction::Greater);
+    assert_eq!(
+        (
+            depth.bias.constant,
+            depth.bias.slope_scale,
+            depth.bias.clamp
+        ),
+        (2, 1.5, 0.25)
+    );
+    let stencil = draw.stencil.as_ref().expect("it has one");
+    assert_eq!((stencil.clear, stencil.reference), (Some(7), 3));
+    assert_eq!(
+        (stencil.state.read_mask, stencil.state.write_mask),
+        (15, 240)
+    );
+    let face = |compare, fail_op, depth_fail_op, pass_op| wgt::StencilFaceState {
+        compare,
+        fail_op,
+        depth_fail_op,
+        pass_op,
+    };
+    use wgt::StencilOperation::{DecrementWrap, IncrementWrap, Keep, Replace, Zero};
+    let front = face(wgt::CompareFunction::Equal, Keep, DecrementWrap, Keep);
+    let back = face(wgt::CompareFunction::Always, Zero, IncrementWrap, Replace);
+    assert_eq!((stencil.state.front, stencil.state.back), (front, back));
+    let call = DrawCall::Direct {
+        vertices: 24,
+        instances: 2,
+    };
+    assert_eq!(draw.call, call);
+}
+
+/// Depth and stencil have versions of their own: who reads the one does not wait for the other, and
+/// what no field names is left alone.
+#[test]
+fn depth_and_stencil_are_versions_of_their_own() {
+    let read = "var both: texture_2d<u32>;
+        @fragment fn fragment() -> @location(0) vec4<u32> {
+            return textureLoad(both, vec2(0u), 0);
+        }";
+    let depth = "var both: texture_depth_2d;
+        @fragment fn fragment() -> @location(0) f32 { return textureLoad(both, vec2(0u), 0); }";
+    let passes = r#"
+        Raster(name: "depths", shader: "draw", fragment: "depth_only", draw: 3, depth: "both"),
+        Raster(name: "counts", shader: "draw", fragment: "depth_only", draw: 3,
+            stencil: (target: "both", front: (pass: IncrementWrap))),
+        Fullscreen(name: "count", color: ["counted"]),
+        Fullscreen(name: "depth", color: ["deep"]),"#;
+    let materials = format!(
+        r#"{BOTH}, Texture(name: "counted", format: Rgba8Uint),
+        Texture(name: "deep", format: R32Float)"#
+    );
+    let of = |output: &str| {
+        let files = files(&materials, passes, output);
+        planned(&files.with("count.wgsl", read).with("depth.wgsl", depth))
+    };
+    assert_eq!(names(&of(r#""counted""#)), ["counts", "count"]);
+    let plan = of(r#""deep""#);
+    assert_eq!(names(&plan), ["depths", "depth"]);
+    let aspects = |pass: usize| plan.all_passes()[pass].accesses[0].part.aspect;
+    let expected = [TextureAspect::DepthOnly, TextureAspect::StencilOnly];
+    assert_eq!([aspects(0), aspects(1)], expected);
+    assert_eq!([aspects(3), aspects(2)], expected);
+}
+
+#[test]
+fn a_stencil_that_cannot_be() {
+    for (stencil, code) in [
+        (r#"(target: "flat")"#, Code::FormatMismatch),
+        (r#"(target: "other")"#, Code::ResourceKind),
+        (
+            r#"(target: "both", load: Clear(256))"#,
+            Code::FormatMismatch,
+        ),
+        (r#"(target: "both", load: Clear(0.5))"#, Code::Expression),
+        (
+            r#"(target: "both", front: (pass: Increment))"#,
+            Code::UnknownVariant,
+        ),
+        (r#"(target: "both", reference: -1)"#, Code::Expression),
+    ] {
+        let pass = format!(
+            r#"Raster(name: "draw", draw: 3, fragment: "depth_only", depth: "both",
+                stencil: {stencil})"#
+        );
+        let materials = format!(
+            r#"{BOTH}, Texture(name: "flat", format: Depth32Float),
+            Texture(name: "other", format: Depth24PlusStencil8)"#
+        );
+        let found = checked(&files(&materials, &pass, r#""both""#));
+        assert_eq!(
+            found.first().map(|found| found.code),
+            Some(code),
+            "{stencil}: {found:?}"
+        );
+    }
+}
+
+/// An area is viewport and scissor; what is outside stays, so nothing is cleared.
+#[test]
+fn an_area_of_an_atlas_for_each_repetition() {
+    let tiles = |area: &str, load: &str| {
+        files(
+            r#"Texture(name: "atlas", format: Rgba8Unorm, size: (6, 4)),
+            Texture(name: "depth", format: Depth32Float, size: (6, 4))"#,
+            &format!(
+                r#"Clear(name: "reset", target: "atlas"),
+                Clear(name: "far", target: "depth", value: 1),
+                Raster(name: "tile", shader: "draw", repeat: 6, draw: 3, area: {area},
+                    fragment: "fragment",
+                    color: [(target: "atlas"{load})], depth: "depth")"#
+            ),
+            r#""atlas""#,
+        )
+    };
+    let plan = planned(&tiles(r#"("index % 3 * 2", "index / 3 * 2", 2, 2)"#, ""));
+    let areas = plan.all_passes()[2..]
+        .iter()
+        .map(|pass| match &pass.steps[0] {
+            Step::Draw(draw) => {
+                let depth = draw.depth.as_ref().expect("it has one");
+                assert_eq!((draw.colors[0].clear, depth.clear), (None, None));
+                draw.area.expect("it has one")
+            }
+            other => panic!("no draw: {other:?}"),
+        });
+    let expected = [[0, 0], [2, 0], [4, 0], [0, 2], [2, 2], [4, 2]].map(|[x, y]| [x, y, 2, 2]);
+    assert_eq!(areas.collect::<Vec<_>>(), expected);
+    for (area, load, code) in [
+        ("(0, 0, 2, 2)", ", load: Clear(0)", Code::Syntax),
+        ("(5, 0, 2, 2)", "", Code::Size),
+        ("(0, 0, 0, 2)", "", Code::Size),
+        ("(0, 0, 2)", "", Code::Syntax),
+        (r#"(0, 0, "0 - 1", 2)"#, "", Code::Syntax),
+        (r#"(0, 0, 4294967295, 2)"#, "", Code::Size),
+    ] {
+        let found = checked(&tiles(area, load));
+        assert_eq!(
+            found.first().map(|found| found.code),
+            Some(code),
+            "{area}{load}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn loads_blends_and_channels_of_a_target() {
+    let target = |rest: &str| {
+        let files = files(
+            r#"Texture(name: "image", format: Rgba8Unorm)"#,
+            &format!(
+                r#"Raster(name: "draw", draw: 3, fragment: "fragment",
+                    color: [(target: "image"{rest})]),
+                Clear(name: "reset", target: "image")"#
+            ),
+            r#""image""#,
+        );
+        // Whether what it loads is there is another matter.
+        let swapped = files.texts["graph.ron"].clone();
+        let (first, second) = swapped.split_once("passes: [").expect("it has passes");
+        let (pass, rest) = second.split_once("]),").expect("it has two");
+        let (clear, rest) = rest.split_once("], outputs").expect("it has outputs");
+        files.with(
+            "graph.ron",
+            format!("{first}passes: [{clear}, {pass}])], outputs{rest}"),
+        )
+    };
+    let color = |rest: &str| {
+        let plan = planned(&target(rest));
+        let pass = plan.all_passes().last().expect("there are two").clone();
+        match &pass.steps[0] {
+            Step::Draw(draw) => draw.colors[0].clone(),
+            other => panic!("no draw: {other:?}"),
+        }
+    };
+    let plain = color("");
+    assert_eq!(
+        (plain.clear, plain.blend, plain.write),
+        (Some([0.0; 4]), None, ColorWrites::ALL)
+    );
+    assert_eq!(color(", load: Clear(0.5)").clear, Some([0.5; 4]));
+    assert_eq!(
+        color(", load: Clear(0.5, 0, 1, 0.25)").clear,
+        Some([0.5, 0.0, 1.0, 0.25])
+    );
+    assert_eq!(color(", load: Load").clear, None);
+    let channels = ColorWrites::RED | ColorWrites::GREEN;
+    assert_eq!(color(", write: rg").write, channels);
+    assert_eq!(color(", write: false").write, ColorWrites::empty());
+    let blends = ["Alpha", "Premultiplied", "Additive", "Min", "Max"];
+    let blends = blends.map(|blend| color(&format!(", load: Load, blend: {blend}")).blend);
+    assert_eq!(blends[0], Some(wgt::BlendState::ALPHA_BLENDING));
+    assert_eq!(
+        blends[1],
+        Some(wgt::BlendState::PREMULTIPLIED_ALPHA_BLENDING)
+    );
+    let operations = blends.map(|blend| blend.expect("it blends").color.operation);
+    use wgt::BlendOperation::{Add, Max, Min};
+    assert_eq!(operations, [Add, Add, Add, Min, Max]);
+    for (rest, code) in [
+        (", write: rgx", Code::Syntax),
+        (", load: Clear(1, 2)", Code::Syntax),
+        (", load: Keep", Code::Syntax),
+        (", blend: Multiply", Code::UnknownVariant),
+        (", load: Clear(\"NOTHING\")", Code::Expression),
+    ] {
+        let found = checked(&target(rest));
+        assert_eq!(
+            found.first().map(|found| found.code),
+            Some(code),
+            "{rest}: {found:?}"
+        );
+    }
+}
+
+/// A target of several samples that is resolved, and its rest.
+fn fine(fine: &str, image: &str, rest: &str) -> Files {
+    files(
+        &format!(
+            r#"Texture(name: "fine", format: {fine}), Texture(name: "image", format: {image})"#
+        ),
+        &format!(
+            r#"Raster(name: "draw", draw: 3, fragment: "fragment",
+                    color: [(target: "fine", resolve: "image"{rest})])"#
+        ),
+        r#""image""#,
+    )
+}
+
+/// Each target of several samples ends in a texture of one, and the pass has covered that.
+#[test]
+fn samples_are_resolved() {
+    let plan = planned(&fine("Rgba8Unorm, samples: 4", "Rgba8Unorm", ""));
+    let color = &draw(&plan).colors[0];
+    let resolve = color.resolve.as_ref().expect("it is resolved");
+    assert_eq!((color.target.samples, resolve.samples), (4, 1));
+    assert_eq!(plan.resource(resolve.target.id).name, "image");
+    let accesses = &plan.all_passes()[0].accesses;
+    assert!(
+        accesses
+            .iter()
+            .all(|access| access.writes && access.covers && !access.reads)
+    );
+    for (of, to, rest, code) in [
+        ("Rgba8Unorm", "Rgba8Unorm", "", Code::ResourceKind),
+        (
+            "Rgba8Unorm, samples: 4",
+            "Rgba8Unorm, samples: 4",
+            "",
+            Code::ResourceKind,
+        ),
+        (
+            "Rgba8Unorm, samples: 4",
+            "Rgba16Float",
+            "",
+            Code::ResourceKind,
+        ),
+        (
+            "Rgba8Unorm, samples: 4",
+            "Rgba8Unorm, size: 4",
+            "",
+            Code::Size,
+        ),
+        (
+            "Rgba8Unorm, samples: 3",
+            "Rgba8Unorm",
+            "",
+            Code::FormatMismatch,
+        ),
+        (
+            "Rgba8Unorm, samples: 4, mips: 2",
+            "Rgba8Unorm",
+            "",
+            Code::Size,
+        ),
+        (
+            "Rgba8Unorm, samples: 4, layers: 2",
+            "Rgba8Unorm",
+            "",
+            Code::Size,
+        ),
+        (
+            "Rgba8Unorm, samples: 4",
+            "Rgba8Unorm",
+            ", load: Load",
+            Code::ReadBeforeWrite,
+        ),
+    ] {
+        let found = checked(&fine(of, to, rest));
+        assert_eq!(
+            found.first().map(|found| found.code),
+            Some(code),
+            "{of}, {to}{rest}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn all_targets_of_a_pass_have_as_many_samples() {
+    let mixed = fine("Rgba8Unorm, samples: 4", "Rgba8Unorm", "");
+    let mixed = mixed.edited(
+        "graph.ron",
+        "materials: [",
+        r#"materials: [Texture(name: "depth", format: Depth32Float),"#,
+    );
+    let mixed = mixed.edited("graph.ron", "color: [", r#"depth: "depth", color: ["#);
+    assert_eq!(codes(&checked(&mixed)), [Code::Size]);
+}

@@ -1,0 +1,34 @@
+//! Tests of `crates/graph`, one module for each subject.
+
+#[path = "support/answers.rs"]
+mod answers;
+#[path = "../../../../tests/it/support/bounds.rs"]
+mod bounds;
+#[path = "support/broken.rs"]
+mod broken;
+#[path = "support/everything.rs"]
+mod everything;
+mod support;
+
+mod compose;
+mod conditions;
+mod contents;
+#[cfg(feature = "render")] // alone, this crate has no diagnostics for a terminal
+mod diagnostics;
+mod expressions;
+mod extends;
+mod features;
+mod growth;
+mod hostile;
+mod hostile_shaders;
+mod includes;
+mod inlining;
+mod mistakes;
+mod names;
+mod origin;
+mod plan;
+mod reached;
+mod robustness;
+mod sources;
+mod uniforms;
+mod wgsl;

@@ -1,0 +1,242 @@
+//! Every mistake that `src/errors` knows is made by a document of `tests/broken`: the messages are
+//! read from the sources, and looked for among what the documents are told.
+
+use crate::broken;
+use skiagraph_graph::Diagnostic;
+use std::{collections::BTreeSet, path::Path};
+
+/// Mistakes whose message is that of another one, too, or has no words of its own, with a document
+/// that makes them.
+const BY_HAND: &[(&str, &str)] = &[
+    ("DocumentError::Syntax", "missing_comma"),
+    ("DocumentError::Twice", "duplicate_material"),
+    ("ComposeError::NoInclude", "include_missing"),
+    ("ComposeError::Clash", "duplicate_pass"),
+    ("EvaluationError::Words", "param_cull"),
+    ("EvaluationError::Unknown", "unknown_param"),
+    ("BorderError::UnwrittenOutput", "include_unwritten"),
+    ("OutputError::UnwrittenOutput", "output_unwritten"),
+    ("ShaderError::Naga", "unparsable"),
+    ("LayoutError::Alignment", "item_alignment"),
+    ("LinkError::Alignment", "item_alignment_provided"),
+    ("LinkError::SetValue", "set_vector"),
+    ("LinkError::CopyFormat", "copy_format"),
+    ("LinkError::CopySize", "copy_size"),
+    ("LinkError::CopyKinds", "copy_kind"),
+    ("TextureMisfit::Scalar", "sampled_type"),
+];
+
+/// Mistakes that no document makes, and why.
+const ELSEWHERE: &[(&str, &str)] = &[
+    (
+        "DocumentError::TooMany",
+        "`mistakes.rs`: lists of 4097 entries",
+    ),
+    (
+        "ComposeError::NoDocument",
+        "`mistakes.rs`: the root document",
+    ),
+    (
+        "ComposeError::Unreadable",
+        "`mistakes.rs`: files that are no text",
+    ),
+    (
+        "ComposeError::UnreadableInclude",
+        "`mistakes.rs`: files that are no text",
+    ),
+    (
+        "ImportError::Unreadable",
+        "`mistakes.rs`: files that are no text",
+    ),
+    (
+        "ImportError::UnreadableFile",
+        "`mistakes.rs`: files that are no text",
+    ),
+    ("ComposeError::TooDeep", "`compose.rs`: 80 documents"),
+    ("ImportError::TooDeep", "`mistakes.rs`: 100 modules"),
+    ("ShaderError::TooLong", "`hostile.rs`: a shader of a MiB"),
+    (
+        "ShaderError::TooManyDeclarations",
+        "`hostile.rs`: thousands of declarations",
+    ),
+    ("ShaderError::NoLayout", "naga refuses such types before"),
+    ("ParamError::Unknown", "`mistakes.rs`: a request"),
+    ("ParamError::Asked", "`mistakes.rs`: a request"),
+    (
+        "BorderError::NoImport",
+        "`mistakes.rs`: a request; `check` takes what is asked for as given",
+    ),
+    ("OutputError::NoOutput", "`mistakes.rs`: a request"),
+    ("OutputError::NoMaterial", "`mistakes.rs`: a request"),
+    ("OutputError::NoPass", "`mistakes.rs`: a request"),
+    ("OutputError::Unsized", "`mistakes.rs`: a request"),
+    ("OutputError::Sampler", "`mistakes.rs`: a request"),
+    ("OutputError::Provided", "`mistakes.rs`: a request"),
+    ("OutputError::Unwritten", "`mistakes.rs`: a request"),
+    ("OutputError::Unreadable", "`mistakes.rs`: a request"),
+    ("OutputError::NoViewport", "`mistakes.rs`: a request"),
+    ("OrderError::Capture", "`mistakes.rs`: a request"),
+    ("LinkError::NoShader", "a mistake of a pass kind, in Rust"),
+    (
+        "LinkError::ShaderNotLoaded",
+        "a mistake of a pass kind, in Rust",
+    ),
+];
+
+/// A variant, `Enum::Variant`, and what its message is made of between what is filled in.
+struct Variant {
+    name: String,
+    literals: Vec<String>,
+}
+
+impl Variant {
+    /// Whether a message may be that of this variant.
+    fn says(&self, message: &str) -> bool {
+        let (Some(first), Some(last)) = (self.literals.first(), self.literals.last()) else {
+            return false;
+        };
+        if !message.starts_with(first.as_str()) || !message.ends_with(last.as_str()) {
+            return false;
+        }
+        let mut rest = message;
+        self.literals
+            .iter()
+            .all(|literal| match rest.find(literal.as_str()) {
+                Some(at) => {
+                    rest = &rest[at + literal.len()..];
+                    true
+                }
+                None => false,
+            })
+    }
+
+    /// Whether it has enough words to be told from others.
+    fn is_plain(&self) -> bool {
+        let letters = self.literals.concat();
+        letters.chars().filter(|sign| sign.is_alphabetic()).count() > 5
+    }
+}
+
+/// The string literal that a text begins with, and what follows it.
+fn literal(text: &str) -> (String, &str) {
+    let mut value = String::new();
+    let mut signs = text.char_indices().skip(1);
+    while let Some((at, sign)) = signs.next() {
+        match sign {
+            '"' => return (value, &text[at + 1..]),
+            '\\' => match signs.next() {
+                Some((_, '\n')) => {
+                    let is_space = |(_, sign): &(usize, char)| sign.is_whitespace();
+                    while signs.clone().next().as_ref().is_some_and(is_space) {
+                        signs.next();
+                    }
+                }
+                Some((_, sign)) => value.push(sign),
+                None => break,
+            },
+            _ => value.push(sign),
+        }
+    }
+    panic!("a string without an end: {text}");
+}
+
+/// A template without what is filled in.
+fn pieces(template: &str) -> Vec<String> {
+    let mut pieces = vec![String::new()];
+    let mut depth = 0;
+    for sign in template.chars() {
+        match sign {
+            '{' => {
+                depth += 1;
+                pieces.push(String::new());
+            }
+            '}' => depth -= 1,
+            _ if depth == 0 => pieces.last_mut().expect("there is one").push(sign),
+            _ => {}
+        }
+    }
+    pieces
+}
+
+/// The variants of a file of `src/errors` with their messages.
+fn variants(text: &str) -> Vec<Variant> {
+    let mut variants = Vec::new();
+    for (at, _) in text.match_indices("#[error(") {
+        let before = &text[..at];
+        let of = before.rfind("enum ").expect("it is one of an enum") + 5;
+        let of = word(&text[of..]);
+        let start = at + text[at..].find('"').expect("it has a text");
+        let (template, rest) = literal(&text[start..]);
+        let end = rest.find(")]\n").expect("the attribute ends") + 3;
+        let own = rest[end..].lines().map(str::trim_start);
+        let own = own
+            .clone()
+            .find(|line| line.starts_with(char::is_uppercase));
+        variants.push(Variant {
+            name: format!("{of}::{}", word(own.expect("a variant follows"))),
+            literals: pieces(&template),
+        });
+    }
+    variants
+}
+
+fn word(text: &str) -> &str {
+    let end = text.find(|sign: char| !sign.is_alphanumeric());
+    &text[..end.unwrap_or(text.len())]
+}
+
+fn all_variants() -> Vec<Variant> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/errors");
+    let files = std::fs::read_dir(folder).expect("it is part of the repository");
+    let text = |file: std::io::Result<std::fs::DirEntry>| {
+        std::fs::read_to_string(file.expect("it is readable").path()).expect("it is a text")
+    };
+    files.map(text).flat_map(|text| variants(&text)).collect()
+}
+
+#[test]
+fn every_mistake_is_made_by_a_document() {
+    let found = broken::all();
+    let documents: BTreeSet<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
+    // Why a texture does not fit stands at its place.
+    let texts = |found: &Diagnostic| {
+        let labels = found.labels.iter().map(|label| label.text.clone());
+        labels.chain([found.message.clone()]).collect::<Vec<_>>()
+    };
+    let messages = found
+        .iter()
+        .flat_map(|(_, found)| found.iter().flat_map(texts));
+    let messages: Vec<String> = messages.collect();
+    let all = all_variants();
+    assert!(all.len() > 200, "only {} variants are read", all.len());
+    let mut wrong = Vec::new();
+    for variant in &all {
+        let name = variant.name.as_str();
+        let by_hand = BY_HAND.iter().find(|(known, _)| *known == name);
+        let elsewhere = ELSEWHERE.iter().any(|(known, _)| *known == name);
+        let twins = all
+            .iter()
+            .filter(|other| other.literals == variant.literals);
+        let is_told_apart = variant.is_plain() && twins.count() == 1;
+        let is_said = messages.iter().any(|message| variant.says(message));
+        match (by_hand, elsewhere, is_told_apart) {
+            (Some((_, document)), ..) if !documents.contains(document) => {
+                wrong.push(format!("{name}: there is no document `{document}`"));
+            }
+            (None, false, false) => wrong.push(format!("{name}: which document makes it?")),
+            (None, false, true) if !is_said => wrong.push(format!("{name}: no document makes it")),
+            (None, true, true) if is_said => wrong.push(format!("{name}: a document makes it")),
+            _ => {}
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The lists above name what there is.
+#[test]
+fn exceptions_are_variants() {
+    let known: BTreeSet<String> = all_variants().into_iter().map(|v| v.name).collect();
+    for (name, _) in BY_HAND.iter().chain(ELSEWHERE) {
+        assert!(known.contains(*name), "{name} is no variant");
+    }
+}

@@ -1,0 +1,125 @@
+//! The oracle on the catalogue of hard cases: no more is indeterminate than the case's cap, and
+//! where geometry alone knows the answer, it says the same.
+
+use crate::common::scenes::render;
+use glam::DVec3;
+use skiagraph_cases::{HardCase, Shows, cases};
+use skiagraph_reference::{Class, Oracle, OracleMode, Progress, Reference};
+use skiagraph_scene::{Camera, Mesh, Scene};
+
+const VIEWPORTS: [[u32; 2]; 2] = [[96, 96], [61, 43]];
+
+/// Where the ray through a pixel's centre meets the plane of a triangle.
+fn point(mesh: &Mesh, primitive: u32, camera: &Camera, pixel: usize) -> DVec3 {
+    let width = camera.viewport[0] as usize;
+    let direction = camera.pixel_direction((pixel % width) as u32, (pixel / width) as u32);
+    let [a, b, c] = mesh.corners(primitive);
+    let normal = (b - a).cross(c - a);
+    camera.eye + direction * (normal.dot(a - camera.eye) / normal.dot(direction))
+}
+
+/// What is wrong with a case on a viewport, in words.
+fn complaints(case: &HardCase, viewport: [u32; 2]) -> Vec<String> {
+    let scene = case.scene();
+    let light = scene.light();
+    let Scene { mesh, views, .. } = scene;
+    let camera = views[0].camera(viewport);
+    let oracle = Oracle::new(&mesh);
+    let primitives = oracle
+        .primary(&camera, Progress::default())
+        .expect("nobody interrupts");
+    let reference = render(&mesh, &camera, light, OracleMode::Exact);
+    let count =
+        |wanted: &dyn Fn(usize) -> bool| (0..primitives.len()).filter(|&i| wanted(i)).count();
+    let facing = |i: usize| reference.classes[i].faces_light();
+    let facing_light = count(&facing);
+    let indeterminate = count(&|i| facing(i) && reference.indeterminate[i]);
+    let share = indeterminate as f64 / facing_light.max(1) as f64;
+    let mut complaints = Vec::new();
+    if share > case.indeterminate_cap {
+        complaints.push(format!(
+            "{indeterminate} of {facing_light} indeterminate, {share:.4} instead of {}",
+            case.indeterminate_cap
+        ));
+    }
+    complaints.extend(unexpected(case, &reference));
+    if case.is_analytic() {
+        let answer = |i: usize| case.lit(point(&mesh, primitives[i], &camera, i));
+        let answered = count(&|i| facing(i) && answer(i).is_some());
+        if answered * 2 < facing_light {
+            complaints.push(format!("{answered} of {facing_light} answered"));
+        }
+        let wrong = |i: usize| {
+            let said = reference.classes[i] == Class::Lit;
+            facing(i) && !reference.indeterminate[i] && answer(i).is_some_and(|lit| lit != said)
+        };
+        let wrongs: Vec<usize> = (0..primitives.len()).filter(|&i| wrong(i)).collect();
+        if let Some(&first) = wrongs.first() {
+            let at = point(&mesh, primitives[first], &camera, first);
+            let class = reference.classes[first];
+            complaints.push(format!(
+                "{} wrong, the first at {at} of triangle {}: {class:?}",
+                wrongs.len(),
+                primitives[first]
+            ));
+        }
+    }
+    println!(
+        "{:28} {viewport:?} {facing_light:5} facing, indeterminate {share:.4}",
+        case.name
+    );
+    complaints
+}
+
+/// Whether the picture lacks what it should show: a fiftieth of its pixels, or none.
+fn unexpected(case: &HardCase, reference: &Reference) -> Option<String> {
+    let of = |class: Class| reference.classes.iter().filter(|&&c| c == class).count();
+    let (lit, shadow, enough) = (
+        of(Class::Lit),
+        of(Class::Shadow),
+        reference.classes.len() / 50,
+    );
+    let right = match case.shows {
+        Shows::Both => lit >= enough && shadow >= enough,
+        // An indeterminate shadow may be none.
+        Shows::LitOnly => {
+            let certain =
+                |i: usize| reference.classes[i] == Class::Shadow && !reference.indeterminate[i];
+            lit >= enough && !(0..reference.classes.len()).any(certain)
+        }
+        Shows::ShadowOnly => {
+            let certain =
+                |i: usize| reference.classes[i] == Class::Lit && !reference.indeterminate[i];
+            shadow >= enough && !(0..reference.classes.len()).any(certain)
+        }
+        Shows::Nothing => lit + shadow == 0,
+    };
+    (!right).then(|| format!("{lit} lit, {shadow} in shadow, not {:?}", case.shows))
+}
+
+#[test]
+fn the_oracle_agrees_with_geometry_and_little_is_indeterminate() {
+    let found: Vec<String> = cases()
+        .iter()
+        .flat_map(|case| {
+            VIEWPORTS.iter().flat_map(move |&viewport| {
+                complaints(case, viewport)
+                    .into_iter()
+                    .map(move |text| format!("{} at {viewport:?}: {text}", case.name))
+            })
+        })
+        .collect();
+    assert!(found.is_empty(), "\n{}", found.join("\n"));
+}
+
+/// Each item of the catalogue that geometry can answer is answered.
+#[test]
+fn many_cases_have_an_answer_of_their_own() {
+    let all = cases();
+    let analytic = all.iter().filter(|case| case.is_analytic()).count();
+    assert!(
+        all.len() >= 62 && analytic >= 52,
+        "{analytic} of {}",
+        all.len()
+    );
+}

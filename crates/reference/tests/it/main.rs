@@ -1,0 +1,12 @@
+//! Tests of `crates/reference`, one module for each subject.
+
+mod common;
+
+mod analytic;
+mod area;
+mod blockers;
+mod hard_cases;
+mod indeterminate;
+mod lamps;
+mod shimmer;
+mod standard_views;

@@ -1,0 +1,19 @@
+//! Tests of `crates/scene`, one module for each subject.
+
+#[path = "../../../../tests/it/support/bounds.rs"]
+mod bounds;
+mod common;
+#[path = "common/solids.rs"]
+mod solids;
+
+mod bench;
+mod bvh;
+mod generated;
+mod gltf;
+mod hostile;
+mod materials;
+mod obj;
+mod park;
+mod polygons;
+mod scene_files;
+mod sponza;

@@ -1,0 +1,228 @@
+//! Lights that have an extent: the presets that sample them against the oracle.
+
+use crate::support;
+use crate::support::graphs::{plan_files, provider, run, values};
+use glam::{DVec3, Vec3};
+use skiagraph_graph::PassSummary;
+use skiagraph_reference::{Class, Graded, Oracle, OracleMode, Progress, RightAnswer};
+use skiagraph_scene::{DirectionalLight, LightKind, PointLight, Scene, SpotLight, View};
+use std::sync::Arc;
+
+const VIEWPORT: [u32; 2] = [64, 48];
+
+/// A thin plate above a floor.
+fn scene(light: impl Into<LightKind>) -> Arc<Scene> {
+    let view = View {
+        name: "main".into(),
+        eye: DVec3::new(0.5, 6.0, 7.0),
+        direction: DVec3::new(0.0, -0.8, -1.0),
+        up: DVec3::Y,
+        fov_y_degrees: 50.0,
+        near: 0.5,
+        far: 50.0,
+        light: None,
+    };
+    let light = skiagraph_scene::Light::only(light);
+    Arc::new(Scene {
+        name: "plate".into(),
+        mesh: support::meshes::box_over_floor(6.0, Vec3::new(1.2, 0.2, 1.1)),
+        views: vec![view],
+        lights: vec![light],
+    })
+}
+
+fn sun(angle_degrees: f64) -> DirectionalLight {
+    DirectionalLight {
+        direction: DVec3::new(-0.4, -1.0, 0.3),
+        angle_degrees,
+    }
+}
+
+/// What a document shows, and its rays and passes.
+struct Shown {
+    shares: Vec<f32>,
+    status: Vec<u32>,
+    rays: u32,
+    traces: usize,
+}
+
+fn shown(document: &str, scene: &Arc<Scene>) -> Shown {
+    let mut provider = provider(scene, &scene.views[0], VIEWPORT);
+    let plan = plan_files(&[("test.ron", document)], &provider, VIEWPORT);
+    let is_trace = |pass: &&PassSummary| pass.name.ends_with("trace_rays");
+    let traces = plan.passes().iter().filter(is_trace).count();
+    let report = run(plan, &mut provider, &["visibility", "status", "ray_count"]);
+    let visibility = report
+        .readbacks
+        .iter()
+        .find(|read| read.name == "visibility");
+    Shown {
+        shares: visibility.and_then(|read| read.content.as_f32()).unwrap(),
+        status: values(&report, "status"),
+        rays: values(&report, "ray_count")[0],
+        traces,
+    }
+}
+
+fn preset(name: &str, set: &str) -> String {
+    format!(
+        r#"(format: 2, extends: "{name}.ron", lights: [directional, spot, point], set: {{{set}}})"#
+    )
+}
+
+fn right(scene: &Scene) -> RightAnswer {
+    let (oracle, camera) = (Oracle::new(&scene.mesh), scene.views[0].camera(VIEWPORT));
+    let primitives = oracle.primary(&camera, Progress::default()).unwrap();
+    let (how, progress) = ((OracleMode::Exact, 2048), Progress::default());
+    let right = oracle.right_answer(&camera, scene.light(), &primitives, how, progress);
+    right.unwrap()
+}
+
+fn judged(shown: &Shown, right: &RightAnswer) -> Graded {
+    Graded::judged(&shown.shares, &right.shares(), &right.reference).unwrap()
+}
+
+#[test]
+fn samples_converge_to_the_oracles_shares_under_every_kind_of_light() {
+    let spot = SpotLight {
+        position: DVec3::new(1.5, 6.0, -1.0),
+        direction: DVec3::new(-0.25, -1.0, 0.2),
+        cone_degrees: 100.0,
+        radius: 0.7,
+    };
+    let point = PointLight {
+        position: DVec3::new(1.5, 6.0, -1.0),
+        radius: 0.7,
+    };
+    for light in [
+        LightKind::from(sun(12.0)),
+        LightKind::Spot(spot),
+        LightKind::Point(point),
+    ] {
+        let scene = scene(light);
+        let right = right(&scene);
+        let partial = right
+            .shares()
+            .iter()
+            .filter(|share| (0.1..0.9).contains(*share))
+            .count();
+        assert!(
+            partial > 40,
+            "{}: {partial} pixels in penumbra",
+            light.word()
+        );
+        let shown = [4, 32, 256].map(|samples| {
+            let shown = shown(
+                &preset("rt_area", &format!(r#""samples": {samples}"#)),
+                &scene,
+            );
+            let facing = shown.status.iter().filter(|status| **status == 4).count();
+            assert_eq!(shown.rays as usize, samples * facing);
+            shown
+        });
+        // At an edge the oracle may see another primitive than the rasteriser.
+        let mut right = right;
+        let classes = right.reference.classes.iter_mut();
+        let shares = right.area.as_ref().unwrap().shares.iter();
+        let pixels = classes.zip(shares.zip(&shown[2].shares));
+        let others = pixels
+            .filter(|(class, (right, shown))| class.faces_light() && (*right - *shown).abs() > 0.3);
+        let others = others.map(|(class, _)| *class = Class::Background).count();
+        assert!(others * 100 < shown[2].shares.len(), "{others} pixels");
+        let rmse = shown.each_ref().map(|shown| judged(shown, &right).rmse);
+        // Strata of a straight edge: better than the square root, by which eight times as many
+        // would leave 0.35.
+        assert!(
+            rmse[1] < 0.33 * rmse[0] && rmse[2] < 0.33 * rmse[1] && rmse[2] < 0.01,
+            "{}: {rmse:?}",
+            light.word()
+        );
+    }
+}
+
+#[test]
+fn without_extent_one_ray_decides_as_in_rt() {
+    let scene = scene(sun(0.0));
+    let soft = shown(&preset("rt_area", r#""samples": 64"#), &scene);
+    let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
+    let plan = plan_files(&[("test.ron", &preset("rt", ""))], &provider, VIEWPORT);
+    let report = run(plan, &mut provider, &["visibility", "status", "ray_count"]);
+    let hard: Vec<f32> = values(&report, "visibility")
+        .iter()
+        .map(|&lit| lit as f32)
+        .collect();
+    assert_eq!(soft.shares, hard);
+    assert_eq!(soft.status, values(&report, "status"));
+    assert_eq!(soft.rays, values(&report, "ray_count")[0]);
+    assert!(hard.iter().filter(|share| **share == 0.0).count() > 100);
+}
+
+#[test]
+fn samples_and_pixels_in_turns_show_what_they_show_at_once() {
+    let scene = scene(sun(12.0));
+    let at = |most_rays: u32| {
+        let document = format!(
+            r#"(
+                format: 2,
+                extends: "rt_area.ron",
+                set: {{"samples": 23}},
+                passes: [Change(pass: "sample_light", set: {{"most_rays": {most_rays}}})],
+            )"#
+        );
+        shown(&document, &scene)
+    };
+    let once = at(1 << 22);
+    // 3,072 pixels: five samples at a time; then four parts of the pixels, a sample at a time.
+    for (most_rays, traces) in [(16_000, 5), (1_000, 4 * 23)] {
+        let turns = at(most_rays);
+        assert_eq!((once.traces, turns.traces), (1, traces));
+        assert_eq!(turns.shares, once.shares, "{most_rays}");
+        assert_eq!(turns.rays, once.rays);
+    }
+}
+
+#[test]
+fn eight_maps_agree_in_light_and_umbra_and_leave_the_penumbra_to_rays() {
+    let scene = scene(sun(12.0));
+    let right = right(&scene);
+    let set = r#""map_size": 256, "samples": 64"#;
+    let hybrid = shown(
+        &preset("hybrid_pcf_area", set).replace(", spot, point", ""),
+        &scene,
+    );
+    let all = shown(&preset("rt_area", r#""samples": 64"#), &scene);
+    assert!(
+        hybrid.rays < all.rays / 2,
+        "{} of {}",
+        hybrid.rays,
+        all.rays
+    );
+    let shares = right.shares();
+    for (status, share) in [(2, 1.0), (3, 0.0)] {
+        let certain = hybrid
+            .status
+            .iter()
+            .enumerate()
+            .filter(|(_, is)| **is == status);
+        let pixels: Vec<usize> = certain.map(|(pixel, _)| pixel).collect();
+        assert!(pixels.len() > 20, "{} of status {status}", pixels.len());
+        assert!(pixels.iter().all(|&pixel| hybrid.shares[pixel] == share));
+        // What is certain is a pixel of no penumbra, but for what lies between eight points.
+        let wrong = pixels
+            .iter()
+            .filter(|&&pixel| (shares[pixel] - share).abs() > 0.05);
+        assert!(wrong.count() * 20 < pixels.len());
+    }
+    // Where it asks, it asks the rays that `rt_area` asks.
+    let asked = hybrid
+        .status
+        .iter()
+        .zip(hybrid.shares.iter().zip(&all.shares));
+    assert!(
+        asked
+            .filter(|(is, _)| **is == 4)
+            .all(|(_, (one, other))| one == other)
+    );
+    let [hybrid, all] = [&hybrid, &all].map(|shown| judged(shown, &right).rmse);
+    assert!(hybrid < all + 0.03, "{hybrid} {all}");
+}

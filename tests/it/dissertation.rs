@@ -1,0 +1,175 @@
+//! The presets with the dissertation's conventions, `*_d`, against its own counts.
+
+use crate::support::{
+    bench::Bench,
+    graphs::{plan, provider, run, values},
+    scenes::{bench, load, sponza},
+};
+use skiagraph_graph::ParamValue;
+use skiagraph_reference::statistics::status;
+use skiagraph_scene::Scene;
+use std::{collections::BTreeMap, fs, sync::Arc};
+
+/// The dissertation's figures of one scene: by view, viewport, map size, preset and quantity.
+struct Figures(BTreeMap<[String; 5], f64>);
+
+impl Figures {
+    fn of(scene: &str) -> Self {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/data/dissertation.csv");
+        let text = fs::read_to_string(path).unwrap();
+        let rows = text.lines().filter_map(|line| {
+            // Only the last column, a note, may have commas in it.
+            let mut cells = line.split(',').map(str::to_owned);
+            if cells.next()? != scene {
+                return None;
+            }
+            let mut next = || cells.next();
+            let mut key = [next()?, next()?, next()?, next()?, next()?];
+            // Ours first, then the one with the dissertation's conventions.
+            key[3] = key[3].split(' ').next()?.to_owned();
+            Some((key, next()?.parse().ok()?))
+        });
+        Self(rows.collect())
+    }
+
+    fn get(
+        &self,
+        view: &str,
+        [width, height]: [u32; 2],
+        map: u32,
+        preset: &str,
+        what: &str,
+    ) -> f64 {
+        let viewport = format!("{width}x{height}");
+        let key = [view, &viewport, &map.to_string(), preset, what].map(str::to_owned);
+        let found = self.0.get(&key);
+        *found.unwrap_or_else(|| panic!("no figure {key:?}"))
+    }
+}
+
+/// Of the pixels that face the light, those that a preset leaves to rays.
+fn uncertain(
+    scene: &Arc<Scene>,
+    view: &str,
+    viewport: [u32; 2],
+    map: u32,
+    preset: &str,
+) -> [f64; 2] {
+    let mut provider = provider(scene, scene.view(view).unwrap(), viewport);
+    let path = format!("pipelines/{preset}.ron");
+    let plan = plan(&path, &provider, viewport, |request| {
+        let params = [("map_size".to_owned(), ParamValue::U32(map))];
+        request.params.extend(params);
+    });
+    let report = run(plan, &mut provider, &["status"]);
+    let status = values(&report, "status");
+    let count = |is: &dyn Fn(u32) -> bool| status.iter().filter(|&&s| is(s)).count() as f64;
+    [
+        count(&|s| s == status::UNCERTAIN),
+        count(&|s| {
+            [
+                status::UNCERTAIN,
+                status::CERTAIN_LIGHT,
+                status::CERTAIN_SHADOW,
+            ]
+            .contains(&s)
+        }),
+    ]
+}
+
+/// By table 22's rays, in points of PFL. `crsma` finds neighbours by position, the dissertation's
+/// program by index: it leaves a little more, the finer the map.
+#[test]
+fn sponzas_uncertain_pixels_are_the_dissertations() {
+    let Some(scene) = sponza() else { return };
+    let figures = Figures::of("sponza");
+    let viewport = [512, 512];
+    for (preset, points) in [("hybrid_pcf", 0.2), ("crsm", 0.2), ("crsma", 2.0)] {
+        for map in [512, 1024, 2048, 4096] {
+            let own = format!("{preset}_d");
+            let [ours, facing] = uncertain(&scene, "main", viewport, map, &own);
+            let theirs = figures.get("main", viewport, map, preset, "rays");
+            let off = 100.0 * (ours - theirs) / facing;
+            println!("{own} {map}: {ours}, D {theirs}, off by {off:.2} points");
+            assert!(off.abs() < points, "{own} {map}: {ours}, D {theirs}");
+        }
+    }
+}
+
+/// In shares of the dissertation's own count.
+#[test]
+fn benchs_uncertain_pixels_are_the_dissertations() {
+    let Some(scene) = bench() else { return };
+    let figures = Figures::of("bench");
+    let viewport = [1024, 1024];
+    for view in scene.views.iter().map(|view| view.name.as_str()) {
+        // Its camera is misprinted.
+        if view == "flowers_side" {
+            continue;
+        }
+        for preset in ["hybrid_pcf", "crsm", "crsma"] {
+            let own = format!("{preset}_d");
+            let [ours, _] = uncertain(&scene, view, viewport, 1024, &own);
+            let theirs = figures.get(view, viewport, 1024, preset, "rays");
+            let off = ours / theirs - 1.0;
+            println!(
+                "{view} {own}: {ours}, D {theirs}, off by {:.2} %",
+                100.0 * off
+            );
+            assert!(off.abs() < 0.005, "{view} {own}: {ours}, D {theirs}");
+        }
+    }
+}
+
+/// Each of its rules by itself asks more of a texel, or less, and what is proven stays right where
+/// its claim stands.
+#[test]
+fn each_rule_leaves_more_or_less_to_rays() {
+    let scene = load("park");
+    let mut bench = Bench::new(&scene, [128, 128]);
+    let word = |word: &str| ParamValue::Choice(word.to_owned());
+    let mut uncertain = |preset: &str, given: &[(&str, &str)], is_proven: bool| {
+        let mut params = vec![("map_size", ParamValue::U32(256))];
+        params.extend(given.iter().map(|(name, value)| (*name, word(value))));
+        let counts = bench.judge(preset, &params);
+        let outside = counts.wrong.total - counts.wrong.in_band;
+        assert!(!is_proven || outside == 0, "{preset} {given:?}: {counts:?}");
+        counts.uncertain
+    };
+    let of_footprint = ["texel", "bilinear", "nine", "corners"];
+    for (preset, is_proven) in [("crsm", true), ("crsma_full", true), ("hybrid_pcf", false)] {
+        let [texel, bilinear, nine, corners] = of_footprint.map(|kind| {
+            let is_proven = is_proven && kind != "corners";
+            uncertain(preset, &[("footprint", kind)], is_proven)
+        });
+        assert!(texel < bilinear && bilinear < nine, "{preset}");
+        assert!(bilinear < corners && corners < nine, "{preset}");
+    }
+    assert_eq!(uncertain("hybrid_pcf", &[("footprint", "texel")], false), 0);
+    let crsm = uncertain("crsm", &[], true);
+    assert!(uncertain("crsm", &[("box", "by_n")], true) > crsm);
+    assert!(uncertain("crsm", &[("small", "leave_out")], true) >= crsm);
+    let by_n = uncertain("crsma", &[("corners", "by_n")], false);
+    assert!(by_n < uncertain("crsma", &[], false));
+    // Corners of a whole diagonal leave nothing of small ones.
+    let without = [("corners", "by_n"), ("small", "leave_out")];
+    assert!(uncertain("crsma", &without, false) > by_n);
+}
+
+/// By table 12, in points of PFL.
+#[test]
+fn nsm_is_as_wrong_on_sponza_as_the_dissertations() {
+    let Some(scene) = sponza() else { return };
+    let figures = Figures::of("sponza");
+    let viewport = [1024, 1024];
+    let mut bench = Bench::new(&scene, viewport);
+    for map in [512, 1024, 2048, 4096] {
+        let counts = bench.judge("nsm_d", &[("map_size", ParamValue::U32(map))]);
+        let ours = 100.0 * counts.wrong.total as f64 / counts.pixels.facing_light as f64;
+        let theirs = figures.get("main", viewport, map, "nsm", "wrong_percent");
+        assert!(
+            (ours - theirs).abs() < 0.05,
+            "{map}: {ours} %, D {theirs} %"
+        );
+    }
+}

@@ -1,0 +1,48 @@
+//! Tests across Skiagraph's crates, one module for each subject.
+
+#[path = "support/bounds.rs"]
+mod bounds;
+#[path = "../../fuzz/entry.rs"]
+mod entry;
+#[path = "host/gbuffer.rs"]
+mod gbuffer;
+#[path = "../../crates/scene/examples/foliage/plant.rs"]
+mod plant;
+#[path = "../../crates/reference/tests/it/common/scenes.rs"]
+mod scenes;
+#[path = "../../crates/passes/examples/preset/shadows.rs"]
+#[allow(missing_docs, reason = "a program's, not a library's")]
+mod shadows;
+mod support;
+
+mod area;
+mod changes;
+mod cpu_one_rings;
+mod cpu_reference;
+mod cpu_status;
+mod cpu_triangles;
+mod dissertation;
+mod documents;
+mod extents;
+mod filtered;
+mod fits;
+mod foreign;
+mod host;
+mod hostile;
+mod lamp_maps;
+mod layers;
+mod light_buffer;
+mod light_space;
+mod masked;
+mod oracle;
+mod predicates;
+mod presets;
+mod provider;
+mod ray_query;
+mod rays;
+mod readme;
+mod receivers;
+mod shaders;
+mod splits;
+mod spot_layers;
+mod trace;

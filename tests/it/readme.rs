@@ -1,0 +1,185 @@
+//! What the README tells its readers to type works as it stands there.
+
+use skiagraph_gpu::{Executor, Frame, device};
+use skiagraph_graph::{FolderSources, Graph, LayeredSources, PlanRequest};
+use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
+use skiagraph_scene::{SceneLibrary, SceneRequest};
+use std::{collections::VecDeque, fs, path::Path, sync::Arc};
+
+fn root() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+}
+
+/// The code blocks of that language.
+fn blocks<const COUNT: usize>(language: &str) -> [String; COUNT] {
+    let readme = fs::read_to_string(root().join("README.md")).unwrap();
+    let opening = format!("```{language}\n");
+    let blocks = readme.split(&opening).skip(1);
+    let blocks = blocks.map(|block| block.split("```").next().unwrap().to_owned());
+    let blocks: Vec<String> = blocks.collect();
+    blocks
+        .try_into()
+        .unwrap_or_else(|blocks| panic!("blocks of {language}: {blocks:?}"))
+}
+
+#[test]
+fn the_method_of_the_readme_is_complete_and_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let [facing, variant] = blocks("ron");
+    let [shader] = blocks("wgsl");
+    fs::write(folder.path().join("facing.ron"), facing).unwrap();
+    fs::write(folder.path().join("facing.wgsl"), shader).unwrap();
+    fs::write(folder.path().join("soft_crsm.ron"), variant).unwrap();
+    let own = FolderSources {
+        root: folder.path().to_owned(),
+    };
+    let sources = LayeredSources(vec![Box::new(own), Box::new(EmbeddedSources)]);
+    let graph =
+        Graph::load("facing.ron", &registry(), &sources).unwrap_or_else(|error| panic!("{error}"));
+    assert!(graph.warnings().is_empty(), "{:?}", graph.warnings());
+
+    let variant = Graph::load("soft_crsm.ron", &registry(), &sources);
+    let variant = variant.unwrap_or_else(|error| panic!("{error}"));
+    assert!(variant.warnings().is_empty(), "{:?}", variant.warnings());
+
+    let request = SceneRequest {
+        argument: "park".to_owned(),
+        obj: None,
+    };
+    let (scene, _) = SceneLibrary::default().load(&request).unwrap();
+    let scene = Arc::new(scene);
+    let viewport = [64, 64];
+    let mut provider = SceneProvider::new(Arc::clone(&scene));
+    provider.set_view(&scene.views[0], viewport);
+    let plan = graph
+        .plan(&PlanRequest::new(viewport, &provider))
+        .unwrap_or_else(|error| panic!("{error}"));
+    assert!(
+        !plan.provided().iter().any(|name| name.contains("bvh")),
+        "nothing here traces rays"
+    );
+
+    let gpu = device::open(None).unwrap_or_else(|error| panic!("{error}"));
+    let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider).unwrap();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    executor
+        .encode(
+            &mut encoder,
+            &Frame {
+                timing: false,
+                read: &["visibility", "status"],
+                ..Frame::default()
+            },
+        )
+        .unwrap();
+    gpu.queue.submit([encoder.finish()]);
+    let report = executor.finish().unwrap();
+    let values = |index: usize| report.readbacks[index].content.as_u32().unwrap();
+    for (visibility, status) in values(0).into_iter().zip(values(1)) {
+        assert_eq!(
+            visibility,
+            u32::from(status != 1),
+            "lit is what faces the light"
+        );
+    }
+    assert!(values(1).contains(&1) && values(1).contains(&2));
+}
+
+/// What is shown as Rust stands word for word, in one piece, in code that the tests or `.ci/run`
+/// run.
+#[test]
+fn the_rust_of_the_documents_is_code_that_runs() {
+    let read = |path: &str| fs::read_to_string(root().join(path)).unwrap();
+    let bare = |text: &str| -> Vec<String> {
+        let lines = text.lines().map(str::trim);
+        let lines = lines.filter(|line| !line.is_empty());
+        lines.map(str::to_owned).collect()
+    };
+    let running = [
+        "crates/gpu/examples/embed.rs",
+        "crates/gpu/examples/custom_pass.rs",
+        "crates/gpu/tests/it/embedding.rs",
+        "crates/passes/examples/preset/shadows.rs",
+        "tests/it/host.rs",
+    ]
+    .map(|path| bare(&read(path)));
+    for (document, least) in [("README.md", 2), ("docs/embedding.md", 15)] {
+        let text = read(document);
+        let blocks: Vec<&str> = text.split("```rust\n").skip(1).collect();
+        assert!(blocks.len() >= least, "{document}: {} blocks", blocks.len());
+        for block in blocks {
+            let block = bare(block.split("```").next().unwrap());
+            let stands = |file: &Vec<String>| file.windows(block.len()).any(|lines| lines == block);
+            assert!(
+                !block.is_empty() && running.iter().any(stands),
+                "{document} shows what nobody runs:\n{}",
+                block.join("\n")
+            );
+        }
+    }
+}
+
+/// The documents of the authoring guide in their order, as it calls them, with their passes.
+const DOCUMENTS: [(&str, usize); 10] = [
+    ("depth.ron", 2),
+    ("blur.ron", 2),
+    ("cascades.ron", 5),
+    ("softer.ron", 21),
+    ("extended.ron", 4),
+    ("history.ron", 1),
+    ("age.ron", 3),
+    ("filtered.ron", 5),
+    ("every_light.ron", 8),
+    ("claims.ron", 5),
+];
+
+/// Every document of the authoring guide, as a file beside the shaders that it shows.
+#[test]
+fn the_documents_of_the_authoring_guide_are_right() {
+    let guide = fs::read_to_string(root().join("docs/authoring.md")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    // A block of WGSL is the file that the prose before it names.
+    let (mut names, mut documents) = (VecDeque::new(), Vec::new());
+    for (at, part) in guide.split("```").enumerate() {
+        if at % 2 == 0 {
+            let shown = part
+                .lines()
+                .filter(|line| ["with `", "and `"].iter().any(|w| line.starts_with(w)));
+            names.extend(
+                shown
+                    .flat_map(|line| line.split('`'))
+                    .filter(|word| word.ends_with(".wgsl")),
+            );
+        } else if let Some(text) = part.strip_prefix("wgsl\n") {
+            let name = names.pop_front().expect("the guide names its shaders");
+            fs::write(folder.path().join(name), text).unwrap();
+        } else if let Some(text) = part.strip_prefix("ron\n") {
+            assert!(text.starts_with("(\n    format: 2,"), "{text}");
+            documents.push(text);
+        }
+    }
+    assert!(names.is_empty(), "named and not shown: {names:?}");
+    assert_eq!(documents.len(), DOCUMENTS.len());
+    for ((name, _), text) in DOCUMENTS.iter().zip(documents) {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let own = FolderSources {
+        root: folder.path().to_owned(),
+    };
+    let sources = LayeredSources(vec![Box::new(own), Box::new(EmbeddedSources)]);
+    let request = SceneRequest {
+        argument: "park".to_owned(),
+        obj: None,
+    };
+    let (scene, _) = SceneLibrary::default().load(&request).unwrap();
+    let provider = SceneProvider::new(Arc::new(scene));
+    for (name, passes) in DOCUMENTS {
+        let request = PlanRequest::new([64, 64], &provider);
+        let (graph, plan) = Graph::check(name, &registry(), &sources, &request)
+            .unwrap_or_else(|errors| panic!("{errors}"));
+        let warnings: Vec<_> = graph.warnings().iter().chain(plan.warnings()).collect();
+        assert!(warnings.is_empty(), "{name}: {warnings:?}");
+        let planned = plan.passes().len() + plan.culled().len();
+        assert_eq!(planned, passes, "{name}");
+    }
+}

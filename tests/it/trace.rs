@@ -1,0 +1,388 @@
+//! The tracer on the GPU against every ray × every triangle in f64.
+
+use crate::support::{
+    brute::{self, Hit, MISS, Ray},
+    graphs::{Extended, run_text, trace, trace_all},
+    meshes,
+    random::Random,
+};
+use glam::{DVec3, Vec3};
+use skiagraph_passes::SceneProvider;
+use skiagraph_scene::{DirectionalLight, Mesh, Scene};
+use std::sync::Arc;
+
+/// Weight by which a ray must miss or hit a triangle's border for f32 to be sure of it.
+const BORDER: f64 = 1e-5;
+
+#[test]
+fn random_rays_through_a_soup() {
+    let mesh = meshes::soup(400, 0.3, 1);
+    let mut random = Random(2);
+    let rays: Vec<Ray> = (0..4000)
+        .map(|_| Ray {
+            origin: random.vector() * 2.0,
+            t_min: 0.0,
+            direction: random.vector(),
+            t_max: 4.0 * random.unit(),
+        })
+        .collect();
+    let any = trace_all(&mesh, &rays, "Any");
+    let closest = trace_all(&mesh, &rays, "Closest");
+    let mut found = 0;
+    for ((ray, any), closest) in rays.iter().zip(&any).zip(&closest) {
+        let sure = brute::hits(&mesh, ray, MISS, BORDER);
+        let possible = brute::hits(
+            &mesh,
+            &Ray {
+                t_max: ray.t_max * 1.00001,
+                ..*ray
+            },
+            MISS,
+            -BORDER,
+        );
+        for hit in [any, closest] {
+            if hit.primitive == MISS {
+                assert_eq!(hit.t, ray.t_max);
+                assert!(
+                    sure.iter().all(|s| s.t > f64::from(ray.t_max) * 0.99999),
+                    "{ray:?} misses {sure:?}"
+                );
+            } else {
+                let exact = possible
+                    .iter()
+                    .find(|p| p.primitive == hit.primitive)
+                    .unwrap_or_else(|| panic!("{ray:?} hits {hit:?}, {possible:?}"));
+                assert!(
+                    (exact.t - f64::from(hit.t)).abs() < 1e-4 * exact.t.max(1.0),
+                    "{hit:?} {exact:?}"
+                );
+                assert!(
+                    (exact.weights.y - f64::from(hit.u)).abs() < 1e-3
+                        && (exact.weights.z - f64::from(hit.v)).abs() < 1e-3,
+                    "{hit:?} {exact:?}"
+                );
+            }
+        }
+        if let (Some(nearest), true) = (sure.first(), closest.primitive != MISS) {
+            found += 1;
+            assert!(
+                f64::from(closest.t) <= nearest.t + 1e-5,
+                "{ray:?}: {closest:?} is not the nearest, {nearest:?} is"
+            );
+        }
+    }
+    assert!(
+        found > 500,
+        "{found} rays hit something: too few to mean anything"
+    );
+}
+
+#[test]
+fn no_ray_escapes_from_a_closed_mesh() {
+    let mesh = meshes::potato(4, 0.3, 3);
+    for (scale, offset) in [
+        (1.0, Vec3::ZERO),
+        (1e-4, Vec3::ZERO),
+        (1e6, Vec3::ZERO),
+        (1.0, Vec3::new(1e4, -3e3, 7e3)),
+        (3.0, Vec3::splat(1e7)),
+    ] {
+        let placed = Mesh {
+            positions: mesh.positions.iter().map(|&p| p * scale + offset).collect(),
+            ..mesh.clone()
+        };
+        let mut random = Random(4);
+        let mut rays = Vec::new();
+        for index in 0..6000 {
+            let triangle = placed.triangles
+                [(random.unit() * placed.triangles.len() as f32) as usize]
+                .map(|i| placed.positions[i as usize]);
+            // Through a corner, a point of an edge, or its middle.
+            let target = match index % 3 {
+                0 => triangle[0],
+                1 => triangle[0].lerp(triangle[1], random.unit()),
+                _ => (triangle[0] + triangle[1]) * 0.5,
+            };
+            let origin = offset + random.vector() * 0.4 * scale;
+            let direction = if index % 2 == 0 {
+                target - origin
+            } else {
+                (target - origin) * random.unit().max(0.01) / scale
+            };
+            rays.push(Ray {
+                origin,
+                t_min: 0.0,
+                direction,
+                t_max: 1e30,
+            });
+        }
+        // Along the axes, straight through corners, from the plane through the middle.
+        for (index, &corner) in placed.positions.iter().enumerate() {
+            let mut origin = corner;
+            origin[index % 3] = offset[index % 3];
+            if origin.distance(offset) < 0.8 * scale {
+                let axis = Vec3::AXES[index % 3] * if index % 2 == 0 { 1.0 } else { -1.0 };
+                rays.push(Ray {
+                    origin,
+                    t_min: 0.0,
+                    direction: axis,
+                    t_max: 1e30,
+                });
+            }
+        }
+        assert!(
+            rays.len() > 6300,
+            "too few rays along the axes: {}",
+            rays.len() - 6000
+        );
+        for mode in ["Any", "Closest"] {
+            let hits = trace_all(&placed, &rays, mode);
+            let escaped: Vec<_> = rays
+                .iter()
+                .zip(&hits)
+                .filter(|(_, hit)| hit.primitive == MISS)
+                .collect();
+            assert!(
+                escaped.is_empty(),
+                "scale {scale} offset {offset}: {} rays escape, first {:?}",
+                escaped.len(),
+                escaped[0]
+            );
+        }
+    }
+}
+
+#[test]
+fn a_ray_does_not_see_what_it_skips() {
+    let mesh = meshes::soup(400, 0.3, 5);
+    let mut random = Random(6);
+    let mut ray = || Ray {
+        origin: random.vector(),
+        t_min: 0.0,
+        direction: random.vector(),
+        t_max: 4.0,
+    };
+    let rays: Vec<Ray> = (0..1000).map(|_| ray()).collect();
+    let first = trace_all(&mesh, &rays, "Closest");
+    let skip: Vec<u32> = first.iter().map(|hit| hit.primitive).collect();
+    let second = trace(&mesh, &rays, Some(&skip), rays.len() as u32, "Closest");
+    let any = trace(&mesh, &rays, Some(&skip), rays.len() as u32, "Any");
+    let mut further = 0;
+    for (index, ray) in rays.iter().enumerate() {
+        let found = [first[index], second[index], any[index]];
+        if first[index].primitive == MISS {
+            assert!(
+                found.iter().all(|hit| hit.primitive == MISS),
+                "{ray:?}: {found:?}"
+            );
+            continue;
+        }
+        assert!(second[index].primitive != skip[index] && any[index].primitive != skip[index]);
+        assert!(second[index].t >= first[index].t, "{ray:?}: {found:?}");
+        assert_eq!(
+            second[index].primitive == MISS,
+            any[index].primitive == MISS,
+            "{ray:?}: {found:?}"
+        );
+        further += usize::from(second[index].primitive != MISS);
+    }
+    assert!(
+        further > 100,
+        "{further} rays met a second triangle: too few to mean anything"
+    );
+}
+
+#[test]
+fn only_the_counted_rays_are_traced() {
+    let mesh = meshes::potato(2, 0.1, 7);
+    let ray = Ray {
+        origin: Vec3::ZERO,
+        t_min: 0.0,
+        direction: Vec3::new(0.3, 0.2, 0.9),
+        t_max: 10.0,
+    };
+    // A count beyond the buffers is cut off at their ends.
+    for (count, traced) in [(0, 0), (1, 1), (64, 64), (65, 65), (200, 200), (1000, 200)] {
+        let hits = trace(&mesh, &[ray; 200], None, count, "Any");
+        // What is not traced stays as the graph made it: zeros.
+        assert!(
+            hits[..traced].iter().all(|hit| hit.t > 0.9 && hit.t < 1.5),
+            "{count}"
+        );
+        assert!(hits[traced..].iter().all(|hit| hit.t == 0.0), "{count}");
+    }
+}
+
+#[test]
+fn the_interval_of_a_ray_is_open_below_and_closed_above() {
+    let mesh = meshes::mesh(
+        vec![
+            Vec3::new(-1.0, -1.0, 2.0),
+            Vec3::new(3.0, -1.0, 2.0),
+            Vec3::new(-1.0, 3.0, 2.0),
+        ],
+        vec![[0, 1, 2]],
+    );
+    let ray = |t_min, t_max| Ray {
+        origin: Vec3::ZERO,
+        t_min,
+        direction: Vec3::Z,
+        t_max,
+    };
+    let none = Ray {
+        direction: Vec3::ZERO,
+        ..ray(0.0, 10.0)
+    };
+    let away = Ray {
+        direction: Vec3::NEG_Z,
+        ..ray(0.0, 10.0)
+    };
+    let rays = [
+        ray(0.0, 10.0),
+        ray(0.0, 2.0),
+        ray(2.0, 10.0),
+        ray(1.9, 10.0),
+        ray(0.0, 1.9),
+        ray(10.0, 0.0),
+        none,
+        away,
+    ];
+    let hits = trace_all(&mesh, &rays, "Closest");
+    let found: Vec<bool> = hits.iter().map(|hit| hit.primitive == 0).collect();
+    assert_eq!(
+        found,
+        [true, true, false, true, false, false, false, false],
+        "{hits:?}"
+    );
+    assert_eq!(
+        hits[0],
+        Hit {
+            t: 2.0,
+            primitive: 0,
+            u: 0.25,
+            v: 0.25
+        }
+    );
+}
+
+#[test]
+fn a_ray_in_the_plane_of_a_triangle_beside_it_misses() {
+    // All corners on one line as the ray sees them, two of three edge functions 0, and the third
+    // off by rounding.
+    let corners = [
+        [-0.75, -0.75, 1.375],
+        [-0.625, -0.625, 0.875],
+        [-1.125, -0.75, 0.625],
+    ];
+    let mesh = meshes::mesh(corners.map(Vec3::from).to_vec(), vec![[0, 1, 2]]);
+    let ray = Ray {
+        origin: Vec3::new(0.0, -0.25, -0.125),
+        t_min: 0.0,
+        direction: Vec3::new(-0.875, -0.375, 0.5),
+        t_max: 10.0,
+    };
+    assert_eq!(trace_all(&mesh, &[ray], "Any")[0].primitive, MISS);
+}
+
+#[test]
+fn triangles_without_area_and_empty_scenes_are_missed() {
+    let line = meshes::mesh(
+        vec![Vec3::NEG_X, Vec3::X, Vec3::X * 2.0],
+        vec![[0, 1, 2], [0, 0, 0], [0, 1, 1]],
+    );
+    let ray = Ray {
+        origin: Vec3::new(0.0, 0.0, -1.0),
+        t_min: 0.0,
+        direction: Vec3::Z,
+        t_max: 10.0,
+    };
+    // Edge-on, too: a ray in the triangle's plane.
+    let edge_on = Ray {
+        origin: Vec3::new(-5.0, 0.0, 0.0),
+        direction: Vec3::X,
+        ..ray
+    };
+    let flat = meshes::mesh(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]]);
+    for mesh in [line, flat, Mesh::default()] {
+        let mut rays = vec![edge_on];
+        if mesh.triangles.len() != 1 {
+            rays.push(ray);
+        }
+        let hits = trace_all(&mesh, &rays, "Any");
+        assert!(hits.iter().all(|hit| hit.primitive == MISS), "{hits:?}");
+    }
+}
+
+#[test]
+fn the_dispatch_is_folded_to_two_dimensions() {
+    let row = 65_535u32;
+    for (count, expected) in [
+        (0, [0, 0, 1]),
+        (1, [1, 1, 1]),
+        (64, [1, 1, 1]),
+        (65, [2, 1, 1]),
+        (row * 64, [row, 1, 1]),
+        (row * 64 + 1, [row, 2, 1]),
+        (row * 64 * 3 - 63, [row, 3, 1]),
+        (u32::MAX, [row, 1025, 1]),
+    ] {
+        let light = DirectionalLight::new(DVec3::NEG_Y);
+        let scene = Scene {
+            name: "test".into(),
+            mesh: Mesh::default(),
+            views: vec![],
+            lights: vec![light.into()],
+        };
+        let mut provider = Extended::new(SceneProvider::new(Arc::new(scene)));
+        provider.add("test.number", &[count]);
+        let document = r#"(
+            format: 2,
+            description: "the size of a dispatch",
+            materials: [Buffer(name: "groups")],
+            passes: [
+                Compute(
+                    name: "dispatch_arguments",
+                    dispatch: Groups(1, 1, 1),
+                    bind: {"count": "test.number"},
+                ),
+            ],
+            outputs: ["groups"],
+        )"#;
+        let groups: Vec<u32> =
+            bytemuck::pod_collect_to_vec(&run_text(document, &mut provider, "groups"));
+        assert_eq!(groups, expected, "{count} rays");
+        assert!(u64::from(groups[0]) * u64::from(groups[1]) * 64 >= u64::from(count));
+    }
+}
+
+#[test]
+fn nested_triangles_of_all_sizes_are_told_apart() {
+    // Each is twice as large and twice as far as the one before: the least balanced of trees.
+    let (mut positions, mut triangles) = (vec![], vec![]);
+    for level in 0..120u32 {
+        let size = 2f32.powi(level as i32 - 60);
+        positions.extend(
+            [
+                Vec3::new(-1.0, -1.0, 1.0),
+                Vec3::new(1.0, -1.0, 1.0),
+                Vec3::new(0.0, 1.0, 1.0),
+            ]
+            .map(|p| p * size),
+        );
+        triangles.push([3 * level, 3 * level + 1, 3 * level + 2]);
+    }
+    let mesh = meshes::mesh(positions, triangles);
+    let from = |level: i32| Ray {
+        origin: Vec3::ZERO,
+        t_min: 2f32.powi(level - 60),
+        direction: Vec3::Z,
+        t_max: 1e30,
+    };
+    let rays: Vec<Ray> = (-1..119).map(from).collect();
+    for (level, hit) in trace_all(&mesh, &rays, "Closest").iter().enumerate() {
+        assert_eq!(
+            (hit.primitive, hit.t),
+            (level as u32, 2f32.powi(level as i32 - 60))
+        );
+    }
+}

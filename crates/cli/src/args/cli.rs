@@ -17,8 +17,8 @@ use clap::{Parser, Subcommand};
     version,
     propagate_version = true,
     after_help = "Example:\n  skiagraph compare rt nsm --scene park --size 512x512\n\n\
-        Progress is shown on a terminal; in a pipe there is none, or with \
-        SKIAGRAPH_PROGRESS=lines a line at the begin and the end of each step.\n\n\
+        Progress goes to standard error: a bar on a terminal, a line every five seconds in a \
+        pipe, or with SKIAGRAPH_PROGRESS=lines one at the begin and the end of each step.\n\n\
         Exit codes: 0 fine, 1 the input is wrong, 2 wrong usage, 3 no usable GPU, \
         or it was lost or hangs, 130 stopped by Ctrl-C."
 )]

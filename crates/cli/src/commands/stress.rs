@@ -93,7 +93,7 @@ fn run(
     report: &mut Report,
     out: Option<&Path>,
 ) -> Result<(), CliError> {
-    let step = Step::bar("hard cases".into(), cases.len() as u64, "cases");
+    let step = Step::quiet("hard cases".into(), cases.len() as u64, "cases");
     for (done, case) in (0..).zip(cases) {
         step.set_part(case.name);
         step.set_done(done);

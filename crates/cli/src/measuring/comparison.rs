@@ -18,7 +18,7 @@ use crate::records::results::{Results, Run};
 use crate::reporting::published::attach;
 use crate::reporting::published_row::Row;
 use crate::reporting::results_csv::save;
-use crate::terminal::progress::Step;
+use crate::terminal::progress::{Runs, Step};
 use crate::wording::size;
 use skiagraph_gpu::device::Gpu;
 use skiagraph_passes::SceneProvider;
@@ -85,6 +85,8 @@ pub struct Comparison<'a> {
     others: Vec<Run>,
     /// Why graphs broke the contract of outputs.
     pub broken: Vec<String>,
+    /// Counts the runs that are measured now.
+    progress: Runs,
 }
 
 enum RunState {
@@ -118,6 +120,7 @@ impl<'a> Comparison<'a> {
             results,
             others: Vec::new(),
             broken: Vec::new(),
+            progress: Runs::begin(planned.len() as u64),
         };
         if !args.replace {
             let earlier = earlier(&args.out, &comparison.results, &planned, args.resume)?;
@@ -131,6 +134,7 @@ impl<'a> Comparison<'a> {
                     None => {}
                 }
             }
+            comparison.progress.forget_done();
         }
         Ok(comparison)
     }
@@ -351,6 +355,7 @@ impl<'a> Comparison<'a> {
         let index = self.done_before(place);
         self.results.runs.insert(index, run);
         self.states[place] = RunState::Done;
+        self.progress.count();
     }
 
     /// How many runs of earlier places are done.

@@ -1,16 +1,161 @@
-//! Progress on standard error: a bar on a terminal, nothing elsewhere; with
-//! `SKIAGRAPH_PROGRESS=lines` a line at the begin and the end of each step, for logs.
+//! Progress on standard error: a bar for the step under way on a terminal, a line every few seconds
+//! in a pipe. `SKIAGRAPH_PROGRESS=lines` writes a line at the begin and the end of each step
+//! instead, for logs.
 
 use crate::terminal::console::note;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::{
     io::{self, IsTerminal},
+    sync::{Mutex, MutexGuard, PoisonError},
+    thread,
     time::{Duration, Instant},
 };
 
-fn wants_lines() -> bool {
+/// Time between two lines in a pipe.
+const PERIOD: Duration = Duration::from_secs(5);
+
+#[derive(Clone, Copy, PartialEq)]
+enum Style {
+    Bar,
+    /// A line each [`PERIOD`].
+    Periodic,
+    /// A line at the begin and the end of each step.
+    Steps,
+}
+
+fn style() -> Style {
     let is_asked = || std::env::var_os("SKIAGRAPH_PROGRESS").is_some_and(|value| value == "lines");
-    !io::stderr().is_terminal() && is_asked()
+    if io::stderr().is_terminal() {
+        Style::Bar
+    } else if is_asked() {
+        Style::Steps
+    } else {
+        Style::Periodic
+    }
+}
+
+/// Work of `total` equal parts, `done` of them done; `began` when the first was.
+#[derive(Clone)]
+struct Share {
+    done: u64,
+    total: u64,
+    unit: &'static str,
+    began: Instant,
+}
+
+impl Share {
+    fn begin(total: u64, unit: &'static str) -> Self {
+        Self {
+            done: 0,
+            total,
+            unit,
+            began: Instant::now(),
+        }
+    }
+
+    /// Time left in words, if parts go on to take as long as those that are done.
+    fn left(&self) -> Option<String> {
+        left(self.began.elapsed(), self.done, self.total)
+    }
+}
+
+/// Time left in words after `done` of `total` parts took `elapsed`; none before the first part and
+/// after the last.
+fn left(elapsed: Duration, done: u64, total: u64) -> Option<String> {
+    if done == 0 || done >= total {
+        return None;
+    }
+    let seconds = elapsed.as_secs_f64() * (total - done) as f64 / done as f64;
+    Some(format!("about {} left", duration(seconds)))
+}
+
+/// A time without more digits than an estimate has.
+fn duration(seconds: f64) -> String {
+    if seconds < 90.0 {
+        format!("{} s", seconds.ceil().max(1.0))
+    } else if seconds < 90.0 * 60.0 {
+        format!("{} min", (seconds / 60.0).round())
+    } else {
+        format!("{:.1} h", seconds / 3600.0)
+    }
+}
+
+/// What the process does now, as standard error, too, belongs to the whole process.
+struct Now {
+    /// All runs of the command.
+    runs: Option<Share>,
+    /// Name and parts of the step under way.
+    step: Option<(String, Share)>,
+    has_printer: bool,
+}
+
+static NOW: Mutex<Now> = Mutex::new(Now {
+    runs: None,
+    step: None,
+    has_printer: false,
+});
+
+fn now() -> MutexGuard<'static, Now> {
+    NOW.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Now {
+    /// A line on the step under way.
+    fn line(&self) -> Option<String> {
+        let (name, step) = self.step.as_ref()?;
+        let share = self.runs.as_ref().unwrap_or(step);
+        let mut words = vec![format!("{} of {} {}", share.done, share.total, share.unit)];
+        words.push(duration(share.began.elapsed().as_secs_f64()));
+        words.extend(share.left());
+        Some(format!("{}: {name}", words.join(", ")))
+    }
+
+    /// Prints a line each [`PERIOD`] while a step is under way, from now until the program ends.
+    fn print_lines(&mut self) {
+        if self.has_printer {
+            return;
+        }
+        self.has_printer = true;
+        thread::spawn(|| {
+            loop {
+                thread::sleep(PERIOD);
+                if let Some(line) = now().line() {
+                    note(&line);
+                }
+            }
+        });
+    }
+}
+
+/// All runs of a command, for an estimate of the time that they take.
+pub struct Runs(());
+
+impl Runs {
+    /// Begins a command of `total` runs.
+    pub fn begin(total: u64) -> Self {
+        now().runs = Some(Share::begin(total, "runs"));
+        Self(())
+    }
+
+    /// Counts a run that is done.
+    pub fn count(&self) {
+        if let Some(runs) = &mut now().runs {
+            runs.done += 1;
+        }
+    }
+
+    /// Leaves out the runs that are done: those kept from an earlier command took no time.
+    pub fn forget_done(&self) {
+        if let Some(runs) = &mut now().runs {
+            *runs = Share::begin(runs.total - runs.done, runs.unit);
+        }
+    }
+}
+
+impl Drop for Runs {
+    fn drop(&mut self) {
+        now().runs = None;
+    }
 }
 
 /// One step of a long command.
@@ -22,25 +167,36 @@ pub struct Step {
 
 impl Step {
     /// Begins a step of `total` parts, counted in `unit`.
-    pub fn begin(what: String, total: u64, unit: &str) -> Self {
-        if wants_lines() {
+    pub fn begin(what: String, total: u64, unit: &'static str) -> Self {
+        if style() == Style::Steps {
             note(&format!("starting {what}"));
         }
-        Self::bar(what, total, unit)
+        Self::quiet(what, total, unit)
     }
 
-    /// The bar alone: dropped instead of ended, a pipe hears nothing of it.
-    pub fn bar(what: String, total: u64, unit: &str) -> Self {
+    /// The same without a line of its own in a log of steps.
+    pub fn quiet(what: String, total: u64, unit: &'static str) -> Self {
+        let mut now = now();
         let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
-        let template =
-            format!("{{msg:40!}} {{wide_bar:.cyan/dim}} {{pos}}/{{len}} {unit} {{elapsed:>4}}");
+        let template = format!(
+            "{{msg:40!}} {{wide_bar:.cyan/dim}} {{pos}}/{{len}} {unit} {{elapsed:>4}}{{prefix}}"
+        );
         // The template is ours and fixed; if indicatif should refuse it, its default does as well.
         bar.set_style(
             ProgressStyle::with_template(&template)
                 .unwrap_or_else(|_| ProgressStyle::default_bar()),
         );
         bar.set_message(what.clone());
+        if let Some(runs) = &now.runs {
+            let left = runs.left().map(|left| format!(", {left}"));
+            let left = left.unwrap_or_default();
+            bar.set_prefix(format!(" · {} of {} runs{left}", runs.done, runs.total));
+        }
         bar.enable_steady_tick(Duration::from_millis(250));
+        now.step = Some((what.clone(), Share::begin(total, unit)));
+        if style() == Style::Periodic {
+            now.print_lines();
+        }
         Self {
             what,
             bar,
@@ -51,17 +207,22 @@ impl Step {
     /// Says which part is under way.
     pub fn set_part(&self, part: &str) {
         self.bar.set_message(part.to_owned());
+        if let Some((name, _)) = &mut now().step {
+            *name = part.to_owned();
+        }
     }
 
     /// Says how many parts are done; from any thread.
     pub fn set_done(&self, done: u64) {
         self.bar.set_position(done);
+        if let Some((_, share)) = &mut now().step {
+            share.done = done;
+        }
     }
 
     /// Ends the step.
     pub fn end(self) {
-        self.bar.finish_and_clear();
-        if wants_lines() {
+        if style() == Style::Steps {
             note(&format!(
                 "{}: {:.1} s",
                 self.what,
@@ -75,5 +236,37 @@ impl Drop for Step {
     fn drop(&mut self) {
         // A step cut short by an error must not leave its bar in front of the message.
         self.bar.finish_and_clear();
+        now().step = None;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn estimates_follow_the_parts_that_are_done() {
+        let after = |seconds, done, total| left(Duration::from_secs(seconds), done, total);
+        assert_eq!(after(10, 0, 8), None);
+        assert_eq!(after(10, 8, 8), None);
+        assert_eq!(after(10, 2, 8).unwrap(), "about 30 s left");
+        assert_eq!(after(60, 1, 8).unwrap(), "about 7 min left");
+        assert_eq!(after(600, 1, 13).unwrap(), "about 2.0 h left");
+    }
+
+    #[test]
+    fn a_line_counts_runs_and_names_the_step() {
+        let now = Now {
+            runs: Some(Share {
+                done: 3,
+                ..Share::begin(7, "runs")
+            }),
+            step: Some(("nsm, bench_side 64x64".into(), Share::begin(5, "frames"))),
+            has_printer: false,
+        };
+        assert_eq!(
+            now.line().unwrap(),
+            "3 of 7 runs, 1 s, about 1 s left: nsm, bench_side 64x64"
+        );
     }
 }

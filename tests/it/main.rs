@@ -9,6 +9,7 @@ mod gbuffer;
 #[path = "../../crates/scene/examples/foliage/plant.rs"]
 mod plant;
 #[path = "../../crates/reference/tests/it/common/scenes.rs"]
+#[allow(dead_code, reason = "a part of it is used here")]
 mod scenes;
 #[path = "../../crates/passes/examples/preset/shadows.rs"]
 #[allow(missing_docs, reason = "a program's, not a library's")]

@@ -1,6 +1,7 @@
 //! What the README tells its readers to type works as it stands there.
 
-use skiagraph_gpu::{Executor, Frame, device};
+use crate::support::graphs::open;
+use skiagraph_gpu::{Executor, Frame};
 use skiagraph_graph::{FolderSources, Graph, LayeredSources, PlanRequest};
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
 use skiagraph_scene::{SceneLibrary, SceneRequest};
@@ -59,7 +60,7 @@ fn the_method_of_the_readme_is_complete_and_runs() {
         "nothing here traces rays"
     );
 
-    let gpu = device::open(None).unwrap_or_else(|error| panic!("{error}"));
+    let gpu = open();
     let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider).unwrap();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     executor

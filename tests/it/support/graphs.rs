@@ -10,7 +10,10 @@ use skiagraph_graph::{
 };
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
 use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
-use std::{collections::BTreeMap, sync::Arc};
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, LazyLock},
+};
 use wgpu::util::DeviceExt;
 
 /// A scene and some buffers of the test's own.
@@ -214,7 +217,7 @@ pub fn provider(scene: &Arc<Scene>, view: &View, viewport: [u32; 2]) -> ScenePro
     provider
 }
 
-/// Runs one frame of a plan on a device of its own.
+/// Runs one frame of a plan.
 pub fn run(plan: Plan, provider: &mut dyn Provider, read: &[&str]) -> FrameReport {
     run_on(&open(), plan, provider, read)
 }
@@ -222,13 +225,16 @@ pub fn run(plan: Plan, provider: &mut dyn Provider, read: &[&str]) -> FrameRepor
 /// What the tests of engines ask for beyond the baseline.
 pub const RAY_QUERY: wgpu::Features = wgpu::Features::EXPERIMENTAL_RAY_QUERY;
 
-/// A device, with ray queries where the adapter has them; a machine without an adapter fails the
-/// test with the way out.
+/// The device that all tests share, with ray queries where the adapter has them; a machine without
+/// an adapter fails the test with the way out.
 pub fn open() -> Gpu {
-    device::open_with(None, RAY_QUERY).unwrap_or_else(|error| panic!("{error}"))
+    static GPU: LazyLock<Gpu> = LazyLock::new(|| {
+        device::open_with(None, RAY_QUERY).unwrap_or_else(|error| panic!("{error}"))
+    });
+    GPU.clone()
 }
 
-/// Runs one frame of a plan.
+/// Runs one frame of a plan on a device.
 pub fn run_on(gpu: &Gpu, plan: Plan, provider: &mut dyn Provider, read: &[&str]) -> FrameReport {
     let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, provider)
         .unwrap_or_else(|error| panic!("{error}"));

@@ -1,8 +1,12 @@
 #!/usr/bin/env bash
-# Runs all tests. They create GPU devices, so a machine without any adapter gets a software Vulkan
-# driver first. Arguments go to `cargo test`:   ./test.sh -p skiagraph-graph timing
+# Runs the tests. They create GPU devices, so a machine without any adapter gets a software Vulkan
+# driver first, and a browser in which one test opens `report.html` (`chromium`, or the program that
+# $CHROMIUM names). Arguments go to `cargo test`:
 #
-# A test opens `report.html` in Chromium: `chromium`, or what $CHROMIUM names.
+#   ./test.sh                          all tests but the suites that take minutes
+#   ./test.sh --all                    these, too
+#   ./test.sh --test graph extends::   some of one binary: graph, gpu, scene, draw, chart,
+#                                      reference, cli, or across (those of tests/)
 #
 # Tests on the meshes of Sponza and bench look for them in $SKIAGRAPH_ASSETS and say so where that is
 # not set.
@@ -11,8 +15,18 @@ cd "$(dirname "$0")"
 # Without a session (a container, say) Mesa asks for this folder and complains on stderr.
 export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-${TMPDIR:-/tmp}}"
 
-scripts/setup.sh
-if ! command -v "${CHROMIUM:-chromium}" >/dev/null; then
-    echo "test.sh: there is no ${CHROMIUM:-chromium}; one test opens the report in it and will fail (Debian: apt-get install chromium)" >&2
+all=''
+if [ "${1:-}" = --all ]; then
+    all=yes
+    shift
 fi
-cargo test --workspace --locked "$@"
+# Some tests alone need not wait for the build of all.
+if [ $# -eq 0 ] || [ ! -x "${CARGO_TARGET_DIR:-target}/debug/skiagraph" ]; then
+    scripts/setup.sh test >/dev/null
+fi
+if [ -z "$all" ]; then
+    cargo test --workspace --locked "$@"
+else
+    # The others have steps of their own: ray queries need another adapter, `long_` takes longer still.
+    cargo test --workspace --locked "$@" -- --include-ignored --skip ray_query:: --skip long_
+fi

@@ -83,6 +83,7 @@ fn judged(shown: &Shown, right: &RightAnswer) -> Graded {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn samples_converge_to_the_oracles_shares_under_every_kind_of_light() {
     let spot = SpotLight {
         position: DVec3::new(1.5, 6.0, -1.0),
@@ -158,6 +159,7 @@ fn without_extent_one_ray_decides_as_in_rt() {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn samples_and_pixels_in_turns_show_what_they_show_at_once() {
     let scene = scene(sun(12.0));
     let at = |most_rays: u32| {

@@ -91,6 +91,7 @@ fn anew(gpu: &Gpu, graph: &Graph, provider: &SceneProvider, view: &View) -> Fram
 type Change = (&'static str, fn(&Park, &mut SceneProvider));
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn after_each_change_the_picture_is_a_new_executors() {
     let changes: [Change; 6] = [
         ("light", |_, provider| {

@@ -163,6 +163,7 @@ fn all_methods(map_size: u32, cull: Cull, n: f64) -> Vec<CpuReference> {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn the_statuses_on_park_are_the_cpu_references() {
     let scene = load("park");
     let mut bench = Bench::new(&scene, [128, 96]);
@@ -224,6 +225,7 @@ fn hard() -> Arc<Scene> {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn the_statuses_on_a_hard_mesh_are_the_cpu_references() {
     let scene = hard();
     let mut bench = Bench::new(&scene, [160, 120]);

@@ -80,6 +80,7 @@ fn uncertain(
 /// By table 22's rays, in points of PFL. `crsma` finds neighbours by position, the dissertation's
 /// program by index: it leaves a little more, the finer the map.
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn sponzas_uncertain_pixels_are_the_dissertations() {
     let Some(scene) = sponza() else { return };
     let figures = Figures::of("sponza");
@@ -98,6 +99,7 @@ fn sponzas_uncertain_pixels_are_the_dissertations() {
 
 /// In shares of the dissertation's own count.
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn benchs_uncertain_pixels_are_the_dissertations() {
     let Some(scene) = bench() else { return };
     let figures = Figures::of("bench");
@@ -124,6 +126,7 @@ fn benchs_uncertain_pixels_are_the_dissertations() {
 /// Each of its rules by itself asks more of a texel, or less, and what is proven stays right where
 /// its claim stands.
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn each_rule_leaves_more_or_less_to_rays() {
     let scene = load("park");
     let mut bench = Bench::new(&scene, [128, 128]);
@@ -158,6 +161,7 @@ fn each_rule_leaves_more_or_less_to_rays() {
 
 /// By table 12, in points of PFL.
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn nsm_is_as_wrong_on_sponza_as_the_dissertations() {
     let Some(scene) = sponza() else { return };
     let figures = Figures::of("sponza");

@@ -107,7 +107,7 @@ fn measured(scale: f64, offset: f64, half: f32) -> Statistics {
 const EXTENT: f64 = 4.0;
 
 #[test]
-#[ignore = "a suite of its own: twenty scenes"]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn what_holds_at_any_scale_distance_and_coarseness() {
     let mut failed = Vec::new();
     println!(

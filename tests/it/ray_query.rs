@@ -64,19 +64,19 @@ fn rt_answers_alike(scene: &Arc<Scene>, viewport: [u32; 2]) {
 }
 
 #[test]
-#[ignore = "a suite of its own: an adapter with ray queries"]
+#[ignore = "an adapter with ray queries: `.ci/run` runs it on Mesa 25"]
 fn rt_on_sponza_answers_alike() {
     rt_answers_alike(&load("sponza"), [512, 512]);
 }
 
 #[test]
-#[ignore = "a suite of its own: an adapter with ray queries"]
+#[ignore = "an adapter with ray queries: `.ci/run` runs it on Mesa 25"]
 fn rt_on_park_answers_alike() {
     rt_answers_alike(&load("park"), [512, 384]);
 }
 
 #[test]
-#[ignore = "a suite of its own: an adapter with ray queries"]
+#[ignore = "an adapter with ray queries: `.ci/run` runs it on Mesa 25"]
 fn a_deformed_mesh_has_a_structure_of_its_own() {
     let (scene, viewport) = (load("park"), [192, 144]);
     let movable = Movable::new(&scene.mesh, &["tree 1"]).unwrap();
@@ -115,7 +115,7 @@ fn a_deformed_mesh_has_a_structure_of_its_own() {
 }
 
 #[test]
-#[ignore = "a suite of its own: an adapter with ray queries"]
+#[ignore = "an adapter with ray queries: `.ci/run` runs it on Mesa 25"]
 fn random_rays_hit_the_same() {
     let mesh = meshes::soup(3000, 0.1, 1);
     let mut random = Random(2);
@@ -163,7 +163,7 @@ fn random_rays_hit_the_same() {
 }
 
 #[test]
-#[ignore = "a suite of its own: an adapter with ray queries"]
+#[ignore = "an adapter with ray queries: `.ci/run` runs it on Mesa 25"]
 fn intervals_and_empty_scenes() {
     let corners = [[-1.0, -1.0, 2.0], [3.0, -1.0, 2.0], [-1.0, 3.0, 2.0]];
     let mesh = meshes::mesh(corners.map(Vec3::from).to_vec(), vec![[0, 1, 2]]);

@@ -180,7 +180,7 @@ fn random_rays_agree_with_the_oracle() {
 }
 
 #[test]
-#[ignore = "a suite of its own: ten million rays"]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn ten_million_rays_agree_with_the_oracle() {
     let mut total = 0;
     for seed in 0..4 {

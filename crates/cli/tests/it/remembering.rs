@@ -31,6 +31,7 @@ fn figures(folder: &Path, line: &str) -> (Value, String) {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn it_has_one_figure_whatever_is_timed() {
     let folder = tempfile::tempdir().unwrap();
     temporal(folder.path());

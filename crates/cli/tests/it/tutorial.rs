@@ -23,6 +23,7 @@ fn blocks(text: &str) -> Vec<(String, Option<String>, String)> {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn the_tutorial_can_be_typed() {
     let text = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/tutorial.md");
     let text = fs::read_to_string(text).unwrap();

@@ -169,6 +169,7 @@ proptest! {
 
     /// Words are lost, added and swapped anywhere in the documents and shaders.
     #[test]
+    #[ignore = "a suite: `./test.sh --all` runs it"]
     fn changed_anywhere(changes in prop::collection::vec(any_change(), 1..4)) {
         let files = changed(changes);
         // Right or wrong, it is an answer.
@@ -179,6 +180,7 @@ proptest! {
 
     /// Anything at all.
     #[test]
+    #[ignore = "a suite: `./test.sh --all` runs it"]
     fn no_document_at_all(text in "\\PC{0,200}", shader in "\\PC{0,200}") {
         prop_assert!(judge(&files().with("graph.ron", text)).is_err());
         let _ = judge(&files().with("shade.wgsl", shader));
@@ -186,6 +188,7 @@ proptest! {
 
     /// Sizes and counts up to where numbers end, on viewports up to where they end.
     #[test]
+    #[ignore = "a suite: `./test.sh --all` runs it"]
     fn any_size(
         width in any::<u32>(),
         height in any::<u32>(),

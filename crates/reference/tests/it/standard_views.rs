@@ -109,6 +109,7 @@ fn f32_errs_in_few_indeterminate_pixels_only(scene: &Scene, mode: OracleMode) {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn sponza_has_the_dissertations_counts() {
     let Some(scene) = sponza() else { return };
     assert_eq!(scene.mesh.triangles.len(), 262_267);
@@ -157,6 +158,7 @@ fn sponza_has_the_dissertations_counts() {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn bench_in_f32() {
     let Some(scene) = downloaded("bench") else {
         return;
@@ -166,6 +168,7 @@ fn bench_in_f32() {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn sponza_in_f32() {
     let Some(scene) = sponza() else { return };
     for mode in [OracleMode::Exact, OracleMode::Offset(0.03)] {
@@ -174,6 +177,7 @@ fn sponza_in_f32() {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn park_in_f32() {
     let scene = scene("park", SceneLibrary::default());
     assert_eq!(scene.views.len(), 9);

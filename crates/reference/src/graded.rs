@@ -115,22 +115,45 @@ impl Graded {
     }
 }
 
+/// How many pixels the errors of a picture are means over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct JudgedPixels {
+    /// Pixels facing the light (PFL).
+    pub facing_light: u64,
+    /// Of these: indeterminate.
+    pub in_band: u64,
+}
+
 impl Graded {
-    /// Of several pictures together, each with its PFL pixels. FLIP is the mean of theirs.
-    pub fn together(pictures: impl IntoIterator<Item = (Self, u64)>) -> Self {
+    /// Of several pictures together, each with its pixels. FLIP is the mean of theirs.
+    pub fn together(pictures: impl IntoIterator<Item = (Self, JudgedPixels)>) -> Self {
         let mut all = Self::default();
-        let (mut facing, mut count, mut squares) = (0.0, 0.0, 0.0);
+        let (mut count, mut facing, mut outside) = (0.0, 0.0, 0.0);
         for (of, pixels) in pictures {
-            let pixels = pixels as f64;
+            // Field by field: one that is left out does not compile.
+            let Self {
+                rmse,
+                rmse_outside_band,
+                mean_absolute_error,
+                off,
+                flip,
+                invalid,
+            } = of;
+            let of_facing = pixels.facing_light as f64;
+            let of_outside = pixels.facing_light.saturating_sub(pixels.in_band) as f64;
             count += 1.0;
-            facing += pixels;
-            squares += of.rmse * of.rmse * pixels;
-            all.mean_absolute_error += of.mean_absolute_error * pixels;
-            all.off += of.off;
-            all.flip += of.flip;
-            all.invalid += of.invalid;
+            facing += of_facing;
+            outside += of_outside;
+            // Sums of squares until all are there.
+            all.rmse += rmse * rmse * of_facing;
+            all.rmse_outside_band += rmse_outside_band * rmse_outside_band * of_outside;
+            all.mean_absolute_error += mean_absolute_error * of_facing;
+            all.off += off;
+            all.flip += flip;
+            all.invalid += invalid;
         }
-        all.rmse = (squares / f64::max(facing, 1.0)).sqrt();
+        all.rmse = (all.rmse / f64::max(facing, 1.0)).sqrt();
+        all.rmse_outside_band = (all.rmse_outside_band / f64::max(outside, 1.0)).sqrt();
         all.mean_absolute_error /= f64::max(facing, 1.0);
         all.flip /= f64::max(count, 1.0);
         all
@@ -189,20 +212,33 @@ mod tests {
 
     #[test]
     fn pictures_together_are_as_one_of_all_their_pixels() {
-        let of = |shown: &[f32]| {
-            let reference = reference(&vec![Class::Lit; shown.len()]);
+        // The last pixel of each picture is in the band; that of the whole one is put there.
+        let of = |shown: &[f32], in_band: &[usize]| {
+            let mut reference = reference(&vec![Class::Lit; shown.len()]);
+            for &pixel in in_band {
+                reference.indeterminate[pixel] = true;
+            }
+            let in_band = reference.indeterminate.iter().filter(|it| **it).count();
             let right = vec![1.0; shown.len()];
             let graded = Graded::judged(shown, &right, &reference).unwrap();
-            (graded, shown.len() as u64)
+            let pixels = JudgedPixels {
+                facing_light: shown.len() as u64,
+                in_band: in_band as u64,
+            };
+            (graded, pixels)
         };
-        let (parts, whole) = (
-            [of(&[0.5, 1.0, 0.9]), of(&[0.0])],
-            of(&[0.5, 1.0, 0.9, 0.0]).0,
-        );
+        let parts = [of(&[0.5, 1.0, 0.9], &[]), of(&[0.25, 0.0], &[])];
+        let whole = of(&[0.5, 1.0, 0.9, 0.25, 0.0], &[2]).0;
         let together = Graded::together(parts);
         assert!((together.rmse - whole.rmse).abs() < 1e-9);
+        assert!(whole.rmse_outside_band > 0.4 && whole.rmse_outside_band != whole.rmse);
+        assert!((together.rmse_outside_band - whole.rmse_outside_band).abs() < 1e-9);
         assert!((together.mean_absolute_error - whole.mean_absolute_error).abs() < 1e-9);
         assert_eq!((together.off, together.invalid), (whole.off, whole.invalid));
+        // One picture is itself.
+        let one = Graded::together([parts[0]]);
+        assert!((one.rmse_outside_band - parts[0].0.rmse_outside_band).abs() < 1e-12);
+        assert_eq!(Graded::together([]), Graded::default());
     }
 
     #[test]

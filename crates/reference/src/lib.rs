@@ -50,7 +50,7 @@ mod tree;
 pub use area::{AreaVisibility, RightAnswer};
 pub use blockers::BlockerCounts;
 pub use error::Error;
-pub use graded::{Graded, Invalid, OffBy};
+pub use graded::{Graded, Invalid, JudgedPixels, OffBy};
 pub use image::Image;
 pub use oracle::{Class, Occlusion, Oracle, OracleMode, Reference, unshadowed};
 pub use pixels::{BACKGROUND, Progress};

@@ -211,7 +211,12 @@ fn run(
     if args.format == Format::Markdown {
         let is_done = comparison.results.runs.len() == comparison.planned();
         let today = (!is_done).then(date::today);
-        let header = markdown::header(&comparison.results, today.as_deref(), &args.published);
+        let header = markdown::header(
+            &comparison.results,
+            today.as_deref(),
+            &args.published,
+            args.path.is_some(),
+        );
         print(&header)?;
     }
     for (index, subject) in subjects.iter().enumerate() {

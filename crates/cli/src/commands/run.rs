@@ -3,7 +3,7 @@
 use crate::args::commands::RunArgs;
 use crate::args::shared::GpuArgs;
 use crate::args::values::Save;
-use crate::commands::run_sequence::{Shots, numbered};
+use crate::commands::run_sequence::{Shots, of_frame};
 use crate::error::CliError;
 use crate::files::write::check_writable;
 use crate::graphs::idle_params::IdleParams;
@@ -34,7 +34,7 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let name = |save: &Save| capture(save).name();
     let is_sequence = args.frames.is_some() || args.path.is_some();
     let files: Vec<Save> = match is_sequence {
-        true => saves.iter().map(|save| numbered(save, 0)).collect(),
+        true => saves.iter().map(|save| of_frame(save, 0)).collect(),
         false => saves.clone(),
     };
     let files = files

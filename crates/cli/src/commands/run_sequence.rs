@@ -9,6 +9,7 @@ use crate::measuring::scene_selection::check_path;
 use crate::measuring::shapes::Shapes;
 use crate::measuring::subject::{Shot, Subject};
 use crate::pictures::colours::ClipPlanes;
+use crate::pictures::run_pictures::numbered;
 use crate::pictures::save::{Decoding, capture, write};
 use crate::terminal::console::print;
 use crate::terminal::interrupt;
@@ -18,19 +19,11 @@ use skiagraph_gpu::{Executor, Frame, device::Gpu};
 use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{CameraPath, Scene, SceneLibrary, View};
-use std::path::PathBuf;
 
-/// The file of a frame: `visibility.0003.png` of `visibility.png`.
-pub fn numbered(save: &Save, index: usize) -> Save {
-    let file = &save.file;
-    let mut name = file.file_stem().unwrap_or_default().to_owned();
-    name.push(format!(".{index:04}"));
-    if let Some(extension) = file.extension() {
-        name.push(".");
-        name.push(extension);
-    }
+/// What is saved of a frame.
+pub fn of_frame(save: &Save, index: usize) -> Save {
     Save {
-        file: file.with_file_name(name),
+        file: numbered(&save.file, index),
         ..save.clone()
     }
 }
@@ -152,14 +145,14 @@ impl Shots {
                 let content = contents.get(&name).ok_or_else(|| {
                     CliError::Input(format!("`{}` has no `{name}` to save", preset.name))
                 })?;
-                write(&numbered(save, index), content, &reading)?;
+                write(&of_frame(save, index), content, &reading)?;
             }
             step.set_done(index as u64 + 1);
         }
         step.end();
         let last = self.shots.len().saturating_sub(1);
         for save in saves {
-            let file = |index| -> PathBuf { numbered(save, index).file };
+            let file = |index| numbered(&save.file, index);
             print(&format!(
                 "  saved {}: {} to {}\n",
                 capture(save).name(),

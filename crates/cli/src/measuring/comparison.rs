@@ -13,7 +13,7 @@ use crate::measuring::run::MeasureContext;
 use crate::measuring::sequence;
 use crate::measuring::shapes::Shapes;
 use crate::measuring::subject::{Shot, Subject};
-use crate::pictures::run_pictures::save_reference;
+use crate::pictures::run_pictures::write_pictures;
 use crate::records::results::{Results, Run};
 use crate::reporting::published::attach;
 use crate::reporting::published_row::Row;
@@ -24,7 +24,11 @@ use skiagraph_gpu::device::Gpu;
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::Oracle;
 use skiagraph_scene::Scene;
-use std::{cell::OnceCell, ops::Range, path::Path, rc::Rc};
+use std::{
+    cell::{OnceCell, RefCell},
+    ops::Range,
+    rc::Rc,
+};
 
 /// What a comparison is of.
 pub struct ComparisonSetup<'a> {
@@ -181,7 +185,7 @@ impl<'a> Comparison<'a> {
         if self.states[places.clone()].iter().all(is_done) {
             return Ok(());
         }
-        let judges = self.judges((subject, shapes.as_ref()), &shots, viewport)?;
+        let judges = self.judges(shapes.as_ref(), &shots, viewport)?;
         let frames = sequence::Path::new(
             (shots, subject.frames_per_second()),
             shapes.as_ref(),
@@ -204,7 +208,7 @@ impl<'a> Comparison<'a> {
             },
             warmup: self.args.warmup,
             cached_frames: self.results.cached_frames,
-            pictures: self.pictures(),
+            pictures: (self.args.images == Images::All).then(RefCell::default),
         };
         for (place, method) in places.zip(&methods) {
             if is_done(&self.states[place]) {
@@ -233,6 +237,9 @@ impl<'a> Comparison<'a> {
                 run => run?,
             };
             self.done(place, run);
+            if let Some(pictures) = &context.pictures {
+                write_pictures(&self.args.out, &pictures.take())?;
+            }
             save(&self.whole(), &self.args.out)?;
         }
         Ok(())
@@ -278,10 +285,10 @@ impl<'a> Comparison<'a> {
         self.is_moved = shapes.is_some();
     }
 
-    /// The right answers, with the picture of a still one.
+    /// The right answers.
     fn judges<'m>(
         &mut self,
-        (subject, shapes): (&Subject, Option<&'m Shapes>),
+        shapes: Option<&'m Shapes>,
         shots: &[Shot],
         viewport: [u32; 2],
     ) -> Result<Vec<Judge<'m>>, CliError>
@@ -291,9 +298,6 @@ impl<'a> Comparison<'a> {
         if let ([shot], None) = (shots, shapes) {
             let oracle = self.still_oracle();
             let judge = self.judge(shot, viewport, &shot.view.name, oracle)?;
-            if let Some(folder) = self.pictures() {
-                save_reference(folder, subject.name(), &judge.right)?;
-            }
             return Ok(vec![judge]);
         }
         let frames = shots.len();
@@ -343,11 +347,6 @@ impl<'a> Comparison<'a> {
         };
         let (camera, light) = (shot.camera(viewport), self.provider.light());
         Judge::new(oracle, camera, light, ids, tracing, &what)
-    }
-
-    /// Where pictures go, if there are to be any.
-    fn pictures(&self) -> Option<&'a Path> {
-        (self.args.images == Images::All).then_some(&self.args.out)
     }
 
     fn done(&mut self, place: usize, mut run: Run) {

@@ -12,7 +12,7 @@ use crate::measuring::guarantee::{self, WITHOUT_CULLING};
 use crate::measuring::reference::{PrimaryVisibility, Tracing, own_counts, right_answer};
 use crate::measuring::steady;
 use crate::measuring::stop::Stop;
-use crate::pictures::run_pictures::{save_pictures, save_reference, stem};
+use crate::pictures::run_pictures::{PicturePlace, draw_pictures, stem, write_pictures};
 use crate::records::stress::{Case, Casters, Cell, Column, Counts, Guarantee, Verdict};
 use crate::terminal::interrupt;
 use skiagraph_cases::HardCase;
@@ -155,9 +155,6 @@ impl HardCaseContext<'_> {
                 return Ok(case);
             }
         };
-        if let Some(folder) = self.pictures {
-            save_reference(folder, hard.name, &right)?;
-        }
         let counts = own_counts(&right.reference);
         (case.pixels, case.band) = (counts.pixels, counts.band);
         if !case.exceeds_cap() {
@@ -189,11 +186,16 @@ impl HardCaseContext<'_> {
                         cell.verdict =
                             Verdict::of(guarantee, culls, case.casters, certain, outside);
                         cell.counts = Some(counts);
-                        let images = self.pictures.map(|folder| {
-                            let stem = variant.stem(hard, self.viewport);
-                            save_pictures(folder, &stem, &right, &outputs, &whole)
-                        });
-                        cell.images = images.transpose()?;
+                        if let Some(folder) = self.pictures {
+                            let place = PicturePlace {
+                                stem: variant.stem(hard, self.viewport),
+                                view: hard.name,
+                                frame: None,
+                            };
+                            let (images, files) = draw_pictures(&place, &right, &outputs, &whole)?;
+                            write_pictures(folder, &files)?;
+                            cell.images = Some(images);
+                        }
                     }
                     Err(error) if ends_all(&error) => return Err(error),
                     Err(error) => cell.failed = Some(with_causes(&error)),

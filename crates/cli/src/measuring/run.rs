@@ -15,15 +15,15 @@ use crate::measuring::{
     frame::{self, Contents},
     guarantee,
 };
-use crate::pictures::run_pictures::{conditions, save_pictures, stem};
-use crate::records::results::{Answer, AreaReference, Cached, Measured, Run};
+use crate::pictures::run_pictures::{PictureFile, PicturePlace, conditions, draw_pictures, stem};
+use crate::records::results::{Answer, AreaReference, Cached, Images, Measured, Run};
 use crate::records::steady::Steady;
 use crate::terminal::progress::Step;
 use skiagraph_gpu::{ExecuteError, Provider, device::Gpu};
 use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
-use skiagraph_reference::Statistics;
-use std::path::Path;
+use skiagraph_reference::{RightAnswer, Statistics};
+use std::cell::RefCell;
 
 /// What all methods on one view and viewport share.
 pub struct MeasureContext<'a> {
@@ -47,8 +47,8 @@ pub struct MeasureContext<'a> {
     pub warmup: u32,
     /// Timed frames in which only the camera moves.
     pub cached_frames: u32,
-    /// Folder for pictures, if there are to be any.
-    pub pictures: Option<&'a Path>,
+    /// The pictures of the last run, if there are to be any.
+    pub pictures: Option<RefCell<Vec<PictureFile>>>,
 }
 
 /// What came of a method's frames.
@@ -232,10 +232,7 @@ impl MeasureContext<'_> {
                 .for_each(|cached| cached.frame.gpu_ms = None);
             times.passes.iter_mut().for_each(|pass| pass.gpu_ms = None);
         }
-        let images = self.pictures.map(|folder| {
-            let stem = stem(method, self.view, right.reference.viewport);
-            save_pictures(folder, &stem, right, &outputs, &judgement)
-        });
+        let images = self.draw(method, None, right, (&outputs, &judgement))?;
         Ok(Measured {
             certain: counts.certain,
             uncertain: counts.uncertain,
@@ -257,8 +254,32 @@ impl MeasureContext<'_> {
             scene_bytes,
             steady,
             sequence: None,
-            images: images.transpose()?,
+            images,
         })
+    }
+
+    /// Draws the pictures of a view, or of a frame of a path, where there are to be any.
+    ///
+    /// # Errors
+    /// Outputs that do not fit the reference.
+    pub fn draw(
+        &self,
+        method: &Method,
+        frame: Option<usize>,
+        right: &RightAnswer,
+        (outputs, judgement): (&Outputs, &Judgement),
+    ) -> Result<Option<Images>, CliError> {
+        let Some(pictures) = &self.pictures else {
+            return Ok(None);
+        };
+        let place = PicturePlace {
+            stem: stem(method, self.view, right.reference.viewport),
+            view: self.view,
+            frame,
+        };
+        let (images, files) = draw_pictures(&place, right, outputs, judgement)?;
+        pictures.replace(files);
+        Ok(Some(images))
     }
 
     /// The run with nothing measured.

@@ -11,7 +11,6 @@ use crate::measuring::steady;
 use crate::measuring::stop::{Attempt, Stop, attempt};
 use crate::measuring::subject::Shot;
 use crate::measuring::timing;
-use crate::pictures::run_pictures::{save_pictures, stem};
 use crate::records::results::{Answer, Measured};
 use crate::records::samples::TimedFrame;
 use crate::records::sequence::{FrameCost, Remade, Sequence, SequenceFrame};
@@ -23,7 +22,7 @@ use skiagraph_gpu::{ExecuteError, Executor, Frame, FrameReport};
 use skiagraph_graph::Plan;
 use skiagraph_passes::{Built, How, SceneProvider};
 use skiagraph_reference::{
-    BlockerCounts, Graded, Progress, Shimmer, Statistics,
+    BlockerCounts, Graded, JudgedPixels, Progress, Shimmer, Statistics,
     shimmer::{same_receivers, shimmer},
 };
 use std::time::Duration;
@@ -161,7 +160,7 @@ struct Account {
     /// What the frame before showed.
     before: Option<Vec<f32>>,
     /// Where answers or the light are graded: of each frame.
-    graded: Vec<(Graded, u64)>,
+    graded: Vec<(Graded, JudgedPixels)>,
     /// Whether the method answers in shares.
     shares: bool,
     /// The worst frame that was seen yet, for its pictures.
@@ -212,13 +211,12 @@ impl MeasureContext<'_> {
             times.frame.gpu_ms = None;
             times.passes.iter_mut().for_each(|pass| pass.gpu_ms = None);
         }
-        let images = match (self.pictures, &account.worst) {
-            (Some(folder), Some((index, outputs, judgement))) => {
+        let images = match &account.worst {
+            Some((index, outputs, judgement)) => {
                 let right = &path.judges[*index].right;
-                let stem = stem(method, self.view, right.reference.viewport);
-                Some(save_pictures(folder, &stem, right, outputs, judgement)?)
+                self.draw(method, Some(*index), right, (outputs, judgement))?
             }
-            _ => None,
+            None => None,
         };
         let mut all = Shimmer::default();
         for frame in &account.frames {
@@ -407,12 +405,16 @@ impl MeasureContext<'_> {
         }
         account.before = Some(shown);
         account.shares |= outputs.shares.is_some();
-        let graded = judgement
-            .graded
-            .map(|graded| (graded, counts.pixels.facing_light));
+        let pixels = JudgedPixels {
+            facing_light: counts.pixels.facing_light,
+            in_band: counts.band,
+        };
+        let graded = judgement.graded.map(|graded| (graded, pixels));
         account.graded.extend(graded);
+        // Only a frame that is worse than all before it: of equal ones the first counts.
+        let error = account.frames[index].error();
         let worst = account.worst.as_ref();
-        if worst.is_none_or(|(.., worst)| judgement.is_worse_than(worst)) {
+        if worst.is_none_or(|(worst, ..)| error > account.frames[*worst].error()) {
             account.worst = Some((index, outputs, judgement));
         }
         Ok(())

@@ -7,16 +7,24 @@ use image::{ExtendedColorType, ImageEncoder};
 use skiagraph_reference::Image;
 use std::path::Path;
 
-/// Writes a picture, whole or not at all.
+/// The contents of the file `path`.
 ///
 /// # Errors
-/// The path cannot be written.
-pub fn save(path: &Path, image: &Image) -> Result<(), CliError> {
+/// The picture cannot be encoded.
+pub fn encode(path: &Path, image: &Image) -> Result<Vec<u8>, CliError> {
     let mut png = Vec::new();
     let [width, height] = image.size;
     // Flat areas: the fast setting would make them five times as large.
     PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::Adaptive)
         .write_image(&image.rgb, width, height, ExtendedColorType::Rgb8)
         .map_err(|error| CliError::write(path, error))?;
-    write_whole(path, &png)
+    Ok(png)
+}
+
+/// Writes a picture, whole or not at all.
+///
+/// # Errors
+/// The path cannot be written.
+pub fn save(path: &Path, image: &Image) -> Result<(), CliError> {
+    write_whole(path, &encode(path, image)?)
 }

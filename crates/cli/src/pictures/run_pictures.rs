@@ -1,72 +1,136 @@
 //! The pictures of a run and of the reference, and their file names.
 
 use crate::error::CliError;
+use crate::files::write::write_whole;
 use crate::graphs::contract::{Judgement, Outputs};
 use crate::graphs::method::Method;
 use crate::pictures::png;
 use crate::records::results::Images;
 use crate::wording::size;
 use skiagraph_reference::{Error, Image, RightAnswer};
-use std::{collections::BTreeMap, path::Path};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 
-/// Writes the pictures of a frame, their names beginning with `stem`.
+/// A picture that is drawn and not yet written: it is written together with the figures that it
+/// belongs to.
+pub struct PictureFile {
+    /// Its name in the folder.
+    pub name: String,
+    /// Its contents.
+    pub png: Vec<u8>,
+}
+
+/// Writes pictures into a folder, each whole or not at all.
 ///
 /// # Errors
 /// One cannot be written.
-pub fn save_pictures(
-    folder: &Path,
-    stem: &str,
+pub fn write_pictures(folder: &Path, files: &[PictureFile]) -> Result<(), CliError> {
+    let mut files = files.iter();
+    files.try_for_each(|file| write_whole(&folder.join(&file.name), &file.png))
+}
+
+/// What pictures are of: a run on a view or case, or a frame of a camera path.
+pub struct PicturePlace<'a> {
+    /// What the names of the method's pictures begin with.
+    pub stem: String,
+    /// The view, path or case.
+    pub view: &'a str,
+    /// The frame of a path, counted from 0.
+    pub frame: Option<usize>,
+}
+
+impl PicturePlace<'_> {
+    fn file(&self, name: String) -> String {
+        match self.frame {
+            Some(frame) => numbered(Path::new(&name), frame).display().to_string(),
+            None => name,
+        }
+    }
+}
+
+/// Draws the pictures of a frame, and that of the reference beside it.
+///
+/// # Errors
+/// Outputs that do not fit the reference.
+pub fn draw_pictures(
+    place: &PicturePlace,
     right: &RightAnswer,
     outputs: &Outputs,
     judgement: &Judgement,
-) -> Result<Images, CliError> {
+) -> Result<(Images, Vec<PictureFile>), CliError> {
     let Judgement { counts, graded } = judgement;
     let (reference, visibility, status) = (&right.reference, &outputs.shown(), &outputs.status);
-    let save = |kind: &str, image| save_picture(folder, format!("{stem}-{kind}.png"), image);
-    Ok(Images {
-        shaded: save("shaded", Image::shaded(visibility, reference))?,
-        visibility: save(
+    let of_reference = draw_reference(place.view, place.frame, right)?;
+    let mut files = Vec::new();
+    let mut draw = |kind: &str, image| -> Result<String, CliError> {
+        let file = drawn(place.file(format!("{}-{kind}.png", place.stem)), image)?;
+        let name = file.name.clone();
+        files.push(file);
+        Ok(name)
+    };
+    let images = Images {
+        frame: place.frame,
+        reference: Some(of_reference.name.clone()),
+        shaded: draw("shaded", Image::shaded(visibility, reference))?,
+        visibility: draw(
             "visibility",
             Image::visibility(reference.viewport, visibility, status),
         )?,
         error: match graded {
-            None => save(
+            None => draw(
                 "error",
                 Image::error(&outputs.visibility, status, reference),
             )?,
             Some(_) => {
                 let difference = Image::difference(visibility, &right.shares(), reference);
-                save("error", difference)?
+                draw("error", difference)?
             }
         },
         uncertain: match counts.certain.lit + counts.certain.shadow + counts.uncertain {
             0 => None,
             _ => {
                 let image = Image::uncertain(visibility, status, reference);
-                Some(save("uncertain", image)?)
+                Some(draw("uncertain", image)?)
             }
         },
-    })
+    };
+    files.push(of_reference);
+    Ok((images, files))
 }
 
-/// Writes the picture of the reference of a view or case.
-///
-/// # Errors
-/// It cannot be written.
-pub fn save_reference(folder: &Path, view: &str, right: &RightAnswer) -> Result<(), CliError> {
+/// Draws the picture of the reference of a view or case, or of a frame of a path.
+fn draw_reference(
+    view: &str,
+    frame: Option<usize>,
+    right: &RightAnswer,
+) -> Result<PictureFile, CliError> {
     let reference = &right.reference;
     let image = Image::visibility(reference.viewport, &right.shares(), &reference.status());
-    save_picture(folder, reference_name(view, reference.viewport), image).map(|_| ())
+    let place = PicturePlace {
+        stem: String::new(),
+        view,
+        frame,
+    };
+    drawn(place.file(reference_name(view, reference.viewport)), image)
 }
 
-fn save_picture(
-    folder: &Path,
-    name: String,
-    image: Result<Image, Error>,
-) -> Result<String, CliError> {
+fn drawn(name: String, image: Result<Image, Error>) -> Result<PictureFile, CliError> {
     let image = image.map_err(|error| CliError::Input(format!("no picture {name}: {error}")))?;
-    png::save(&folder.join(&name), &image)?;
-    Ok(name)
+    let png = png::encode(Path::new(&name), &image)?;
+    Ok(PictureFile { name, png })
+}
+
+/// The file of a frame: `visibility.0003.png` of `visibility.png`.
+pub fn numbered(file: &Path, frame: usize) -> PathBuf {
+    let mut name = file.file_stem().unwrap_or_default().to_owned();
+    name.push(format!(".{frame:04}"));
+    if let Some(extension) = file.extension() {
+        name.push(".");
+        name.push(extension);
+    }
+    file.with_file_name(name)
 }
 
 /// Refuses pictures that would overwrite each other, before anything runs: what the name of each
@@ -119,7 +183,7 @@ pub fn graph_name(method: &str) -> String {
     format!("graph-{}.svg", slug(method))
 }
 
-/// The name of the reference's picture.
+/// The name of the reference's picture of a still view.
 pub fn reference_name(view: &str, viewport: [u32; 2]) -> String {
     format!("{}-visibility.png", reference_stem(view, viewport))
 }

@@ -434,6 +434,13 @@ pub struct Cached {
 /// File names of a run's pictures.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Images {
+    /// Of a camera path, the frame that they show, counted from 0: the worst. Its number is in
+    /// their names. Absent of a still view.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frame: Option<usize>,
+    /// The reference's shadows, the same of all methods; absent in files of older programs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reference: Option<String>,
     /// The scene in the method's shadow.
     pub shaded: String,
     /// The output `visibility`.
@@ -555,6 +562,8 @@ pub(crate) mod tests {
             steady: None,
             sequence: None,
             images: gpu.then(|| Images {
+                frame: None,
+                reference: Some("reference.png".into()),
                 shaded: format!("{name}-shaded.png"),
                 visibility: format!("{name}-visibility.png"),
                 error: format!("{name}-error.png"),

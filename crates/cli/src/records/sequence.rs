@@ -79,6 +79,13 @@ impl FrameCost {
 }
 
 impl SequenceFrame {
+    /// By what frames are ranked: the root mean square error of shares where there is one, else the
+    /// share of wrong pixels.
+    pub fn error(&self) -> f64 {
+        let wrong = || self.wrong as f64 / self.facing_light.max(1) as f64;
+        self.graded.map_or_else(wrong, |graded| graded.rmse)
+    }
+
     /// Its times as it is, with what is kept.
     pub fn cost(&self) -> FrameCost {
         FrameCost {
@@ -89,11 +96,11 @@ impl SequenceFrame {
 }
 
 impl Sequence {
-    /// The frame with the largest share of wrong pixels, the first of equal ones, with its index.
+    /// The frame with the largest [error](SequenceFrame::error), the first of equal ones, with its
+    /// index: the one that columns name and that pictures are of.
     pub fn worst(&self) -> Option<(usize, &SequenceFrame)> {
-        let share = |frame: &SequenceFrame| frame.wrong as f64 / frame.facing_light.max(1) as f64;
         let frames = self.frames.iter().enumerate();
-        frames.reduce(|worst, other| match share(other.1) > share(worst.1) {
+        frames.reduce(|worst, other| match other.1.error() > worst.1.error() {
             true => other,
             false => worst,
         })

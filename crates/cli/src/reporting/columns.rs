@@ -118,6 +118,7 @@ const CSV: &[Figure] = &[
         Measure(|of| path(of, |by| Some(Count(by.slowest_with_every_pass()?.0 as u64))))),
     ("every_pass_slowest_frame_ms",
         Measure(|of| path(of, |by| Some(Time(by.slowest_with_every_pass()?.1.ms()))))),
+    ("worst_frame_rmse", Measure(|of| path(of, |by| Some(Real(by.worst()?.1.graded?.rmse))))),
 ];
 
 /// Figures that only tables show.
@@ -153,7 +154,7 @@ const TERMINAL: [Entry; 13] = [
 ];
 
 /// The terminal's table of answers that are graded, or judged by the shares of a light with extent.
-const GRADED: [Entry; 16] = [
+const GRADED: [Entry; 17] = [
     ("preset", "method", ""),
     (MAP_SIZE, "map", ""),
     ("answer", "answer", ""),
@@ -169,11 +170,12 @@ const GRADED: [Entry; 16] = [
     ("no_share", "no share", ""),
     ("uncertain", "uncertain", ""),
     ("rays", "rays", ""),
+    ("worst_frame_rmse", "worst frame", ""),
     ("shimmer", "shimmer", ""),
 ];
 
 /// The same of a document.
-const GRADED_DOCUMENT: [Entry; 15] = [
+const GRADED_DOCUMENT: [Entry; 16] = [
     ("preset", "method", ""),
     (MAP_SIZE, "map", ""),
     ("answer", "answer", ""),
@@ -186,6 +188,7 @@ const GRADED_DOCUMENT: [Entry; 15] = [
     ("flip", "FLIP", ""),
     ("no_share", "no share", ""),
     ("uncertain", "uncertain %", "uncertain_percent"),
+    ("worst_frame_rmse", "worst frame RMSE", ""),
     ("shimmer", "shimmer %", ""),
     ("rays", "rays", "rays"),
     ("gpu_ms", "frame ms", "ms.frame"),
@@ -195,7 +198,7 @@ const GRADED_DOCUMENT: [Entry; 15] = [
 const MAP_SIZE: &str = "map_size";
 
 /// Columns that only stand in a table of camera paths.
-const OF_PATHS: [&str; 2] = ["worst_frame_wrong", "shimmer"];
+const OF_PATHS: [&str; 3] = ["worst_frame_wrong", "worst_frame_rmse", "shimmer"];
 
 /// A document's table, but for the times of steps, which stand behind the rays.
 const DOCUMENT: [Entry; 20] = [
@@ -284,7 +287,7 @@ fn shimmer(measured: &Measured) -> Option<Part> {
     })
 }
 
-/// Of a camera path: the frame with the largest share of wrong pixels, and that share.
+/// Of a camera path: the worst frame, and its share of wrong pixels.
 fn worst(measured: &Measured) -> Option<(u64, Part)> {
     let (index, frame) = measured.sequence.as_ref()?.worst()?;
     let part = Part {
@@ -443,11 +446,18 @@ mod tests {
         assert_eq!(csv().len(), CSV.len());
         let runs = sample().runs;
         let all: Vec<&Run> = runs.iter().collect();
-        let with_maps = TERMINAL.len() - OF_PATHS.len();
+        let of_paths = |entries: &[Entry]| {
+            let of_paths = entries.iter().filter(|(name, ..)| OF_PATHS.contains(name));
+            of_paths.count()
+        };
+        let with_maps = TERMINAL.len() - of_paths(&TERMINAL);
         assert_eq!(terminal(true, &all).len(), with_maps);
         let without: Vec<&Run> = runs.iter().filter(|run| run.map_size.is_none()).collect();
         assert_eq!(terminal(true, &without).len(), with_maps - 1);
-        assert_eq!(terminal(false, &all).len(), GRADED.len() - 1);
+        assert_eq!(
+            terminal(false, &all).len(),
+            GRADED.len() - of_paths(&GRADED)
+        );
         let parts = document(false, true, |_| true).map(|part| part.len());
         assert_eq!(parts, [GRADED_DOCUMENT.len() - 1, 1]);
         let parts = |paths, published| document(true, paths, |_| published).map(|part| part.len());
@@ -458,7 +468,7 @@ mod tests {
             [fewer - 1, 1],
             "only the frame is behind the steps"
         );
-        assert_eq!(parts(false, false), [fewer - 1 - OF_PATHS.len(), 1]);
+        assert_eq!(parts(false, false), [fewer - 1 - of_paths(&DOCUMENT), 1]);
         let mut names: Vec<_> = CSV.iter().chain(IN_TABLES).map(|(name, _)| name).collect();
         names.sort();
         assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");

@@ -12,8 +12,13 @@ use crate::wording::{command_line, frames, ms, share, thousands};
 use std::{collections::BTreeSet, env};
 
 /// What all tables have in common. `today` is the date of the runs that are still to be measured,
-/// if there are any.
-pub fn header(results: &Results, today: Option<&str>, published: &[PublishedFile]) -> String {
+/// if there are any; `are_paths` if they are of camera paths, whose frames are timed.
+pub fn header(
+    results: &Results,
+    today: Option<&str>,
+    published: &[PublishedFile],
+    are_paths: bool,
+) -> String {
     let dates = results.runs.iter().map(|run| run.date.as_str());
     let dates: BTreeSet<&str> = dates.chain(today).filter(|date| !date.is_empty()).collect();
     let date = match (dates.first(), dates.last()) {
@@ -31,7 +36,10 @@ pub fn header(results: &Results, today: Option<&str>, published: &[PublishedFile
         format!(
             "times: on the GPU, medians of {} after {} to warm up; {}; *frame* is from the first \
              pass's begin to the last one's end",
-            frames(results.frames),
+            match are_paths {
+                true => "a path's frames".to_owned(),
+                false => frames(results.frames),
+            },
             results.warmup,
             heads.join(", ")
         ),
@@ -300,7 +308,7 @@ mod tests {
     fn a_document_has_a_table_per_viewport() {
         let results = sample();
         let beside = ["D:docs/d.csv".parse().unwrap()];
-        let header = header(&results, None, &beside);
+        let header = header(&results, None, &beside, false);
         // The test runner's own arguments.
         let command = command_line(env::args_os());
         let text = [header, view("main"), viewport(&results, &results.runs)].concat();
@@ -349,11 +357,12 @@ mod tests {
     #[test]
     fn dates_are_a_day_or_a_span() {
         let mut results = sample();
-        assert!(header(&results, None, &[]).contains("date: 2026-11-20 (UTC)"));
-        let both = header(&results, Some("2026-11-21"), &[]);
+        assert!(header(&results, None, &[], true).contains("date: 2026-11-20 (UTC)"));
+        let both = header(&results, Some("2026-11-21"), &[], false);
         assert!(both.contains("date: 2026-11-20 to 2026-11-21"), "{both}");
         results.runs.clear();
-        assert!(header(&results, Some("2026-11-21"), &[]).contains("date: 2026-11-21"));
+        let none = header(&results, Some("2026-11-21"), &[], true);
+        assert!(none.contains("date: 2026-11-21") && none.contains("medians of a path's frames"));
     }
 
     #[test]

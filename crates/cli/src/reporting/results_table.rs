@@ -9,6 +9,7 @@ use crate::reporting::notes::{
 };
 use crate::reporting::table::table;
 use crate::wording::{frames, ms, percent, size, thousands};
+use std::collections::BTreeSet;
 
 /// A heading and both tables for the runs of one view and viewport, which must stand together in
 /// `runs`.
@@ -25,7 +26,7 @@ pub fn group(results: &Results, runs: &[Run]) -> String {
     if runs.iter().any(|run| run.measured.is_some()) {
         text += &format!(
             "\nEach pass, ms: least, median and 95th percentile of {}\n",
-            frames(timed_frames(results, runs))
+            timed_frames(results, runs)
         );
         text.push_str(&passes(runs));
         text.push('\n');
@@ -56,7 +57,7 @@ fn heading(results: &Results, run: &Run, runs: &[Run]) -> String {
         results.adapter.to_string(),
         format!(
             "medians of {} after {} to warm up · oracle {}",
-            frames(timed_frames(results, runs)),
+            timed_frames(results, runs),
             results.warmup,
             results.oracle
         ),
@@ -81,12 +82,20 @@ fn heading(results: &Results, run: &Run, runs: &[Run]) -> String {
     format!("{title}\n{}\n", lines.join("\n"))
 }
 
-/// How many frames were timed of each run.
-pub fn timed_frames<'a>(results: &Results, runs: impl IntoIterator<Item = &'a Run>) -> u32 {
+/// How many frames were timed of each run: `10 frames`; of paths of several lengths `9 to 25
+/// frames`.
+pub fn timed_frames<'a>(results: &Results, runs: impl IntoIterator<Item = &'a Run>) -> String {
     let measured = runs.into_iter().filter_map(|run| run.measured.as_ref());
-    let mut paths = measured.filter_map(|of| of.sequence.as_ref());
-    let of_path = paths.next().map(|path| path.frames.len() as u32);
-    of_path.unwrap_or(results.frames)
+    let counts = measured.map(|of| {
+        let path = of.sequence.as_ref();
+        path.map_or(results.frames, |path| path.frames.len() as u32)
+    });
+    let counts: BTreeSet<u32> = counts.collect();
+    let least = counts.first().copied().unwrap_or(results.frames);
+    match counts.last() {
+        Some(most) if *most != least => format!("{least} to {}", frames(*most)),
+        _ => frames(least),
+    }
 }
 
 fn comparison(results: &Results, runs: &[&Run]) -> String {

@@ -2,6 +2,7 @@
 //! picks a method asks for.
 
 use crate::records::results::{Measured, Part, Run, step};
+use crate::records::sequence::SequenceFrame;
 use crate::records::statistics::FrameTimes;
 use skiagraph_reference::Shimmer;
 
@@ -135,16 +136,11 @@ impl<'a> Row<'a> {
         Some(all.into_iter().fold(Part { count: 0, of: 0 }, add))
     }
 
-    /// Of camera paths: wrong pixels of the frame with the largest share of them.
-    pub fn worst_frame(&self) -> Option<Part> {
+    /// Of camera paths: the worst frame of all, by its error.
+    pub fn worst_frame(&self) -> Option<&'a SequenceFrame> {
         let paths = self.runs.iter();
-        let paths = paths.filter_map(|(_, of)| Some(of.sequence.as_ref()?.worst()?.1));
-        let parts = paths.map(|frame| Part {
-            count: frame.wrong,
-            of: frame.facing_light,
-        });
-        let share = |part: &Part| part.count as f64 / part.of.max(1) as f64;
-        parts.max_by(|one, other| share(one).total_cmp(&share(other)))
+        let worst = paths.filter_map(|(_, of)| Some(of.sequence.as_ref()?.worst()?.1));
+        worst.max_by(|one, other| one.error().total_cmp(&other.error()))
     }
 
     /// Bytes of its own materials and of what it reads of the scene, the most on any view.

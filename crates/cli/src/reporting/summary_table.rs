@@ -7,7 +7,7 @@ use crate::reporting::notes::{band_warning, blocked_by, path_costs, remembering,
 use crate::reporting::summary::{Row, by_wall, rows};
 use crate::reporting::verdict::{Verdict, verdict};
 use crate::reporting::{graded, results_table::timed_frames, table::table};
-use crate::wording::{bytes, frames, ms, percent, plural, size, thousands};
+use crate::wording::{bytes, ms, percent, plural, size, thousands};
 use skiagraph_reference::BlockerCounts;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -76,7 +76,7 @@ impl<'a> Summary<'a> {
         let paths = are_paths(self.runs.iter().copied());
         match (views.first(), views.len()) {
             (Some(view), 1) if paths => {
-                let frames = frames(timed_frames(self.results, self.runs.iter().copied()));
+                let frames = timed_frames(self.results, self.runs.iter().copied());
                 format!("path {view}, {frames}")
             }
             (Some(view), 1) => format!("view {view}"),
@@ -142,7 +142,7 @@ impl<'a> Summary<'a> {
             self.results.adapter.to_string(),
             format!(
                 "times: {clock}, medians of {} after {} to warm up{mean} · oracle {}",
-                frames(timed_frames(self.results, self.runs.iter().copied())),
+                timed_frames(self.results, self.runs.iter().copied()),
                 self.results.warmup,
                 self.results.oracle
             ),
@@ -156,14 +156,12 @@ impl<'a> Summary<'a> {
                 percent(band, facing)
             ),
         ];
-        let warning = each.iter().find_map(|run| band_warning(run));
-        lines.extend(warning);
-        let areas = each.iter().filter_map(|run| Some((run.area?, run.band)));
-        lines.extend(
-            areas
-                .map(|(area, band)| graded::area_reference(&area, band))
-                .take(1),
-        );
+        let warned = each.iter();
+        lines.extend(warned.filter_map(|run| Some(self.named(run, band_warning(run)?))));
+        lines.extend(each.iter().filter_map(|run| {
+            let area = graded::area_reference(&run.area?, run.band);
+            Some(self.named(run, area))
+        }));
         lines
     }
 
@@ -175,8 +173,9 @@ impl<'a> Summary<'a> {
             true => &["wrong outside band", "%", "in band"][..],
             false => &["RMSE"][..],
         });
-        heads.extend((are_paths && group.is_hard).then_some("worst frame"));
-        heads.extend(are_paths.then_some("shimmer"));
+        if are_paths {
+            heads.extend(["worst frame", "shimmer"]);
+        }
         heads.extend(["frame ms", "map kept ms", "rays", "memory"]);
         let best = group.verdict().fastest_exact;
         let views = self.views().len();
@@ -201,11 +200,11 @@ impl<'a> Summary<'a> {
                 ]),
                 false => cells.push(or_dash(row.rmse(), |rmse| format!("{rmse:.5}"))),
             }
-            if are_paths && group.is_hard {
-                let worst = row.worst_frame();
-                cells.push(or_dash(worst, |part| percent(part.count, part.of)));
-            }
             if are_paths {
+                cells.push(or_dash(row.worst_frame(), |frame| match group.is_hard {
+                    true => percent(frame.wrong, frame.facing_light),
+                    false => format!("{:.5}", frame.error()),
+                }));
                 let shimmer = row.shimmer();
                 cells.push(or_dash(shimmer, |part| percent(part.count, part.of)));
             }
@@ -236,26 +235,32 @@ impl<'a> Summary<'a> {
             Some(format!("{} is unavailable: {why}", row.label))
         }));
         notes.extend(self.certain_wrong());
-        let several = self.views().len() > 1;
-        let named = |run: &&Run, note: String| match several {
-            true => format!("{}: {note}", run.view),
-            false => note,
-        };
         let told = self.runs.iter().copied();
         notes.extend(
             told.clone()
-                .filter_map(|run| Some(named(&run, graded::no_shares(run)?))),
+                .filter_map(|run| Some(self.named(run, graded::no_shares(run)?))),
         );
         notes.extend(
             told.clone()
-                .filter_map(|run| Some(named(&run, remembering(run)?))),
+                .filter_map(|run| Some(self.named(run, remembering(run)?))),
         );
-        notes.extend(told.clone().flat_map(path_costs));
+        notes.extend(told.clone().flat_map(|run| {
+            let costs = path_costs(run).into_iter();
+            costs.map(move |note| self.named(run, note))
+        }));
         match &self.results.adapter.gpu_unavailable {
             Some(reason) => notes.push(format!("No GPU times: {reason}")),
-            None => notes.extend(told.filter_map(|run| Some(named(&run, times_missing(run)?)))),
+            None => notes.extend(told.filter_map(|run| Some(self.named(run, times_missing(run)?)))),
         }
         notes
+    }
+
+    /// A line with the view or path that it is of, where there are several.
+    fn named(&self, run: &Run, line: String) -> String {
+        match self.views().len() {
+            1 => line,
+            _ => format!("{}: {line}", run.view),
+        }
     }
 
     /// That promises end at open parts, and whose.

@@ -62,10 +62,6 @@ fn every_frame_is_judged_and_exact_methods_do_not_shimmer() {
                 run["preset"]
             );
         }
-        for picture in run["images"].as_object().unwrap().values() {
-            let picture = folder.path().join("out").join(picture.as_str().unwrap());
-            assert!(picture.is_file(), "{}", picture.display());
-        }
     }
     let csv = fs::read_to_string(folder.path().join("out/results.csv")).unwrap();
     let head = csv.lines().next().unwrap();
@@ -220,4 +216,81 @@ fn a_path_that_is_not_there_is_refused_with_those_that_are() {
         none.contains("`city` has no camera paths") && none.contains("keys:"),
         "{none}"
     );
+}
+
+/// The root mean square error outside the band of all frames, from those of each.
+fn outside_band(frames: &[Value]) -> f64 {
+    let (mut squares, mut pixels) = (0.0, 0.0);
+    for frame in frames {
+        let rmse = frame["graded"]["rmse_outside_band"].as_f64().unwrap();
+        // At this size the band has a handful of pixels.
+        let facing = count(&frame["facing_light"]) as f64;
+        squares += rmse * rmse * facing;
+        pixels += facing;
+    }
+    (squares / pixels).sqrt()
+}
+
+#[test]
+fn figures_lines_and_pictures_say_of_which_path_and_frame_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "compare pcf nsm --path all --size 32x32 --map-size 32 --warmup 0 --cached-frames 0 \
+                --out out";
+    let (runs, table) = results(folder.path(), line);
+    assert_eq!(runs.len(), 8);
+    let csv = fs::read_to_string(folder.path().join("out/results.csv")).unwrap();
+    let mut lines = csv::Reader::from_reader(csv.as_bytes());
+    let heads = lines.headers().unwrap().clone();
+    let column = |name: &str| heads.iter().position(|head| head == name).unwrap();
+    for (run, cells) in runs.iter().zip(lines.records()) {
+        let cells = cells.unwrap();
+        let frames = run["sequence"]["frames"].as_array().unwrap();
+        let error = |frame: &Value| match frame["graded"]["rmse"].as_f64() {
+            Some(rmse) => rmse,
+            None => count(&frame["wrong"]) as f64 / count(&frame["facing_light"]) as f64,
+        };
+        let worst = (0..frames.len()).fold(0, |worst, index| {
+            match error(&frames[index]) > error(&frames[worst]) {
+                true => index,
+                false => worst,
+            }
+        });
+        let name = format!("{} on {}", run["preset"], run["view"]);
+        assert_eq!(cells[column("worst_frame")], worst.to_string(), "{name}");
+        let graded = &run["graded"]["rmse_outside_band"];
+        let in_csv = &cells[column("rmse_outside_band")];
+        match run["preset"] == "pcf" {
+            true => {
+                let (graded, expected) = (graded.as_f64().unwrap(), outside_band(frames));
+                assert!((graded - expected).abs() < 0.01, "{name}: {graded}");
+                assert!(graded > 0.1 && in_csv.parse::<f64>().unwrap() > 0.1);
+                let rmse: f64 = cells[column("worst_frame_rmse")].parse().unwrap();
+                assert!((rmse - error(&frames[worst])).abs() < 1e-8, "{name}");
+            }
+            false => assert!(graded.is_null() && in_csv.is_empty(), "{name}"),
+        }
+        let images = run["images"].as_object().unwrap();
+        assert_eq!(count(&images["frame"]), worst as u64, "{name}");
+        for (kind, file) in images.iter().filter(|(kind, _)| *kind != "frame") {
+            let file = file.as_str().unwrap();
+            assert!(file.ends_with(&format!(".{worst:04}.png")), "{name} {kind}");
+            assert!(folder.path().join("out").join(file).is_file(), "{file}");
+        }
+    }
+    // Four paths of 9 to 25 frames: what is said of a run names its path.
+    assert!(table.contains("medians of 9 to 25 frames"), "{table}");
+    let of_runs = table
+        .lines()
+        .filter(|line| line.contains("slowest frame") || line.contains("between frames"));
+    let of_runs: Vec<&str> = of_runs.collect();
+    assert!(of_runs.len() >= 8, "{table}");
+    for line in of_runs {
+        let is_named = ["walk: ", "sunrise: ", "lamp: ", "wind: "]
+            .iter()
+            .any(|path| line.starts_with(path));
+        assert!(is_named, "{line}");
+    }
+    let page = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    assert!(page.contains("walk: nsm 32 as it is: slowest frame"));
+    assert!(page.contains("\"label\":null,\"frame\":"), "the reference");
 }

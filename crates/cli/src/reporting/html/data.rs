@@ -1,8 +1,10 @@
 //! What the page draws, as JSON.
 
 use crate::records::results::{PROGRAM, Part, Results};
+use crate::records::sequence::SequenceFrame;
 use crate::reporting::html::pictures::Pictures;
 use crate::reporting::html::sources::Source;
+use crate::reporting::results_table::timed_frames;
 use crate::reporting::summary::{Row, by_wall};
 use crate::reporting::summary_table::{Group, Summary, summaries};
 use serde::Serialize;
@@ -28,7 +30,8 @@ struct Conditions<'a> {
     adapter: String,
     device_type: &'a str,
     oracle: &'a str,
-    frames: u32,
+    /// How many were timed of each run, in words.
+    frames: String,
     warmup: u32,
     dates: BTreeSet<&'a str>,
     commands: &'a [String],
@@ -66,6 +69,8 @@ struct Line<'a> {
     facing: u64,
     in_band: u64,
     rmse: Option<f64>,
+    /// The error of the worst frame of all paths: the share of its wrong pixels, or its root mean
+    /// square error.
     worst_frame: Option<f64>,
     shimmer: Option<f64>,
     frame_ms: Option<f64>,
@@ -109,7 +114,6 @@ fn conditions(source: &Source) -> Conditions<'_> {
         adapter,
         scene,
         oracle,
-        frames,
         warmup,
         commands,
         runs,
@@ -122,7 +126,7 @@ fn conditions(source: &Source) -> Conditions<'_> {
         adapter: adapter.to_string(),
         device_type: &adapter.device_type,
         oracle,
-        frames: *frames,
+        frames: timed_frames(&source.results, runs),
         warmup: *warmup,
         dates: dates.filter(|date| !date.is_empty()).collect(),
         commands,
@@ -167,7 +171,7 @@ fn line<'a>(row: &'a Row, best: bool, wall: bool) -> Line<'a> {
         facing: wrong.facing_light,
         in_band: wrong.in_band,
         rmse: row.rmse(),
-        worst_frame: row.worst_frame().map(share),
+        worst_frame: row.worst_frame().map(SequenceFrame::error),
         shimmer: row.shimmer().map(share),
         frame_ms: row.frame_ms(wall),
         kept_ms: row.kept_ms(wall),

@@ -30,6 +30,8 @@ pub struct Set {
     viewport: [u32; 2],
     /// Method and map in words; none of the reference.
     label: Option<String>,
+    /// Of a camera path, the frame that it shows, counted from 0.
+    frame: Option<usize>,
     shaded: Option<usize>,
     visibility: Option<usize>,
     error: Option<usize>,
@@ -85,6 +87,8 @@ struct Wanted {
     run: usize,
     kind: Kind,
     name: String,
+    /// Of a camera path, the frame that it shows.
+    frame: Option<usize>,
 }
 
 impl Pictures {
@@ -143,8 +147,8 @@ impl Pictures {
         }
         let label = (of.kind != Kind::Reference).then(|| run.method_label());
         let is_of = |set: &Set| {
-            (set.source, &set.view, set.viewport, &set.label)
-                == (of.source, &run.view, run.viewport, &label)
+            (set.source, &set.view, set.viewport, &set.label, set.frame)
+                == (of.source, &run.view, run.viewport, &label, of.frame)
         };
         let index = self.sets.iter().position(is_of);
         let index = index.unwrap_or_else(|| {
@@ -153,6 +157,7 @@ impl Pictures {
                 view: run.view.clone(),
                 viewport: run.viewport,
                 label,
+                frame: of.frame,
                 shaded: None,
                 visibility: None,
                 error: None,
@@ -189,6 +194,7 @@ fn wanted(sources: &[Source]) -> Vec<Wanted> {
                         run: number,
                         kind,
                         name,
+                        frame: images.frame,
                     });
                 }
             }
@@ -199,8 +205,11 @@ fn wanted(sources: &[Source]) -> Vec<Wanted> {
 
 fn names(run: &Run, images: &Images) -> Vec<(Kind, String)> {
     let uncertain = images.uncertain.iter();
+    // Files of older programs do not name it.
+    let reference = images.reference.clone();
+    let reference = reference.unwrap_or_else(|| reference_name(&run.view, run.viewport));
     [
-        (Kind::Reference, reference_name(&run.view, run.viewport)),
+        (Kind::Reference, reference),
         (Kind::Error, images.error.clone()),
         (Kind::Shaded, images.shaded.clone()),
         (Kind::Graph, graph_name(&run.preset)),

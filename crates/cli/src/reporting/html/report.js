@@ -81,7 +81,7 @@ function drawConditions() {
       scene: `${source.scene}, ${thousands(source.triangles)} triangles`,
       adapter: `${source.adapter} (${source.device_type})`,
       measured: source.dates.join(', ') || 'on an unknown day',
-      frames: `${source.frames} timed after ${source.warmup} to warm up`,
+      frames: `${source.frames}, timed after ${source.warmup} to warm up`,
       reference: `oracle ${source.oracle}`,
       from: source.folders.join(', '),
     }).flatMap(([name, text]) => [el('dt', {}, name), el('dd', {}, text)])),

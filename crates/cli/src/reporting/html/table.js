@@ -32,7 +32,7 @@ function columns() {
     isHard && { key: 'share', head: '%', value: ({ of, row }) => error(of, row), cell: ({ of, row }) => percent(error(of, row)) },
     isHard && { key: 'band', head: 'in band', value: ({ row }) => row.in_band, cell: ({ row }) => thousands(row.in_band) },
     !isHard && { key: 'rmse', head: 'RMSE', value: ({ row }) => row.rmse, cell: ({ row }) => orDash(row.rmse, (value) => value.toFixed(5)) },
-    isHard && any('worst_frame') && { key: 'worst', head: 'worst frame', value: ({ row }) => row.worst_frame, cell: ({ row }) => orDash(row.worst_frame, percent) },
+    any('worst_frame') && { key: 'worst', head: 'worst frame', value: ({ row }) => row.worst_frame, cell: ({ row }) => orDash(row.worst_frame, (value) => (isHard ? percent(value) : value.toFixed(5))) },
     any('shimmer') && { key: 'shimmer', head: 'shimmer', value: ({ row }) => row.shimmer, cell: ({ row }) => orDash(row.shimmer, percent) },
     { key: 'frame', head: 'frame ms', value: ({ row }) => row.frame_ms, cell: ({ row }) => orDash(row.frame_ms, ms) },
     { key: 'kept', head: 'map kept ms', value: ({ row }) => row.kept_ms, cell: ({ row }) => orDash(row.kept_ms, ms) },

@@ -8,7 +8,8 @@ const viewer = {
 
 const setsHere = () => data.pictures.sets.filter((set) => set.source === table().source
   && size(set.viewport) === size(table().viewport) && set.view === viewer.views[viewer.place]);
-const nameOf = (set) => set.label ?? 'reference';
+/** Method or reference; of a camera path with the frame, which is the worst of each method. */
+const nameOf = (set) => `${set.label ?? 'reference'}${set.frame === null ? '' : `, frame ${set.frame}`}`;
 const setOf = (pane) => setsHere().find((set) => nameOf(set) === pane.label);
 
 /** Chooses what there is: views, methods and kinds of the table's source and viewport. */
@@ -17,17 +18,25 @@ function settleViewer() {
     && size(set.viewport) === size(table().viewport));
   viewer.views = [...new Set(here.map((set) => set.view))];
   viewer.place = Math.min(viewer.place, Math.max(viewer.views.length - 1, 0));
-  const names = setsHere().map(nameOf);
-  const wanted = [state.row ?? null, null];
-  viewer.panes.forEach((pane, index) => {
-    if (index === 1 && wanted[0] && names.includes(wanted[0]) && viewer.followed !== wanted[0]) {
-      pane.label = wanted[0];
-      viewer.followed = wanted[0];
-    }
-    if (!names.includes(pane.label)) {
-      const worst = table().rows.find((row) => row.wrong > 0 && names.includes(row.label));
-      pane.label = index === 0 && names.includes('reference') ? 'reference' : worst?.label ?? names[0] ?? null;
-    }
+  const sets = setsHere(), names = sets.map(nameOf);
+  const nameOfRow = (label) => names[sets.findIndex((set) => set.label === label)] ?? null;
+  const [left, right] = viewer.panes;
+  const wanted = state.row === null ? null : nameOfRow(state.row);
+  if (wanted !== null && viewer.followed !== wanted) {
+    right.label = wanted;
+    viewer.followed = wanted;
+  }
+  if (!names.includes(right.label)) {
+    const worst = table().rows.find((row) => row.wrong > 0 && nameOfRow(row.label) !== null);
+    right.label = (worst ? nameOfRow(worst.label) : names[0]) ?? null;
+  }
+  if (!names.includes(left.label)) {
+    // The reference of the frame that stands on the right.
+    const frame = setOf(right)?.frame ?? null;
+    const reference = sets.find((set) => set.label === null && set.frame === frame);
+    left.label = reference ? nameOf(reference) : right.label;
+  }
+  viewer.panes.forEach((pane) => {
     const set = setOf(pane);
     if (set && set[pane.kind] === null) {
       pane.kind = ['error', 'visibility', 'shaded', 'uncertain'].find((kind) => set[kind] !== null) ?? pane.kind;

@@ -16,7 +16,7 @@ use std::{ffi::OsStr, path::Path};
 pub fn graph(args: &GraphArgs) -> Result<(), CliError> {
     let (preset, params) = method::load_one(&args.method, &preset::sources())?;
     let viewport = args.method.size.0;
-    let provider = placeholder(viewport);
+    let provider = placeholder(viewport, &preset.graph);
     let mut request = Capabilities::greatest().request(viewport, &provider);
     request.params = params;
     request.outputs = (!args.outputs.is_empty()).then(|| args.outputs.clone());

@@ -76,7 +76,7 @@ fn table(presets: &[Preset]) -> Result<String, CliError> {
 
 fn row(preset: &Preset) -> Result<[String; 7], CliError> {
     let graph = &preset.graph;
-    let provider = placeholder([64, 64]);
+    let provider = placeholder([64, 64], graph);
     let plan = preset.plan(&Capabilities::greatest().request([64, 64], &provider))?;
     let outputs = plan.outputs();
     let format = outputs.iter().find(|output| output.name == VISIBILITY);

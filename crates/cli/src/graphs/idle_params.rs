@@ -1,8 +1,7 @@
 //! Params that are set and change nothing, most of all under a light that has no use for them.
 
-use crate::graphs::light_kinds;
 use crate::graphs::method::Method;
-use crate::graphs::planning::{Capabilities, placeholder, positional};
+use crate::graphs::planning::{Capabilities, placeholder, stand_ins};
 use crate::terminal::console::note;
 use skiagraph_graph::{Graph, ParamType, ParamValue, Plan, PlanRequest};
 use skiagraph_passes::SceneProvider;
@@ -39,11 +38,11 @@ impl IdleParams {
     }
 }
 
-/// The params of words that choose something under directional lights and nothing under another
-/// kind that the graph takes: ` fit` under a spot light, whose map lies over its cone.
+/// The params of words that choose something under the first kind of light that the graph takes and
+/// nothing under another: ` fit` under a spot light, whose map lies over its cone.
 pub fn under_other_lights(graph: &Graph) -> String {
     let viewport = [64, 64];
-    let mut provider = placeholder(viewport);
+    let mut provider = placeholder(viewport, graph);
     let choosing = |provider: &_| {
         let plan = graph.plan(&PlanRequest {
             any_adapter: true,
@@ -51,15 +50,12 @@ pub fn under_other_lights(graph: &Graph) -> String {
         });
         plan.map_or(BTreeSet::new(), |plan| choosing(graph, &plan))
     };
-    let directional = choosing(&provider);
+    let under_first = choosing(&provider);
     let mut told = String::new();
-    for light in positional() {
-        if !light_kinds::takes(graph, light.word()) {
-            continue;
-        }
+    for light in stand_ins(graph).into_iter().skip(1) {
         provider.set_light(light);
         let there = choosing(&provider);
-        let idle: Vec<&str> = directional.difference(&there).map(String::as_str).collect();
+        let idle: Vec<&str> = under_first.difference(&there).map(String::as_str).collect();
         if !idle.is_empty() {
             let (kind, idle) = (light.word(), idle.join(", "));
             told += &format!("; under a {kind} light {idle} has no effect");

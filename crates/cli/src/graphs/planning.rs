@@ -3,9 +3,11 @@
 use crate::graphs::light_kinds;
 use glam::{DVec3, Vec3};
 use skiagraph_gpu::{Provider, device::Gpu};
-use skiagraph_graph::{Diagnostics, Graph, Plan, PlanRequest, Registry, Sources};
+use skiagraph_graph::{Code, Diagnostics, Graph, Plan, PlanRequest, Registry, Sources};
 use skiagraph_passes::SceneProvider;
-use skiagraph_scene::{DirectionalLight, LightKind, Mesh, PointLight, Scene, SpotLight, View};
+use skiagraph_scene::{
+    DirectionalLight, Light, LightKind, Mesh, PointLight, Scene, SpotLight, View,
+};
 use std::sync::Arc;
 
 /// What an adapter can do, as far as a plan depends on it.
@@ -65,15 +67,32 @@ pub fn check(
     sources: &dyn Sources,
     adapter: Option<&Capabilities>,
 ) -> Result<(Graph, Plan), Diagnostics> {
-    let mut provider = placeholder(VIEWPORT);
-    let checked = check_under(&provider, path, registry, sources, adapter)?;
-    for light in positional() {
-        if light_kinds::takes(&checked.0, light.word()) {
-            provider.set_light(light);
-            check_under(&provider, path, registry, sources, adapter)?;
+    // What a document takes is not known if it is faulty: then a light that is refused is passed
+    // over, unless nothing else is wrong with it.
+    let lights = match Graph::load(path, registry, sources) {
+        Ok(graph) => stand_ins(&graph),
+        Err(_) => ALL.map(stand_in).to_vec(),
+    };
+    let mut provider = described(VIEWPORT);
+    let (mut checked, mut refused) = (None, None);
+    for light in lights {
+        provider.set_light(light);
+        match check_under(&provider, path, registry, sources, adapter) {
+            Ok(found) => {
+                checked.get_or_insert(found);
+            }
+            Err(found) if found.iter().any(|it| it.code == Code::Light) => {
+                refused.get_or_insert(found);
+            }
+            Err(found) => return Err(found),
         }
     }
-    Ok(checked)
+    match (checked, refused) {
+        (_, Some(refused)) => Err(refused),
+        (Some(checked), None) => Ok(checked),
+        // Every document takes some light.
+        (None, None) => check_under(&provider, path, registry, sources, adapter),
+    }
 }
 
 /// The same under one light.
@@ -94,24 +113,57 @@ fn check_under(
     Graph::check(path, registry, sources, &request)
 }
 
-/// A light of each kind besides directional ones.
-pub fn positional() -> [LightKind; 2] {
+/// What stands in for a scene's light.
+#[derive(Clone, Copy)]
+enum StandIn {
+    Directional,
+    Spot,
+    Point,
+}
+
+/// In the order of [`LIGHT_KINDS`](skiagraph_passes::uniforms::LIGHT_KINDS).
+const ALL: [StandIn; 3] = [StandIn::Directional, StandIn::Spot, StandIn::Point];
+
+fn stand_in(kind: StandIn) -> LightKind {
     let position = DVec3::Z;
-    let spot = SpotLight {
-        position,
-        direction: DVec3::NEG_Z,
-        cone_degrees: 90.0,
-        radius: 0.0,
-    };
-    let point = PointLight {
-        position,
-        radius: 0.0,
-    };
-    [spot.into(), point.into()]
+    match kind {
+        StandIn::Directional => DirectionalLight::new(DVec3::NEG_Z).into(),
+        StandIn::Spot => LightKind::Spot(SpotLight {
+            position,
+            direction: DVec3::NEG_Z,
+            cone_degrees: 90.0,
+            radius: 0.0,
+        }),
+        StandIn::Point => LightKind::Point(PointLight {
+            position,
+            radius: 0.0,
+        }),
+    }
+}
+
+/// A light of each kind that a graph takes, at least one: all of them, if it takes none that there
+/// is.
+pub fn stand_ins(graph: &Graph) -> Vec<LightKind> {
+    let all = ALL.map(stand_in);
+    let taken = all.iter().filter(|it| light_kinds::takes(graph, it.word()));
+    let taken: Vec<LightKind> = taken.copied().collect();
+    match taken.is_empty() {
+        true => all.to_vec(),
+        false => taken,
+    }
+}
+
+/// Describes all that a scene can give, under the first kind of light that the graph takes.
+pub fn placeholder(viewport: [u32; 2], graph: &Graph) -> SceneProvider {
+    let mut provider = described(viewport);
+    if let Some(light) = stand_ins(graph).first() {
+        provider.set_light(*light);
+    }
+    provider
 }
 
 /// Describes all that a scene can give, of the least scene that has it.
-pub fn placeholder(viewport: [u32; 2]) -> SceneProvider {
+fn described(viewport: [u32; 2]) -> SceneProvider {
     let view = View {
         name: "main".into(),
         eye: DVec3::ZERO,
@@ -131,12 +183,14 @@ pub fn placeholder(viewport: [u32; 2]) -> SceneProvider {
         normal_indices: vec![[0, 0, 0]],
         ..Mesh::default()
     };
-    let light = DirectionalLight::new(DVec3::NEG_Z);
     let scene = Scene {
         name: "check".into(),
         mesh,
         views: vec![view.clone()],
-        lights: vec![light.into()],
+        lights: vec![Light {
+            name: "light".into(),
+            kind: stand_in(StandIn::Directional),
+        }],
     };
     let mut provider = SceneProvider::new(Arc::new(scene));
     provider.set_view(&view, viewport);

@@ -592,3 +592,51 @@ fn chart_says_what_is_missing() {
         assert!(told.contains(message), "{arguments:?}: {told}");
     }
 }
+
+#[test]
+fn a_document_is_planned_under_the_lights_that_it_takes() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    assert_exit(&skiagraph(folder, &["new", "mine"]), 0);
+    let document = fs::read_to_string(folder.join("mine.ron")).unwrap();
+    let all = "lights: [directional, spot, point]";
+    assert!(document.contains(all), "{document}");
+    fs::create_dir(folder.join("pipelines")).unwrap();
+    fs::copy(folder.join("mine.wgsl"), folder.join("pipelines/mine.wgsl")).unwrap();
+    for (lights, refused) in [
+        ("point", "takes no directional or spot light"),
+        ("spot, point", "takes no directional light"),
+    ] {
+        let document = document.replace(all, &format!("lights: [{lights}]"));
+        fs::write(folder.join("mine.ron"), &document).unwrap();
+        let checked = skiagraph(folder, &["check", "mine.ron"]);
+        assert_exit(&checked, 0);
+        assert!(stdout(&checked).contains(refused), "{}", stdout(&checked));
+        let drawn = skiagraph(folder, &["graph", "mine.ron", "--format", "json"]);
+        assert_exit(&drawn, 0);
+        assert!(stdout(&drawn).contains("\"light\""));
+        // As a preset of the folder.
+        fs::write(folder.join("pipelines/lamps_only.ron"), &document).unwrap();
+        let listed = skiagraph(folder, &["presets", "--format", "markdown"]);
+        assert_exit(&listed, 0);
+        let row = stdout(&listed);
+        let row = row.lines().find(|line| line.contains("`lamps_only`"));
+        assert!(row.is_some_and(|row| row.contains(&format!("| {lights} |"))));
+        // A mistake is shown, and no light that the document does not take.
+        let broken = document.replace("outputs: [", "outputs: [\"nothing\", ");
+        assert_ne!(broken, document);
+        fs::write(folder.join("mine.ron"), broken).unwrap();
+        let checked = skiagraph(folder, &["check", "mine.ron"]);
+        assert_exit(&checked, 1);
+        let told = stderr(&checked);
+        assert!(
+            told.contains("`nothing`") && !told.contains("takes no"),
+            "{told}"
+        );
+    }
+    let strange = document.replace(all, "lights: [sun]");
+    fs::write(folder.join("mine.ron"), strange).unwrap();
+    let checked = skiagraph(folder, &["check", "mine.ron"]);
+    assert_exit(&checked, 1);
+    assert!(stderr(&checked).contains("it takes: sun"));
+}

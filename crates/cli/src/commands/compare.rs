@@ -20,7 +20,6 @@ use crate::measuring::subject::Subject;
 use crate::measuring::{date, device};
 use crate::pictures::run_pictures::{check_stems, graph_name, reference_stem, stem};
 use crate::records::results::{PROGRAM, Results};
-use crate::reporting::results_csv::save;
 use crate::reporting::summary_table::{self, Summary};
 use crate::reporting::{markdown, published, results_table};
 use crate::terminal::console::{note, print};
@@ -104,33 +103,34 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         primary: &primary,
         fingerprint: fingerprint(args, &scene, &subjects, &primary),
     };
-    if args.images == Images::All {
-        save_graphs(args, &setup, &provider)?;
-    }
+    let graphs = match args.images {
+        Images::All => graphs(&setup, &provider),
+        Images::None => Vec::new(),
+    };
+    // Earlier results may be refused: nothing of theirs is overwritten then.
     let mut comparison = Comparison::new(args, setup, provider, published, results)?;
+    for (name, svg) in &graphs {
+        write_whole(&args.out.join(name), svg.as_bytes())?;
+    }
     interrupt::install()?;
     let outcome = run(args, &mut comparison, &subjects, viewports.len());
     finish(args, comparison, outcome)
 }
 
-/// A chart of each method's graph; of one that this adapter cannot run there is none.
-fn save_graphs(
-    args: &CompareArgs,
-    setup: &ComparisonSetup,
-    provider: &SceneProvider,
-) -> Result<(), CliError> {
+/// A chart of each method's graph, with its file name; of one that this adapter cannot run there is
+/// none.
+fn graphs(setup: &ComparisonSetup, provider: &SceneProvider) -> Vec<(String, String)> {
     let Some(&viewport) = setup.viewports.first() else {
-        return Ok(());
+        return Vec::new();
     };
-    for method in setup.methods {
+    let chart = |method: &Method| {
         let capabilities = Capabilities::of(setup.gpu);
-        if let Ok(plan) = method.at(viewport).plan(viewport, capabilities, provider) {
-            let title = format!("{}, viewport {}", method.name, size(viewport));
-            let svg = Drawing::of(&plan).titled(title).to_svg();
-            write_whole(&args.out.join(graph_name(&method.name)), svg.as_bytes())?;
-        }
-    }
-    Ok(())
+        let plan = method.at(viewport).plan(viewport, capabilities, provider);
+        let title = format!("{}, viewport {}", method.name, size(viewport));
+        let svg = Drawing::of(&plan.ok()?).titled(title).to_svg();
+        Some((graph_name(&method.name), svg))
+    };
+    setup.methods.iter().filter_map(chart).collect()
 }
 
 /// Of all that every run depends on.
@@ -263,19 +263,18 @@ fn print_summary(args: &CompareArgs, results: &Results) -> Result<(), CliError> 
 /// Says what came of it.
 fn finish(
     args: &CompareArgs,
-    comparison: Comparison,
+    mut comparison: Comparison,
     outcome: Result<(), CliError>,
 ) -> Result<(), CliError> {
     let planned = comparison.planned();
-    let whole = comparison.whole();
+    if !comparison.results.runs.is_empty() {
+        print_summary(args, &comparison.whole())?;
+        comparison.save(&[])?;
+        report::write_beside(&args.out)?;
+    }
     let Comparison {
         results, broken, ..
     } = comparison;
-    if !results.runs.is_empty() {
-        print_summary(args, &whole)?;
-        save(&whole, &args.out)?;
-        report::write_beside(&args.out)?;
-    }
     let kept = match results.runs.len() {
         0 => "no run was finished".into(),
         done => format!(

@@ -2,7 +2,7 @@
 
 use crate::args::commands::NewArgs;
 use crate::error::CliError;
-use crate::files::write::write_whole;
+use crate::files::write::write_new;
 use crate::graphs::preset;
 use crate::terminal::console::print;
 use skiagraph_graph::{Param, Sources};
@@ -109,21 +109,28 @@ fn is_literal(text: &str) -> bool {
 
 /// All files or none, and none that is there already.
 fn write_all(files: &[(String, String)]) -> Result<(), CliError> {
+    let is_there = |file: &str| {
+        CliError::Input(format!(
+            "there is a `{file}` already; take another name, or move it away"
+        ))
+    };
     for (file, _) in files {
         if fs::symlink_metadata(file).is_ok() {
-            return Err(CliError::Input(format!(
-                "there is a `{file}` already; take another name, or move it away"
-            )));
+            return Err(is_there(file));
         }
     }
     for (index, (file, text)) in files.iter().enumerate() {
-        if let Err(error) = write_whole(Path::new(file), text.as_bytes()) {
-            for (written, _) in &files[..index] {
-                // What is left behind if even this fails is named by the next attempt.
-                let _ = fs::remove_file(written);
-            }
-            return Err(error);
+        let error = match write_new(Path::new(file), text.as_bytes()) {
+            Ok(true) => continue,
+            // By another process, just now.
+            Ok(false) => is_there(file),
+            Err(error) => error,
+        };
+        for (written, _) in &files[..index] {
+            // What is left behind if even this fails is named by the next attempt.
+            let _ = fs::remove_file(written);
         }
+        return Err(error);
     }
     Ok(())
 }

@@ -2,6 +2,7 @@
 
 use crate::args::commands::ReportArgs;
 use crate::error::CliError;
+use crate::files::lock::{self, Shared};
 use crate::files::write::{check_writable, write_whole};
 use crate::records::read_back;
 use crate::reporting::charts::Kept;
@@ -36,7 +37,17 @@ pub fn write_beside(folder: &Path) -> Result<(), CliError> {
     write(&[folder.to_path_buf()], &folder.join(FILE))
 }
 
+/// A page that stands among results is written while no other process writes these: it is never
+/// older than they are.
 fn write(folders: &[PathBuf], file: &Path) -> Result<(), CliError> {
+    let beside = file.parent();
+    let beside = folders
+        .iter()
+        .find(|folder| beside == Some(folder.as_path()));
+    let _locked = match beside.filter(|folder| folder.is_dir()) {
+        Some(folder) => Some(lock::wait_for(folder, Shared::Results)?),
+        None => None,
+    };
     let (mut kept, mut matrices) = (Vec::new(), Vec::new());
     for folder in folders {
         let matrix = read_back::stress(folder)?;

@@ -5,6 +5,7 @@ use crate::args::shared::GpuArgs;
 use crate::args::values::unique;
 use crate::error::CliError;
 use crate::files::json::to_text;
+use crate::files::lock::{self, Locked, Shared};
 use crate::files::write::{check_folder, write_whole};
 use crate::graphs::faults::reasons;
 use crate::graphs::method::{self, Method};
@@ -62,9 +63,10 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         check_pictures(&methods, &cases, viewport)?;
         check_folder(folder)?;
     }
-    if let Some(folder) = &args.out {
-        check_folder(folder)?;
-    }
+    let _claimed = match &args.out {
+        Some(folder) => Some(claim(folder)?),
+        None => None,
+    };
     let context = HardCaseContext {
         gpu: &gpu,
         primary: &primary,
@@ -84,6 +86,18 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     interrupt::install()?;
     let outcome = run(&context, &cases, &mut report, args.out.as_deref());
     finish(&report, outcome, cases.len(), args)
+}
+
+/// The folder for stress.json, which no other process may write meanwhile.
+fn claim(folder: &Path) -> Result<Locked, CliError> {
+    check_folder(folder)?;
+    lock::claim(folder, Shared::Stress)?.ok_or_else(|| {
+        CliError::Input(format!(
+            "another `skiagraph stress` is writing stress.json into {}\n  wait for its end, or \
+             give another --out",
+            folder.display()
+        ))
+    })
 }
 
 /// Runs case after case; whatever is done is on disk at once.

@@ -76,6 +76,16 @@ fn folder_of(file: &Path) -> &Path {
     }
 }
 
+/// A new file in the same folder, of a name that nothing has.
+fn beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    // Temporary files are private by default; a result should be as readable as any file the user
+    // makes.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.prefix(".skiagraph-").tempfile_in(folder_of(path))
+}
+
 /// Writes a file whole or not at all: beside it first, then renamed over it, so that an interrupt
 /// keeps the old one.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
@@ -85,16 +95,28 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
         }
         // A link stays what it is; the file behind it is replaced.
         let path = &fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
-        let folder = folder_of(path);
-        let mut builder = tempfile::Builder::new();
-        // Temporary files are private by default; a result should be as readable as any file the
-        // user makes.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let mut file = builder.prefix(".skiagraph-").tempfile_in(folder)?;
+        let mut file = beside(path)?;
         file.write_all(bytes)?;
         file.persist(path)?;
         Ok(())
+    };
+    write().map_err(|error| CliError::write(path, error))
+}
+
+/// Writes a file that is not there yet, whole or not at all; false if something of that name is
+/// there.
+///
+/// # Errors
+/// It cannot be written.
+pub fn write_new(path: &Path, bytes: &[u8]) -> Result<bool, CliError> {
+    let write = || -> io::Result<bool> {
+        let mut file = beside(path)?;
+        file.write_all(bytes)?;
+        match file.persist_noclobber(path) {
+            Ok(_) => Ok(true),
+            Err(kept) if kept.error.kind() == io::ErrorKind::AlreadyExists => Ok(false),
+            Err(kept) => Err(kept.error),
+        }
     };
     write().map_err(|error| CliError::write(path, error))
 }
@@ -135,6 +157,9 @@ mod tests {
             1,
             "no temporary file stays"
         );
+        assert!(!write_new(&path, b"newer").unwrap());
+        assert_eq!(std::fs::read(&path).unwrap(), b"new");
+        assert!(write_new(&folder.path().join("b.txt"), b"b").unwrap());
         let missing = folder.path().join("missing").join("a.txt");
         assert!(
             write_whole(&missing, b"x")

@@ -1,23 +1,23 @@
 //! The runs of a comparison, one after the other; whatever is measured is on disk at once.
 
 use crate::args::commands::{CompareArgs, Images};
-use crate::args::values::unique;
 use crate::error::CliError;
 use crate::files::fingerprint::Fingerprint;
 use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::reference::{Judge, PrimaryVisibility, Tracing};
-use crate::measuring::resume::{RunKey, earlier};
+use crate::measuring::results_folder::ResultsFolder;
+use crate::measuring::resume::{Earlier, RunKey, earlier};
 use crate::measuring::run::MeasureContext;
 use crate::measuring::sequence;
 use crate::measuring::shapes::Shapes;
 use crate::measuring::subject::{Shot, Subject};
-use crate::pictures::run_pictures::write_pictures;
+use crate::pictures::run_pictures::PictureFile;
+use crate::records::read_back;
 use crate::records::results::{Results, Run};
 use crate::reporting::published::attach;
 use crate::reporting::published_row::Row;
-use crate::reporting::results_csv::save;
 use crate::terminal::progress::{Runs, Step};
 use crate::wording::size;
 use skiagraph_gpu::device::Gpu;
@@ -85,8 +85,8 @@ pub struct Comparison<'a> {
     states: Vec<RunState>,
     /// Holds the runs that are done, in the order in which they were planned.
     pub results: Results,
-    /// What an earlier comparison left in the folder and this one has not.
-    others: Vec<Run>,
+    /// Where they are kept, with what is in the folder besides.
+    folder: ResultsFolder,
     /// Why graphs broke the contract of outputs.
     pub broken: Vec<String>,
     /// Counts the runs that are measured now.
@@ -113,6 +113,23 @@ impl<'a> Comparison<'a> {
         results: Results,
     ) -> Result<Self, CliError> {
         let planned = setup.planned();
+        let Earlier {
+            kept,
+            others,
+            dropped,
+            commands,
+        } = match args.replace {
+            true => Earlier {
+                // What cannot be read is overwritten as well.
+                dropped: match read_back::results(&args.out.join("results.json")) {
+                    Ok(Some(earlier)) => earlier.runs,
+                    _ => Vec::new(),
+                },
+                ..Earlier::default()
+            },
+            false => earlier(&args.out, &results, &planned, args.resume)?,
+        };
+        let folder = ResultsFolder::new(&args.out, [dropped, others], commands);
         let mut comparison = Self {
             args,
             setup,
@@ -122,24 +139,18 @@ impl<'a> Comparison<'a> {
             published,
             states: planned.iter().map(|_| RunState::Pending).collect(),
             results,
-            others: Vec::new(),
+            folder,
             broken: Vec::new(),
             progress: Runs::begin(planned.len() as u64),
         };
-        if !args.replace {
-            let earlier = earlier(&args.out, &comparison.results, &planned, args.resume)?;
-            comparison.others = earlier.others;
-            let now = std::mem::take(&mut comparison.results.commands);
-            comparison.results.commands = unique(&[earlier.commands, now].concat());
-            for (place, run) in earlier.kept.into_iter().enumerate() {
-                match run {
-                    Some(run) if run.measured.is_some() => comparison.done(place, run),
-                    Some(run) => comparison.states[place] = RunState::Unavailable(run.into()),
-                    None => {}
-                }
+        for (place, run) in kept.into_iter().enumerate() {
+            match run {
+                Some(run) if run.measured.is_some() => comparison.done(place, run),
+                Some(run) => comparison.states[place] = RunState::Unavailable(run.into()),
+                None => {}
             }
-            comparison.progress.forget_done();
         }
+        comparison.progress.forget_done();
         Ok(comparison)
     }
 
@@ -237,19 +248,23 @@ impl<'a> Comparison<'a> {
                 run => run?,
             };
             self.done(place, run);
-            if let Some(pictures) = &context.pictures {
-                write_pictures(&self.args.out, &pictures.take())?;
-            }
-            save(&self.whole(), &self.args.out)?;
+            let pictures = context.pictures.as_ref().map(RefCell::take);
+            self.save(&pictures.unwrap_or_default())?;
         }
         Ok(())
     }
 
-    /// What is done, with what was in the folder before and stays.
+    /// What is done, with what is in the folder besides and stays.
     pub fn whole(&self) -> Results {
-        let mut whole = self.results.clone();
-        whole.runs.extend(self.others.iter().cloned());
-        whole
+        self.folder.whole(&self.results)
+    }
+
+    /// Writes what is done into the folder, with the pictures of the last run.
+    ///
+    /// # Errors
+    /// Those of [`ResultsFolder::save`].
+    pub fn save(&mut self, pictures: &[PictureFile]) -> Result<(), CliError> {
+        self.folder.save(&self.results, pictures)
     }
 
     /// A method that could not run and again cannot even be planned here needs no reference to say
@@ -270,7 +285,7 @@ impl<'a> Comparison<'a> {
                 ..(**run).clone()
             };
             self.done(place, run);
-            save(&self.whole(), &self.args.out)?;
+            self.save(&[])?;
         }
         Ok(())
     }

@@ -10,6 +10,7 @@ pub mod hard_case;
 pub mod poison;
 pub mod profiling;
 pub mod reference;
+pub mod results_folder;
 pub mod resume;
 pub mod run;
 pub mod scene_selection;

@@ -46,6 +46,8 @@ pub struct Earlier {
     pub kept: Vec<Option<Run>>,
     /// Runs that this comparison has not: of other methods, views, sizes.
     pub others: Vec<Run>,
+    /// Runs that it measures again.
+    pub dropped: Vec<Run>,
     /// What measured them.
     pub commands: Vec<String>,
 }
@@ -75,7 +77,7 @@ pub fn earlier(
             ..Earlier::default()
         });
     };
-    refuse(&name, &differences(&earlier, now))?;
+    check_alike(&path, &earlier, now)?;
     let is_planned = |run: &Run| planned.iter().any(|planned| planned.is_place_of(run));
     let (mut runs, others): (Vec<Run>, Vec<Run>) = earlier.runs.into_iter().partition(is_planned);
     if !others.is_empty() {
@@ -93,6 +95,7 @@ pub fn earlier(
         return Ok(Earlier {
             kept: nothing(),
             others,
+            dropped: runs,
             commands,
         });
     }
@@ -118,17 +121,22 @@ pub fn earlier(
     Ok(Earlier {
         kept,
         others,
+        dropped: runs,
         commands,
     })
 }
 
-/// An error if there is anything to list.
-fn refuse(name: &str, differences: &[String]) -> Result<(), CliError> {
-    match differences {
+/// Refuses earlier results that were measured under other conditions.
+///
+/// # Errors
+/// Lists how they differ.
+pub fn check_alike(path: &Path, earlier: &Results, now: &Results) -> Result<(), CliError> {
+    match &differences(earlier, now)[..] {
         [] => Ok(()),
         lines => Err(CliError::Input(format!(
-            "{name} was measured under other conditions\n  {}\n  ask for the same, \
+            "{} was measured under other conditions\n  {}\n  ask for the same, \
              {WITHOUT_RESULTS}",
+            path.display(),
             lines.join("\n  ")
         ))),
     }

@@ -54,9 +54,18 @@ pub fn profile(path: &Path) -> Result<Profile, CliError> {
 /// # Errors
 /// A file that cannot be read, or that is no results.json; with the place.
 pub fn results(path: &Path) -> Result<Option<Results>, CliError> {
+    let file = results_file(path)?;
+    file.map(|file| results_of(&file)).transpose()
+}
+
+/// The file of earlier results, whatever is in it; `None` if there is none.
+///
+/// # Errors
+/// A file that cannot be read.
+pub fn results_file(path: &Path) -> Result<Option<SourceFile>, CliError> {
     let name = path.display().to_string();
     match RESULTS.read_text(path) {
-        Ok(text) => results_of(&SourceFile::new(name, text)).map(Some),
+        Ok(text) => Ok(Some(SourceFile::new(name, text))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(CliError::Input(format!("--resume {name}: {error}"))),
     }
@@ -133,7 +142,11 @@ fn profile_of(file: &SourceFile) -> Result<Profile, CliError> {
     })
 }
 
-fn results_of(file: &SourceFile) -> Result<Results, CliError> {
+/// The results in a file.
+///
+/// # Errors
+/// At the place where it is no results.json.
+pub fn results_of(file: &SourceFile) -> Result<Results, CliError> {
     parse_results(&file.text).map_err(|mistake| {
         let summary = "nothing was measured";
         mistake.in_file(file, "results.json to resume", WITHOUT_RESULTS, summary)

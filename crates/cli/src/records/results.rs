@@ -205,6 +205,13 @@ impl Run {
         })
     }
 
+    /// Whether it stands at the same place of a comparison as another one: of the same method,
+    /// view, viewport and map.
+    pub fn is_in_place_of(&self, other: &Self) -> bool {
+        (&self.preset, &self.view, self.viewport, self.map_size)
+            == (&other.preset, &other.view, other.viewport, other.map_size)
+    }
+
     /// Preset and map size, as a row's name.
     pub fn method_label(&self) -> String {
         let with_size = |size| format!("{} {size}", self.preset);

@@ -20,17 +20,17 @@ fn to_csv(results: &Results) -> Result<String, ::csv::Error> {
 }
 
 /// Writes `results.json` and `results.csv` into `folder`; each is replaced whole or not at all.
+/// Returns the contents of the first.
 ///
 /// # Errors
 /// One cannot be written.
-pub fn save(results: &Results, folder: &Path) -> Result<(), CliError> {
-    write_whole(
-        &folder.join("results.json"),
-        json::to_text(results).as_bytes(),
-    )?;
+pub fn save(results: &Results, folder: &Path) -> Result<String, CliError> {
+    let text = json::to_text(results);
+    write_whole(&folder.join("results.json"), text.as_bytes())?;
     let path = folder.join("results.csv");
     let csv = to_csv(results).map_err(|error| CliError::write(&path, error))?;
-    write_whole(&path, csv.as_bytes())
+    write_whole(&path, csv.as_bytes())?;
+    Ok(text)
 }
 
 #[cfg(test)]

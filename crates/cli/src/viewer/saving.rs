@@ -1,10 +1,13 @@
 //! What is seen as a view of a scene file: text to paste, or a scene file of its own.
 
 use crate::error::CliError;
-use crate::files::write::write_whole;
+use crate::files::write::write_new;
 use glam::DVec3;
 use skiagraph_scene::{LightKind, SceneFile, SceneLibrary, View};
-use std::path::{Path, PathBuf};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 /// The entry of `views`. Only a sun can be a view's own light.
 pub fn entry(view: &View) -> String {
@@ -66,10 +69,14 @@ pub fn save(
     let stem = file.as_deref().and_then(Path::file_stem);
     let stem = stem.map_or(scene.into(), |stem| stem.to_string_lossy().into_owned());
     let path = |name: &str| folder.join(format!("{name}.ron"));
-    let free = first_free(&format!("{stem}_seen"), |name| !path(name).exists());
-    let path = path(&free);
-    write_whole(&path, text.as_bytes())?;
-    Ok((path, name))
+    let is_free = |name: &str| fs::symlink_metadata(path(name)).is_err();
+    loop {
+        let path = path(&first_free(&format!("{stem}_seen"), is_free));
+        // Another process may take the name just now.
+        if write_new(&path, text.as_bytes())? {
+            return Ok((path, name));
+        }
+    }
 }
 
 /// `name`, `name_2`, `name_3` …: the first that is free.

@@ -16,5 +16,6 @@ mod report;
 mod saves;
 mod schema;
 mod stress;
+mod together;
 mod tutorial;
 mod watch;

@@ -452,8 +452,9 @@ pub struct Images {
     pub shaded: String,
     /// The output `visibility`.
     pub visibility: String,
-    /// Blue where wrongly lit, red where wrongly in shadow; of grades the stronger the farther off,
-    /// in full from a quarter on.
+    /// Blue where wrongly lit, red where wrongly in shadow, paler in the band, in as many pixels as
+    /// are wrong; dark rings point to lone ones outside the band, where they are few. Of grades the
+    /// stronger the farther off, in full from a quarter on.
     pub error: String,
     /// `shaded` with purple where uncertain; absent where the method calls no pixel certain or
     /// uncertain.

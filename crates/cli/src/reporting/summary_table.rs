@@ -42,6 +42,9 @@ pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
         .collect()
 }
 
+/// What lines that warn begin with; the page makes them stand out by it.
+const WARNING: &str = "warning: ";
+
 /// What stands in a row that could not run.
 const NOT_THERE: &str = "n/a";
 
@@ -259,7 +262,10 @@ impl<'a> Summary<'a> {
     fn named(&self, run: &Run, line: String) -> String {
         match self.views().len() {
             1 => line,
-            _ => format!("{}: {line}", run.view),
+            _ => match line.strip_prefix(WARNING) {
+                Some(line) => format!("{WARNING}{}: {line}", run.view),
+                None => format!("{}: {line}", run.view),
+            },
         }
     }
 

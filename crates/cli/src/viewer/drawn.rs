@@ -184,7 +184,8 @@ fn verdict(judgement: &Judgement, reference: &skiagraph_reference::Reference) ->
     let wrong = &judgement.counts.wrong;
     let outside = wrong.total - wrong.in_band;
     format!(
-        "blue wrongly lit, red wrongly in shadow; {} wrong outside the band ({}), {} in it",
+        "blue wrongly lit, red wrongly in shadow, paler in the band, rings around lone ones; {} \
+         wrong outside the band ({}), {} in it",
         thousands(outside),
         percent(outside, facing),
         thousands(wrong.in_band)

@@ -71,8 +71,19 @@ fn pages(folder: &Path) {
     let text = fs::read_to_string(folder.join("out/results.json")).unwrap();
     let mut far: Value = serde_json::from_str(&text).unwrap();
     far["adapter"]["name"] = "Far GPU".into();
+    for run in far["runs"].as_array_mut().unwrap() {
+        run["band"] = 100.into();
+    }
     fs::write(folder.join("far/results.json"), far.to_string()).unwrap();
-    let output = skiagraph(folder, "report out far hard --out all.html");
+    // A matrix in which a band is too large and a method could not run.
+    let text = fs::read_to_string(folder.join("hard/stress.json")).unwrap();
+    let mut matrix: Value = serde_json::from_str(&text).unwrap();
+    matrix["cases"][0]["verdict"] = "fail".into();
+    matrix["cases"][0]["band"] = 1_000.into();
+    matrix["methods"][1]["unavailable"] = "needs what is not there".into();
+    fs::create_dir(folder.join("bad")).unwrap();
+    fs::write(folder.join("bad/stress.json"), matrix.to_string()).unwrap();
+    let output = skiagraph(folder, "report out far hard bad --out all.html");
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(
         output.status.success() && told.contains("all.html"),

@@ -34,7 +34,10 @@ fn two_comparisons_into_one_folder_keep_the_runs_of_both() {
     let text = fs::read_to_string(out.join("results.json")).unwrap();
     let results: Value = serde_json::from_str(&text).unwrap();
     let runs = results["runs"].as_array().unwrap();
-    let mut names: Vec<&str> = runs.iter().filter_map(|run| run["preset"].as_str()).collect();
+    let mut names: Vec<&str> = runs
+        .iter()
+        .filter_map(|run| run["preset"].as_str())
+        .collect();
     names.sort_unstable();
     assert_eq!(names, ["nsm", "pcf", "rt"]);
     assert_eq!(results["commands"].as_array().unwrap().len(), 2, "{text}");

@@ -6,10 +6,14 @@ function drawHead() {
   byId('title').textContent = `Which shadow method for ${source.scene}?`;
   document.title = `${source.scene}: Skiagraph report`;
   byId('subtitle').textContent = table().conditions.slice(0, 2).join(' · ');
+  byId('facts').replaceChildren(...table().conditions.slice(2).map((text) => el('p', { class: lineClass(text) }, text)));
   // What stands between backquotes is a name.
   const words = (text) => text.split('`').map((part, index) => (index % 2 === 1 ? el('code', {}, part) : part));
   byId('verdict').replaceChildren(...table().sentences.map((text) => el('p', {}, ...words(text))));
 }
+
+/** Warnings stand out. */
+const lineClass = (text) => (text.startsWith('warning: ') ? 'warning' : 'quiet');
 
 function headControls() {
   const names = data.tables.map((of) => (data.tables.some((other) => other.hard !== of.hard)
@@ -47,7 +51,7 @@ function drawGraph() {
     src: `data:image/svg+xml;base64,${data.pictures.files[graphs[index].file]}` }));
 }
 
-/** The matrix of hard cases: what is wrong outside the band, and whether that breaks a promise. */
+/** The matrix of hard cases: what is wrong outside the band, whether that breaks a promise, what fails, what could not run. */
 function drawStress() {
   byId('stress-section').hidden = data.stress.length === 0;
   const label = (of) => (of.map_size === null ? of.preset : `${of.preset} ${of.map_size}`);
@@ -63,13 +67,22 @@ function drawStress() {
     };
     const cells = (one, method) => one.cells.filter((found) => label(found) === label(method));
     const broken = matrix.cases.flatMap((one) => one.cells).filter((found) => found.verdict === 'fail').length;
+    const failed = matrix.cases.filter((one) => one.verdict === 'fail');
+    const band = ({ verdict, failed: why, band: count, pixels: { facing_light: facing } }) => {
+      const share = why ? 'no reference' : count === 0 ? '0' : percent(count / Math.max(facing, 1));
+      return el('td', { class: verdict === 'fail' ? 'fail' : null, title: why ?? null }, verdict === 'fail' ? `✗ ${share}` : share);
+    };
     return [
       el('p', { class: 'quiet' }, `${matrix.adapter.name}, ${size(matrix.viewport)}: ${matrix.cases.length} cases; pixels outside the band, `
         + `wrongly lit + wrongly in shadow. ${broken === 0 ? 'No promise is broken.' : `${broken} cells break a promise (✗).`}`),
+      ...failed.map((one) => el('p', { class: 'warning' }, one.failed ? `${one.name}: ${one.failed}`
+        : `${one.name}: the band is larger than the case allows (${one.band_cap}); what lies in it is not proven`)),
+      ...matrix.methods.filter((method) => method.unavailable)
+        .map((method) => el('p', { class: 'quiet' }, `${label(method)} is unavailable: ${method.unavailable}`)),
       el('table', { class: 'matrix' },
-        el('thead', {}, el('tr', {}, el('th', {}, 'case'), ...columns.map((method) => el('th', {}, label(method), el('br'),
+        el('thead', {}, el('tr', {}, el('th', {}, 'case'), el('th', {}, 'band'), ...columns.map((method) => el('th', {}, label(method), el('br'),
           method.promise ?? '')))),
-        el('tbody', {}, ...matrix.cases.map((one) => el('tr', {}, el('td', { title: one.reason }, one.name),
+        el('tbody', {}, ...matrix.cases.map((one) => el('tr', {}, el('td', { title: one.reason }, one.name), band(one),
           ...columns.map((method) => cell(cells(one, method).at(-1))))))),
     ];
   }));

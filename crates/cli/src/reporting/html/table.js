@@ -69,7 +69,7 @@ function drawTable() {
     return el('tr', { class: row.best ? 'best' : null, 'data-label': row.label, onclick: () => choose(row) }, ...cells);
   };
   byId('table').replaceChildren(el('thead', {}, head), el('tbody', {}, ...rows.map(line)));
-  byId('notes').replaceChildren(...table().notes.filter((note) => !note.startsWith('*') && !note.includes(' is unavailable: ')).map((note) => el('li', {}, note)));
+  byId('notes').replaceChildren(...table().notes.filter((note) => !note.startsWith('*') && !note.includes(' is unavailable: ')).map((note) => el('li', { class: lineClass(note) }, note)));
 }
 
 function tableControls() {

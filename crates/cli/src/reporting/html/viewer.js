@@ -248,8 +248,12 @@ function paint() {
     if (one.divider) one.divider.style.left = `${100 * viewer.wipe}%`;
   }
   const { scale } = fit(viewer.stages[0]);
-  byId('zoom').textContent = `${scale >= 1 ? scale.toFixed(1) : scale.toFixed(2)} ×`;
+  const isLarger = viewer.loaded.some((loaded) => loaded && isEnlarged(loaded, scale * ratio, ratio));
+  byId('zoom').textContent = `${scale >= 1 ? scale.toFixed(1) : scale.toFixed(2)} ×${isLarger ? ', coloured pixels drawn larger' : ''}`;
 }
+
+/** From afar a few coloured pixels would vanish: they are drawn three screen pixels wide. Of many, each as it is. */
+const isEnlarged = ({ telling: found }, on, ratio) => found.length > 0 && found.length <= 500 && on < 3 * ratio;
 
 function paintPane(context, loaded, { scale, corner }, ratio) {
   const [width, height] = table().viewport;
@@ -258,9 +262,8 @@ function paintPane(context, loaded, { scale, corner }, ratio) {
   const on = scale * ratio;
   context.imageSmoothingEnabled = on < 1;
   context.drawImage(loaded.picture.canvas, corner[0] * ratio, corner[1] * ratio, width * on, height * on);
-  // From afar a single wrong pixel would vanish: it is drawn three screen pixels wide.
   const least = 3 * ratio;
-  if (on >= least) return;
+  if (!isEnlarged(loaded, on, ratio)) return;
   for (const [x, y, colour] of loaded.telling) {
     context.fillStyle = colour;
     context.fillRect((corner[0] + (x + 0.5) * scale) * ratio - least / 2,

@@ -6,7 +6,19 @@ try {
   find('#all-tables').click();
   check('rows of both', cells(1).some((text) => text.includes('Far GPU')), cells(1));
   check('the matrix', find('#stress').textContent.includes('box_on_floor'), find('#stress').textContent);
-  check('its promise holds', all('#stress td.pass').length > 0 && all('#stress td.fail').length === 0);
+  const [good, bad] = all('#stress table');
+  check('its promise holds', good.querySelectorAll('td.pass').length > 0 && good.querySelectorAll('td.fail').length === 0);
+  check('a band that is too large fails', bad.querySelector('td.fail').textContent.startsWith('✗'), bad.textContent);
+  check('and is said', find('#stress .warning').textContent.includes('the band is larger than the case allows'), find('#stress').textContent);
+  check('as is who could not run', find('#stress').textContent.includes('is unavailable: needs what is not there'));
+  // A band of more than a thousandth.
+  const far = choices.find((text) => text.includes('Far GPU'));
+  set('#table-choice', far);
+  await settled();
+  const warning = find('#facts .warning');
+  check('the band is warned of', warning?.textContent.startsWith('warning: the band is larger than 0.1 %'), find('#facts').textContent);
+  check('where it is seen', warning?.getBoundingClientRect().height > 10 && warning.getBoundingClientRect().top < 600);
+  check('with the pixels that face the light', find('#facts').textContent.includes('facing the light'), find('#facts').textContent);
   check('where from', find('#conditions').textContent.includes('far'), find('#conditions').textContent);
 } catch (error) {
   failed.push(String(error.stack));

@@ -52,6 +52,7 @@ try {
   set('#method-right', 'nsm 64');
   set('#kind-right', 'wrong pixels');
   await settled();
+  check('the legend tells rings from wrong pixels', all('.stage')[1].textContent.includes('ring: around lone wrong pixels'));
   check('a legend in the picture', all('.stage')[1].textContent.includes('wrongly lit'), all('.stage')[1].textContent);
   const whole = copy(canvases()[1]);
   point(canvases()[1], 'wheel', 0.3, 0.6, { deltaY: -700 });

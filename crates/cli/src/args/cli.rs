@@ -59,7 +59,8 @@ pub enum Command {
             # two machines in one page\n\n\
         `compare` writes the page into its folder by itself.")]
     Report(ReportArgs),
-    /// Render one frame with one graph and save any of its materials.
+    /// Render one frame with one graph and save any of its materials. Buffers that grow have room
+    /// for all that the frame needs: frames before it, which it counts, find out how much that is.
     #[command(
         after_help = "Examples:\n  skiagraph run nsm --save visibility=shadow.png\n  \
         skiagraph run nsm --save shadow_map@create_shadow_map.draw=map.png --set map_size=512\n  \

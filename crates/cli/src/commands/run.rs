@@ -85,7 +85,8 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         }
         let names: BTreeSet<String> = saves.iter().map(name).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let contents = frame::render(&gpu, &preset.name, plan, &mut provider, &names)?;
+        let (contents, growth) = frame::render(&gpu, &preset.name, plan, &mut provider, &names)?;
+        print(&growth.text())?;
         for (save, reading) in saves.iter().zip(readings) {
             let name = name(save);
             let content = contents.get(&name).ok_or_else(|| {

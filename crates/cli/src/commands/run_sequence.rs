@@ -120,8 +120,8 @@ impl Shots {
         interrupt::install()?;
         let failed = |error| frame::failed(&preset.name, error);
         let viewport = plan.viewport();
-        let mut executor = frame::executor(gpu, plan, provider).map_err(failed)?;
-        frame::grow(gpu, &mut executor, provider).map_err(failed)?;
+        let (mut executor, growth) = frame::settled(gpu, plan, provider).map_err(failed)?;
+        print(&growth.text())?;
         let step = Step::begin(preset.name.clone(), self.shots.len() as u64, "frames");
         for (index, shot) in self.shots.iter().enumerate() {
             if interrupt::raised() {

@@ -2,6 +2,7 @@
 
 use crate::error::CliError;
 use crate::terminal::interrupt;
+use crate::wording::frames;
 use skiagraph_gpu::{
     Content, ExecuteError, Executor, Frame, FrameReport, Provider, Readback, device::Gpu,
 };
@@ -26,7 +27,28 @@ pub fn executor(
     Executor::new(&gpu.device, &gpu.queue, plan, provider)
 }
 
-/// Runs one frame of `graph` and reads outputs and captures by name.
+/// The same with room in the buffers that grow for all that a frame needs: which items would have
+/// none is chance, and with it what such a frame shows. Frames find out how much that is, but what
+/// a method remembers is empty again: the next frame is its first.
+///
+/// # Errors
+/// Those of the executor.
+pub fn settled(
+    gpu: &Gpu,
+    plan: Plan,
+    provider: &mut dyn Provider,
+) -> Result<(Executor, Growth), ExecuteError> {
+    let mut grown = executor(gpu, plan, provider)?;
+    let growth = grow(gpu, &mut grown, provider)?;
+    if growth.frames == 0 || !grown.plan().remembers() {
+        return Ok((grown, growth));
+    }
+    let plan = grown.plan().with(|_| ())?;
+    drop(grown);
+    Ok((executor(gpu, plan, provider)?, growth))
+}
+
+/// Runs one frame of `graph` as [`settled`] has it, and reads outputs and captures by name.
 ///
 /// # Errors
 /// Why it cannot run.
@@ -36,9 +58,10 @@ pub fn render(
     plan: Plan,
     provider: &mut dyn Provider,
     names: &[&str],
-) -> Result<Contents, CliError> {
-    executor(gpu, plan, provider)
-        .and_then(|mut executor| read(gpu, &mut executor, names))
+) -> Result<(Contents, Growth), CliError> {
+    let settled = settled(gpu, plan, provider);
+    settled
+        .and_then(|(mut executor, growth)| Ok((read(gpu, &mut executor, names)?, growth)))
         .map_err(|error| failed(graph, error))
 }
 
@@ -65,7 +88,36 @@ pub fn run(
 }
 
 /// Frames after which buffers are as large as they get: each brings the count of the one before.
-const GROWING: usize = 8;
+const GROWING: u32 = 8;
+
+/// What it took to give buffers room for all that a frame needs.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Growth {
+    /// Frames that were run for it; 0 where no buffer grows.
+    pub frames: u32,
+    /// The buffers that may grow, by their full names.
+    pub buffers: Vec<String>,
+    /// Whether the last of the frames asked for no more.
+    pub is_settled: bool,
+}
+
+impl Growth {
+    /// A line of what `run` says; nothing where no buffer grows.
+    pub fn text(&self) -> String {
+        let (frames, buffers) = (frames(self.frames), self.buffers.join(", "));
+        match (self.frames, self.is_settled) {
+            (0, _) => String::new(),
+            (_, true) => format!(
+                "  warmed up: {frames} before this one, until {buffers} had room for all that a \
+                 frame needs\n"
+            ),
+            (_, false) => format!(
+                "  warmed up: {frames} before this one, and {buffers} still grew: what has no room \
+                 is chance\n"
+            ),
+        }
+    }
+}
 
 /// Runs frames until the buffers that grow have room for all that a frame needs.
 ///
@@ -75,17 +127,21 @@ pub fn grow(
     gpu: &Gpu,
     executor: &mut Executor,
     provider: &mut dyn Provider,
-) -> Result<(), ExecuteError> {
-    for _ in 0..GROWING {
-        if executor.plan().growing().is_empty() {
-            break;
-        }
+) -> Result<Growth, ExecuteError> {
+    let plan = executor.plan();
+    let names = plan.growing().into_iter();
+    let mut growth = Growth {
+        buffers: names
+            .map(|(id, _)| plan.resource(id).name.clone())
+            .collect(),
+        ..Growth::default()
+    };
+    while !growth.buffers.is_empty() && !growth.is_settled && growth.frames < GROWING {
         run(gpu, executor, &Frame::default())?;
-        if executor.grow(provider)?.is_none() {
-            break;
-        }
+        growth.frames += 1;
+        growth.is_settled = executor.grow(provider)?.is_none();
     }
-    Ok(())
+    Ok(growth)
 }
 
 /// How often Ctrl-C is looked for while a frame is under way.

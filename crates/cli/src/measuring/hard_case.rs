@@ -260,13 +260,10 @@ impl HardCaseContext<'_> {
                 });
                 worst.map_err(|stop| stop.of(&preset.name))?
             }
-            false => judge(frame::render(
-                self.gpu,
-                &preset.name,
-                plan,
-                provider,
-                &names,
-            )?)?,
+            false => {
+                let (contents, _) = frame::render(self.gpu, &preset.name, plan, provider, &names)?;
+                judge(contents)?
+            }
         };
         let broken = |error: Error| CliError::Contract(error.to_string());
         let (visibility, status) = (strict(&outputs, right), &outputs.status);

@@ -33,11 +33,8 @@ pub fn check(
             .with(|request| request.poison = Some(pattern))
             .map_err(|diagnostics| GraphFaults::of(&preset.name, &diagnostics))?;
         // Which items of a buffer that is too small have room is chance.
-        let content = frame::executor(gpu, plan, provider).and_then(|mut executor| {
-            frame::grow(gpu, &mut executor, provider)?;
-            frame::read(gpu, &mut executor, &outputs)
-        });
-        content.map_err(|error| frame::failed(&preset.name, error))
+        let (contents, _) = frame::render(gpu, &preset.name, plan, provider, &outputs)?;
+        Ok(contents)
     };
     let [low, high] = [render(PATTERNS[0])?, render(PATTERNS[1])?];
     let mut differing = differences(&low, &high);

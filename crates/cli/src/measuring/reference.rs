@@ -73,7 +73,7 @@ impl PrimaryVisibility {
         provider: &mut dyn Provider,
     ) -> Result<Vec<u32>, CliError> {
         let plan = self.plan(gpu, viewport, provider)?;
-        let contents = frame::render(gpu, GBUFFER, plan, provider, &["primitive"])?;
+        let (contents, _) = frame::render(gpu, GBUFFER, plan, provider, &["primitive"])?;
         contents
             .get("primitive")
             .and_then(Content::as_u32)

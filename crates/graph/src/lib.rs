@@ -43,7 +43,7 @@ pub use link::{
     Access, Attachment, BindTarget, Block, CAPTURE, Ids, LinkedBinding, LinkedPass, LinkedProgram,
     PassId, Usage,
 };
-pub use plan::{CulledPass, MemoryEntry, OutputSummary, PassSummary, Plan, text};
+pub use plan::{CulledPass, MemoryEntry, OutputSummary, PartSummary, PassSummary, Plan, text};
 pub use provided_kind::ProvidedKind;
 pub use provider::{Describe, Import, NoProvider, Provided, ProvidedBinding};
 pub use request::{Capture, PlanRequest};

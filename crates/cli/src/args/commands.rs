@@ -221,7 +221,8 @@ pub struct RunArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     /// Save an output, a material or a view of one, after a pass or at the end: .png a picture,
-    /// .bin raw bytes, .csv the words of a buffer. May be repeated.
+    /// .bin raw bytes, .csv the words of a buffer. After a pass it is as much as has been written
+    /// by then. May be repeated.
     #[arg(long, value_name = "MATERIAL[@PASS]=FILE")]
     pub save: Vec<Save>,
     /// Render so many frames one after the other and save each: `--save visibility=v.png` writes

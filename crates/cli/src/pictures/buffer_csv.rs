@@ -4,8 +4,9 @@ use crate::files::csv;
 use skiagraph_graph::{Field, Item, ItemScalar};
 
 /// The lines of a buffer: with the items as a shader declares them, or, where none does, its words
-/// read in three ways. Bytes behind the last whole item are left out.
-pub fn to_csv(bytes: &[u8], item: Option<&Item>) -> Result<String, ::csv::Error> {
+/// read in three ways. They are numbered from `first` on. Bytes behind the last whole item are left
+/// out.
+pub fn to_csv(bytes: &[u8], item: Option<&Item>, first: usize) -> Result<String, ::csv::Error> {
     let words = || {
         let field = |(name, scalar): (&str, _)| Field {
             name: name.into(),
@@ -31,7 +32,10 @@ pub fn to_csv(bytes: &[u8], item: Option<&Item>) -> Result<String, ::csv::Error>
     let items = bytes.chunks_exact((*stride).max(1)).enumerate();
     let records = items.map(|(index, bytes)| {
         let cells = fields.iter().map(|field| cell(bytes, field));
-        [index.to_string()].into_iter().chain(cells).collect()
+        [(first + index).to_string()]
+            .into_iter()
+            .chain(cells)
+            .collect()
     });
     csv::to_text(&header, records)
 }
@@ -56,7 +60,7 @@ mod tests {
     use super::*;
 
     fn text(bytes: &[u8], item: Option<&Item>) -> String {
-        to_csv(bytes, item).unwrap()
+        to_csv(bytes, item, 0).unwrap()
     }
 
     #[test]
@@ -90,5 +94,7 @@ mod tests {
         let bytes = [1065353216u32, u32::MAX].map(u32::to_le_bytes).concat();
         let lines = "item,u32,i32,f32\n0,1065353216,1065353216,1\n1,4294967295,-1,NaN\n";
         assert_eq!(text(&bytes, None), lines);
+        let fifth = to_csv(&bytes, None, 5).unwrap();
+        assert!(fifth.contains("\n5,1065353216") && fifth.contains("\n6,4294967295"));
     }
 }

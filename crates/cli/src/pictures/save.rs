@@ -8,7 +8,7 @@ use crate::pictures::material::Picture;
 use crate::pictures::{buffer_csv, png};
 use crate::wording::{bytes, size, thousands};
 use skiagraph_gpu::Content;
-use skiagraph_graph::{Capture, Item, Plan};
+use skiagraph_graph::{Capture, Item, PartSummary, Plan};
 use skiagraph_passes::names::{CAMERA, LIGHT};
 use std::collections::BTreeMap;
 
@@ -62,6 +62,8 @@ pub struct Decoding {
     pub planes: Option<ClipPlanes>,
     /// The items of a buffer.
     pub item: Option<Item>,
+    /// Which of its mips, layers or items they are, if not all.
+    pub part: Option<PartSummary>,
 }
 
 impl Decoding {
@@ -73,7 +75,32 @@ impl Decoding {
         Self {
             planes: is_camera.then_some(planes),
             item: plan.item(name),
+            part: plan.part(name).filter(PartSummary::is_less),
         }
+    }
+
+    /// `layer 0 of 3, `: which part of a texture or buffer it is; nothing of a whole one.
+    pub fn part_text(&self, content: &Content) -> String {
+        let Some(PartSummary { mips, layers, of }) = &self.part else {
+            return String::new();
+        };
+        let layer = match content {
+            Content::Texture { .. } => "layer",
+            Content::Buffer(_) => "item",
+        };
+        let parts = [("mip", mips, of[0]), (layer, layers, of[1])].into_iter();
+        let parts = parts.filter(|(.., of)| *of > 1);
+        let text = parts.map(|(what, range, of)| match range.len() {
+            1 => format!("{what} {} of {of}, ", range.start),
+            _ => format!("{what}s {} to {} of {of}, ", range.start, range.end - 1),
+        });
+        text.collect()
+    }
+
+    /// The number of the first item of a buffer.
+    pub fn first_item(&self) -> usize {
+        let part = self.part.as_ref();
+        part.map_or(0, |part| part.layers.start as usize)
     }
 }
 
@@ -82,6 +109,7 @@ impl Decoding {
 /// # Errors
 /// There is no such picture, or the file cannot be written.
 pub fn write(save: &Save, content: &Content, reading: &Decoding) -> Result<String, CliError> {
+    let part = reading.part_text(content);
     let said = match save.encoding {
         Encoding::Png => {
             let picture = Picture::of(&save.material, content, reading.planes);
@@ -90,11 +118,11 @@ pub fn write(save: &Save, content: &Content, reading: &Decoding) -> Result<Strin
                 CliError::Input(format!("--save {name}: `{name}` {reason}"))
             })?;
             png::save(&save.file, &image)?;
-            format!("{}, {legend}", size(image.size))
+            format!("{}, {part}{legend}", size(image.size))
         }
         Encoding::Csv => {
             let raw = content.bytes();
-            let table = buffer_csv::to_csv(raw, reading.item.as_ref())
+            let table = buffer_csv::to_csv(raw, reading.item.as_ref(), reading.first_item())
                 .map_err(|error| CliError::write(&save.file, error))?;
             write_whole(&save.file, table.as_bytes())?;
             let (stride, what) = match &reading.item {
@@ -102,7 +130,7 @@ pub fn write(save: &Save, content: &Content, reading: &Decoding) -> Result<Strin
                 None => (4, "words, each read as u32, i32 and f32"),
             };
             let lines = thousands((raw.len() / stride.max(1)) as u64);
-            format!("{lines} {what}")
+            format!("{part}{lines} {what}")
         }
         Encoding::Raw => {
             let raw = content.bytes();
@@ -114,7 +142,7 @@ pub fn write(save: &Save, content: &Content, reading: &Decoding) -> Result<Strin
                 }
                 Content::Buffer(_) => "a buffer".into(),
             };
-            format!("{}, {what}", bytes(raw.len() as u64))
+            format!("{}, {part}{what}", bytes(raw.len() as u64))
         }
     };
     Ok(format!("  saved {}: {said}\n", save.file.display()))

@@ -9,7 +9,7 @@ use crate::viewer::texels::{Histogram, Texels};
 use crate::viewer::wanted::{MethodShot, Shot};
 use crate::wording::{percent, thousands};
 use skiagraph_gpu::Content;
-use skiagraph_graph::Capture;
+use skiagraph_graph::{Capture, PartSummary};
 use skiagraph_reference::{Class, Image};
 use std::collections::BTreeMap;
 
@@ -221,8 +221,12 @@ fn material(method: &MethodShot, name: &str, reading: &Reading) -> Drawn {
     };
     let decoding = method.readings.get(name).cloned().unwrap_or_default();
     if let Content::Buffer(bytes) = content {
-        return match buffer_csv::to_csv(bytes, decoding.item.as_ref()) {
-            Ok(text) => table(&text),
+        return match buffer_csv::to_csv(bytes, decoding.item.as_ref(), decoding.first_item()) {
+            Ok(text) => {
+                let table = table(&text);
+                let legend = decoding.part_text(content) + &table.legend;
+                Drawn { legend, ..table }
+            }
             Err(error) => Drawn::only(error.to_string()),
         };
     }
@@ -239,7 +243,10 @@ fn material(method: &MethodShot, name: &str, reading: &Reading) -> Drawn {
     let material = name.split('@').next().unwrap_or(name);
     let picture = Picture::of(material, part, decoding.planes);
     let (mut image, mut legend) = match picture {
-        Ok(picture) => (Some(picture.image), picture.legend),
+        Ok(picture) => (
+            Some(picture.image),
+            decoding.part_text(content) + &picture.legend,
+        ),
         Err(why) => (None, format!("`{name}` {why}")),
     };
     let mut heat = None;
@@ -257,7 +264,7 @@ fn material(method: &MethodShot, name: &str, reading: &Reading) -> Drawn {
         histogram,
         heat,
         texels,
-        parts: part_names(content),
+        parts: part_names(content, decoding.part.as_ref()),
         table: None,
     }
 }
@@ -278,18 +285,19 @@ fn table(text: &str) -> Drawn {
     }
 }
 
-/// What each part of a texture is; nothing where there is only one.
-fn part_names(content: &Content) -> Vec<String> {
+/// What each mip and layer of a texture is, or of a part of one; nothing where there is only one.
+fn part_names(content: &Content, of: Option<&PartSummary>) -> Vec<String> {
     let Content::Texture { parts, .. } = content else {
         return Vec::new();
     };
     if parts.len() < 2 {
         return Vec::new();
     }
-    let (mut mip, mut layer) = (0, 0);
+    let first = of.map_or([0, 0], |part| [part.mips.start, part.layers.start]);
+    let [mut mip, mut layer] = first;
     let name = |(index, size): (usize, &[u32; 2])| {
         match index.checked_sub(1).map(|before| parts[before]) {
-            Some(before) if before != *size => (mip, layer) = (mip + 1, 0),
+            Some(before) if before != *size => (mip, layer) = (mip + 1, first[1]),
             Some(_) => layer += 1,
             None => {}
         }
@@ -310,10 +318,18 @@ mod tests {
             parts: vec![[4, 4], [4, 4], [2, 2], [2, 2], [1, 1], [1, 1]],
             bytes: vec![0; 42],
         };
-        let names = part_names(&content);
+        let names = part_names(&content, None);
         assert_eq!(names[1], "mip 0, layer 1, 4x4");
         assert_eq!(names[2], "mip 1, layer 0, 2x2");
         assert_eq!(names[5], "mip 2, layer 1, 1x1");
+        let part = PartSummary {
+            mips: 1..4,
+            layers: 3..5,
+            of: [4, 9],
+        };
+        let names = part_names(&content, Some(&part));
+        assert_eq!(names[0], "mip 1, layer 3, 4x4");
+        assert_eq!(names[3], "mip 2, layer 4, 2x2");
     }
 
     #[test]

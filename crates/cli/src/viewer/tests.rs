@@ -232,6 +232,32 @@ fn passes_are_stepped_through_and_materials_read() {
 }
 
 #[test]
+fn the_layers_of_a_group_are_stepped_through_as_they_are_drawn() {
+    let mut desk = desk(&["pssm"]);
+    settled(&mut desk);
+    let steps = desk.state().viewer.steps(0).into_iter();
+    let maps = steps.filter(|step| step.material.ends_with("shadow_maps"));
+    let maps: Vec<_> = maps.collect();
+    assert_eq!(maps.len(), 4, "{maps:?}");
+    let parts = ["layer 0", "layers 0 to 1", "layers 0 to 2"];
+    let parts = parts.map(|part| format!("{part} of 4, "));
+    for (step, part) in maps.iter().zip(parts.iter().chain([&String::new()])) {
+        let show = Show::Material(step.clone());
+        desk.state_mut().viewer.show(0, show);
+        settled(&mut desk);
+        assert_eq!(shown(&desk, 0).error, None, "{step:?}");
+        let drawn = &desk.state().viewer.panes[0].drawn;
+        assert!(drawn.image.is_some(), "{step:?}: {}", drawn.legend);
+        let is_part = drawn.legend.contains(" of 4, ");
+        assert!(
+            drawn.legend.starts_with(part) && is_part != part.is_empty(),
+            "{}",
+            drawn.legend
+        );
+    }
+}
+
+#[test]
 fn the_reference_becomes_finer_and_tells_what_is_wrong() {
     let mut desk = desk(&["rt", "nsm"]);
     desk.state_mut().viewer.show(0, Show::Difference);

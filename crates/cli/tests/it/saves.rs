@@ -94,7 +94,8 @@ fn layers_and_mips_are_saved_by_themselves_and_together_at_any_pass() {
     };
     assert_eq!(floats("before.bin"), [1.5; 64]);
     assert_eq!(floats("after.bin"), [3.5; 64]);
-    assert!(text.contains("small.png: 4x4, 2.5 … 2.5"), "{text}");
+    let small = "small.png: 4x4, mip 1 of 2, layer 1 of 2, 2.5 … 2.5";
+    assert!(text.contains(small), "{text}");
     let all = [&[3.5; 64][..], &[0.0; 64], &[0.0; 16], &[2.5; 16]].concat();
     assert_eq!(floats("all.bin"), all);
     let sheet = "all.png: 8x24, 4 mips and layers one below the other, 0 … 3.5";
@@ -163,5 +164,86 @@ fn what_cannot_be_saved_says_why_and_what_else_there_is() {
             &["graph.ron", "--size", "4x2", "--save", save],
         );
         assert!(text.contains(part), "{save}: {text}");
+    }
+}
+
+/// Layers and mips written one by one, out of order.
+const STEPWISE: &str = r#"(
+    format: 2,
+    materials: [
+        Texture(name: "stack", format: R32Float, size: 8, mips: 2, layers: 2),
+        Texture(name: "other", format: R32Float, size: 8),
+    ],
+    passes: [
+        Clear(name: "one", target: "stack[1].mip[0]", value: 1.5),
+        Clear(name: "two", target: "stack[0].mip[0]", value: 2.5),
+        Clear(name: "small", target: "stack[1].mip[1]", value: 3.5),
+        Clear(name: "aside", target: "other"),
+        Clear(name: "rest", target: "stack[0].mip[1]", value: 4.5),
+    ],
+    outputs: ["stack", "other"],
+)"#;
+
+#[test]
+fn what_is_saved_after_a_pass_is_what_has_been_written_by_then() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("stepwise.ron"), STEPWISE).unwrap();
+    let (small, large) = ([0.0f32; 16], [0.0f32; 64]);
+    let of = |values: &[(&[f32], f32)]| -> Vec<f32> {
+        let parts = values.iter();
+        parts
+            .flat_map(|(part, value)| part.iter().map(move |_| *value))
+            .collect()
+    };
+    for (pass, expected, part) in [
+        ("one", of(&[(&large, 1.5)]), "mip 0 of 2, layer 1 of 2, "),
+        (
+            "two",
+            of(&[(&large, 2.5), (&large, 1.5)]),
+            "mip 0 of 2, layers 0 to 1 of 2, ",
+        ),
+        // The four are not whole: what the pass itself has written.
+        ("small", of(&[(&small, 3.5)]), "mip 1 of 2, layer 1 of 2, "),
+        (
+            "rest",
+            of(&[(&large, 2.5), (&large, 1.5), (&small, 4.5), (&small, 3.5)]),
+            "",
+        ),
+    ] {
+        let save = format!("stack@{pass}=part.bin");
+        let text = saved(folder, &["stepwise.ron", "--size", "4x2", "--save", &save]);
+        let bytes = fs::read(folder.join("part.bin")).unwrap();
+        let floats = bytes.chunks_exact(4);
+        let floats = floats.map(|b| f32::from_le_bytes(b.try_into().unwrap()));
+        assert_eq!(floats.collect::<Vec<f32>>(), expected, "{pass}");
+        match part {
+            "" => assert!(!text.contains(" of 2"), "{text}"),
+            part => assert!(text.contains(part), "{pass}: {text}"),
+        }
+    }
+    let text = refused(folder, &["stepwise.ron", "--save", "stack@aside=x.png"]);
+    assert!(
+        text.contains("something has written some of it, but not all")
+            && text.contains("name a mip or layer")
+            && text.contains("`rest` writes others"),
+        "{text}"
+    );
+}
+
+#[test]
+fn the_maps_of_a_layered_group_are_saved_as_they_are_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    for (layer, part) in [(0, "layer 0 of 4, "), (1, "layers 0 to 1 of 4, ")] {
+        let save = format!("shadow_maps@create_shadow_map.draw_layer[{layer}]=x.png");
+        let line = format!("pssm --scene park --size 64x64 --map-size 64 --save {save}");
+        let arguments: Vec<&str> = line.split(' ').collect();
+        let text = saved(folder.path(), &arguments);
+        assert!(
+            text.contains(part) && text.contains("stored depth"),
+            "{text}"
+        );
+        let picture = image::open(folder.path().join("x.png")).unwrap();
+        assert_eq!(picture.height(), (layer + 1) * picture.width());
     }
 }

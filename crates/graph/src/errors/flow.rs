@@ -7,8 +7,16 @@ use crate::{
 
 #[derive(Clone, Debug, thiserror::Error)]
 pub(crate) enum OrderError {
-    #[error("`{name}` cannot be read back: nothing has written it yet")]
-    Capture { name: String, first: Option<String> },
+    #[error("`{name}` cannot be read back: {}", match partly {
+        true => "something has written some of it, but not all",
+        false => "nothing has written it yet",
+    })]
+    Capture {
+        name: String,
+        first: Option<String>,
+        /// Something above has written some of it.
+        partly: bool,
+    },
     #[error("pass `{}` {} `{name}` that no pass has written", **pass, verb(*changes, *partly))]
     Unwritten {
         name: String,
@@ -76,11 +84,14 @@ impl Mistake for OrderError {
 
     fn explain(self, told: Diagnostic) -> Diagnostic {
         match self {
-            Self::Capture { first, .. } => {
-                told.help(first.map_or("no pass writes it".to_owned(), |first| {
-                    format!("it is first written by `{first}`")
-                }))
-            }
+            Self::Capture { first, partly, .. } => told.help(match (first, partly) {
+                (Some(first), true) => {
+                    format!("name a mip or layer that is written by then; `{first}` writes others")
+                }
+                (None, true) => "name a mip or layer that is written by then".to_owned(),
+                (Some(first), false) => format!("it is first written by `{first}`"),
+                (None, false) => "no pass writes it".to_owned(),
+            }),
             Self::Unwritten {
                 name,
                 pass,

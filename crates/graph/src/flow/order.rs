@@ -173,6 +173,7 @@ fn explain(reader: PassId, access: &Access, work: Work<'_>, order: &Order) -> Or
         return OrderError::Capture {
             name: pass.name.value.clone(),
             first: below.map(|(_, writer)| writer.name.value.clone()),
+            partly: work.passes[..reader.0].iter().any(writes),
         };
     }
     let (read, pass_name) = (access.span.clone(), pass.name.clone());

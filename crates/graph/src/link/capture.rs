@@ -1,6 +1,7 @@
 //! Copies of materials as they stand after a pass.
 
 use super::{
+    covered::{covers, within},
     linker::{Linker, Scope},
     pass::{CAPTURE, LinkedPass},
 };
@@ -11,13 +12,18 @@ use crate::{
     kinds::step::{Operand, Scratch, Step},
     provider::Provided,
     request::Capture,
-    resource::{Buffer, Origin, Resource, ResourceKind, Target},
+    resource::{Buffer, Origin, Resource, ResourceKind, SubresourceRange, Target},
     source::span::Located,
 };
 
 impl Linker<'_, '_> {
-    /// A copy of a material as it stands after the pass that was linked last.
-    pub(super) fn capture(&mut self, capture: &Capture) -> Result<LinkedPass, Reported> {
+    /// A copy of a material as it stands after the last of these passes: of as much of it as has
+    /// been written by then.
+    pub(super) fn capture(
+        &mut self,
+        capture: &Capture,
+        passes: &[LinkedPass],
+    ) -> Result<LinkedPass, Reported> {
         let Some(target) = self.world.find_full(&capture.material, self.reports) else {
             let known = self.reports.known(self.world.full_names());
             return Err(self.reports.report(OutputError::NoMaterial {
@@ -26,7 +32,10 @@ impl Linker<'_, '_> {
                 known,
             }));
         };
-        let target = target?;
+        let mut target = target?;
+        if let Some(part) = written_part(self.world.get(target.id), &target, passes) {
+            target.part = part;
+        }
         let kind = self.copy_of(capture, &target)?;
         let name = Located::new(capture.name(), self.world.graph.place());
         let copy = self.world.add(Resource {
@@ -80,4 +89,46 @@ impl Linker<'_, '_> {
             }
         })
     }
+}
+
+/// The part of a target that passes have written: all of it from the first mip, layer or item that
+/// was written to the last, or, where something between these was not, what the last pass has
+/// written itself. `None` if that is nothing, or all that can be.
+fn written_part(
+    resource: &Resource,
+    target: &Target,
+    passes: &[LinkedPass],
+) -> Option<SubresourceRange> {
+    // What others give has content before the first pass.
+    if resource.origin != Origin::Own {
+        return None;
+    }
+    let written = |passes: &[LinkedPass]| -> Vec<SubresourceRange> {
+        let accesses = passes.iter().flat_map(|pass| &pass.accesses);
+        let written = accesses.filter(|it| it.writes && it.resource == target.id);
+        written
+            .filter_map(|it| within(&it.part, &target.part))
+            .collect()
+    };
+    // The captures after a pass stand behind it.
+    let last = passes.iter().rposition(|pass| !pass.is_capture())?;
+    let own = written(&passes[last..=last]);
+    [
+        written(passes),
+        own.clone(),
+        own.into_iter().take(1).collect(),
+    ]
+    .into_iter()
+    .find_map(|parts| {
+        let from_first_to_last = parts
+            .iter()
+            .cloned()
+            .reduce(|one, other| SubresourceRange {
+                mips: one.mips.start.min(other.mips.start)..one.mips.end.max(other.mips.end),
+                layers: one.layers.start.min(other.layers.start)
+                    ..one.layers.end.max(other.layers.end),
+                ..one
+            })?;
+        covers(&parts, &from_first_to_last, resource).then_some(from_first_to_last)
+    })
 }

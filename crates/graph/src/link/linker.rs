@@ -94,7 +94,7 @@ pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a
         let captures: BTreeSet<&Capture> = request.captures.iter().filter(after).collect();
         for capture in captures {
             // A capture that cannot be was reported, and nothing needs it.
-            if let Ok(captured) = linker.capture(capture) {
+            if let Ok(captured) = linker.capture(capture, &passes) {
                 passes.push(captured);
                 instances.push(None);
             }

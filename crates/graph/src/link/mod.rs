@@ -4,6 +4,7 @@
 mod attachments;
 mod bindings;
 mod capture;
+mod covered;
 mod dispatch;
 mod layouts;
 pub(crate) mod linker;

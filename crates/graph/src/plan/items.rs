@@ -8,7 +8,26 @@ use crate::{
     resource::{ResourceId, ResourceKind},
     shader::items::{Item, item},
 };
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, ops::Range};
+
+/// A part of a texture or buffer.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PartSummary {
+    /// Mip levels; `0..1` of a buffer.
+    pub mips: Range<u32>,
+    /// Layers of an array, slices of a 3D texture, or items of a buffer.
+    pub layers: Range<u32>,
+    /// How many mips, and layers or items, the whole has; `u32::MAX` items where no document counts
+    /// them.
+    pub of: [u32; 2],
+}
+
+impl PartSummary {
+    /// Whether it is less than the whole.
+    pub fn is_less(&self) -> bool {
+        (self.mips.len(), self.layers.len()) != (self.of[0] as usize, self.of[1] as usize)
+    }
+}
 
 impl Plan {
     /// The provided resources that are bound by the passes that write an output or capture: depths
@@ -50,6 +69,35 @@ impl Plan {
         let mut globals = module.global_variables.iter();
         let (_, global) = globals.find(|(_, global)| global.binding == Some(place))?;
         item(module, global.ty)
+    }
+
+    /// Which mips and layers of a texture, or items of a buffer, an output or capture holds. A
+    /// capture after a pass holds what has been written by then, which may be less than was named.
+    pub fn part(&self, output: &str) -> Option<PartSummary> {
+        let (_, target) = self.readable().iter().find(|(name, _)| name == output)?;
+        // Of a capture: what is copied.
+        let captures = self.live().filter(|pass| pass.is_capture());
+        let copied = captures
+            .flat_map(|pass| &pass.steps)
+            .find_map(|step| match step {
+                Step::Copy { from, to } if to.id == target.id => Some(from),
+                _ => None,
+            });
+        let target = copied.unwrap_or(target);
+        let of = match &self.resource(target.id).kind {
+            ResourceKind::Texture(texture) => [texture.mips, texture.layers],
+            ResourceKind::Buffer(buffer) => {
+                let count = buffer.count.map(u32::try_from);
+                [1, count.and_then(Result::ok).unwrap_or(u32::MAX)]
+            }
+            _ => [1, u32::MAX],
+        };
+        let layers = &target.part.layers;
+        Some(PartSummary {
+            mips: target.part.mips.clone(),
+            layers: layers.start..layers.end.min(of[1]),
+            of,
+        })
     }
 
     /// The resource that an output or capture is a copy of, or is itself.

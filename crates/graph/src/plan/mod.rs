@@ -16,6 +16,7 @@ pub mod text;
 mod uniforms;
 mod usages;
 
+pub use items::PartSummary;
 pub use memory::MemoryEntry;
 pub use plan::{CulledPass, Plan};
 pub use summary::{OutputSummary, PassSummary};

@@ -97,6 +97,25 @@ fn items_are_those_of_the_shader_that_declares_them() {
 }
 
 #[test]
+fn a_capture_says_which_part_it_holds() {
+    let plan = plan(&[("image", "draw"), ("items", "gather"), ("depth", "draw")]);
+    let part = |name: &str| plan.part(name).unwrap();
+    // Of two mips the first was written.
+    let of_image = part("image@draw");
+    assert_eq!((of_image.mips.clone(), of_image.of), (0..1, [2, 1]));
+    assert!(of_image.is_less());
+    assert_eq!(part("top"), of_image);
+    for whole in ["items@gather", "depth@draw", "kept", "total"] {
+        assert!(!part(whole).is_less(), "{whole}");
+    }
+    assert_eq!(part("kept").layers, 0..5);
+    assert_eq!(plan.part("nothing"), None);
+    let outputs = plan.outputs();
+    let image = outputs.iter().find(|output| output.name == "image@draw");
+    assert_eq!(image.map(|image| image.size), Some([8, 8]));
+}
+
+#[test]
 fn memory_is_listed_by_material_and_adds_up() {
     let plan = plan(&[]);
     let entry = |name: &str| {

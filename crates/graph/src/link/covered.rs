@@ -1,0 +1,115 @@
+//! Which parts of a resource others cover together.
+
+use crate::resource::{Resource, ResourceKind, SubresourceRange};
+use std::ops::Range;
+
+/// What a part has in common with another one, in the aspect of that.
+pub(super) fn within(part: &SubresourceRange, of: &SubresourceRange) -> Option<SubresourceRange> {
+    let common = |a: &Range<u32>, b: &Range<u32>| a.start.max(b.start)..a.end.min(b.end);
+    part.overlaps(of).then(|| SubresourceRange {
+        mips: common(&part.mips, &of.mips),
+        layers: common(&part.layers, &of.layers),
+        aspect: of.aspect,
+    })
+}
+
+/// Whether parts cover another one together.
+pub(super) fn covers(
+    parts: &[SubresourceRange],
+    whole: &SubresourceRange,
+    resource: &Resource,
+) -> bool {
+    whole.mips.clone().all(|mip| {
+        let mut layers: Vec<&Range<u32>> = parts
+            .iter()
+            .filter(|part| part.mips.contains(&mip))
+            .map(|part| &part.layers)
+            .collect();
+        layers.sort_by_key(|layers| layers.start);
+        // Slices of a 3D texture become fewer.
+        let end = match &resource.kind {
+            ResourceKind::Texture(texture) => whole.layers.end.min(texture.mip_layers(mip)),
+            _ => whole.layers.end,
+        };
+        let reach = |reached: u32, layers: &Range<u32>| match layers.start <= reached {
+            true => reached.max(layers.end),
+            false => reached,
+        };
+        layers.into_iter().fold(whole.layers.start, reach) >= end
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::resource::{Buffer, Origin, Texture};
+
+    fn part(mips: Range<u32>, layers: Range<u32>) -> SubresourceRange {
+        SubresourceRange {
+            mips,
+            layers,
+            aspect: wgt::TextureAspect::All,
+        }
+    }
+
+    fn resource(kind: ResourceKind) -> Resource {
+        Resource {
+            name: "x".into(),
+            declared: None,
+            kind,
+            origin: Origin::Own,
+        }
+    }
+
+    fn texture(is_3d: bool) -> Resource {
+        resource(ResourceKind::Texture(Texture {
+            format: wgt::TextureFormat::R8Unorm,
+            size: [8, 8],
+            layers: 4,
+            is_3d,
+            mips: 3,
+            samples: 1,
+            picture: None,
+        }))
+    }
+
+    #[test]
+    fn parts_cover_a_whole_if_nothing_is_left_between_them() {
+        let array = texture(false);
+        let whole = part(0..2, 0..4);
+        let rows = [part(0..2, 2..4), part(0..2, 0..1), part(0..1, 1..2)];
+        assert!(!covers(&rows, &whole, &array), "layer 1 of mip 1");
+        let rest = [&rows[..], &[part(1..2, 1..3)]].concat();
+        assert!(covers(&rest, &whole, &array));
+        assert!(!covers(&[], &whole, &array));
+        assert!(covers(&rows, &part(0..1, 0..4), &array));
+    }
+
+    #[test]
+    fn slices_become_fewer_and_items_end_where_the_buffer_does() {
+        let mips = [part(0..1, 0..4), part(1..2, 0..2), part(2..3, 0..1)];
+        assert!(covers(&mips, &part(0..3, 0..4), &texture(true)));
+        assert!(!covers(&mips, &part(0..3, 0..4), &texture(false)));
+        let buffer = resource(ResourceKind::Buffer(Buffer::default()));
+        let items = [part(0..1, 0..2), part(0..1, 2..5)];
+        assert!(covers(&items, &part(0..1, 0..5), &buffer));
+        assert!(!covers(&items, &SubresourceRange::WHOLE, &buffer));
+    }
+
+    #[test]
+    fn what_two_parts_share_is_of_the_asked_aspect() {
+        let stencil = SubresourceRange {
+            aspect: wgt::TextureAspect::StencilOnly,
+            ..part(0..1, 0..4)
+        };
+        let depth = SubresourceRange {
+            aspect: wgt::TextureAspect::DepthOnly,
+            ..part(0..2, 1..2)
+        };
+        assert_eq!(within(&stencil, &depth), None);
+        let found = within(&part(0..1, 0..9), &depth).unwrap();
+        assert_eq!((found.mips, found.layers), (0..1, 1..2));
+        assert_eq!(found.aspect, wgt::TextureAspect::DepthOnly);
+        assert_eq!(within(&part(0..1, 2..4), &depth), None);
+    }
+}

@@ -3,7 +3,8 @@
 
 use skiagraph_draw::Drawing;
 use skiagraph_graph::{
-    Describe, Graph, Plan, PlanRequest, Provided, ProvidedBinding, Registry, Sources,
+    Code, Describe, Diagnostics, Graph, Plan, PlanRequest, Provided, ProvidedBinding, Registry,
+    Sources,
 };
 use skiagraph_scene::{Adjacency, Bvh, ObjOptions, QuadDiagonal, SceneFile, obj::parse_obj};
 use std::{path::Path, sync::Arc};
@@ -18,7 +19,7 @@ pub fn document(bytes: &[u8]) -> String {
     let flat = Graph::flat("graph.ron", &files);
     let request = PlanRequest::new([33, 17], &SmallScene);
     match Graph::check("graph.ron", &Registry::standard(), &files, &request) {
-        Err(errors) => errors.to_string(),
+        Err(errors) => said(&errors),
         Ok((_, plan)) => {
             assert!(
                 flat.is_ok(),
@@ -43,7 +44,7 @@ pub fn wgsl(bytes: &[u8]) -> String {
         &files,
         &request,
     ) {
-        Err(errors) => errors.to_string(),
+        Err(errors) => said(&errors),
         Ok((_, plan)) => use_up(&plan),
     }
 }
@@ -95,6 +96,19 @@ pub fn scene(bytes: &[u8]) -> String {
         }
     }
     answer
+}
+
+/// What is wrong with a graph. A panic that was caught is naga's, which has some; one of ours is a
+/// finding.
+fn said(errors: &Diagnostics) -> String {
+    for found in errors
+        .iter()
+        .filter(|found| found.code == Code::LibraryPanic)
+    {
+        let help = found.help.as_deref().unwrap_or_default();
+        assert!(help.contains("(naga-"), "{}: {help}", found.message);
+    }
+    errors.to_string()
 }
 
 /// Everything that a plan tells without a GPU.

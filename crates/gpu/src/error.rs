@@ -1,10 +1,7 @@
 //! What can go wrong on a device, and the scopes that bring it back as errors.
 
-use skiagraph_graph::{Diagnostics, Plan};
-use std::{
-    panic::{AssertUnwindSafe, catch_unwind},
-    time::Duration,
-};
+use skiagraph_graph::{Diagnostics, Panicked, Plan, caught};
+use std::time::Duration;
 
 /// Why a plan could not be allocated or a frame not be run.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -27,6 +24,17 @@ pub enum ExecuteError {
         name: String,
         /// wgpu's words.
         message: String,
+    },
+    /// wgpu, naga, the driver's layer or a provider panicked: a mistake of theirs.
+    #[error(
+        "{name}: {panicked}; this is a mistake of the library, which may take the same written \
+         differently"
+    )]
+    Panicked {
+        /// The resource, or the pass with its place in the document.
+        name: String,
+        /// The panic.
+        panicked: Panicked,
     },
     /// The device has no memory for this.
     #[error("the device has not enough memory for `{name}`")]
@@ -136,7 +144,8 @@ pub enum ExecuteError {
     Internal(&'static str),
 }
 
-/// Runs `make` inside error scopes, so that what wgpu finds wrong comes back as an error.
+/// Runs `make` inside error scopes, so that what wgpu finds wrong comes back as an error, and so
+/// does a panic: wgpu validates shaders once more and compiles them, and naga panics on some.
 pub(crate) fn scoped<T>(
     device: &wgpu::Device,
     name: &str,
@@ -148,13 +157,17 @@ pub(crate) fn scoped<T>(
         wgpu::ErrorFilter::Validation,
     ]
     .map(|filter| device.push_error_scope(filter));
-    let made = make();
+    let made = caught(make);
     // Scopes are a stack: the last one pushed is popped first.
     let errors: Vec<wgpu::Error> = scopes
         .into_iter()
         .rev()
         .filter_map(|scope| pollster::block_on(scope.pop()))
         .collect();
+    let made = made.map_err(|panicked| ExecuteError::Panicked {
+        name: format!("`{name}`"),
+        panicked,
+    })?;
     match errors.into_iter().next() {
         None => Ok(made),
         Some(wgpu::Error::OutOfMemory { .. }) => Err(ExecuteError::OutOfMemory {
@@ -175,6 +188,10 @@ pub(crate) fn named(error: ExecuteError, pass: &str, place: &str) -> ExecuteErro
             pass: pass.to_owned(),
             place: place.to_owned(),
             message,
+        },
+        ExecuteError::Panicked { panicked, .. } => ExecuteError::Panicked {
+            name: format!("{place}: pass `{pass}`"),
+            panicked,
         },
         other => other,
     }
@@ -228,7 +245,7 @@ pub(crate) fn wait(device: &wgpu::Device, timeout: Option<Duration>) -> Result<b
 /// Looks what of the submitted work is done; false if a timeout came first.
 pub(crate) fn poll(device: &wgpu::Device, how: wgpu::PollType) -> Result<bool, ExecuteError> {
     // wgpu panics where a device is lost while it is waited for.
-    let polled = catch_unwind(AssertUnwindSafe(|| device.poll(how)));
+    let polled = caught(|| device.poll(how));
     match polled {
         Ok(Ok(_)) => Ok(true),
         Ok(Err(wgpu::PollError::Timeout)) => Ok(false),

@@ -19,6 +19,7 @@ mod instantiate;
 mod kinds;
 mod language;
 mod link;
+mod panics;
 mod picture;
 mod plan;
 mod provided_kind;
@@ -43,6 +44,7 @@ pub use link::{
     Access, Attachment, BindTarget, Block, CAPTURE, Ids, LinkedBinding, LinkedPass, LinkedProgram,
     PassId, Usage,
 };
+pub use panics::{Panicked, caught};
 pub use plan::{CulledPass, MemoryEntry, OutputSummary, PartSummary, PassSummary, Plan, text};
 pub use provided_kind::ProvidedKind;
 pub use provider::{Describe, Import, NoProvider, Provided, ProvidedBinding};

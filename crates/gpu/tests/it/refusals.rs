@@ -121,6 +121,105 @@ fn a_provider_that_fails() {
     );
 }
 
+/// Panics as it builds, as wgpu does on some shaders.
+struct Panicking;
+
+impl Describe for Panicking {
+    fn names(&self) -> Vec<String> {
+        Broken.names()
+    }
+
+    fn describe(&self, name: &str) -> Option<Provided> {
+        Broken.describe(name)
+    }
+}
+
+impl Provider for Panicking {
+    fn build(
+        &mut self,
+        name: &str,
+        _: &wgpu::Device,
+        _: &wgpu::Queue,
+    ) -> Result<wgpu::Buffer, ProviderError> {
+        panic!("no {name} today")
+    }
+}
+
+/// A panic while something is made on the device is an error that names it, on this thread and on
+/// others, and the device goes on as before.
+#[test]
+fn a_panic_while_something_is_made() {
+    let files = Files::graph(
+        r#"
+    materials: [Buffer(name: "total")],
+    passes: [Compute(name: "sum", dispatch: Groups(1, 1, 1))],
+    outputs: ["total"],
+"#,
+    )
+    .with(
+        "sum.wgsl",
+        "var<storage, read> items: array<u32>;
+         var<storage, read_write> total: u32;
+         @compute @workgroup_size(1) fn main() { total = items[0]; }",
+    );
+    let plan = || right(right(load(&files)).plan(&request(&Broken)));
+    let made = || Executor::new(&GPU.device, &GPU.queue, plan(), &mut Panicking).err();
+    let on_another = std::thread::scope(|scope| scope.spawn(made).join());
+    for error in [made(), on_another.expect("no thread dies of it")] {
+        match error.expect("nothing was made") {
+            ExecuteError::Panicked { name, panicked } => {
+                assert_eq!(name, "`items`");
+                assert_eq!(panicked.message, "no items today");
+                assert!(panicked.place.contains("refusals.rs:"), "{panicked}");
+            }
+            other => panic!("{other}"),
+        }
+    }
+    made_again();
+}
+
+/// A graph that is right runs on the device.
+fn made_again() {
+    let mut executor = made(&image());
+    executor
+        .encode(&mut encoder(), &Frame::default())
+        .expect("the error scopes are as they were");
+}
+
+/// naga cannot write this shader, which is valid: refused with its place before the device is asked.
+#[test]
+fn a_shader_that_the_library_panics_on() {
+    let files = Files::graph(
+        r#"
+    materials: [Buffer(name: "total")],
+    passes: [Compute(name: "nested", dispatch: Groups(1, 1, 1))],
+    outputs: ["total"],
+"#,
+    )
+    .with(
+        "nested.wgsl",
+        "var<storage, read_write> total: i32;
+fn inner(p: ptr<function, i32>) -> i32 { return *p + 1; }
+fn pick(v: ptr<function, array<array<i32, 4>, 4>>, i: u32) -> i32 {
+    let unused = i + 1u;
+    return inner(&(*v)[i][0]);
+}
+@compute @workgroup_size(1) fn main() {
+    var a: array<array<i32, 4>, 4>;
+    total = pick(&a, 1u);
+}",
+    );
+    let error = right(load(&files))
+        .plan(&request(&NoProvider))
+        .expect_err("it cannot be written");
+    let said = error.to_string();
+    assert!(
+        said.contains("library-panic") && said.contains("nested.wgsl:5:"),
+        "{said}"
+    );
+    made_again();
+}
+
 /// Terabytes: an error that names the texture, with the planner's table of what takes the most.
 #[test]
 fn more_memory_than_there_is() {

@@ -114,9 +114,17 @@ codes! {
     /// The WGSL does not parse or validate.
     Shader = "shader",
         "Mend the WGSL at the place that is underlined.";
+    /// A library panicked on the file: a mistake of the library, which may have nothing against the
+    /// same written differently.
+    LibraryPanic = "library-panic",
+        "Write it differently at the place that is underlined, and tell the library's authors.";
     /// A shader without the entry point that the pass needs.
     EntryPoint = "entry-point",
         "Give the shader one entry point of the stage, or name one of several in the pass.";
+    /// Stages of a draw that do not fit together.
+    StageInterface = "stage-interface",
+        "Let the vertex shader write what the fragment shader reads: the same location, type and \
+         interpolation.";
     /// A shader's binding cannot be satisfied (unsupported type, clashing numbers).
     Binding = "binding",
         "Leave `@group` and `@binding` out: the graph numbers globals. Bind what shaders have, to \

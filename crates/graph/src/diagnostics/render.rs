@@ -1,7 +1,13 @@
 //! Mistakes with the lines that they are about, for a terminal (feature `render`).
 
-use super::diagnostic::{Diagnostic, Label, Severity};
-use crate::source::span::{SourceFile, Span};
+use super::{
+    diagnostic::{Diagnostic, Label, Severity},
+    list::Diagnostics,
+};
+use crate::{
+    panics::caught,
+    source::span::{SourceFile, Span},
+};
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource};
 use std::{fmt, ops::Range};
 
@@ -20,13 +26,15 @@ pub fn render(list: &[Diagnostic], colour: bool) -> String {
         .with_links(false);
     let mut text = String::new();
     for diagnostic in list {
-        // Rendering into a String fails only if a Display implementation does; then the bare
-        // message must do.
-        if handler
-            .render_report(&mut text, &Report::new(diagnostic))
-            .is_err()
-        {
-            text.push_str(&diagnostic.message);
+        let mut rendered = String::new();
+        let report = Report::new(diagnostic);
+        // Rendering into a String fails only if a Display implementation does, and miette may
+        // panic: then the words must do, with the places in words.
+        match caught(|| handler.render_report(&mut rendered, &report)) {
+            Ok(Ok(())) => text.push_str(&rendered),
+            Ok(Err(_)) | Err(_) => {
+                text.push_str(&Diagnostics::from(diagnostic.clone()).to_string());
+            }
         }
         text.push('\n');
     }

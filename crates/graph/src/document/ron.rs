@@ -8,6 +8,7 @@
 use crate::{
     diagnostics::{diagnostic::Diagnostic, reports::Mistake},
     errors::document::DocumentError,
+    panics::{Panicked, caught},
     source::span::{Located, SourceFile, Span},
 };
 use ron::value::RawValue;
@@ -209,9 +210,15 @@ impl Node {
             file: self.span.file.clone(),
             failed: None,
         }));
-        let result = read();
+        let result = caught(read);
         let failed = READING.take().and_then(|reading| reading.failed);
-        result.map_err(|error| failed.unwrap_or_else(|| explain(&error, self.span.clone())))
+        self.without_panic(result)?
+            .map_err(|error| failed.unwrap_or_else(|| explain(&error, self.span.clone())))
+    }
+
+    /// A panic of ron's as a diagnostic at the piece that it read.
+    fn without_panic<T>(&self, result: Result<T, Panicked>) -> Result<T, Diagnostic> {
+        result.map_err(|panicked| DocumentError::Panicked(self.span.clone(), panicked).diagnostic())
     }
 
     /// The entries of a list, `[…]`, or of a tuple, `(…)`.
@@ -366,10 +373,11 @@ impl Node {
     }
 
     fn borrowed<'a, T: Deserialize<'a>>(&'a self) -> Result<T, Diagnostic> {
-        options().from_str(self.text()).map_err(|error| {
-            let range = place_of(self.text(), &error, self.span.range.start);
-            explain(&error.code, self.span.file.span(range))
-        })
+        self.without_panic(caught(|| options().from_str(self.text())))?
+            .map_err(|error| {
+                let range = place_of(self.text(), &error, self.span.range.start);
+                explain(&error.code, self.span.file.span(range))
+            })
     }
 }
 
@@ -523,5 +531,34 @@ fn lower_first(text: &str) -> String {
     match characters.next() {
         Some(first) => first.to_lowercase().chain(characters).collect(),
         None => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnostics::code::Code;
+
+    /// Panics as it is read, in the place of a library that does.
+    #[derive(Debug)]
+    struct Panics;
+
+    impl<'de> Deserialize<'de> for Panics {
+        fn deserialize<D: Deserializer<'de>>(_: D) -> Result<Self, D::Error> {
+            panic!("no value today")
+        }
+    }
+
+    #[test]
+    fn a_panic_is_a_diagnostic_at_its_piece() {
+        let node = || Node {
+            span: SourceFile::new("graph.ron", "(a: 1)").span(4..5),
+        };
+        let told = node().parse::<Panics>().expect_err("it panics");
+        assert_eq!(told.code, Code::LibraryPanic);
+        assert!(told.message.contains("no value today"), "{told:?}");
+        assert_eq!(told.labels[0].span.range, 4..5);
+        // What is read next is read as ever.
+        assert_eq!(node().parse::<u32>().ok(), Some(1));
     }
 }

@@ -3,6 +3,7 @@
 use crate::{
     diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
     language::name::{Name, NameFault, RESERVED},
+    panics::Panicked,
     source::span::{Located, SourceFile, Span},
 };
 
@@ -17,6 +18,9 @@ pub(crate) enum DocumentError {
     Format(Span, u32),
     #[error("{1}")]
     Syntax(Span, String),
+    /// A library's mistake, not the author's.
+    #[error("ron panics while this is read: {}", .1.message)]
+    Panicked(Span, Panicked),
     #[error("the text ends too early")]
     Ends(Span),
     #[error("values are nested too deep")]
@@ -112,6 +116,7 @@ impl Mistake for DocumentError {
             Self::TooMany { .. } => Code::Size,
             Self::Name(..) | Self::Reserved(_) | Self::Unnamed(..) => Code::Name,
             Self::Param { .. } => Code::ParamValue,
+            Self::Panicked(..) => Code::LibraryPanic,
             _ => Code::Syntax,
         }
     }
@@ -128,6 +133,9 @@ impl Mistake for DocumentError {
             Self::Format(span, _) => told
                 .at(span, "")
                 .help("this version of Skiagraph reads `format: 2`"),
+            Self::Panicked(span, panicked) => told
+                .at(span, "this brings it about")
+                .help(panicked.way_out()),
             Self::Ends(span) => told
                 .at(span, "something is not closed")
                 .help("check that every bracket and quote is closed"),

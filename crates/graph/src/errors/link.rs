@@ -327,6 +327,8 @@ pub(crate) enum TextureMisfit {
     StorageFormat(String),
     #[error("the adapter offers no storage access of this kind")]
     NoStorage,
+    #[error("it has {0} samples, and a storage texture has one")]
+    StorageSamples(u32),
     #[error("it has several mips, a storage texture is one")]
     StorageMips,
     #[error("it is no 3D texture")]
@@ -355,7 +357,7 @@ impl TextureMisfit {
             Self::Flat | Self::Solid | Self::Slice | Self::Layers(_) | Self::Cube(_) => {
                 Code::ResourceKind
             }
-            Self::StorageMips | Self::Samples(_) => Code::ResourceKind,
+            Self::StorageMips | Self::StorageSamples(_) | Self::Samples(_) => Code::ResourceKind,
             _ => Code::FormatMismatch,
         }
     }
@@ -376,6 +378,9 @@ impl TextureMisfit {
                  every adapter",
             ),
             Self::Layers(_) => Some("declare an array texture, or bind one layer: `x[0]`"),
+            Self::StorageSamples(_) => {
+                Some("write a texture without `samples`, or draw to this one")
+            }
             Self::StorageMips => Some("bind one of them: `x.mip[0]`"),
             _ => None,
         }

@@ -10,6 +10,7 @@ pub(crate) mod flow;
 pub(crate) mod instantiate;
 pub(crate) mod language;
 pub(crate) mod layout;
+pub(crate) mod limits;
 pub(crate) mod link;
 pub(crate) mod plan;
 pub(crate) mod resource;

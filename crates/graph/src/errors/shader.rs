@@ -2,6 +2,7 @@
 
 use crate::{
     diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    panics::Panicked,
     source::span::{Located, Span},
 };
 
@@ -83,6 +84,20 @@ pub(crate) enum ShaderError {
         places: Vec<(Span, String)>,
         notes: Vec<String>,
     },
+    /// A library's mistake, not the author's.
+    #[error("naga panics while `{file}` {while_it}: {}", panicked.message)]
+    Panicked {
+        file: String,
+        while_it: &'static str,
+        panicked: Panicked,
+        at: Span,
+    },
+    #[error("`{global}` of `{file}` is an immediate, which a graph does not set")]
+    Immediate {
+        file: String,
+        global: String,
+        at: Span,
+    },
     #[error("a type has no layout: {what}")]
     NoLayout { what: String, at: Span },
     #[error("`{global}` of `{file}` has a binding number that is taken: {number}")]
@@ -134,7 +149,8 @@ pub(crate) enum ShaderError {
 impl Mistake for ShaderError {
     fn code(&self) -> Code {
         match self {
-            Self::Collision { .. } => Code::Binding,
+            Self::Panicked { .. } => Code::LibraryPanic,
+            Self::Collision { .. } | Self::Immediate { .. } => Code::Binding,
             Self::Choice { .. } | Self::TwoWords { .. } => Code::ChoiceConstant,
             Self::NoSuchEntry { .. } | Self::NoEntry { .. } | Self::SeveralEntries { .. } => {
                 Code::EntryPoint
@@ -166,6 +182,12 @@ impl Mistake for ShaderError {
                     false => told.help(notes.join("\n")),
                 }
             }
+            Self::Panicked { at, panicked, .. } => {
+                told.at(at, "this brings it about").help(panicked.way_out())
+            }
+            Self::Immediate { at, .. } => told.at(at, "").help(
+                "make it a member of the uniform `params`, which passes set by `set` and by params",
+            ),
             Self::NoLayout { at, .. } => told.at(at, ""),
             Self::Collision { at, others, .. } => {
                 let told = others

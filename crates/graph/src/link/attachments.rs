@@ -40,7 +40,12 @@ impl Linker<'_, '_> {
             (false, true) => &[ShaderStage::Vertex, ShaderStage::Fragment],
             (false, false) => &[ShaderStage::Vertex],
         };
-        let program = self.program(&draw.program, stages, draw.colors.is_empty(), pass);
+        let mut program = self.program(&draw.program, stages, draw.colors.is_empty(), pass);
+        if let Ok(linked) = &program
+            && let Err(reported) = self.stages(linked, draw)
+        {
+            program = Err(reported);
+        }
         let colors = self.colors(draw, program.as_ref().ok(), pass);
         let depth = draw
             .depth

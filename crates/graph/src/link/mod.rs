@@ -7,6 +7,7 @@ mod capture;
 mod covered;
 mod dispatch;
 mod layouts;
+mod limits;
 pub(crate) mod linker;
 pub(crate) mod params;
 pub(crate) mod pass;

@@ -5,8 +5,10 @@ use super::{
     pass::{LinkedBinding, LinkedPass, LinkedProgram},
 };
 use crate::{
-    diagnostics::reports::Reported, errors::link::LinkError, kinds::step::Program,
-    shader::reflect::Global,
+    diagnostics::reports::Reported,
+    errors::link::LinkError,
+    kinds::step::Program,
+    shader::reflect::{Global, Shader},
 };
 use naga::ShaderStage;
 
@@ -41,7 +43,8 @@ impl Linker<'_, '_> {
         }
         let globals = shader.globals(&entries);
         self.bound_globals(program, &shader, &globals)?;
-        self.groups_exist(&globals)?;
+        self.groups_exist(&shader)?;
+        self.binding_numbers(&shader, &globals)?;
         let mut linked = LinkedProgram {
             constants: self.constants(program, &shader)?,
             bindings: Vec::with_capacity(globals.len()),
@@ -57,7 +60,8 @@ impl Linker<'_, '_> {
             }
         }
         self.counts(&linked.bindings, pass)?;
-        wrong.map_or(Ok(linked), Err)
+        let checked = self.footprints(&linked);
+        wrong.or(checked.err()).map_or(Ok(linked), Err)
     }
 
     /// What the entry binds must be globals of its own shader. (A kind with several shaders hands
@@ -65,7 +69,7 @@ impl Linker<'_, '_> {
     fn bound_globals(
         &mut self,
         program: &Program,
-        shader: &crate::shader::reflect::Shader,
+        shader: &Shader,
         globals: &[Global],
     ) -> Result<(), Reported> {
         let mut wrong = None;
@@ -85,16 +89,18 @@ impl Linker<'_, '_> {
         wrong.map_or(Ok(()), Err)
     }
 
-    /// Group numbers that the adapter does not have. (One number for two globals is found when the
-    /// shader is validated.)
-    fn groups_exist(&mut self, globals: &[Global]) -> Result<(), Reported> {
+    /// Group numbers that the adapter does not have, be it of globals that nothing uses: a device
+    /// refuses the whole module. (One number for two globals is found when the shader is
+    /// validated.)
+    fn groups_exist(&mut self, shader: &Shader) -> Result<(), Reported> {
         let most = self.world.request.limits.max_bind_groups;
-        for global in globals.iter().filter(|global| global.group >= most) {
+        let groups = shader.groups();
+        for (global, group, span) in groups.filter(|(_, group, _)| *group >= most) {
             self.reports.beyond(LinkError::BindGroup {
-                global: global.name.clone(),
-                group: global.group,
+                global: global.to_owned(),
+                group,
                 most,
-                span: global.span.clone(),
+                span,
             })?;
         }
         Ok(())
@@ -104,7 +110,7 @@ impl Linker<'_, '_> {
     fn counts(&mut self, bindings: &[LinkedBinding], pass: &LinkedPass) -> Result<(), Reported> {
         let limits = &self.world.request.limits;
         type IsOf = fn(&wgt::BindingType) -> bool;
-        let kinds: [(&str, IsOf, u32); 5] = [
+        let kinds: [(&str, IsOf, u32); 7] = [
             (
                 "storage buffers",
                 |ty| {
@@ -133,6 +139,19 @@ impl Linker<'_, '_> {
                 "samplers",
                 |ty| matches!(ty, wgt::BindingType::Sampler(_)),
                 limits.max_samplers_per_shader_stage,
+            ),
+            (
+                "acceleration structures",
+                |ty| matches!(ty, wgt::BindingType::AccelerationStructure { .. }),
+                limits.max_acceleration_structures_per_shader_stage,
+            ),
+            (
+                "buffers and acceleration structures",
+                |ty| {
+                    is_buffer(ty, |_| true)
+                        || matches!(ty, wgt::BindingType::AccelerationStructure { .. })
+                },
+                limits.max_buffers_and_acceleration_structures_per_shader_stage,
             ),
         ];
         for (what, is, most) in kinds {

@@ -175,6 +175,9 @@ impl Linker<'_, '_> {
         if declared != format!("{format:?}") {
             return Err(TextureMisfit::StorageFormat(declared.to_owned()));
         }
+        if texture.samples > 1 {
+            return Err(TextureMisfit::StorageSamples(texture.samples));
+        }
         let both = access == wgt::StorageTextureAccess::ReadWrite;
         let allowed = features
             .allowed_usages

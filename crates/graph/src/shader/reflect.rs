@@ -3,11 +3,13 @@
 
 use super::{
     class::{Class, ScalarClass, TextureClass, class_of, vector},
+    compiled::{compiled, specialised},
     expand::Expanded,
+    footprint::Footprint,
     guard,
     items::{Item, item},
     text::words,
-    wgsl_errors::{function_span, parse_error, validation_error},
+    wgsl_errors::function_span,
 };
 use crate::{
     errors::shader::ShaderError,
@@ -16,10 +18,13 @@ use crate::{
 };
 use naga::{
     AddressSpace, Handle, ShaderStage, TypeInner,
-    proc::{GlobalCtx, Layouter},
-    valid::{GlobalUse, ModuleInfo, ValidationFlags, Validator},
+    proc::Layouter,
+    valid::{GlobalUse, ModuleInfo},
 };
-use std::collections::BTreeSet;
+use std::{
+    collections::{BTreeSet, HashMap},
+    sync::{Arc, Mutex, PoisonError},
+};
 
 /// A parsed, validated shader whose resource globals all have binding numbers.
 #[derive(Debug)]
@@ -28,7 +33,15 @@ pub struct Shader {
     pub(crate) module: naga::Module,
     info: ModuleInfo,
     layouter: Layouter,
+    /// Of entry points with the values of their overrides, as far as they were asked for.
+    footprints: Mutex<HashMap<Specialisation, Result<Arc<Footprint>, ShaderError>>>,
 }
+
+/// An entry point, and the values of overrides by key, in bits.
+type Specialisation = (usize, Vec<(String, u64)>);
+
+/// As many specialisations are remembered of a shader: a slider has many values.
+const MOST_FOOTPRINTS: usize = 64;
 
 /// Shaders of one text are one.
 impl PartialEq for Shader {
@@ -62,34 +75,45 @@ impl Shader {
     /// imported modules, group 1 the shader's own.
     pub(crate) fn new(source: Expanded) -> Result<Self, ShaderError> {
         guard::check(&source)?;
-        let mut module = naga::front::wgsl::parse_str(&source.text)
-            .map_err(|error| parse_error(&error, &source))?;
-        assign_bindings(&mut module, &source);
-        // What a device lacks is said when the pipeline is made for it; a document is checked
-        // against the language.
-        let mut validator =
-            Validator::new(ValidationFlags::all(), naga::valid::Capabilities::all());
-        let info = validator
-            .validate(&module)
-            .map_err(|error| validation_error(&error, &module, &source))?;
-        let mut layouter = Layouter::default();
-        layouter
-            .update(GlobalCtx {
-                types: &module.types,
-                constants: &module.constants,
-                overrides: &module.overrides,
-                global_expressions: &module.global_expressions,
-            })
-            .map_err(|error| ShaderError::NoLayout {
-                what: error.to_string(),
-                at: source.file.span(0..0),
-            })?;
+        let (module, info, layouter) = compiled(&source)?;
         Ok(Self {
             source,
             module,
             info,
             layouter,
+            footprints: Mutex::default(),
         })
+    }
+
+    /// What an entry point takes of a device with these values of its overrides. It is compiled as
+    /// a device would.
+    pub(crate) fn footprint(
+        &self,
+        entry: usize,
+        constants: &[(String, f64)],
+    ) -> Result<Arc<Footprint>, ShaderError> {
+        let bits = constants
+            .iter()
+            .map(|(key, value)| (key.clone(), value.to_bits()));
+        let key = (entry, bits.collect());
+        let lock = || {
+            self.footprints
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+        };
+        if let Some(known) = lock().get(&key) {
+            return known.clone();
+        }
+        let point = &self.module.entry_points[entry];
+        let of = (point.stage, point.name.as_str());
+        let found = specialised((&self.module, &self.info), of, constants, &self.source)
+            .map(|specialised| Arc::new(Footprint::new(&specialised, of, &self.source)));
+        let mut footprints = lock();
+        if footprints.len() >= MOST_FOOTPRINTS {
+            footprints.clear();
+        }
+        footprints.insert(key, found.clone());
+        found
     }
 
     /// Fragment entry points without colour outputs.
@@ -233,6 +257,16 @@ impl Shader {
             });
         }
         globals
+    }
+
+    /// The group of every resource global, used or not, with its name and place.
+    pub(crate) fn groups(&self) -> impl Iterator<Item = (&str, u32, Span)> {
+        let globals = self.module.global_variables.iter();
+        globals.filter_map(|(handle, variable)| {
+            let group = variable.binding?.group;
+            let name = variable.name.as_deref().unwrap_or_default();
+            Some((name, group, self.global_span(handle, variable)))
+        })
     }
 
     fn global_span(
@@ -404,8 +438,9 @@ fn stages_of(stage: ShaderStage) -> wgt::ShaderStages {
     }
 }
 
-/// Gives every resource global without numbers the next free ones of its group.
-fn assign_bindings(module: &mut naga::Module, source: &Expanded) {
+/// Gives every resource global without numbers the next free ones of its group. `is_imported` is
+/// asked about places in the text.
+pub(super) fn assign_bindings(module: &mut naga::Module, is_imported: &dyn Fn(usize) -> bool) {
     let mut next = [0; 2];
     let mut taken: BTreeSet<(u32, u32)> = module
         .global_variables
@@ -431,7 +466,7 @@ fn assign_bindings(module: &mut naga::Module, source: &Expanded) {
         if !is_resource || variable.binding.is_some() {
             continue;
         }
-        let group = u32::from(!source.is_imported(at));
+        let group = u32::from(!is_imported(at));
         let binding = &mut next[group as usize];
         // No module has as many globals as there are numbers.
         while taken.contains(&(group, *binding)) {

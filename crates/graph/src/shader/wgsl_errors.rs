@@ -11,17 +11,24 @@ use crate::{
 };
 use naga::{
     Handle,
+    back::pipeline_constants::PipelineConstantError,
     common::wgsl::TypeContext,
     valid::{EntryPointError, FunctionError, GlobalVariableError, TypeFlags, ValidationError},
 };
+use std::ops::Range;
 
-/// The place of the name of a function.
-pub(super) fn function_span(source: &Expanded, name: &str) -> Span {
+/// Where the name of a function stands.
+pub(super) fn function_range(source: &Expanded, name: &str) -> Range<usize> {
     let text = &source.text;
     let at = words(text, name)
         .find(|&at| text[..at].trim_end().ends_with("fn"))
         .unwrap_or(0);
-    source.locate(at..at + name.len())
+    at..at + name.len()
+}
+
+/// The place of the name of a function.
+pub(super) fn function_span(source: &Expanded, name: &str) -> Span {
+    source.locate(function_range(source, name))
 }
 
 /// Two globals that one entry point uses under one number.
@@ -246,6 +253,28 @@ pub(super) fn validation_error(
         file: blamed(&places, source),
         what,
         places,
+        notes: Vec::new(),
+    }
+}
+
+/// An entry point that is not valid with the values of its overrides.
+pub(super) fn specialisation_error(
+    error: &PipelineConstantError,
+    entry: &str,
+    source: &Expanded,
+) -> ShaderError {
+    let mut what = format!("is not valid with the values of its overrides: {error}");
+    let mut cause = std::error::Error::source(error);
+    while let Some(inner) = cause {
+        what.push_str(&format!(": {inner}"));
+        cause = inner.source();
+    }
+    // Its numbers are those of a module that is gone.
+    let what = without_handles(&what, &naga::Module::default()).replace("Type '' is", "a type is");
+    ShaderError::Naga {
+        file: format!("`{}`", source.file.name),
+        what,
+        places: vec![(function_span(source, entry), String::new())],
         notes: Vec::new(),
     }
 }

@@ -179,3 +179,148 @@ fn shaders_that_claim_without_end() {
     ]);
     answer(&files).expect_err("no workgroup is as large");
 }
+
+/// What is said about a shader `index` alone, and about one that imports `module`.
+fn of_files(index: &str, module: &str) -> String {
+    let files = Files::new([
+        ("graph.ron", COMPUTE),
+        ("index.wgsl", index),
+        ("module.wgsl", module),
+    ]);
+    answer(&files)
+        .err()
+        .map_or("nothing".to_owned(), |errors| errors.to_string())
+}
+
+/// naga panics on these: an error at the line that brings it about, be it parsed, validated,
+/// specialised or written.
+#[test]
+fn shaders_that_the_library_panics_on() {
+    let main = "var<storage, read_write> items: array<u32>;
+@compute @workgroup_size(1) fn main() { items[0] = u32(BIG); }";
+    for number in [
+        "i32(HALF)",
+        "u32(HALF)",
+        "vec2<i32>(vec2<f16>(HALF, 1.0h)).x",
+    ] {
+        let index =
+            format!("enable f16;\n{main}\nconst BIG = {number};\nconst HALF: f16 = f16(65530i);");
+        assert_said(
+            &of_files(&index, ""),
+            "index.wgsl:4:1",
+            &["library-panic", "naga-"],
+        );
+    }
+    let module = "const ONE = 1;\nconst HALF = f16(65530i);\nconst BIG = i32(HALF);";
+    let index = format!("enable f16;\n#import \"module.wgsl\"\n{main}");
+    assert_said(
+        &of_files(&index, module),
+        "module.wgsl:3:1",
+        &["library-panic", "`index.wgsl`"],
+    );
+    // In a function, at its statement.
+    let index = format!(
+        "enable f16;\n{main}\nconst BIG = 1;\nfn f(i: u32) -> i32 {{\n    let a = i;\n    \
+         if a > 1u {{\n        let b = i32(f16(65530i));\n        return b;\n    }}\n    \
+         return 1;\n}}"
+    );
+    assert_said(&of_files(&index, ""), "index.wgsl:8:9", &["library-panic"]);
+    // When its overrides get their values.
+    let index =
+        format!("enable f16;\n{main}\noverride o: i32 = 65530;\noverride BIG: i32 = i32(f16(o));");
+    assert_said(&of_files(&index, ""), "index.wgsl:", &["library-panic"]);
+    // When it is written: a pointer to a part, with an index that is not known. (naga takes some.)
+    let mut refused = 0;
+    for (space, ty, part) in [
+        ("function", "array<array<i32, 4>, 4>", "[i][1]"),
+        ("function", "array<array<array<i32, 4>, 4>, 4>", "[i][0][i]"),
+        ("private", "array<array<i32, 4>, 4>", "[1][i]"),
+        ("function", "array<i32, 4>", "[i]"),
+    ] {
+        let (global, local) = match space {
+            "private" => (format!("var<private> a: {ty};"), String::new()),
+            _ => (String::new(), format!("var a: {ty};")),
+        };
+        let index = format!(
+            "var<storage, read_write> items: array<u32>; {global}
+fn inner(p: ptr<{space}, i32>) -> i32 {{ return *p; }}
+fn pick(v: ptr<{space}, {ty}>, i: u32) -> i32 {{
+    return inner(&(*v){part});
+}}
+@compute @workgroup_size(1) fn main() {{ {local} items[0] = u32(pick(&a, items[1])); }}"
+        );
+        let said_of = of_files(&index, "");
+        if said_of != "nothing" {
+            refused += 1;
+            assert_said(&said_of, "index.wgsl:4:5", &["library-panic", "SPIR-V"]);
+        }
+    }
+    assert!(refused > 0, "naga writes all of them: take the test out");
+    // Behind as many declarations as there may be, each of which names the next.
+    let chain: String = (0..1900)
+        .map(|i| format!("const a{i} = a{};\n", i + 1))
+        .collect();
+    let index =
+        format!("enable f16;\n{main}\nconst BIG = a0;\n{chain}const a1900 = i32(f16(65530i));");
+    assert_said(
+        &of_files(&index, ""),
+        "index.wgsl:1905:1",
+        &["library-panic"],
+    );
+}
+
+/// Memory that each thread or workgroup would need is summed up before a device is asked; what is
+/// not used does not count.
+#[test]
+fn memory_that_no_device_has() {
+    for (declarations, body, part) in [
+        ("var<workgroup> w: array<u32, 4097>;", "items[0] = w[1];", "share 16400 bytes"),
+        (
+            "var<workgroup> v: array<vec3f, 512>; var<workgroup> w: array<vec3f, 513>;",
+            "items[0] = u32(v[1].x + w[1].x);",
+            "share 16400 bytes",
+        ),
+        (
+            "struct S { a: array<array<u32, 50>, 50>, b: atomic<u32> } var<workgroup> w: array<S, 10>;
+            fn f() { atomicStore(&w[1].b, 1u); } fn g() { f(); }",
+            "if items[1] == 1u { loop { g(); break; } }",
+            "share 100048 bytes",
+        ),
+        (
+            "override n: u32 = 5000; var<workgroup> w: array<u32, n * 2>;",
+            "items[0] = w[1];",
+            "share 40000 bytes",
+        ),
+        ("var<private> p: array<u32, 2049>;", "items[0] = p[1];", "take 8196 bytes"),
+        (
+            "var<private> p: array<u32, 2000>; var<private> q: array<u32, 100>; fn f() { p[1] = q[2]; }",
+            "switch items[1] { case 1u: { f(); } default: {} }",
+            "take 8400 bytes",
+        ),
+        ("", "var a: array<u32, 2000>; { var b: array<u32, 49>; items[0] = a[1] + b[2]; }", "take 8196 bytes"),
+        ("fn f() -> u32 { var a: array<vec4f, 1000>; return u32(a[items[1]].x); }", "items[0] = f();", "take 16000 bytes"),
+        ("const table = array<u32, 9000>();", "items[0] = table[items[1]];", "36000 bytes"),
+        (
+            "struct S { a: array<u32, 9000> } var<storage, read_write> big: S;",
+            "let copy = big; items[0] = copy.a[items[1]];",
+            "36000 bytes",
+        ),
+    ] {
+        let said_of = of_shader(declarations, body);
+        assert_said(&said_of, "index.wgsl:", &["error[limit]", part, "`index.wgsl`"]);
+    }
+    for (declarations, body) in [
+        ("var<workgroup> w: array<u32, 4096>;", "items[0] = w[1];"),
+        (
+            "var<workgroup> w: array<u32, 5000>; fn f() { w[1] = 1u; }",
+            "",
+        ),
+        (
+            "var<private> p: array<u32, 2048>;",
+            "var a: array<u32, 2048>; items[0] = p[1] + a[2];",
+        ),
+        ("const table = array<u32, 9000>();", "items[0] = table[5];"),
+    ] {
+        assert_eq!(of_shader(declarations, body), "nothing", "{declarations}");
+    }
+}

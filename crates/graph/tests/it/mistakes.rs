@@ -118,8 +118,11 @@ fn shaders_nested_deep() {
         let below = level - 1;
         bomb += &format!("struct S{level} {{ a: S{below}, b: S{below} }}\n");
     }
-    bomb += "var<storage, read_write> items: S23;
-        @compute @workgroup_size(1) fn main() { items.a.a.a.b = items.a.a.a.a; }";
+    let (first, second) = (".a".repeat(24), ".b".repeat(24));
+    bomb += &format!(
+        "var<storage, read_write> items: S23;
+        @compute @workgroup_size(1) fn main() {{ items{first} = items{second}; }}"
+    );
     let files = files.edited("graph.ron", ", count: 1", "");
     let graph = right(load(&files.with("index.wgsl", bomb)));
     let found = text(graph.plan(&PlanRequest::new([8, 8], &Triangle)));

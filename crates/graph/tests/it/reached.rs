@@ -33,6 +33,10 @@ const ELSEWHERE: &[(&str, &str)] = &[
         "`mistakes.rs`: lists of 4097 entries",
     ),
     (
+        "DocumentError::Panicked",
+        "`src/document/ron.rs`: no text is known on which ron panics",
+    ),
+    (
         "ComposeError::NoDocument",
         "`mistakes.rs`: the root document",
     ),

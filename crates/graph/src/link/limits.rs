@@ -1,0 +1,264 @@
+//! What shaders ask of a device beside their bindings: memory of workgroups and threads, values
+//! between stages, numbers of locations and bindings.
+
+use super::{linker::Linker, pass::LinkedProgram};
+use crate::{
+    diagnostics::reports::Reported,
+    errors::limits::{Entry, Excess, LimitError},
+    kinds::step::{Draw, Names},
+    shader::{
+        footprint::{Footprint, Memory},
+        reflect::{Global, Shader},
+        varyings::{Varying, Varyings},
+    },
+};
+use naga::ShaderStage;
+
+/// Bytes of private variables of an entry point, and of the variables of one function: as many as
+/// WGSL promises (its chapter of limits). No adapter tells how many it has.
+const MOST_OF_ONE: u64 = 8192;
+
+/// Bytes of the variables of all functions that an entry point runs. Drivers inline functions, so
+/// that all stand on one stack; those of software adapters are a thread's, once for each lane.
+const MOST_OF_ALL: u64 = 65_536;
+
+/// Bytes of a value: an array as long as WGSL lets one write it, 2,047 vectors of four. A value that
+/// is indexed is put among the variables.
+const MOST_OF_A_VALUE: u64 = 2048 * 16;
+
+impl Linker<'_, '_> {
+    /// What each entry point of a program takes.
+    pub(super) fn footprints(&mut self, program: &LinkedProgram) -> Result<(), Reported> {
+        let mut wrong = None;
+        for &index in &program.entries {
+            let shader = &program.shader;
+            let checked = match shader.footprint(index, &program.constants) {
+                Ok(footprint) => self.footprint(&entry(shader, index), &footprint),
+                Err(error) => Err(self.reports.report(error)),
+            };
+            wrong = checked.err().or(wrong);
+        }
+        wrong.map_or(Ok(()), Err)
+    }
+
+    fn footprint(&mut self, entry: &Entry, of: &Footprint) -> Result<(), Reported> {
+        let most = self.world.request.limits.max_compute_workgroup_storage_size;
+        if let Some(excess) = beyond(&of.workgroup, u64::from(most), entry) {
+            let entry = entry.clone();
+            self.reports
+                .beyond(LimitError::Workgroup { entry, excess })?;
+        }
+        if let Some(excess) = beyond(&of.private, MOST_OF_ONE, entry) {
+            let entry = entry.clone();
+            return Err(self.reports.report(LimitError::Private { entry, excess }));
+        }
+        for (function, memory) in &of.functions {
+            if let Some(excess) = beyond(memory, MOST_OF_ONE, entry) {
+                return Err(self.reports.report(LimitError::Function {
+                    file: entry.file.clone(),
+                    function: function.clone(),
+                    excess,
+                }));
+            }
+        }
+        let all = of.functions.iter().map(|(_, memory)| memory.bytes);
+        let all = all.fold(0, u64::saturating_add);
+        let largest = of.functions.iter().map(|(_, memory)| memory);
+        if let Some(largest) = largest.max_by_key(|memory| memory.bytes)
+            && all > MOST_OF_ALL
+        {
+            let (of_largest, largest) = largest.largest(&entry.span);
+            let excess = Excess {
+                bytes: all,
+                most: MOST_OF_ALL,
+                of_largest,
+                largest,
+            };
+            let entry = entry.clone();
+            return Err(self.reports.report(LimitError::Functions { entry, excess }));
+        }
+        if let Some(Excess { bytes, largest, .. }) = beyond(&of.value, MOST_OF_A_VALUE, entry) {
+            return Err(self.reports.report(LimitError::Value {
+                file: entry.file.clone(),
+                function: largest,
+                bytes,
+                most: MOST_OF_A_VALUE,
+            }));
+        }
+        Ok(())
+    }
+
+    /// Numbers of bindings that the adapter does not have.
+    pub(super) fn binding_numbers(
+        &mut self,
+        shader: &Shader,
+        globals: &[Global],
+    ) -> Result<(), Reported> {
+        let most = self.world.request.limits.max_bindings_per_bind_group;
+        for global in globals.iter().filter(|global| global.binding >= most) {
+            self.reports.beyond(LimitError::BindingNumber {
+                file: shader.file().to_owned(),
+                global: global.name.clone(),
+                binding: global.binding,
+                most,
+                span: global.span.clone(),
+            })?;
+        }
+        Ok(())
+    }
+
+    /// What a draw's stages hand on, which must fit together and into the adapter.
+    pub(super) fn stages(
+        &mut self,
+        program: &LinkedProgram,
+        draw: &Draw<Names>,
+    ) -> Result<(), Reported> {
+        let shader = &program.shader;
+        let of = |stage: ShaderStage| {
+            let at = program.stages.iter().position(|known| *known == stage)?;
+            program.entries.get(at).copied()
+        };
+        let vertex = of(ShaderStage::Vertex);
+        if let Some(index) = vertex {
+            let points = draw.primitive.topology == wgt::PrimitiveTopology::PointList;
+            self.vertex(&entry(shader, index), shader, index, points)?;
+        }
+        let Some(fragment) = of(ShaderStage::Fragment) else {
+            return Ok(());
+        };
+        let at = entry(shader, fragment);
+        self.fragment(&at, shader, fragment)?;
+        let most = self.world.request.limits.max_color_attachments;
+        // Of too many targets it is told already.
+        if draw.colors.len() <= most as usize {
+            self.locations(&at, "writes", &shader.outputs(fragment), most)?;
+        }
+        let given = vertex.map_or_else(Varyings::default, |index| shader.outputs(index));
+        let mut wrong = None;
+        for taken in &shader.inputs(fragment).locations {
+            if let Some(why) = misfit(taken, &given.locations) {
+                wrong = Some(self.reports.report(LimitError::NoVarying {
+                    entry: at.clone(),
+                    location: taken.location,
+                    why,
+                    vertex: vertex.map(|index| shader.entry_span(index)),
+                }));
+            }
+        }
+        wrong.map_or(Ok(()), Err)
+    }
+
+    fn vertex(
+        &mut self,
+        at: &Entry,
+        shader: &Shader,
+        index: usize,
+        points: bool,
+    ) -> Result<(), Reported> {
+        if let Some(attribute) = shader.inputs(index).locations.first() {
+            return Err(self.reports.report(LimitError::Attribute {
+                entry: at.clone(),
+                location: attribute.location,
+            }));
+        }
+        let outputs = shader.outputs(index);
+        let locations = self.most_varyings().saturating_sub(outputs.builtins);
+        self.locations(at, "writes", &outputs, locations)?;
+        self.varyings(at, "writes", &outputs, outputs.builtins + u32::from(points))
+    }
+
+    fn fragment(&mut self, at: &Entry, shader: &Shader, index: usize) -> Result<(), Reported> {
+        let inputs = shader.inputs(index);
+        self.locations(at, "reads", &inputs, self.most_varyings())?;
+        self.varyings(at, "reads", &inputs, inputs.builtins)
+    }
+
+    fn most_varyings(&self) -> u32 {
+        self.world.request.limits.max_inter_stage_shader_variables
+    }
+
+    fn locations(
+        &mut self,
+        at: &Entry,
+        verb: &'static str,
+        of: &Varyings,
+        most: u32,
+    ) -> Result<(), Reported> {
+        let locations = of.locations.iter().map(|varying| varying.location);
+        match locations.max() {
+            Some(location) if location >= most => self.reports.beyond(LimitError::Location {
+                entry: at.clone(),
+                verb,
+                location,
+                most,
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    fn varyings(
+        &mut self,
+        at: &Entry,
+        verb: &'static str,
+        of: &Varyings,
+        builtins: u32,
+    ) -> Result<(), Reported> {
+        let most = self.most_varyings();
+        let number = of.locations.len() as u64 + u64::from(builtins);
+        if number <= u64::from(most) {
+            return Ok(());
+        }
+        self.reports.beyond(LimitError::TooManyVaryings {
+            entry: at.clone(),
+            verb,
+            number,
+            builtins,
+            most,
+        })
+    }
+}
+
+fn entry(shader: &Shader, index: usize) -> Entry {
+    Entry {
+        file: shader.file().to_owned(),
+        name: shader.entry_name(index).to_owned(),
+        span: shader.entry_span(index),
+    }
+}
+
+fn beyond(memory: &Memory, most: u64, entry: &Entry) -> Option<Excess> {
+    let (of_largest, largest) = memory.largest(&entry.span);
+    (memory.bytes > most).then_some(Excess {
+        bytes: memory.bytes,
+        most,
+        of_largest,
+        largest,
+    })
+}
+
+/// Why a fragment shader cannot take what the vertex shader gives.
+fn misfit(taken: &Varying, given: &[Varying]) -> Option<String> {
+    let Some(given) = given.iter().find(|given| given.location == taken.location) else {
+        return Some("no vertex shader writes".to_owned());
+    };
+    if given.kind != taken.kind || given.width < taken.width {
+        return Some(format!(
+            "holds {} × {}, not {} × {}",
+            given.width,
+            word(given.kind),
+            taken.width,
+            word(taken.kind)
+        ));
+    }
+    let same = given.interpolation == taken.interpolation && given.sampling == taken.sampling;
+    (!same).then(|| "is interpolated differently in the vertex shader".to_owned())
+}
+
+fn word(kind: naga::ScalarKind) -> &'static str {
+    match kind {
+        naga::ScalarKind::Float => "f32",
+        naga::ScalarKind::Sint => "i32",
+        naga::ScalarKind::Uint => "u32",
+        _ => "bool",
+    }
+}

@@ -1,0 +1,140 @@
+//! Panics of libraries as errors: naga, wgpu and ron panic on some texts, and no file may end the
+//! program.
+
+use std::{
+    cell::RefCell,
+    panic::{self, AssertUnwindSafe, PanicHookInfo},
+    sync::Once,
+};
+
+/// A panic that was caught: what was said, and where in the library's source.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message} ({place})")]
+pub struct Panicked {
+    /// The words of the panic.
+    pub message: String,
+    /// File and line in the source of the library, without the folders before its own.
+    pub place: String,
+}
+
+impl Panicked {
+    /// What an author can do.
+    pub(crate) fn way_out(&self) -> String {
+        format!(
+            "this is a mistake of the library ({}), which may take the same written differently",
+            self.place
+        )
+    }
+}
+
+thread_local! {
+    /// What the panic hook hears while this thread is inside of [`caught`]; `None` outside.
+    static HEARD: RefCell<Option<Option<Panicked>>> = const { RefCell::new(None) };
+}
+
+/// Runs what calls a library, and makes an error of its panic. Nothing is printed of it: the panic
+/// hook of the process is kept, and asked on threads that are not inside of this function.
+///
+/// What `run` changes must be of no more use after a panic than the library leaves it.
+///
+/// # Errors
+/// The panic. (A process that is built with `panic = "abort"` ends instead.)
+pub fn caught<T>(run: impl FnOnce() -> T) -> Result<T, Panicked> {
+    quieten();
+    let outer = HEARD.replace(Some(None));
+    let result = panic::catch_unwind(AssertUnwindSafe(run));
+    let heard = HEARD.replace(outer).flatten();
+    result.map_err(|payload| {
+        heard.unwrap_or_else(|| Panicked {
+            // A host has put in a hook of its own since.
+            message: words(&*payload).to_owned(),
+            place: "unknown place".to_owned(),
+        })
+    })
+}
+
+/// Puts a hook before the one that there is, once in the life of the process.
+fn quieten() {
+    static ONCE: Once = Once::new();
+    // The hook of a thread that panics cannot be changed from it.
+    if std::thread::panicking() {
+        return;
+    }
+    ONCE.call_once(|| {
+        let before = panic::take_hook();
+        panic::set_hook(Box::new(move |told| {
+            if !hear(told) {
+                before(told);
+            }
+        }));
+    });
+}
+
+/// Keeps a panic of a thread that is inside of [`caught`]; false on others.
+fn hear(told: &PanicHookInfo<'_>) -> bool {
+    HEARD.with_borrow_mut(|heard| {
+        let Some(heard) = heard else {
+            return false;
+        };
+        let place = told.location().map_or_else(String::new, |place| {
+            format!("{}:{}", from_its_crate(place.file()), place.line())
+        });
+        *heard = Some(Panicked {
+            message: words(told.payload()).to_owned(),
+            place,
+        });
+        true
+    })
+}
+
+fn words(payload: &(dyn std::any::Any + Send)) -> &str {
+    let text = payload.downcast_ref::<String>().map(String::as_str);
+    let text = text.or_else(|| payload.downcast_ref::<&str>().copied());
+    text.unwrap_or("a panic without words")
+}
+
+/// A source file from the folder of its crate on: where registries lie differs between machines.
+fn from_its_crate(file: &str) -> String {
+    let parts: Vec<&str> = file.split(['/', '\\']).collect();
+    let source = parts.iter().rposition(|part| *part == "src");
+    let first = source.map_or(0, |at| at.saturating_sub(1));
+    parts[first..].join("/")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_an_error_with_its_place() {
+        let none: Option<u32> = None;
+        let error = caught(|| none.expect("a number")).expect_err("there is none");
+        assert_eq!(error.message, "a number");
+        assert!(error.place.starts_with("graph/src/panics.rs:"), "{error}");
+        assert_eq!(caught(|| 1), Ok(1));
+    }
+
+    /// The inner one hears its own panic, the outer one its own after it.
+    #[test]
+    fn one_in_the_other() {
+        let outer = caught(|| {
+            let inner = caught(|| panic!("inner"));
+            assert_eq!(
+                inner.map_err(|error| error.message),
+                Err::<(), _>("inner".to_owned())
+            );
+            panic!("outer");
+        });
+        assert_eq!(
+            outer.map_err(|error| error.message),
+            Err::<(), _>("outer".to_owned())
+        );
+    }
+
+    #[test]
+    fn places_lose_the_folders_of_a_machine() {
+        let place = from_its_crate("/home/me/.cargo/registry/src/index/naga-30.0.1/src/proc/a.rs");
+        assert_eq!(place, "naga-30.0.1/src/proc/a.rs");
+        assert_eq!(from_its_crate("a.rs"), "a.rs");
+    }
+}

@@ -1,0 +1,174 @@
+//! naga at the border: parsing, validation and the writing of SPIR-V, each of which panics on some
+//! valid texts. A panic is an error of ours that names the declaration, and in a function the
+//! statement, that brings it about.
+
+use super::{
+    blame::blamed_range,
+    expand::Expanded,
+    reflect::assign_bindings,
+    wgsl_errors::{function_range, parse_error, specialisation_error, validation_error},
+};
+use crate::{
+    errors::shader::ShaderError,
+    panics::{Panicked, caught},
+};
+use naga::{
+    Module, ShaderStage,
+    back::{
+        pipeline_constants::process_overrides,
+        spv::{self, PipelineOptions},
+    },
+    proc::{BoundsCheckPolicies, BoundsCheckPolicy, GlobalCtx, Layouter},
+    valid::{Capabilities, ModuleInfo, ValidationFlags, Validator},
+};
+use std::borrow::Cow;
+
+/// A module with what validation found of it.
+pub(super) type Valid = (Module, ModuleInfo, Layouter);
+
+/// Parses and validates.
+pub(super) fn compiled(source: &Expanded) -> Result<Valid, ShaderError> {
+    match caught(|| parsed_and_valid(source)) {
+        Ok(result) => result,
+        Err(panicked) => Err(fault(source, panicked, "is read", None)),
+    }
+}
+
+fn parsed_and_valid(source: &Expanded) -> Result<Valid, ShaderError> {
+    let mut module =
+        naga::front::wgsl::parse_str(&source.text).map_err(|error| parse_error(&error, source))?;
+    if let Some(error) = immediate(&module, source) {
+        return Err(error);
+    }
+    assign_bindings(&mut module, &|at| source.is_imported(at));
+    let info = validator()
+        .validate(&module)
+        .map_err(|error| validation_error(&error, &module, source))?;
+    let mut layouter = Layouter::default();
+    layouter
+        .update(GlobalCtx {
+            types: &module.types,
+            constants: &module.constants,
+            overrides: &module.overrides,
+            global_expressions: &module.global_expressions,
+        })
+        .map_err(|error| ShaderError::NoLayout {
+            what: error.to_string(),
+            at: source.file.span(0..0),
+        })?;
+    Ok((module, info, layouter))
+}
+
+/// The first global that the host would set with the commands, which a graph never does. naga's
+/// validation counts their bytes in 64 bits, and panics where they are more than 256.
+fn immediate(module: &Module, source: &Expanded) -> Option<ShaderError> {
+    let mut globals = module.global_variables.iter();
+    let (handle, global) =
+        globals.find(|(_, global)| global.space == naga::AddressSpace::Immediate)?;
+    let range = module.global_variables.get_span(handle).to_range();
+    Some(ShaderError::Immediate {
+        file: source.file.name.to_string(),
+        global: global.name.clone().unwrap_or_default(),
+        at: source.locate(range.unwrap_or(0..0)),
+    })
+}
+
+/// A document is checked against the language: what a device lacks is said when a pipeline is made
+/// for it.
+fn validator() -> Validator {
+    Validator::new(ValidationFlags::all(), Capabilities::all())
+}
+
+/// An entry point with the values of its overrides put in, as a device compiles it.
+pub(super) struct Specialised<'a> {
+    pub module: Cow<'a, Module>,
+    pub info: Cow<'a, ModuleInfo>,
+}
+
+/// Puts the values of overrides in and writes the entry point as SPIR-V, which Vulkan devices are
+/// handed: what naga cannot do there is found before there is a device. The words are thrown away.
+pub(super) fn specialised<'a>(
+    (module, info): (&'a Module, &'a ModuleInfo),
+    (stage, name): (ShaderStage, &str),
+    constants: &[(String, f64)],
+    source: &Expanded,
+) -> Result<Specialised<'a>, ShaderError> {
+    let constants = constants.iter().cloned().collect();
+    let entry = Some((stage, name));
+    let put_in = caught(|| {
+        let (module, info) = process_overrides(module, info, entry, &constants)
+            .map_err(|error| specialisation_error(&error, name, source))?;
+        Ok(Specialised { module, info })
+    });
+    let specialised = match put_in {
+        Ok(result) => result?,
+        Err(panicked) => {
+            return Err(fault(source, panicked, "gets its overrides", Some(name)));
+        }
+    };
+    let pipeline = PipelineOptions {
+        shader_stage: stage,
+        entry_point: name.to_owned(),
+    };
+    let written = caught(|| write(&specialised.module, &specialised.info, Some(&pipeline)));
+    match written {
+        Ok(()) => Ok(specialised),
+        Err(panicked) => Err(fault(source, panicked, "is written as SPIR-V", Some(name))),
+    }
+}
+
+/// Writes as wgpu does for Vulkan. What the writer says of features is for the device to say.
+fn write(module: &Module, info: &ModuleInfo, pipeline: Option<&PipelineOptions>) {
+    let options = spv::Options {
+        lang_version: (1, 6),
+        flags: spv::WriterFlags::ADJUST_COORDINATE_SPACE | spv::WriterFlags::FORCE_POINT_SIZE,
+        bounds_check_policies: BoundsCheckPolicies {
+            index: BoundsCheckPolicy::Restrict,
+            buffer: BoundsCheckPolicy::Restrict,
+            image_load: BoundsCheckPolicy::Restrict,
+            binding_array: BoundsCheckPolicy::Unchecked,
+        },
+        ..spv::Options::default()
+    };
+    drop(spv::write_vec(module, info, &options, pipeline));
+}
+
+/// True if naga panics on a text, whatever it does with it.
+fn panics(text: &str) -> bool {
+    let run = || {
+        let Ok(mut module) = naga::front::wgsl::parse_str(text) else {
+            return;
+        };
+        assign_bindings(&mut module, &|_| false);
+        let Ok(info) = validator().validate(&module) else {
+            return;
+        };
+        if module.overrides.is_empty() {
+            return write(&module, &info, None);
+        }
+        for entry in &module.entry_points {
+            let of = Some((entry.stage, entry.name.as_str()));
+            if let Ok((module, info)) = process_overrides(&module, &info, of, &Default::default()) {
+                write(&module, &info, None);
+            }
+        }
+    };
+    caught(run).is_err()
+}
+
+/// A panic as an error, at what brings it about; where that is not found, at the entry point.
+fn fault(
+    source: &Expanded,
+    panicked: Panicked,
+    while_it: &'static str,
+    entry: Option<&str>,
+) -> ShaderError {
+    let range = blamed_range(&source.text, &panics);
+    let at = range.or_else(|| entry.map(|name| function_range(source, name)));
+    ShaderError::Panicked {
+        file: source.file.name.to_string(),
+        while_it,
+        panicked,
+        at: source.locate(at.unwrap_or(0..0)),
+    }
+}

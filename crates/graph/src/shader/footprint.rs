@@ -1,0 +1,149 @@
+//! What an entry point takes of a device: the memory that its workgroups share, and what each of
+//! its threads keeps for itself. Sizes are sums in 64 bits; nothing is allocated.
+
+use super::{compiled::Specialised, expand::Expanded};
+use crate::source::span::{Located, Span};
+use naga::{
+    AddressSpace, Block, Function, Handle, ShaderStage, Statement, TypeInner, valid::FunctionInfo,
+};
+use std::collections::BTreeSet;
+
+/// Bytes of some variables, and the largest of them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Memory {
+    pub bytes: u64,
+    largest: Option<(u64, Located<String>)>,
+}
+
+impl Memory {
+    fn add(&mut self, bytes: u64, variable: impl FnOnce() -> Located<String>) {
+        self.bytes = self.bytes.saturating_add(bytes);
+        if self.largest.as_ref().is_none_or(|(most, _)| bytes > *most) {
+            self.largest = Some((bytes, variable()));
+        }
+    }
+
+    /// The largest variable with its bytes; `otherwise` where there is none.
+    pub fn largest(&self, otherwise: &Span) -> (u64, Located<String>) {
+        let none = || (0, Located::new(String::new(), otherwise.clone()));
+        self.largest.clone().unwrap_or_else(none)
+    }
+}
+
+/// What an entry point takes, with the functions that it calls.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Footprint {
+    /// Of a workgroup, each variable in sixteens, as WebGPU counts.
+    pub workgroup: Memory,
+    /// `var<private>`, of a thread.
+    pub private: Memory,
+    /// The variables of each function, of a thread.
+    pub functions: Vec<(String, Memory)>,
+    /// The largest array or struct that is a value and no variable.
+    pub value: Memory,
+}
+
+impl Footprint {
+    pub(super) fn new(
+        of: &Specialised<'_>,
+        (stage, name): (ShaderStage, &str),
+        source: &Expanded,
+    ) -> Self {
+        let mut footprint = Self::default();
+        let module = &*of.module;
+        let mut points = module.entry_points.iter();
+        let point = points.position(|point| point.stage == stage && point.name == name);
+        let Some((index, point)) = point.map(|index| (index, &module.entry_points[index])) else {
+            return footprint;
+        };
+        let info = of.info.get_entry_point(index);
+        footprint.globals(of, info, source);
+        footprint.function(of, (&point.function, info), name, source);
+        for handle in called(of, &point.function) {
+            let function = &module.functions[handle];
+            let name = function.name.as_deref().unwrap_or_default();
+            footprint.function(of, (function, &of.info[handle]), name, source);
+        }
+        footprint
+    }
+
+    fn globals(&mut self, of: &Specialised<'_>, info: &FunctionInfo, source: &Expanded) {
+        for (handle, variable) in of.module.global_variables.iter() {
+            let bytes = bytes_of(of, &of.module.types[variable.ty].inner);
+            let (memory, bytes) = match variable.space {
+                _ if info[handle].is_empty() => continue,
+                AddressSpace::WorkGroup => (&mut self.workgroup, bytes.next_multiple_of(16)),
+                AddressSpace::Private => (&mut self.private, bytes),
+                _ => continue,
+            };
+            let span = of.module.global_variables.get_span(handle);
+            memory.add(bytes, || located(variable.name.as_deref(), span, source));
+        }
+    }
+
+    fn function(
+        &mut self,
+        of: &Specialised<'_>,
+        (function, info): (&Function, &FunctionInfo),
+        name: &str,
+        source: &Expanded,
+    ) {
+        let mut variables = Memory::default();
+        for (handle, local) in function.local_variables.iter() {
+            let bytes = bytes_of(of, &of.module.types[local.ty].inner);
+            let span = function.local_variables.get_span(handle);
+            variables.add(bytes, || located(local.name.as_deref(), span, source));
+        }
+        self.functions.push((name.to_owned(), variables));
+        for (handle, _) in function.expressions.iter() {
+            let ty = info[handle].ty.inner_with(&of.module.types);
+            let is_large = matches!(ty, TypeInner::Array { .. } | TypeInner::Struct { .. });
+            if !is_large || info[handle].ref_count == 0 {
+                continue;
+            }
+            let bytes = bytes_of(of, ty);
+            if bytes > self.value.bytes {
+                let span = function.expressions.get_span(handle);
+                self.value = Memory::default();
+                self.value.add(bytes, || located(Some(name), span, source));
+            }
+        }
+    }
+}
+
+/// Bytes of a type that validation has found to have a size.
+fn bytes_of(of: &Specialised<'_>, ty: &TypeInner) -> u64 {
+    u64::from(ty.size(of.module.to_ctx()))
+}
+
+fn located(name: Option<&str>, span: naga::Span, source: &Expanded) -> Located<String> {
+    let place = source.locate(span.to_range().unwrap_or(0..0));
+    Located::new(name.unwrap_or_default().to_owned(), place)
+}
+
+/// The functions that one calls, and those that these call, each once.
+fn called(of: &Specialised<'_>, first: &Function) -> BTreeSet<Handle<Function>> {
+    let mut found = BTreeSet::new();
+    let mut open: Vec<&Block> = vec![&first.body];
+    while let Some(block) = open.pop() {
+        for statement in block.iter() {
+            match statement {
+                Statement::Block(block) => open.push(block),
+                Statement::If { accept, reject, .. } => open.extend([accept, reject]),
+                Statement::Switch { cases, .. } => {
+                    open.extend(cases.iter().map(|case| &case.body));
+                }
+                Statement::Loop {
+                    body, continuing, ..
+                } => open.extend([body, continuing]),
+                Statement::Call { function, .. } => {
+                    if found.insert(*function) {
+                        open.push(&of.module.functions[*function].body);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+    found
+}

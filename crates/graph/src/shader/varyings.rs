@@ -1,0 +1,104 @@
+//! What passes from one stage to the next: locations, with their types and how they are
+//! interpolated, and what of the limit built-in values take.
+
+use super::reflect::Shader;
+use naga::{Binding, BuiltIn, Handle, ScalarKind, Type, TypeInner};
+
+/// A value at a location.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Varying {
+    pub location: u32,
+    pub kind: ScalarKind,
+    pub width: u32,
+    pub interpolation: Option<naga::Interpolation>,
+    pub sampling: Option<naga::Sampling>,
+}
+
+/// What an entry point takes or gives.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Varyings {
+    pub locations: Vec<Varying>,
+    /// How many of a device's variables between stages its built-in values take.
+    pub builtins: u32,
+}
+
+impl Varyings {
+    fn add(&mut self, shader: &Shader, binding: Option<&Binding>, ty: Handle<Type>) {
+        match (binding, &shader.module.types[ty].inner) {
+            (None, TypeInner::Struct { members, .. }) => {
+                for member in members {
+                    self.add(shader, member.binding.as_ref(), member.ty);
+                }
+            }
+            (
+                Some(&Binding::Location {
+                    location,
+                    interpolation,
+                    sampling,
+                    ..
+                }),
+                inner,
+            ) => {
+                let (width, scalar) = match *inner {
+                    TypeInner::Scalar(scalar) => (1, scalar),
+                    TypeInner::Vector { size, scalar } => (size as u32, scalar),
+                    _ => return,
+                };
+                self.locations.push(Varying {
+                    location,
+                    kind: scalar.kind,
+                    width,
+                    interpolation,
+                    sampling,
+                });
+            }
+            (Some(Binding::BuiltIn(builtin)), inner) => {
+                self.builtins += variables(*builtin, inner);
+            }
+            (None, _) => {}
+        }
+    }
+}
+
+/// How many variables between stages a built-in value counts for.
+fn variables(builtin: BuiltIn, ty: &TypeInner) -> u32 {
+    match (builtin, ty) {
+        (BuiltIn::ClipDistances, TypeInner::Array { size, .. }) => match size {
+            naga::ArraySize::Constant(count) => count.get().div_ceil(4),
+            _ => 0,
+        },
+        (
+            BuiltIn::FrontFacing
+            | BuiltIn::SampleIndex
+            | BuiltIn::SampleMask
+            | BuiltIn::PrimitiveIndex
+            | BuiltIn::SubgroupInvocationId
+            | BuiltIn::SubgroupSize
+            | BuiltIn::ViewIndex
+            | BuiltIn::PointCoord,
+            _,
+        ) => 1,
+        (BuiltIn::Barycentric { .. }, _) => 3,
+        _ => 0,
+    }
+}
+
+impl Shader {
+    /// The arguments of an entry point.
+    pub(crate) fn inputs(&self, entry: usize) -> Varyings {
+        let mut inputs = Varyings::default();
+        for argument in &self.module.entry_points[entry].function.arguments {
+            inputs.add(self, argument.binding.as_ref(), argument.ty);
+        }
+        inputs
+    }
+
+    /// The result of an entry point.
+    pub(crate) fn outputs(&self, entry: usize) -> Varyings {
+        let mut outputs = Varyings::default();
+        if let Some(result) = &self.module.entry_points[entry].function.result {
+            outputs.add(self, result.binding.as_ref(), result.ty);
+        }
+        outputs
+    }
+}

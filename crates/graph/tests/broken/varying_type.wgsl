@@ -1,0 +1,3 @@
+struct Out { @builtin(position) at: vec4f, @location(0) near: f32 }
+@vertex fn vertex() -> Out { return Out(); }
+@fragment fn fragment(@location(0) near: vec2f) -> @location(0) f32 { return near.y; }

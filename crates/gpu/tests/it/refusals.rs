@@ -186,7 +186,8 @@ fn made_again() {
         .expect("the error scopes are as they were");
 }
 
-/// naga cannot write this shader, which is valid: refused with its place before the device is asked.
+/// naga cannot write this shader, which is valid: refused with its place before the device is
+/// asked.
 #[test]
 fn a_shader_that_the_library_panics_on() {
     let files = Files::graph(

@@ -1,9 +1,6 @@
 //! Mistakes with the lines that they are about, for a terminal (feature `render`).
 
-use super::{
-    diagnostic::{Diagnostic, Label, Severity},
-    list::Diagnostics,
-};
+use super::diagnostic::{Diagnostic, Label, Severity};
 use crate::{
     panics::caught,
     source::span::{SourceFile, Span},
@@ -33,7 +30,10 @@ pub fn render(list: &[Diagnostic], colour: bool) -> String {
         match caught(|| handler.render_report(&mut rendered, &report)) {
             Ok(Ok(())) => text.push_str(&rendered),
             Ok(Err(_)) | Err(_) => {
-                text.push_str(&Diagnostics::from(diagnostic.clone()).to_string());
+                text.push_str(&diagnostic.message);
+                for label in &diagnostic.labels {
+                    text.push_str(&format!("\n{}: {}", label.span, label.text));
+                }
             }
         }
         text.push('\n');

@@ -82,7 +82,10 @@ pub(crate) enum LimitError {
         /// The vertex shader's, if it is not the graph's own.
         vertex: Option<Span>,
     },
-    #[error("`{}` of `{}` reads the vertex attribute @location({location})", entry.name, entry.file)]
+    #[error(
+        "`{}` of `{}` reads the vertex attribute @location({location})",
+        entry.name, entry.file
+    )]
     Attribute { entry: Entry, location: u32 },
     #[error("`{global}` of `{file}` has @binding({binding}), which the adapter does not have")]
     BindingNumber {
@@ -126,8 +129,8 @@ impl Mistake for LimitError {
                 ))
             }
             Self::Value { function, most, .. } => told.at(function.span, "").help(format!(
-                "no adapter tells a limit; a graph takes {most} bytes, since drivers put a value on \
-                 the stack of each thread: index the variable or buffer itself"
+                "no adapter tells a limit; a graph takes {most} bytes, since drivers put a value \
+                 on the stack of each thread: index the variable or buffer itself"
             )),
             Self::TooManyVaryings {
                 entry,
@@ -137,9 +140,9 @@ impl Mistake for LimitError {
             } => told.at(entry.span, counted(builtins)).help(format!(
                 "its limit is {most} (max_inter_stage_shader_variables); put several into one vec4"
             )),
-            Self::Location { entry, most, .. } => told.at(entry.span, "").help(format!(
-                "locations count from 0, and it has {most} of them"
-            )),
+            Self::Location { entry, most, .. } => told
+                .at(entry.span, "")
+                .help(format!("locations count from 0, and it has {most} of them")),
             Self::NoVarying { entry, vertex, .. } => {
                 let told = told.at(entry.span, "read here");
                 match vertex {

@@ -22,8 +22,8 @@ const MOST_OF_ONE: u64 = 8192;
 /// that all stand on one stack; those of software adapters are a thread's, once for each lane.
 const MOST_OF_ALL: u64 = 65_536;
 
-/// Bytes of a value: an array as long as WGSL lets one write it, 2,047 vectors of four. A value that
-/// is indexed is put among the variables.
+/// Bytes of a value: an array as long as WGSL lets one write it, 2,047 vectors of four. A value
+/// that is indexed is put among the variables.
 const MOST_OF_A_VALUE: u64 = 2048 * 16;
 
 impl Linker<'_, '_> {

@@ -3,9 +3,9 @@
 //! statement, that brings it about.
 
 use super::{
+    binding_numbers::assign_bindings,
     blame::blamed_range,
     expand::Expanded,
-    reflect::assign_bindings,
     wgsl_errors::{function_range, parse_error, specialisation_error, validation_error},
 };
 use crate::{

@@ -1,5 +1,6 @@
 //! Phase 2: WGSL is put together from its imports, parsed and validated, and asked what it binds.
 
+mod binding_numbers;
 mod blame;
 pub(crate) mod class;
 mod compiled;

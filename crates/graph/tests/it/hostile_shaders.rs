@@ -274,15 +274,19 @@ fn pick(v: ptr<{space}, {ty}>, i: u32) -> i32 {{
 #[test]
 fn memory_that_no_device_has() {
     for (declarations, body, part) in [
-        ("var<workgroup> w: array<u32, 4097>;", "items[0] = w[1];", "share 16400 bytes"),
+        (
+            "var<workgroup> w: array<u32, 4097>;",
+            "items[0] = w[1];",
+            "share 16400 bytes",
+        ),
         (
             "var<workgroup> v: array<vec3f, 512>; var<workgroup> w: array<vec3f, 513>;",
             "items[0] = u32(v[1].x + w[1].x);",
             "share 16400 bytes",
         ),
         (
-            "struct S { a: array<array<u32, 50>, 50>, b: atomic<u32> } var<workgroup> w: array<S, 10>;
-            fn f() { atomicStore(&w[1].b, 1u); } fn g() { f(); }",
+            "struct S { a: array<array<u32, 50>, 50>, b: atomic<u32> }
+            var<workgroup> w: array<S, 10>; fn f() { atomicStore(&w[1].b, 1u); } fn g() { f(); }",
             "if items[1] == 1u { loop { g(); break; } }",
             "share 100048 bytes",
         ),
@@ -291,15 +295,32 @@ fn memory_that_no_device_has() {
             "items[0] = w[1];",
             "share 40000 bytes",
         ),
-        ("var<private> p: array<u32, 2049>;", "items[0] = p[1];", "take 8196 bytes"),
         (
-            "var<private> p: array<u32, 2000>; var<private> q: array<u32, 100>; fn f() { p[1] = q[2]; }",
+            "var<private> p: array<u32, 2049>;",
+            "items[0] = p[1];",
+            "take 8196 bytes",
+        ),
+        (
+            "var<private> p: array<u32, 2000>; var<private> q: array<u32, 100>;
+            fn f() { p[1] = q[2]; }",
             "switch items[1] { case 1u: { f(); } default: {} }",
             "take 8400 bytes",
         ),
-        ("", "var a: array<u32, 2000>; { var b: array<u32, 49>; items[0] = a[1] + b[2]; }", "take 8196 bytes"),
-        ("fn f() -> u32 { var a: array<vec4f, 1000>; return u32(a[items[1]].x); }", "items[0] = f();", "take 16000 bytes"),
-        ("const table = array<u32, 9000>();", "items[0] = table[items[1]];", "36000 bytes"),
+        (
+            "",
+            "var a: array<u32, 2000>; { var b: array<u32, 49>; items[0] = a[1] + b[2]; }",
+            "take 8196 bytes",
+        ),
+        (
+            "fn f() -> u32 { var a: array<vec4f, 1000>; return u32(a[items[1]].x); }",
+            "items[0] = f();",
+            "take 16000 bytes",
+        ),
+        (
+            "const table = array<u32, 9000>();",
+            "items[0] = table[items[1]];",
+            "36000 bytes",
+        ),
         (
             "struct S { a: array<u32, 9000> } var<storage, read_write> big: S;",
             "let copy = big; items[0] = copy.a[items[1]];",
@@ -307,7 +328,11 @@ fn memory_that_no_device_has() {
         ),
     ] {
         let said_of = of_shader(declarations, body);
-        assert_said(&said_of, "index.wgsl:", &["error[limit]", part, "`index.wgsl`"]);
+        assert_said(
+            &said_of,
+            "index.wgsl:",
+            &["error[limit]", part, "`index.wgsl`"],
+        );
     }
     for (declarations, body) in [
         ("var<workgroup> w: array<u32, 4096>;", "items[0] = w[1];"),

@@ -1,4 +1,4 @@
-//! The predicates at their bounds, under every arithmetic.
+//! The predicates at their bounds, under every arithmetic of the reference.
 
 use super::*;
 use proptest::prelude::*;

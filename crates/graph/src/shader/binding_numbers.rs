@@ -1,0 +1,44 @@
+//! Numbers for the resource globals that have none of their own.
+
+use naga::AddressSpace;
+use std::collections::BTreeSet;
+
+/// Gives every resource global without numbers the next free ones of its group. `is_imported` is
+/// asked about places in the text.
+pub(super) fn assign_bindings(module: &mut naga::Module, is_imported: &dyn Fn(usize) -> bool) {
+    let mut next = [0; 2];
+    let mut taken: BTreeSet<(u32, u32)> = module
+        .global_variables
+        .iter()
+        .filter_map(|(_, v)| v.binding.map(|b| (b.group, b.binding)))
+        .collect();
+    let handles: Vec<_> = module
+        .global_variables
+        .iter()
+        .map(|(handle, _)| handle)
+        .collect();
+    for handle in handles {
+        let at = module
+            .global_variables
+            .get_span(handle)
+            .to_range()
+            .map_or(0, |range| range.start);
+        let variable = module.global_variables.get_mut(handle);
+        let is_resource = matches!(
+            variable.space,
+            AddressSpace::Uniform | AddressSpace::Storage { .. } | AddressSpace::Handle
+        );
+        if !is_resource || variable.binding.is_some() {
+            continue;
+        }
+        let group = u32::from(!is_imported(at));
+        let binding = &mut next[group as usize];
+        // No module has as many globals as there are numbers.
+        while taken.contains(&(group, *binding)) {
+            *binding += 1;
+        }
+        let binding = *binding;
+        taken.insert((group, binding));
+        variable.binding = Some(naga::ResourceBinding { group, binding });
+    }
+}

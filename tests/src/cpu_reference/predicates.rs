@@ -1,7 +1,7 @@
 //! CPU reference of `shaders/shared/predicates.wgsl` in f32, under the arithmetics of
 //! [`Arithmetic`], which are not all that WGSL allows a compiler (docs/precision.md): what the
-//! bounds stated there are tested with. Points are (x, y); names are
-//! the shader's. `receiver_error_bound` is tested on receivers: tests/it/receivers.rs.
+//! bounds stated there are tested with. Points are (x, y); names are the shader's.
+//! `receiver_error_bound` is tested on receivers: tests/it/receivers.rs.
 
 use glam::Vec3;
 

@@ -56,8 +56,9 @@ pub(super) fn blamed_range(text: &str, panics: &dyn Fn(&str) -> bool) -> Option<
         return Some(declaration.range.start..body.start);
     };
     let before = first.checked_sub(1).map_or(0, |before| ends[before].0);
-    let statement = &text[body.start + before..body.start + end];
-    let space = statement.len() - statement.trim_start().len();
+    // Behind spaces and comments.
+    let space = next(&text[body.start + before..body.start + end])
+        .map_or(0, |(length, token)| length - token.len());
     Some(body.start + before + space..body.start + end)
 }
 

@@ -28,11 +28,12 @@ const SCENE_FILE: Limit = Limit {
 };
 
 /// Scene files that are part of the program: name and text.
-const BUILT_IN: [(&str, &str); 8] = [
+const BUILT_IN: [(&str, &str); 9] = [
     ("avenue", include_str!("../scenes/avenue.ron")),
     ("bench", include_str!("../scenes/bench.ron")),
     ("city", include_str!("../scenes/city.ron")),
     ("forest", include_str!("../scenes/forest.ron")),
+    ("level", include_str!("../scenes/level.ron")),
     ("park", include_str!("../scenes/park.ron")),
     ("park_soft", include_str!("../scenes/park_soft.ron")),
     ("sponza", include_str!("../scenes/sponza.ron")),

@@ -1,13 +1,14 @@
 //! Which meshes can be generated, and how they are named.
 
-use super::{avenue, city, forest, park};
+use super::{avenue, city, forest, level, park};
 use crate::mesh::Mesh;
 use std::{fmt, ops::RangeInclusive, str::FromStr};
 
 /// How many triangles a city or a forest can have.
 pub const TRIANGLES: RangeInclusive<u32> = 10_000..=10_000_000;
 
-/// A mesh that this crate makes: `park`, `avenue`, `city:100000` or `forest:100000`.
+/// A mesh that this crate makes: `park`, `avenue`, `level`, `city:100000` or
+/// `forest:100000`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Generator {
     /// A bench, flowers, a lamp and trees on a lawn: closed parts of about 55,000 triangles.
@@ -15,6 +16,9 @@ pub enum Generator {
     /// An avenue of 2,000 units between fences, trees and lamps: closed parts of about 50,000
     /// triangles.
     Avenue,
+    /// Storeys of rooms whose floors and walls are sheets of large triangles: open parts of 3,168
+    /// triangles.
+    Level,
     /// Blocks of houses on a square kilometre; what grows are the details of their walls and
     /// roofs.
     City {
@@ -36,6 +40,7 @@ impl Generator {
         match self {
             Self::Park => park::build(),
             Self::Avenue => avenue::build(),
+            Self::Level => level::build(),
             Self::City { triangles } => city::build(triangles),
             Self::Forest { triangles } => forest::build(triangles),
         }
@@ -52,7 +57,9 @@ impl Generator {
             .filter(|number| TRIANGLES.contains(number))
             .ok_or_else(|| format!("{text:?} is no number of triangles from {least} to {most}"))?;
         match self {
-            Self::Park | Self::Avenue => Err(format!("the mesh \"{self}\" has but one size")),
+            Self::Park | Self::Avenue | Self::Level => {
+                Err(format!("the mesh \"{self}\" has but one size"))
+            }
             Self::City { .. } => Ok(Self::City { triangles }),
             Self::Forest { .. } => Ok(Self::Forest { triangles }),
         }
@@ -67,11 +74,12 @@ impl FromStr for Generator {
         match text.split_once(':') {
             None if text == "park" => Ok(Self::Park),
             None if text == "avenue" => Ok(Self::Avenue),
+            None if text == "level" => Ok(Self::Level),
             Some(("city", count)) => Self::City { triangles }.with_triangles(count),
             Some(("forest", count)) => Self::Forest { triangles }.with_triangles(count),
             _ => Err(format!(
                 "no generated mesh is called {text:?}; there are: park, avenue, \
-                 city:TRIANGLES, forest:TRIANGLES"
+                 level, city:TRIANGLES, forest:TRIANGLES"
             )),
         }
     }
@@ -82,6 +90,7 @@ impl fmt::Display for Generator {
         match self {
             Self::Park => f.write_str("park"),
             Self::Avenue => f.write_str("avenue"),
+            Self::Level => f.write_str("level"),
             Self::City { triangles } => write!(f, "city:{triangles}"),
             Self::Forest { triangles } => write!(f, "forest:{triangles}"),
         }
@@ -94,7 +103,7 @@ mod tests {
 
     #[test]
     fn names_are_read_as_they_are_written() {
-        for text in ["park", "avenue", "city:10000", "forest:10000000"] {
+        for text in ["park", "avenue", "level", "city:10000", "forest:10000000"] {
             assert_eq!(text.parse::<Generator>().unwrap().to_string(), text);
         }
         assert_eq!(

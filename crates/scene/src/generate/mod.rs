@@ -7,6 +7,7 @@ mod avenue;
 mod city;
 mod forest;
 mod generator;
+mod level;
 pub mod numbers;
 mod park;
 mod solid;

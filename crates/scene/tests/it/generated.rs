@@ -134,6 +134,36 @@ fn the_avenue_is_closed_and_2000_units_long() {
     }
 }
 
+/// What makes maps of it dear: sheets without an inside, few triangles, each many times as large as
+/// what a map is divided into.
+#[test]
+fn the_level_is_of_large_open_sheets() {
+    let scene = scene("level").unwrap();
+    let mesh = &scene.mesh;
+    are_welded(mesh);
+    assert_eq!(mesh.triangles.len(), 3168);
+    assert!(bits(mesh).eq(bits(&Generator::Level.build())));
+    let mut edges = std::collections::HashMap::new();
+    for corners in &mesh.triangles {
+        for side in 0..3 {
+            let ends = [corners[side], corners[(side + 1) % 3]];
+            let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+            *edges.entry(key).or_insert(0) += 1;
+        }
+    }
+    let open = edges.values().filter(|&&triangles| triangles == 1).count();
+    assert!(
+        4 * open > edges.len(),
+        "{open} of {} edges are open",
+        edges.len()
+    );
+    let areas = (0..3168).map(|primitive| {
+        let [a, b, c] = mesh.corners(primitive);
+        (b - a).cross(c - a).length() / 2.0
+    });
+    assert!(areas.sum::<f64>() > 20_000.0);
+}
+
 /// The larger scene has the smaller one's ground, houses or ride: eyes stay outside, and a ray
 /// through the middle of the picture passes more and more surfaces.
 #[test]

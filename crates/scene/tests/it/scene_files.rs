@@ -73,8 +73,8 @@ fn broken_files_are_explained_with_line_and_column() {
     assert_snapshot!(error("format: 1", "format: 2"), @"garden.ron:2:13: format 2 is unknown; \
         this program reads format 1");
     assert_snapshot!(error("\"park\"", "\"parc\""), @"garden.ron:4:11: no \
-        generated mesh is called \"parc\"; there are: park, avenue, city:TRIANGLES, \
-        forest:TRIANGLES");
+        generated mesh is called \"parc\"; there are: park, avenue, level, \
+        city:TRIANGLES, forest:TRIANGLES");
     assert_snapshot!(error("Generated(", "Made("), @"garden.ron:4:11: \
         unknown word `Made`; known here: Obj, Gltf, Generated");
     assert_snapshot!(error("(0, -1, 0)", "(0, -1)"), @"garden.ron:5:30: 3 \
@@ -136,7 +136,7 @@ fn every_mistake_of_a_file_is_told() {
     let expected = [
         "3:5: unknown field `nam`; known here: format, name, description, mesh, \
             light, lights, views, paths",
-        "4:11: no generated mesh is called \"parc\"; there are: park, avenue, \
+        "4:11: no generated mesh is called \"parc\"; there are: park, avenue, level, \
             city:TRIANGLES, forest:TRIANGLES",
         "5:30: 3 values are needed here, not 2",
         "7:31: 3 values are needed here, not 2",
@@ -292,6 +292,7 @@ fn a_file_in_the_scenes_folder_wins_over_the_built_in_scene() {
             ("bench".to_owned(), false, false),
             ("city".to_owned(), true, false),
             ("forest".to_owned(), true, false),
+            ("level".to_owned(), true, false),
             ("park".to_owned(), true, true),
             ("park_soft".to_owned(), true, false),
             ("sponza".to_owned(), false, false),
@@ -322,8 +323,8 @@ fn unknown_scenes_and_missing_files() {
     };
     assert_snapshot!(library.load(&request("parc")).unwrap_err(), @"no scene \"parc\": it is \
         neither the path of a .ron, .obj, .gltf or .glb file, nor the name of a .ron file in \
-        scenes, nor one of the built-in scenes avenue, bench, city, forest, park, park_soft, \
-        sponza, sponza_masked");
+        scenes, nor one of the built-in scenes avenue, bench, city, forest, level, park, \
+        park_soft, sponza, sponza_masked");
     assert!(matches!(
         library.load(&request("nowhere/parc.ron")),
         Err(SceneError::Read { .. })

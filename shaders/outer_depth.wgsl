@@ -4,7 +4,7 @@
 // Hasselgren, Akenine-Moller, Ohlsson, "Conservative Rasterization", GPU Gems 2, 2005, second
 // algorithm.
 
-#import "shared/face_triangle.wgsl"
+#import "shared/light_triangle.wgsl"
 #import "shared/ids.wgsl"
 
 struct Params {
@@ -32,15 +32,8 @@ fn vertex(@builtin(vertex_index) index: u32) -> Vertex {
     let primitive = index / 3u;
     let triangle = light_triangle(primitive);
     var vertex = Vertex(vec4(0.0), triangle.a, triangle.b, triangle.c, primitive);
-    if !is_placed(triangle) {
-        // All of the map; the fragments find out what of it.
-        let anywhere = face_triangle(primitive);
-        let seen = LightTriangle(triangle.a, triangle.b, triangle.c, anywhere.volume);
-        if !anywhere.beside && casts(seen, params.cull) {
-            let corner = vec2(f32(index % 3u & 1u), f32(index % 3u >> 1u));
-            vertex.clip = vec4(4.0 * corner - 1.0, MIDDLE, 1.0);
-        }
-    } else if casts(triangle, params.cull) {
+    // Others are outer_unplaced.wgsl's.
+    if is_placed(triangle) && casts(triangle, params.cull) {
         vertex.clip = texel_clip(cover(triangle, index % 3u), MIDDLE);
     }
     return vertex;
@@ -110,13 +103,6 @@ fn nearest(vertex: Vertex) -> f32 {
     let ab = vertex.b.xy - vertex.a.xy;
     let area = cross_2d(ab, vertex.c.xy - vertex.a.xy);
     let triangle = LightTriangle(vertex.a, vertex.b, vertex.c, area);
-    if !is_placed(triangle) {
-        let anywhere = face_triangle(vertex.primitive);
-        if !may_cover(anywhere, centre) {
-            discard;
-        }
-        return saturate(anywhere.nearest);
-    }
     let around = select(0.5 + SLACK, params.n * 1.4142136, params.box == BOX_BY_N);
     let low = min(triangle.a.xy, min(triangle.b.xy, triangle.c.xy)) - around;
     let high = max(triangle.a.xy, max(triangle.b.xy, triangle.c.xy)) + around;

@@ -16,8 +16,19 @@ var<uniform> params: Params;
 var<storage, read_write> selected: array<CasterCorner>;
 // Vertices, instances, first vertex, first instance.
 var<storage, read_write> draw_call: array<atomic<u32>, 4>;
+// Which triangles of `selected` are large, by their number there, and two calls to draw them: three
+// vertices each, and as many as their edges take.
+var<storage, read_write> selected_large: array<u32>;
+var<storage, read_write> large_call: array<atomic<u32>, 4>;
+var<storage, read_write> edge_call: array<atomic<u32>, 4>;
 
 const CORNERS: u32 = 192u;
+// Vertices at the edges of a large triangle, see inner_one_ring.wgsl.
+const EDGE_VERTICES: u32 = 36u;
+const NO_SLOT: u32 = 0xffffffffu;
+// Of the circle in a large triangle, in texels. Of 2, 4 and 8 the first two drew the layer equally
+// fast, the last more slowly.
+const LEAST_RADIUS: f32 = 3.0;
 
 var<workgroup> texels: array<vec3<f32>, CORNERS>;
 // One bit per triangle that is in the map, and the place of the group's first.
@@ -35,22 +46,52 @@ struct Thread {
 fn alone(thread: Thread) {
     let corner = corner_of(thread);
     let triangle = gather(corner, thread.lane);
-    place(corner, thread.lane, triangle, false);
+    place(corner, thread.lane, triangle, 0u);
 }
 
 @compute @workgroup_size(CORNERS)
 fn with_neighbours(thread: Thread) {
     let corner = corner_of(thread);
     let triangle = gather(corner, thread.lane);
+    place(corner, thread.lane, triangle, kept_tag(corner, thread.lane, triangle));
+}
+
+// With neighbours, and large ones listed.
+@compute @workgroup_size(CORNERS)
+fn with_large(thread: Thread) {
+    let corner = corner_of(thread);
+    let triangle = gather(corner, thread.lane);
+    let large = is_large(triangle);
+    let tag = kept_tag(corner, thread.lane, triangle) | select(0u, LARGE, large);
+    let slot = place(corner, thread.lane, triangle, tag);
+    if slot != NO_SLOT && large && slot % 3u == 0u {
+        let number = atomicAdd(&large_call[0], 3u) / 3u;
+        atomicStore(&large_call[1], 1u);
+        atomicAdd(&edge_call[0], EDGE_VERTICES);
+        atomicStore(&edge_call[1], 1u);
+        selected_large[number] = slot / 3u;
+    }
+}
+
+// True if most of its texels are clear of its edges, because the circle in it, whose radius is
+// twice the area by the perimeter, is wide.
+fn is_large(triangle: LightTriangle) -> bool {
+    let perimeter = distance(triangle.a.xy, triangle.b.xy)
+        + distance(triangle.b.xy, triangle.c.xy)
+        + distance(triangle.c.xy, triangle.a.xy);
+    return abs(triangle.area) > LEAST_RADIUS * perimeter;
+}
+
+fn kept_tag(corner: u32, lane: u32, triangle: LightTriangle) -> u32 {
     var kept = false;
     if is_asked(corner) && casts(triangle, params.cull) {
-        let first = thread.lane - thread.lane % 3u;
-        let next = texels[first + (thread.lane + 1u) % 3u].xy;
-        let own = texels[first + (thread.lane + 2u) % 3u].xy;
-        let here = texels[thread.lane].xy;
+        let first = lane - lane % 3u;
+        let next = texels[first + (lane + 1u) % 3u].xy;
+        let own = texels[first + (lane + 2u) % 3u].xy;
+        let here = texels[lane].xy;
         kept = adjacent_triangle(corner, here, next, own, params.cull) != NO_NEIGHBOUR;
     }
-    place(corner, thread.lane, triangle, kept);
+    return select(0u, KEPT, kept);
 }
 
 fn corner_of(thread: Thread) -> u32 {
@@ -74,7 +115,8 @@ fn gather(corner: u32, lane: u32) -> LightTriangle {
     return LightTriangle(a, b, c, cross_2d(b.xy - a.xy, c.xy - a.xy));
 }
 
-fn place(corner: u32, lane: u32, triangle: LightTriangle, kept: bool) {
+// Returns where in `selected` the corner is, NO_SLOT if nowhere.
+fn place(corner: u32, lane: u32, triangle: LightTriangle, tag: u32) -> u32 {
     // What has no place in the map covers no texel for sure.
     let in_map = is_asked(corner) && is_placed(triangle) && casts(triangle, params.cull);
     let word = lane / 96u;
@@ -90,11 +132,13 @@ fn place(corner: u32, lane: u32, triangle: LightTriangle, kept: bool) {
         atomicStore(&draw_call[1], 1u);
     }
     workgroupBarrier();
-    if in_map {
-        let in_low = countOneBits(low & (bit - 1u));
-        let in_high = countOneBits(low) + countOneBits(high & (bit - 1u));
-        let before = select(in_low, in_high, word == 1u);
-        let tag = corner / 3u | select(0u, KEPT, kept);
-        selected[group_first + 3u * before + lane % 3u] = CasterCorner(texels[lane], tag);
+    if !in_map {
+        return NO_SLOT;
     }
+    let in_low = countOneBits(low & (bit - 1u));
+    let in_high = countOneBits(low) + countOneBits(high & (bit - 1u));
+    let before = select(in_low, in_high, word == 1u);
+    let slot = group_first + 3u * before + lane % 3u;
+    selected[slot] = CasterCorner(texels[lane], corner / 3u | tag);
+    return slot;
 }

@@ -5,13 +5,15 @@
 
 struct CasterCorner {
     texel: vec3<f32>,
-    // The triangle's primitive, and KEPT if the edge from this corner to the next is no edge of the
-    // surface.
+    // The triangle's primitive, KEPT if the edge from this corner to the next is no edge of the
+    // surface, and LARGE if `large_casters` has the triangle.
     tag: u32,
 }
 
 const KEPT: u32 = 0x80000000u;
-const PRIMITIVE: u32 = 0x7fffffffu;
+const LARGE: u32 = 0x40000000u;
+// No binding holds the indices of so many.
+const PRIMITIVE: u32 = 0x3fffffffu;
 
 var<storage, read> casters: array<CasterCorner>;
 
@@ -22,6 +24,9 @@ struct Vertex {
     @location(2) @interpolate(flat) c: vec3<f32>,
     @location(3) @interpolate(flat) tags: vec3<u32>,
 }
+
+// All three corners of a triangle that is not drawn.
+const NOWHERE: vec4<f32> = vec4(0.0);
 
 // Word of the param `small`.
 const SMALL_LEAVE_OUT: u32 = 1u;
@@ -39,7 +44,7 @@ fn caster_vertex(index: u32) -> Vertex {
 fn inner_vertex(index: u32, n: f32, small: u32) -> Vertex {
     var vertex = caster_vertex(index);
     if small == SMALL_LEAVE_OUT && is_small(vertex, n * 1.4142136) {
-        vertex.clip = vec4(0.0);
+        vertex.clip = NOWHERE;
     }
     return vertex;
 }

@@ -47,3 +47,4 @@ mod shaders;
 mod splits;
 mod spot_layers;
 mod trace;
+mod work;

@@ -233,25 +233,18 @@ pub struct FaceFault {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FaceProblem {
-    /// A vertex number that is 0 or beyond the vertices above the face.
+    /// A vertex number that names nothing.
     NoSuchVertex {
         /// The number as written.
         written: String,
-        /// Vertices above the face.
+        /// Vertices of the file; those above the face where the number counts back.
         available: usize,
     },
-    /// A normal number that is 0 or beyond the normals above the face.
-    NoSuchNormal {
-        /// The number as written.
-        written: String,
-        /// Normals above the face.
-        available: usize,
-    },
-    /// A number of texture coordinates that is 0 or beyond those above the face.
+    /// A number of texture coordinates that names nothing, at a face whose material has a mask.
     NoSuchUv {
         /// The number as written.
         written: String,
-        /// Texture coordinates above the face.
+        /// Texture coordinates, as of `NoSuchVertex`.
         available: usize,
     },
     /// A polygon that intersects itself, or a concave one of too many corners.
@@ -274,33 +267,18 @@ impl fmt::Display for FaceProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoSuchVertex { written, available } => {
-                write!(
-                    f,
-                    "names vertex {}, but {} above it",
-                    beginning(written),
-                    plural(*available, "vertex stands", "vertices stand")
-                )
-            }
-            Self::NoSuchNormal { written, available } => {
-                write!(
-                    f,
-                    "names normal {}, but {} above it",
-                    beginning(written),
-                    plural(*available, "normal stands", "normals stand")
-                )
+                let vertices = counted(written, *available, ["vertex", "vertices"]);
+                write!(f, "names vertex {}, but {vertices}", beginning(written))
             }
             Self::NoSuchUv { written, available } => {
-                write!(
-                    f,
-                    "names texture coordinates {}, but {} above it",
-                    beginning(written),
-                    plural(*available, "pair stands", "pairs stand")
-                )
+                let pairs = counted(written, *available, ["pair", "pairs"]);
+                let written = beginning(written);
+                write!(f, "names texture coordinates {written}, but {pairs}")
             }
             Self::CannotBeCut => f.write_str(
                 "cannot be cut into triangles, for its outline crosses itself or has more than \
-                 10,000 corners: triangulate it where it was made, or have a scene file say \
-                 `concave: Fan`",
+                 10,000 corners: triangulate it where it was made, give --concave fan, or have a \
+                 scene file say `concave: Fan`",
             ),
             Self::NotACorner(text) => {
                 write!(
@@ -316,6 +294,16 @@ impl fmt::Display for FaceProblem {
                 )
             }
         }
+    }
+}
+
+/// How many there are of what a number names, which may count back from its face.
+fn counted(written: &str, available: usize, [one, many]: [&str; 2]) -> String {
+    let count = plural(available, one, many);
+    match (written.starts_with('-'), available) {
+        (true, 1) => format!("{count} stands above it"),
+        (true, _) => format!("{count} stand above it"),
+        (false, _) => format!("the file has {count}"),
     }
 }
 

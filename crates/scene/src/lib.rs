@@ -9,6 +9,8 @@
 
 pub mod adjacency;
 #[cfg(feature = "files")]
+mod border;
+#[cfg(feature = "files")]
 mod builder;
 pub mod bvh;
 pub mod camera;
@@ -28,6 +30,8 @@ pub mod light_kind;
 mod limit;
 pub mod mask;
 pub mod material;
+#[cfg(feature = "files")]
+mod material_use;
 pub mod mesh;
 pub mod motion;
 pub mod movable;
@@ -44,6 +48,8 @@ mod scene;
 #[cfg(feature = "files")]
 pub mod scene_file;
 pub mod texels;
+#[cfg(feature = "files")]
+mod text;
 pub mod texture;
 #[cfg(feature = "files")]
 mod texture_file;
@@ -64,6 +70,8 @@ pub use light_kind::{LIGHT_GAP, Light, LightKind, PointLight, SpotLight, Towards
 pub use limit::Limit;
 pub use mask::Mask;
 pub use material::{Material, Surfaces};
+#[cfg(feature = "files")]
+pub use material_use::MaterialUse;
 pub use mesh::{Group, Mesh};
 pub use motion::{Motion, PartMotion, RigidKey};
 pub use movable::Movable;

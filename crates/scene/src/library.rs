@@ -6,8 +6,9 @@ use crate::{
     gltf::load_gltf,
     light_kind::Light,
     limit::Limit,
+    material_use::MaterialUse,
     obj::{
-        options::{ObjOptions, QuadDiagonal},
+        options::{Concave, ObjOptions, QuadDiagonal},
         read::load_obj,
     },
     path::CameraPath,
@@ -61,6 +62,10 @@ pub struct ObjSetup {
     pub light: Light,
     /// How polygons are split.
     pub quads: QuadDiagonal,
+    /// What becomes of concave ones.
+    pub concave: Concave,
+    /// What is taken of its materials.
+    pub materials: MaterialUse,
 }
 
 /// One row of `skiagraph scenes`.
@@ -114,10 +119,7 @@ impl SceneLibrary {
     /// found (with every place searched), a bare `.obj` without view and light.
     pub fn load(&self, request: &SceneRequest) -> Result<(Scene, ImportReport), SceneError> {
         let path = Path::new(&request.argument);
-        if ["obj", "gltf", "glb"]
-            .iter()
-            .any(|extension| has_extension(path, extension))
-        {
+        if is_bare(path) {
             return load_bare(path, request.obj.as_ref());
         }
         if request.obj.is_some() {
@@ -141,7 +143,7 @@ impl SceneLibrary {
     /// # Errors
     /// [`SceneError`]: no such scene, a broken scene file.
     pub fn paths(&self, argument: &str) -> Result<Vec<CameraPath>, SceneError> {
-        if has_extension(Path::new(argument), "obj") {
+        if is_bare(Path::new(argument)) {
             return Ok(Vec::new());
         }
         let (_, scene) = self.parse(sized(argument).0)?;
@@ -248,6 +250,15 @@ impl SceneLibrary {
         }
     }
 
+    /// The file in the scenes folder that is read instead of a built-in scene of that name, if it
+    /// says anything else.
+    pub fn stand_in(&self, argument: &str) -> Option<PathBuf> {
+        let name = sized(argument).0;
+        let (_, text) = BUILT_IN.iter().find(|(built_in, _)| *built_in == name)?;
+        let (file, read) = self.locate(name).ok()?;
+        file.filter(|_| read != *text)
+    }
+
     fn mesh_places(&self, mesh: &str, scene_file: Option<&Path>) -> Vec<PathBuf> {
         let beside = scene_file.map(|file| file.parent().unwrap_or(Path::new("")).to_owned());
         beside
@@ -312,9 +323,11 @@ impl SceneLibrary {
                 };
                 load_obj(&self.mesh_file(&scene, mesh, source, file)?, &options)?
             }
-            MeshSource::Gltf { file: mesh, source } => {
-                load_gltf(&self.mesh_file(&scene, mesh, source, file)?)?
-            }
+            MeshSource::Gltf {
+                file: mesh,
+                materials,
+                source,
+            } => load_gltf(&self.mesh_file(&scene, mesh, source, file)?, *materials)?,
         };
         Ok((
             Scene {
@@ -368,11 +381,13 @@ fn load_bare(path: &Path, setup: Option<&ObjSetup>) -> Result<(Scene, ImportRepo
         })?;
     let options = ObjOptions {
         quads: setup.quads,
+        concave: setup.concave,
+        materials: setup.materials.into(),
         ..ObjOptions::default()
     };
     let (mesh, report) = match has_extension(path, "obj") {
         true => load_obj(path, &options)?,
-        false => load_gltf(path)?,
+        false => load_gltf(path, setup.materials)?,
     };
     let name = path
         .file_stem()
@@ -386,6 +401,14 @@ fn load_bare(path: &Path, setup: Option<&ObjSetup>) -> Result<(Scene, ImportRepo
         },
         report,
     ))
+}
+
+/// True for a mesh file that is named without a scene file.
+fn is_bare(path: &Path) -> bool {
+    let extensions = ["obj", "gltf", "glb"];
+    extensions
+        .iter()
+        .any(|extension| has_extension(path, extension))
 }
 
 fn has_extension(path: &Path, extension: &str) -> bool {

@@ -30,6 +30,9 @@ pub struct ImportReport {
     pub zero_area: Degenerate,
     /// What could not be read of colours.
     pub colours_missing: Vec<String>,
+    /// What was passed over, or read in a way that a user may not expect: one sentence each, none of
+    /// them twice.
+    pub remarks: Vec<String>,
 }
 
 /// Degenerate triangles: how many, and the faces they came from.
@@ -71,7 +74,19 @@ impl Degenerate {
     }
 }
 
+/// How many remarks are spelt out before they are only counted.
+const REMARKS_SHOWN: usize = 12;
+
 impl ImportReport {
+    /// Adds a remark, unless it is there. A damaged file may cause any number of them.
+    pub(crate) fn remark(&mut self, text: impl Into<String>) {
+        const MOST: usize = 1000;
+        let text = text.into();
+        if self.remarks.len() < MOST && !self.remarks.contains(&text) {
+            self.remarks.push(text);
+        }
+    }
+
     /// Whether the file held anything that a user may want to mend.
     pub fn has_warnings(&self) -> bool {
         self.dropped.triangles
@@ -80,6 +95,7 @@ impl ImportReport {
             + self.points
             + self.lines
             + self.colours_missing.len()
+            + self.remarks.len()
             > 0
     }
 }
@@ -113,6 +129,12 @@ impl fmt::Display for ImportReport {
                 plural(count, "material", "materials")
             )?;
         }
-        Ok(())
+        for remark in self.remarks.iter().take(REMARKS_SHOWN) {
+            writeln!(f, "{remark}")?;
+        }
+        match self.remarks.len().saturating_sub(REMARKS_SHOWN) {
+            0 => Ok(()),
+            more => writeln!(f, "and {} more", plural(more, "remark", "remarks")),
+        }
     }
 }

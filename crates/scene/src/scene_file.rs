@@ -26,6 +26,7 @@ use crate::{
     generate::Generator,
     light::DirectionalLight,
     light_kind::{Light, LightKind, PointLight, SpotLight},
+    material_use::MaterialUse,
     motion::{Motion, PartMotion, RigidKey},
     obj::options::{Concave, ObjMaterials, QuadDiagonal},
     path::{CameraKey, CameraPath, LightKey},
@@ -99,6 +100,9 @@ pub enum MeshSource {
     Gltf {
         /// Path, as of `Obj`.
         file: String,
+        /// What is taken of its materials.
+        #[serde(default)]
+        materials: MaterialUse,
         /// As of `Obj`.
         #[serde(default, deserialize_with = "given")]
         source: Option<String>,

@@ -1,6 +1,6 @@
 //! Textures of files.
 
-use crate::{limit::Limit, texels::Texels};
+use crate::{border::caught, limit::Limit, texels::Texels};
 use image::{ImageFormat, ImageReader, Limits};
 use std::{io::Cursor, path::Path};
 
@@ -23,6 +23,15 @@ pub(crate) fn read(path: &Path) -> Result<Texels, String> {
     decode(&bytes, tga.then_some(ImageFormat::Tga))
 }
 
+/// Checks that the first bytes of a picture are those of a kind that can be read. TGA has none.
+pub(crate) fn check_format(bytes: &[u8]) -> Result<(), String> {
+    match image::guess_format(bytes) {
+        Ok(format) if format.reading_enabled() => Ok(()),
+        Ok(format) => Err(format!("{format:?} is not read; a PNG or JPEG can be")),
+        Err(why) => Err(format!("{why}; a PNG, JPEG or TGA can be read")),
+    }
+}
+
 /// Of its content; `format`: of a file whose first bytes do not tell.
 pub(crate) fn decode(bytes: &[u8], format: Option<ImageFormat>) -> Result<Texels, String> {
     let mut reader = ImageReader::new(Cursor::new(bytes));
@@ -38,8 +47,7 @@ pub(crate) fn decode(bytes: &[u8], format: Option<ImageFormat>) -> Result<Texels
     limits.max_image_width = Some(LONGEST_EDGE);
     limits.max_image_height = Some(LONGEST_EDGE);
     reader.limits(limits);
-    let decoded = reader
-        .decode()
+    let decoded = caught("image", || reader.decode())?
         .map_err(|why| format!("{why}; a PNG, JPEG or TGA can be read"))?;
     let has_alpha = decoded.color().has_alpha();
     let picture = decoded.into_rgba8();

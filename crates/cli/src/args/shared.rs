@@ -1,8 +1,9 @@
 //! Arguments that several commands share.
 
 use crate::args::values::{self, Assignment, LightArgument, Size, texels};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use glam::DVec3;
+use skiagraph_scene::{Concave, MaterialUse};
 
 /// The GPU, and how much of it and of our time a graph may take.
 #[derive(Args, Clone, Debug)]
@@ -62,6 +63,51 @@ pub struct SceneArgs {
     /// Far plane distance. Without it, with --eye or for a mesh: just behind the whole mesh.
     #[arg(long, value_name = "LENGTH", value_parser = values::positive)]
     pub far: Option<f64>,
+    /// What is taken of a mesh's materials. Without it: all.
+    #[arg(long, value_name = "WHAT")]
+    pub materials: Option<Materials>,
+    /// What becomes of a mesh's polygons that are not convex. Without it: cut.
+    #[arg(long, value_name = "HOW")]
+    pub concave: Option<ConcavePolygons>,
+}
+
+/// What is taken of a mesh file's materials.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Materials {
+    /// Colours and masks; a mask that is missing is an error.
+    All,
+    /// Colours; every surface is opaque, and what is missing is a warning.
+    Color,
+    /// Nothing; files of materials and textures need not be there.
+    Ignore,
+}
+
+impl From<Materials> for MaterialUse {
+    fn from(of: Materials) -> Self {
+        match of {
+            Materials::All => Self::All,
+            Materials::Color => Self::Color,
+            Materials::Ignore => Self::Ignore,
+        }
+    }
+}
+
+/// What becomes of polygons of an OBJ file that are not convex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ConcavePolygons {
+    /// They are cut as their outline is; one that crosses itself is an error.
+    Cut,
+    /// They are fanned from their first corner, and gain area.
+    Fan,
+}
+
+impl From<ConcavePolygons> for Concave {
+    fn from(of: ConcavePolygons) -> Self {
+        match of {
+            ConcavePolygons::Cut => Self::Cut,
+            ConcavePolygons::Fan => Self::Fan,
+        }
+    }
 }
 
 #[cfg(feature = "window")]
@@ -78,6 +124,8 @@ impl SceneArgs {
             fov: None,
             near: None,
             far: None,
+            materials: None,
+            concave: None,
         }
     }
 }

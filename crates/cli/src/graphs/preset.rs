@@ -5,10 +5,11 @@ use crate::files::fingerprint::{Fingerprint, RecordedSources};
 use crate::files::picture_sources::PictureSources;
 use crate::graphs::faults::{GraphFaults, warn};
 use crate::graphs::planning;
+use crate::terminal::console::note;
 use crate::wording::did_you_mean;
 use skiagraph_graph::{FolderSources, Graph, LayeredSources, Param, Plan, PlanRequest, Sources};
 use skiagraph_passes::{EmbeddedSources, registry};
-use std::path::Path;
+use std::{path::Path, sync::Once};
 
 /// The output from 0 in shadow to 1 in light.
 pub const VISIBILITY: &str = "visibility";
@@ -18,12 +19,66 @@ pub const STATUS: &str = "status";
 /// The optional output with the number of rays traced in the frame.
 pub const RAY_COUNT: &str = "ray_count";
 
-/// Where graphs and shaders are read from: the working directory, then what is built in.
+/// Where graphs and shaders are read from: the working directory, then what is built in. Says which
+/// files of the working directory stand in for others that are built in.
 pub fn sources() -> LayeredSources {
+    static SAID: Once = Once::new();
+    let folder = FolderSources { root: ".".into() };
+    SAID.call_once(|| {
+        if let Some(text) = stand_ins(&folder) {
+            note(&text);
+        }
+    });
     LayeredSources(vec![
-        Box::new(PictureSources(FolderSources { root: ".".into() })),
+        Box::new(PictureSources(folder)),
         Box::new(EmbeddedSources),
     ])
+}
+
+/// Folders of what presets are made of.
+const PARTS: [&str; 6] = [
+    "pipelines/shared",
+    "pipelines/shared/fitted",
+    "pipelines/shared/layered",
+    "pipelines/shared/projective",
+    "shaders",
+    "shaders/shared",
+];
+
+/// Which files of a folder stand in for built-in ones that differ: a line for the presets, one for
+/// what they are made of.
+fn stand_ins(folder: &dyn Sources) -> Option<String> {
+    let differ = |parent: &str| {
+        let files = folder.list(parent).into_iter();
+        let differs = |file: &String| {
+            let path = format!("{parent}/{file}");
+            let built_in = EmbeddedSources.read(&path).ok().flatten();
+            let own = folder.read(&path).ok().flatten();
+            built_in.is_some_and(|built_in| own.is_some_and(|own| own != built_in))
+        };
+        files.filter(differs).collect::<Vec<_>>()
+    };
+    let presets: Vec<String> = differ("pipelines")
+        .iter()
+        .map(|file| file.trim_end_matches(".ron").to_owned())
+        .collect();
+    let mut lines = Vec::new();
+    if !presets.is_empty() {
+        let names = presets.join(", ");
+        lines.push(format!(
+            "./pipelines stands in for built-in presets, which differ: {names}"
+        ));
+    }
+    for parent in PARTS {
+        let files = differ(parent);
+        if !files.is_empty() {
+            let names = files.join(", ");
+            lines.push(format!(
+                "./{parent} stands in for built-in files, which differ: {names}"
+            ));
+        }
+    }
+    (!lines.is_empty()).then(|| lines.join("\n"))
 }
 
 /// Names of the presets: `pipelines/*.ron` on disk and built in, sorted.
@@ -160,6 +215,38 @@ pub fn locate(argument: &str, sources: &dyn Sources) -> Result<String, CliError>
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A folder of what presets are made of that is not in the list would stand in silently.
+    #[test]
+    fn every_built_in_folder_is_looked_at() {
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let mut open = vec!["pipelines".to_owned(), "shaders".to_owned()];
+        while let Some(folder) = open.pop() {
+            let is_listed = folder == "pipelines" || PARTS.contains(&folder.as_str());
+            assert!(is_listed, "{folder}");
+            for entry in std::fs::read_dir(root.join(&folder)).unwrap().flatten() {
+                if entry.path().is_dir() {
+                    open.push(format!("{folder}/{}", entry.file_name().display()));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn files_that_stand_in_for_built_in_ones_are_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
+        std::fs::create_dir_all(root.join("pipelines")).unwrap();
+        let sources = FolderSources { root: root.into() };
+        let built_in = EmbeddedSources.read("pipelines/rt.ron").unwrap().unwrap();
+        std::fs::write(root.join("pipelines/rt.ron"), &*built_in).unwrap();
+        std::fs::write(root.join("pipelines/mine.ron"), "()").unwrap();
+        assert_eq!(stand_ins(&sources), None);
+        std::fs::write(root.join("pipelines/nsm.ron"), format!("{built_in} ")).unwrap();
+        let told = stand_ins(&sources).unwrap();
+        let expected = "./pipelines stands in for built-in presets, which differ: nsm";
+        assert_eq!(told, expected);
+    }
 
     #[test]
     fn missing_presets_and_files_are_told_apart() {

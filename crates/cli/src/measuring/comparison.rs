@@ -16,8 +16,10 @@ use crate::measuring::subject::{Shot, Subject};
 use crate::pictures::run_pictures::PictureFile;
 use crate::records::read_back;
 use crate::records::results::{Results, Run};
+use crate::reporting::notes::unlit;
 use crate::reporting::published::attach;
 use crate::reporting::published_row::Row;
+use crate::terminal::console::note;
 use crate::terminal::progress::{Runs, Step};
 use crate::wording::size;
 use skiagraph_gpu::device::Gpu;
@@ -205,6 +207,10 @@ impl<'a> Comparison<'a> {
         let Some(judge) = frames.judges.first() else {
             return Ok(());
         };
+        let own = frames.own_counts();
+        if let Some(text) = unlit(subject.name(), &own.pixels) {
+            note(&text);
+        }
         let context = MeasureContext {
             gpu: self.setup.gpu,
             timestamps: self.results.adapter.gpu_unavailable.is_none(),
@@ -212,7 +218,7 @@ impl<'a> Comparison<'a> {
             light: self.provider.light_number(),
             fingerprint: subject.fingerprint(self.setup.fingerprint),
             judge,
-            own: frames.own_counts(),
+            own,
             frames: match subject {
                 Subject::Still(_) => self.args.frames.into(),
                 Subject::Path(_) => frames.shots.len() as u64,

@@ -7,8 +7,8 @@ use crate::terminal::console::note;
 use crate::wording::did_you_mean;
 use glam::DVec3;
 use skiagraph_scene::{
-    DirectionalLight, Light, ObjSetup, QuadDiagonal, Scene, SceneError, SceneLibrary, SceneRequest,
-    View,
+    Concave, DirectionalLight, Light, MaterialUse, ObjSetup, QuadDiagonal, Scene, SceneError,
+    SceneLibrary, SceneRequest, View,
 };
 use std::path::Path;
 
@@ -31,7 +31,21 @@ impl SceneSelection {
             argument: args.scene.clone(),
             obj: bare_setup(args),
         };
+        if request.obj.is_none() && (args.materials.is_some() || args.concave.is_some()) {
+            return Err(CliError::Usage(format!(
+                "--materials and --concave are of a mesh file (.obj, .gltf, .glb); a scene file \
+                 says `materials` and `concave` itself, so leave them out with --scene {}",
+                args.scene
+            )));
+        }
         let library = SceneLibrary::from_environment();
+        if let Some(file) = library.stand_in(&args.scene) {
+            note(&format!(
+                "{} stands in for the built-in scene `{}`, which differs",
+                file.display(),
+                args.scene
+            ));
+        }
         let loaded = library.load(&request);
         let (mut scene, report) = loaded.map_err(|error| explain(error, args, &library))?;
         if report.has_warnings() {
@@ -48,8 +62,26 @@ impl SceneSelection {
         let views = choose(&scene, args.view.as_deref())?;
         let views = override_views(&scene, views, args, is_bare)?;
         let views = under_lights(&scene, views, args)?;
+        if let Some(text) = from_below(&views, args) {
+            note(&text);
+        }
         Ok(Self { scene, views })
     }
+}
+
+/// That a sun of one's own shines upwards, which most often is its direction turned round.
+fn from_below(views: &[View], args: &SceneArgs) -> Option<String> {
+    let direction = own_light(args)?;
+    let up = views.first()?.up;
+    let three = |v: DVec3| format!("{},{},{}", v.x, v.y, v.z);
+    (direction.dot(up) > 0.0).then(|| {
+        format!(
+            "warning: --light {} shines from below: it is the direction in which the light \
+             travels; --light {} shines from above",
+            three(direction),
+            three(-direction + DVec3::ZERO)
+        )
+    })
 }
 
 /// Views under the lights that the arguments name.
@@ -100,6 +132,8 @@ fn bare_setup(args: &SceneArgs) -> Option<ObjSetup> {
         },
         light: DirectionalLight::new(own_light(args).unwrap_or(FALLBACK_LIGHT)).into(),
         quads: QuadDiagonal::default(),
+        concave: args.concave.map_or_else(Concave::default, Into::into),
+        materials: args.materials.map_or_else(MaterialUse::default, Into::into),
     })
 }
 

@@ -3,7 +3,7 @@
 use crate::records::results::{Measured, Run};
 use crate::records::sequence::{FrameCost, Sequence};
 use crate::wording::{frames, ms, thousands};
-use skiagraph_reference::BlockerCounts;
+use skiagraph_reference::{BlockerCounts, PixelCounts};
 
 /// A band of more than one pixel in so many of those facing the light leaves too much open.
 const MAX_BAND: u128 = 1000;
@@ -13,6 +13,25 @@ pub fn band_warning(run: &Run) -> Option<String> {
     let is_large = u128::from(run.band) * MAX_BAND > u128::from(run.pixels.facing_light);
     let text = "warning: the band is larger than 0.1 % of PFL; what lies in it is not proven";
     is_large.then(|| text.to_owned())
+}
+
+/// That a view shows nothing, or nothing in light: its table would be one of zeros.
+pub fn unlit(view: &str, pixels: &PixelCounts) -> Option<String> {
+    let away = thousands(pixels.facing_away);
+    let facing = thousands(pixels.facing_light);
+    let what = match (pixels.facing_away, pixels.facing_light, pixels.lit) {
+        (0, 0, _) => "shows no triangle: give another --eye, --look, --near or --far".to_owned(),
+        (_, 0, _) => format!(
+            "has nothing in light: all {away} pixels that show a surface face away from it; --light \
+             is the direction in which the light travels"
+        ),
+        (_, _, 0) => format!(
+            "has nothing in light: {away} pixels face away from it, and all {facing} that face it \
+             are in shadow; --light is the direction in which the light travels"
+        ),
+        _ => return None,
+    };
+    Some(format!("warning: view `{view}` {what}"))
 }
 
 /// Of each method that is wrong of certain pixels: how many, and what blocks them. All maps of a
@@ -181,7 +200,7 @@ mod tests {
     use super::*;
     use crate::records::results::tests::sample;
     use crate::records::steady::{Cycle, Steady};
-    use skiagraph_reference::BlockerCounts;
+    use skiagraph_reference::{BlockerCounts, PixelCounts};
 
     #[test]
     fn what_was_judged_of_a_method_that_remembers_is_said() {

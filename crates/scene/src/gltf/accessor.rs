@@ -1,9 +1,7 @@
 //! Reads accessors, never beyond the buffers that they name.
 
+use super::buffers::Buffers;
 use gltf::accessor::{Accessor, DataType};
-use std::sync::Arc;
-
-type Bytes = [Arc<[u8]>];
 
 /// An accessor's items as numbers, `N` each; normalised integers as fractions.
 ///
@@ -11,7 +9,7 @@ type Bytes = [Arc<[u8]>];
 /// What is wrong with it.
 pub(super) fn floats<const N: usize>(
     accessor: &Accessor<'_>,
-    buffers: &Bytes,
+    buffers: &Buffers,
 ) -> Result<Vec<[f32; N]>, String> {
     let width = accessor.dimensions().multiplicity();
     if width < N {
@@ -68,7 +66,7 @@ pub(super) fn floats<const N: usize>(
 ///
 /// # Errors
 /// What is wrong with it.
-pub(super) fn indices(accessor: &Accessor<'_>, buffers: &Bytes) -> Result<Vec<u32>, String> {
+pub(super) fn indices(accessor: &Accessor<'_>, buffers: &Buffers) -> Result<Vec<u32>, String> {
     let ty = accessor.data_type();
     if accessor.dimensions().multiplicity() != 1 || accessor.sparse().is_some() {
         return Err("indices are single whole numbers, none of them sparse".to_owned());
@@ -95,9 +93,9 @@ fn raw<'b>(
     offset: usize,
     size: usize,
     count: usize,
-    buffers: &'b Bytes,
+    buffers: &'b Buffers,
 ) -> Result<impl Iterator<Item = &'b [u8]> + use<'b>, String> {
-    let buffer = buffers.get(view.buffer().index());
+    let buffer = buffers.bytes.get(view.buffer().index());
     let end = view.offset().checked_add(view.length());
     let bytes = buffer
         .zip(end)
@@ -109,7 +107,10 @@ fn raw<'b>(
             view.buffer().index()
         )
     })?;
-    let stride = view.stride().unwrap_or(size).max(1);
+    let own = view
+        .stride()
+        .or(buffers.strides.get(&view.index()).copied());
+    let stride = own.unwrap_or(size).max(1);
     let needed = count.checked_sub(1).map_or(Some(0), |last| {
         last.checked_mul(stride)?
             .checked_add(size)?

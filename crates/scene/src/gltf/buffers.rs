@@ -1,8 +1,9 @@
 //! The bytes of buffers and images: in the file itself, in data URIs, or in files beside it.
 
+use super::prepare::Beside;
 use crate::{error::beginning, limit::Limit};
 use base64::{Engine, engine::general_purpose::STANDARD};
-use std::{borrow::Cow, path::Path, sync::Arc};
+use std::{borrow::Cow, collections::HashMap, path::Path, sync::Arc};
 
 /// Some hundred million triangles.
 pub(super) const GLTF_FILE: Limit = Limit {
@@ -45,19 +46,31 @@ pub(super) fn path_of(uri: &str) -> Cow<'_, str> {
     String::from_utf8(decoded).map_or(uri.into(), Cow::Owned)
 }
 
-/// The bytes of all buffers of a document.
+/// The bytes of a document's buffers.
+pub(super) struct Buffers {
+    /// By their numbers; those that are not needed have none.
+    pub bytes: Vec<Arc<[u8]>>,
+    /// Distances of a buffer view's items, where the document does not tell.
+    pub strides: HashMap<usize, usize>,
+}
+
+/// The bytes of all buffers that are needed of a document.
 ///
 /// # Errors
 /// The buffer's place, and what is wrong with it.
 pub(super) fn read(
     document: &gltf::Document,
     mut blob: Option<Vec<u8>>,
+    beside: &Beside,
     file: &Path,
-) -> Result<Vec<Arc<[u8]>>, (String, String)> {
+) -> Result<Buffers, (String, String)> {
     let folder = file.parent().unwrap_or(Path::new(""));
-    document
+    let bytes = document
         .buffers()
         .map(|buffer| {
+            if !beside.buffers.contains(&buffer.index()) {
+                return Ok([].into());
+            }
             let fail = |why| (format!("buffer {}", buffer.index()), why);
             let bytes = match buffer.source() {
                 gltf::buffer::Source::Bin => blob.take().ok_or_else(|| {
@@ -82,5 +95,9 @@ pub(super) fn read(
             }
             Ok(bytes.into())
         })
-        .collect()
+        .collect::<Result<_, _>>()?;
+    Ok(Buffers {
+        bytes,
+        strides: beside.strides.clone(),
+    })
 }

@@ -1,25 +1,101 @@
-//! Parses and validates a document. Two mistakes on which the `gltf` crate panics are found before
-//! it looks.
+//! Parses and validates a document. Mistakes on which the `gltf` crate panics, and what it has no
+//! need to refuse, are seen to before it looks.
 
-use gltf::{
-    Document, Error, Gltf,
-    json::{Root, mesh::Semantic, validation::Checked},
+use super::{
+    container,
+    prepare::{Beside, prepare},
 };
+use crate::{border::caught, error::beginning, material_use::MaterialUse};
+use gltf::{
+    Document, Error,
+    json::{Root, deserialize, mesh::Semantic, validation::Checked},
+};
+use serde_json::{Value, json};
 
 /// A place in the file, and what is wrong there.
 pub(super) type Fault = (String, String);
 
-/// The document of a file's bytes, and the buffer in it.
+/// Most values in the JSON: each takes many times its text.
+const MOST_VALUES: usize = 1 << 25;
+
+/// A file, read as far as it needs no other files.
+pub(super) struct Parsed {
+    pub document: Document,
+    /// The buffer in a binary file.
+    pub blob: Option<Vec<u8>>,
+    pub beside: Beside,
+}
+
+/// The document of a file's bytes.
 ///
 /// # Errors
 /// What is wrong with it.
-pub(super) fn parse(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), Fault> {
-    let parsed = Gltf::from_slice_without_validation(bytes);
-    let Gltf { document, blob } = parsed.map_err(|why| refusal(&why))?;
-    let root = document.into_json();
+pub(super) fn parse(bytes: &[u8], materials: MaterialUse) -> Result<Parsed, Fault> {
+    let (text, blob) = container::split(bytes)?;
+    let values = text.iter().filter(|&&byte| byte == b',').count();
+    if values > MOST_VALUES {
+        let why = format!("it has {values} values, {MOST_VALUES} at most: split the file");
+        return Err(("its JSON".to_owned(), why));
+    }
+    let mut value: Value = deserialize::from_slice(&text).map_err(|why| in_json(&why))?;
+    check_version(&mut value)?;
+    let beside = prepare(&mut value, materials)?;
+    let root: Root = deserialize::from_value(value).map_err(|why| {
+        // The text of the file tells the line, where it has the same mistake.
+        let told: Result<Root, _> = deserialize::from_slice(&text);
+        in_json(&told.err().unwrap_or(why))
+    })?;
     check(&root)?;
-    let document = Document::from_json(root).map_err(|why| refusal(&why))?;
-    Ok((document, blob))
+    let document = caught("gltf", || Document::from_json(root));
+    let document = document.map_err(|why| ("the file".to_owned(), why))?;
+    Ok(Parsed {
+        document: document.map_err(|why| refusal(&why))?,
+        blob: blob.map(<[u8]>::to_vec),
+        beside,
+    })
+}
+
+fn in_json(why: &serde_json::Error) -> Fault {
+    let cut = match why.is_eof() {
+        true => ": the file is cut off",
+        false => "",
+    };
+    ("its JSON".to_owned(), format!("{why}{cut}"))
+}
+
+/// Why a file of another version is refused, and the way out.
+pub(super) fn of_another_version(version: &str) -> String {
+    format!(
+        "it is glTF {}, this program reads 2.0: convert it, glTF 1.0 for example with \
+         `gltf-pipeline -i old.gltf -o new.gltf`",
+        beginning(version)
+    )
+}
+
+/// Refuses other versions than 2; in 1.0 lists were objects.
+fn check_version(root: &mut Value) -> Result<(), Fault> {
+    let fail = |version: &str| Err(("asset".to_owned(), of_another_version(version)));
+    let said = |field| match root.pointer(field) {
+        Some(Value::String(version)) => Some(version.clone()),
+        Some(Value::Number(version)) => Some(version.to_string()),
+        _ => None,
+    };
+    let is_two = |version: &String| version == "2" || version.starts_with("2.");
+    match (said("/asset/version"), said("/asset/minVersion")) {
+        (Some(version), _) if !is_two(&version) => return fail(&version),
+        (_, Some(least)) if least != "2.0" => return fail(&least),
+        (None, _)
+            if ["nodes", "meshes"]
+                .iter()
+                .any(|list| root[*list].is_object()) =>
+        {
+            return fail("1.0");
+        }
+        (None, _) => return Ok(()),
+        (Some(_), _) => {}
+    }
+    root["asset"] = json!({"version": "2.0"});
+    Ok(())
 }
 
 fn check(root: &Root) -> Result<(), Fault> {
@@ -36,21 +112,11 @@ fn check(root: &Root) -> Result<(), Fault> {
             }
         }
     }
-    for (index, image) in root.images.iter().enumerate() {
-        let is_placed = match image.buffer_view {
-            Some(_) => image.mime_type.is_some(),
-            None => image.uri.is_some(),
-        };
-        if !is_placed {
-            let why = "it has neither a uri nor a bufferView with its mimeType";
-            return Err((format!("image {index}"), why.to_owned()));
-        }
-    }
     Ok(())
 }
 
 /// Where the `gltf` crate found a mistake, and what it is.
-fn refusal(error: &Error) -> (String, String) {
+fn refusal(error: &Error) -> Fault {
     match error {
         Error::Validation(mistakes) => {
             let (place, what) = match mistakes.first() {
@@ -61,18 +127,8 @@ fn refusal(error: &Error) -> (String, String) {
                 0 | 1 => String::new(),
                 count => format!(" (and {} more)", count - 1),
             };
-            let required = place.starts_with("extensionsRequired");
-            let reason = match required {
-                true => format!(
-                    "the file cannot be read without an extension that this program does not \
-                     know{more}; export it without"
-                ),
-                false => format!("{what}{more}"),
-            };
-            (place, reason)
+            (place, format!("{what}{more}"))
         }
-        Error::Deserialize(why) => ("its JSON".to_owned(), why.to_string()),
-        Error::Binary(why) => ("its binary container".to_owned(), why.to_string()),
         other => ("the file".to_owned(), other.to_string()),
     }
 }

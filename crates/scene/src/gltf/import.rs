@@ -1,22 +1,27 @@
-//! Walks the nodes of a document and welds their triangles.
+//! Welds the triangles of a document's nodes.
 
 use super::{
     accessor,
-    buffers::{self, GLTF_FILE},
-    document::{self, Fault},
-    materials,
+    buffers::{self, Buffers, GLTF_FILE},
+    document::{self, Fault, Parsed},
+    materials::Reader,
+    nodes::Nodes,
+    pose::{self, Vertices, of_normals, vectors},
+    prepare::Beside,
+    vertex_alpha::Materials,
 };
 use crate::{
     builder::{Corner, MeshBuilder},
     error::{FaceRef, SceneError},
     material::Material,
+    material_use::MaterialUse,
     mesh::Mesh,
     obj::read::check_read,
     report::ImportReport,
 };
-use glam::{DMat3, DMat4, DVec3, Mat4, Vec2, Vec3};
-use gltf::{Semantic, mesh::Mode};
-use std::{collections::HashSet, path::Path, sync::Arc};
+use glam::{DMat3, DMat4, DVec3, Vec2};
+use gltf::{Document, Semantic, mesh::Mode};
+use std::path::Path;
 
 /// Most corners of all triangles together: a small file may place one mesh any number of times.
 const MOST_CORNERS: usize = 1 << 28;
@@ -26,12 +31,12 @@ const MOST_CORNERS: usize = 1 << 28;
 /// # Errors
 /// [`SceneError`]: what cannot be read, or is damaged; what the file requires and this program does
 /// not know; a file without triangles.
-pub fn load_gltf(path: &Path) -> Result<(Mesh, ImportReport), SceneError> {
+pub fn load_gltf(path: &Path, materials: MaterialUse) -> Result<(Mesh, ImportReport), SceneError> {
     let bytes = GLTF_FILE.read(path).map_err(|reason| SceneError::Read {
         path: path.to_owned(),
         reason,
     })?;
-    parse_gltf(&bytes, path)
+    parse_gltf(&bytes, path, materials)
 }
 
 /// Reads the bytes of a `.gltf` or `.glb` file; other files that it names are looked for beside
@@ -39,119 +44,153 @@ pub fn load_gltf(path: &Path) -> Result<(Mesh, ImportReport), SceneError> {
 ///
 /// # Errors
 /// As [`load_gltf`], but for reading.
-pub fn parse_gltf(bytes: &[u8], path: &Path) -> Result<(Mesh, ImportReport), SceneError> {
+pub fn parse_gltf(
+    bytes: &[u8],
+    path: &Path,
+    materials: MaterialUse,
+) -> Result<(Mesh, ImportReport), SceneError> {
     let fail = |(place, reason)| SceneError::Gltf {
         path: path.to_owned(),
         place,
         reason,
     };
-    let (document, blob) = document::parse(bytes).map_err(fail)?;
-    let buffers = buffers::read(&document, blob, path).map_err(fail)?;
-    let mut import = Import::new(path, &buffers);
-    import.read_materials(&document).map_err(fail)?;
-    import.read_nodes(&document).map_err(fail)?;
+    let Parsed {
+        document,
+        blob,
+        beside,
+    } = document::parse(bytes, materials).map_err(fail)?;
+    let buffers = buffers::read(&document, blob, &beside, path).map_err(fail)?;
+    let mut builder = MeshBuilder::default();
+    builder.report.file = Some(path.to_owned());
+    for text in &beside.remarks {
+        builder.report.remark(text.clone());
+    }
+    let reader = Reader {
+        buffers: &buffers,
+        beside: &beside,
+        file: path,
+        of: materials,
+        colours_missing: Vec::new(),
+    };
+    let materials = read_materials(&document, reader, &mut builder.report).map_err(fail)?;
+    let mut import = Import {
+        document: &document,
+        buffers: &buffers,
+        beside: &beside,
+        materials,
+        builder,
+        corners: 0,
+    };
+    import.read_nodes().map_err(fail)?;
     let (mesh, report) = import.finish();
     check_read(&mesh, &report, path)?;
     Ok((mesh, report))
 }
 
+fn read_materials(
+    document: &Document,
+    mut reader: Reader<'_>,
+    report: &mut ImportReport,
+) -> Result<Materials, Fault> {
+    let mut materials = Vec::new();
+    for from in document.materials() {
+        let index = from.index().unwrap_or(0);
+        let name = from.name().unwrap_or_default();
+        let place = format!("material {index} {name:?}");
+        let read = reader.read(&from, &place);
+        materials.push(read.map_err(|why| (place, why))?);
+    }
+    report.colours_missing = reader.colours_missing;
+    Ok(Materials::new(materials))
+}
+
 struct Import<'a> {
-    path: &'a Path,
-    buffers: &'a [Arc<[u8]>],
-    materials: Vec<materials::Read>,
+    document: &'a Document,
+    buffers: &'a Buffers,
+    beside: &'a Beside,
+    materials: Materials,
     builder: MeshBuilder,
     corners: usize,
 }
 
+/// Where a mesh is placed.
+struct Placing<'a> {
+    group: String,
+    /// Weights of morph targets.
+    weights: &'a [f32],
+    /// Where the joints of its skin are, if it has one.
+    joints: Option<Vec<DMat4>>,
+    /// Where its node is.
+    node: DMat4,
+    /// Its instances, as its node sees them.
+    instances: Vec<DMat4>,
+}
+
 /// The arrays of a primitive, by vertex but for the indices.
 struct Arrays {
-    positions: Vec<[f32; 3]>,
-    normals: Option<Vec<[f32; 3]>>,
+    vertices: Vertices,
     uvs: Option<Vec<[f32; 2]>>,
+    /// Alpha of the vertices' colours under a mask.
+    alphas: Option<Vec<f32>>,
     indices: Vec<u32>,
 }
 
 impl<'a> Import<'a> {
-    fn new(path: &'a Path, buffers: &'a [Arc<[u8]>]) -> Self {
-        let mut builder = MeshBuilder::default();
-        builder.report.file = Some(path.to_owned());
-        Self {
-            path,
-            buffers,
-            materials: Vec::new(),
-            builder,
-            corners: 0,
-        }
-    }
-
     fn finish(self) -> (Mesh, ImportReport) {
-        let materials: Vec<Material> = self.materials.into_iter().map(|it| it.material).collect();
+        let materials = self.materials.all.into_iter().map(|read| read.material);
+        let materials: Vec<Material> = materials.collect();
         self.builder.finish(materials)
     }
 
-    /// Those of the document, and behind them the one that stands in where there is none.
-    fn read_materials(&mut self, document: &gltf::Document) -> Result<(), Fault> {
-        for from in document.materials() {
-            let index = from.index().unwrap_or(0);
-            let name = from.name().unwrap_or_default();
-            let place = format!("material {index} {name:?}");
-            let read = materials::read(&from, self.buffers, self.path);
-            self.materials.push(read.map_err(|why| (place, why))?);
-        }
-        self.materials.push(materials::Read {
-            material: Material::default(),
-            uv_set: 0,
-            uv_transform: (glam::Mat2::IDENTITY, Vec2::ZERO),
-        });
-        Ok(())
-    }
-
-    fn read_nodes(&mut self, document: &gltf::Document) -> Result<(), Fault> {
-        let scene = document
-            .default_scene()
-            .or_else(|| document.scenes().next());
-        let roots: Vec<gltf::Node<'_>> = match scene {
-            Some(scene) => scene.nodes().collect(),
-            None => {
-                for mesh in document.meshes() {
-                    self.read_mesh(&mesh, DMat4::IDENTITY, mesh.name())?;
-                }
-                return Ok(());
+    fn read_nodes(&mut self) -> Result<(), Fault> {
+        let Some(nodes) = Nodes::of(self.document, self.beside)? else {
+            for mesh in self.document.meshes() {
+                let placing = Placing {
+                    group: group(&mesh, None),
+                    weights: mesh.weights().unwrap_or_default(),
+                    joints: None,
+                    node: DMat4::IDENTITY,
+                    instances: vec![DMat4::IDENTITY],
+                };
+                self.read_mesh(&mesh, &placing)?;
             }
+            return Ok(());
         };
-        let mut open: Vec<(gltf::Node<'_>, DMat4)> = Vec::new();
-        open.extend(roots.into_iter().rev().map(|node| (node, DMat4::IDENTITY)));
-        let mut seen = HashSet::new();
-        while let Some((node, above)) = open.pop() {
-            let place = || format!("node {}", node.index());
-            if !seen.insert(node.index()) {
-                let why = "two nodes have it as a child, or it is its own";
-                return Err((place(), why.to_owned()));
-            }
-            let local = Mat4::from_cols_array_2d(&node.transform().matrix()).as_dmat4();
-            let transform = above * local;
-            if !transform.is_finite() {
-                return Err((place(), "its transform is not finite".to_owned()));
-            }
-            if let Some(mesh) = node.mesh() {
-                self.read_mesh(&mesh, transform, node.name().or(mesh.name()))?;
-            }
-            let children: Vec<_> = node.children().collect();
-            open.extend(children.into_iter().rev().map(|child| (child, transform)));
+        for node in &nodes.seen {
+            let Some(mesh) = node.mesh() else { continue };
+            let placing = self.placing(node, &mesh, &nodes);
+            let placing = placing.map_err(|why| (format!("node {}", node.index()), why))?;
+            self.read_mesh(&mesh, &placing)?;
         }
         Ok(())
     }
 
-    fn read_mesh(
-        &mut self,
-        mesh: &gltf::Mesh<'_>,
-        transform: DMat4,
-        name: Option<&str>,
-    ) -> Result<(), Fault> {
-        let name = name.map_or_else(|| format!("mesh {}", mesh.index()), str::to_owned);
+    fn placing(
+        &self,
+        node: &gltf::Node<'a>,
+        mesh: &gltf::Mesh<'a>,
+        nodes: &Nodes<'_>,
+    ) -> Result<Placing<'a>, String> {
+        let joints = node
+            .skin()
+            .map(|skin| pose::joints(&skin, nodes, self.buffers));
+        let instances = match self.beside.instances.get(&node.index()) {
+            Some(of) => pose::instances(*of, self.document, self.buffers)?,
+            None => vec![DMat4::IDENTITY],
+        };
+        Ok(Placing {
+            group: group(mesh, node.name()),
+            weights: node.weights().or(mesh.weights()).unwrap_or_default(),
+            joints: joints.transpose()?,
+            node: nodes.worlds.get(&node.index()).copied().unwrap_or_default(),
+            instances,
+        })
+    }
+
+    fn read_mesh(&mut self, mesh: &gltf::Mesh<'_>, placing: &Placing<'_>) -> Result<(), Fault> {
         for primitive in mesh.primitives() {
             let place = format!("mesh {}, primitive {}", mesh.index(), primitive.index());
-            let read = self.read_primitive(&primitive, transform, &name);
+            let read = self.read_primitive(&primitive, placing);
             read.map_err(|why| (place, why))?;
         }
         Ok(())
@@ -160,69 +199,82 @@ impl<'a> Import<'a> {
     fn read_primitive(
         &mut self,
         primitive: &gltf::Primitive<'_>,
+        placing: &Placing<'_>,
+    ) -> Result<(), String> {
+        let material = primitive.material().index().unwrap_or(self.materials.plain);
+        let mut arrays = self.arrays(primitive, material)?;
+        let buffers = self.buffers;
+        arrays.vertices.morph(primitive, placing.weights, buffers)?;
+        let is_skinned = match &placing.joints {
+            Some(joints) => {
+                let is_skinned = arrays.vertices.skin(primitive, joints, buffers)?;
+                if !is_skinned {
+                    let group = &placing.group;
+                    let text = format!("{group:?} has a skin, but no joints: its node places it");
+                    self.builder.report.remark(text);
+                }
+                is_skinned
+            }
+            None => false,
+        };
+        // The transform of a skinned mesh's own node counts for nothing.
+        let node = match is_skinned {
+            true => DMat4::IDENTITY,
+            false => placing.node,
+        };
+        let triangles = self.triangles(primitive.mode(), &arrays.indices);
+        for instance in &placing.instances {
+            self.place(
+                &arrays,
+                &triangles,
+                material,
+                node * *instance,
+                &placing.group,
+            )?;
+        }
+        Ok(())
+    }
+
+    /// Adds the triangles of a primitive at one place.
+    fn place(
+        &mut self,
+        arrays: &Arrays,
+        triangles: &[[u32; 3]],
+        material: usize,
         transform: DMat4,
         group: &str,
     ) -> Result<(), String> {
-        let material = primitive
-            .material()
-            .index()
-            .unwrap_or(self.materials.len() - 1);
-        let (uv_set, (turn, offset)) = {
-            let material = &self.materials[material];
-            (material.uv_set, material.uv_transform)
-        };
-        let Arrays {
-            positions,
-            normals,
-            uvs,
-            indices,
-        } = self.arrays(primitive, uv_set)?;
-        let triangles = self.triangles(primitive.mode(), &indices);
         self.corners += 3 * triangles.len();
         if self.corners > MOST_CORNERS {
             return Err(format!(
                 "more than {MOST_CORNERS} corners in all: split the file"
             ));
         }
+        if !transform.is_finite() {
+            return Err("the transform of an instance is not finite".to_owned());
+        }
         self.builder.report.faces += triangles.len();
-        if normals.is_none() {
+        if arrays.vertices.normals.is_none() {
             self.builder.report.faces_without_normals += triangles.len();
         }
         let linear = DMat3::from_mat4(transform);
         let mirrored = linear.determinant() < 0.0;
         // Of a flattened one no normal is left; the triangle's own stands in.
-        let of_normals = match linear.determinant() {
-            0.0 => DMat3::ZERO,
-            _ => linear.inverse().transpose(),
-        };
-        let corner = |index: u32, welded: &mut crate::weld::Welder| {
-            let at = index as usize;
-            let position = positions.get(at).ok_or_else(|| {
-                format!("names vertex {index}, but there are {}", positions.len())
-            })?;
-            let placed = transform
-                .transform_point3(Vec3::from(*position).as_dvec3())
-                .as_vec3();
-            if !placed.is_finite() {
-                return Err(format!(
-                    "vertex {index} is at {placed}, which is not finite"
-                ));
-            }
-            let normal = normals.as_ref().and_then(|normals| normals.get(at));
-            let uv = uvs.as_ref().and_then(|uvs| uvs.get(at));
-            Ok(Corner {
-                position: welded.index(placed),
-                normal: normal.map(|n| of_normals * Vec3::from(*n).as_dvec3()),
-                uv: uv.map(|uv| turn * Vec2::from(*uv) + offset),
-            })
-        };
+        let of_normals = of_normals(linear);
         for (number, triangle) in (1..).zip(triangles) {
             let mut corners = Vec::with_capacity(3);
-            for index in triangle {
-                corners.push(corner(index, &mut self.builder.positions)?);
+            for &index in triangle {
+                corners.push(self.corner(arrays, index, material, transform, of_normals)?);
             }
             let mut corners = [corners[0], corners[1], corners[2]];
-            if mirrored {
+            let (material, uvs) = self.chosen(arrays, triangle, material)?;
+            if let Some(uvs) = uvs {
+                for (corner, uv) in corners.iter_mut().zip(uvs) {
+                    corner.uv = Some(uv);
+                }
+            }
+            let turned = arrays.vertices.turned.get(triangle[0] as usize) == Some(&true);
+            if mirrored != turned {
                 corners.swap(1, 2);
             }
             let face = || FaceRef {
@@ -237,29 +289,87 @@ impl<'a> Import<'a> {
         Ok(())
     }
 
-    /// What a primitive's accessors hold.
-    fn arrays(&self, primitive: &gltf::Primitive<'_>, uv_set: u32) -> Result<Arrays, String> {
-        let of = |semantic: &Semantic| {
-            let accessor = primitive.get(semantic)?;
-            Some((accessor.index(), accessor))
+    /// A triangle's material, with the alpha of its corners where it is masked.
+    fn chosen(
+        &mut self,
+        arrays: &Arrays,
+        triangle: &[u32; 3],
+        material: usize,
+    ) -> Result<super::vertex_alpha::Chosen, String> {
+        let cut = self.materials.all[material].cut;
+        let Some((cut, alphas)) = cut.zip(arrays.alphas.as_ref()) else {
+            return Ok((material, None));
         };
+        let alphas = triangle.map(|index| alphas.get(index as usize).copied().unwrap_or(1.0));
+        let chosen = self.materials.with_alpha(material, cut, alphas)?;
+        Ok(chosen.unwrap_or_else(|| {
+            let name = &self.materials.all[material].material.name;
+            self.builder.report.remark(format!(
+                "material {name:?}: the alpha of its vertices changes over a texture, which is not \
+                 followed; the texture's alone counts there"
+            ));
+            (material, None)
+        }))
+    }
+
+    fn corner(
+        &mut self,
+        arrays: &Arrays,
+        index: u32,
+        material: usize,
+        transform: DMat4,
+        of_normals: DMat3,
+    ) -> Result<Corner, String> {
+        let at = index as usize;
+        let Vertices {
+            positions, normals, ..
+        } = &arrays.vertices;
+        let position = positions
+            .get(at)
+            .ok_or_else(|| format!("names vertex {index}, but there are {}", positions.len()))?;
+        let placed = transform.transform_point3(*position).as_vec3();
+        if !placed.is_finite() {
+            return Err(format!(
+                "vertex {index} is at {placed}, which is not finite"
+            ));
+        }
+        let normal = normals.as_ref().and_then(|normals| normals.get(at));
+        let uv = arrays.uvs.as_ref().and_then(|uvs| uvs.get(at));
+        let (turn, offset) = self.materials.all[material].uv_transform;
+        Ok(Corner {
+            position: self.builder.positions.index(placed),
+            normal: normal.map(|normal| of_normals * *normal),
+            uv: uv.map(|uv| turn * Vec2::from(*uv) + offset),
+        })
+    }
+
+    /// What a primitive's accessors hold.
+    fn arrays(&self, primitive: &gltf::Primitive<'_>, material: usize) -> Result<Arrays, String> {
         let named = |(index, why): (usize, String)| format!("accessor {index}: {why}");
-        let (index, accessor) = of(&Semantic::Positions)
+        let material = &self.materials.all[material];
+        let positions = primitive
+            .get(&Semantic::Positions)
             .ok_or_else(|| "it has no POSITION, so nothing can be drawn of it".to_owned())?;
-        let positions =
-            accessor::floats::<3>(&accessor, self.buffers).map_err(|why| named((index, why)))?;
-        let normals = match of(&Semantic::Normals) {
-            Some((index, accessor)) => Some(
-                accessor::floats::<3>(&accessor, self.buffers)
-                    .map_err(|why| named((index, why)))?,
+        let positions = vectors(&positions, self.buffers)?;
+        let normals = primitive.get(&Semantic::Normals);
+        let normals = normals.map(|of| vectors(&of, self.buffers)).transpose()?;
+        let uvs = match primitive.get(&Semantic::TexCoords(material.uv_set)) {
+            Some(accessor) => Some(
+                accessor::floats::<2>(&accessor, self.buffers)
+                    .map_err(|why| named((accessor.index(), why)))?,
             ),
             None => None,
         };
-        let uvs = match of(&Semantic::TexCoords(uv_set)) {
-            Some((index, accessor)) => Some(
-                accessor::floats::<2>(&accessor, self.buffers)
-                    .map_err(|why| named((index, why)))?,
-            ),
+        let colours = primitive
+            .get(&Semantic::Colors(0))
+            .filter(|_| material.cut.is_some());
+        let colours = colours.filter(|of| of.dimensions().multiplicity() == 4);
+        let alphas = match colours {
+            Some(accessor) => {
+                let colours = accessor::floats::<4>(&accessor, self.buffers);
+                let colours = colours.map_err(|why| named((accessor.index(), why)))?;
+                Some(colours.into_iter().map(|[.., alpha]| alpha).collect())
+            }
             None => None,
         };
         let indices = match primitive.indices() {
@@ -268,9 +378,13 @@ impl<'a> Import<'a> {
             None => (0..positions.len() as u32).collect(),
         };
         Ok(Arrays {
-            positions,
-            normals,
+            vertices: Vertices {
+                positions,
+                normals,
+                turned: Vec::new(),
+            },
             uvs,
+            alphas,
             indices,
         })
     }
@@ -306,4 +420,10 @@ impl<'a> Import<'a> {
         }
         Vec::new()
     }
+}
+
+/// Name of the group that a mesh's triangles are in.
+fn group(mesh: &gltf::Mesh<'_>, node: Option<&str>) -> String {
+    let name = node.or(mesh.name());
+    name.map_or_else(|| format!("mesh {}", mesh.index()), str::to_owned)
 }

@@ -1,65 +1,189 @@
 //! Materials of a glTF file: base colour, mask, double-sidedness.
 
-use super::buffers::{data_uri, path_of};
+use super::{
+    buffers::{Buffers, data_uri, path_of},
+    prepare::Beside,
+};
 use crate::{
     mask::Mask,
     material::Material,
+    material_use::MaterialUse,
     texture::{Source, Texture, Wrap},
+    texture_file::check_format,
 };
 use glam::{Mat2, Vec2};
 use gltf::{material::AlphaMode, texture::WrappingMode};
 use std::{path::Path, sync::Arc};
 
+/// What to do where a mask or a texture cannot be had.
+const WAY_OUT: &str = "mend it, or give --materials color (every surface is opaque) or \
+                       --materials ignore; a scene file says `materials: Color` or `Ignore`";
+
+/// The one extension that a file may not be without, where a surface shows it: what Basis packs
+/// cannot be left to chance.
+const BASIS: &str = "KHR_texture_basisu";
+
 /// A material, and which texture coordinates it takes.
+#[derive(Clone)]
 pub(super) struct Read {
     pub material: Material,
     pub uv_set: u32,
     /// What is done to them: a matrix, then an offset.
     pub uv_transform: (Mat2, Vec2),
+    /// Where it is masked.
+    pub cut: Option<Cut>,
 }
 
-/// Reads a material.
-///
-/// # Errors
-/// What is wrong with its mask.
-pub(super) fn read(
-    from: &gltf::Material<'_>,
-    buffers: &[Arc<[u8]>],
-    file: &Path,
-) -> Result<Read, String> {
-    let pbr = from.pbr_metallic_roughness();
-    let [red, green, blue, alpha] = pbr.base_color_factor();
-    let info = pbr.base_color_texture();
-    let texture = match &info {
-        Some(info) => Some(texture(&info.texture(), buffers, file)?),
-        None => None,
-    };
-    let mut material = Material {
-        name: from.name().unwrap_or("unnamed").to_owned(),
-        base_color: [red, green, blue],
-        texture,
-        mask: None,
-        double_sided: from.double_sided(),
-    };
-    if from.alpha_mode() == AlphaMode::Mask {
-        let cutoff = from.alpha_cutoff().unwrap_or(0.5);
-        let mask = mask(material.texture.as_ref(), alpha, cutoff)?;
-        material.mask = (!mask.is_solid()).then(|| Arc::new(mask));
+/// How a masked material is cut out: where alpha, times that of the texture, is the cutoff at least.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Cut {
+    pub alpha: f32,
+    pub cutoff: f32,
+}
+
+impl Read {
+    /// That of surfaces without one.
+    pub fn plain() -> Self {
+        Self {
+            material: Material::default(),
+            uv_set: 0,
+            uv_transform: (Mat2::IDENTITY, Vec2::ZERO),
+            cut: None,
+        }
     }
-    let transform = info.as_ref().and_then(|info| info.texture_transform());
-    let uv_set = transform
-        .as_ref()
-        .and_then(|transform| transform.tex_coord());
-    let uv_transform = transform.map_or((Mat2::IDENTITY, Vec2::ZERO), |transform| {
-        let turn = Mat2::from_angle(-transform.rotation());
-        let scale = Mat2::from_diagonal(transform.scale().into());
-        (turn * scale, transform.offset().into())
-    });
-    Ok(Read {
-        material,
-        uv_set: uv_set.or(info.map(|info| info.tex_coord())).unwrap_or(0),
-        uv_transform,
-    })
+
+    /// The mask with an alpha, once more multiplied by `alpha`.
+    ///
+    /// # Errors
+    /// The texture cannot be read.
+    pub fn masked(&self, cut: Cut, alpha: f32) -> Result<Option<Arc<Mask>>, String> {
+        let mask = mask(
+            self.material.texture.as_ref(),
+            cut.alpha * alpha,
+            cut.cutoff,
+        )?;
+        Ok((!mask.is_solid()).then(|| Arc::new(mask)))
+    }
+}
+
+/// Where materials are read from.
+pub(super) struct Reader<'a> {
+    pub buffers: &'a Buffers,
+    pub beside: &'a Beside,
+    pub file: &'a Path,
+    pub of: MaterialUse,
+    /// What could not be read of colours.
+    pub colours_missing: Vec<String>,
+}
+
+impl Reader<'_> {
+    /// Reads a material; `place` is what it is called in messages.
+    ///
+    /// # Errors
+    /// What is wrong with its mask.
+    pub fn read(&mut self, from: &gltf::Material<'_>, place: &str) -> Result<Read, String> {
+        let pbr = from.pbr_metallic_roughness();
+        let [red, green, blue, alpha] = pbr.base_color_factor();
+        let info = pbr.base_color_texture();
+        let with_masks = self.of == MaterialUse::All;
+        let is_masked = with_masks && from.alpha_mode() == AlphaMode::Mask;
+        let texture = match &info {
+            Some(info) => match self.texture(&info.texture()) {
+                Ok(texture) => Some(texture),
+                Err(why) if is_masked || (with_masks && why.contains(BASIS)) => {
+                    return Err(format!("{why}; {WAY_OUT}"));
+                }
+                Err(why) => {
+                    self.colours_missing.push(format!("{place}: {why}"));
+                    None
+                }
+            },
+            None => None,
+        };
+        let transform = info.as_ref().and_then(|info| info.texture_transform());
+        let uv_set = transform
+            .as_ref()
+            .and_then(|transform| transform.tex_coord());
+        let uv_transform = transform.map_or((Mat2::IDENTITY, Vec2::ZERO), |transform| {
+            let turn = Mat2::from_angle(-transform.rotation());
+            let scale = Mat2::from_diagonal(transform.scale().into());
+            (turn * scale, transform.offset().into())
+        });
+        let mut read = Read {
+            material: Material {
+                name: from.name().unwrap_or("unnamed").to_owned(),
+                base_color: [red, green, blue],
+                texture,
+                mask: None,
+                double_sided: from.double_sided(),
+            },
+            uv_set: uv_set.or(info.map(|info| info.tex_coord())).unwrap_or(0),
+            uv_transform,
+            cut: None,
+        };
+        if is_masked {
+            let cutoff = from.alpha_cutoff().unwrap_or(0.5);
+            let cut = Cut { alpha, cutoff };
+            let mask = read.masked(cut, 1.0);
+            read.material.mask = mask.map_err(|why| format!("{why}; {WAY_OUT}"))?;
+            read.cut = Some(cut);
+        }
+        Ok(read)
+    }
+
+    /// # Errors
+    /// Why its picture cannot be read.
+    fn texture(&self, from: &gltf::Texture<'_>) -> Result<Texture, String> {
+        let number = from.index();
+        if let Some(why) = self.beside.unread.get(&number) {
+            return Err(format!("texture {number}: {why}"));
+        }
+        let image = from.source();
+        let place = format!("image {}", image.index());
+        let (name, source) = match image.source() {
+            gltf::image::Source::View { view, .. } => {
+                let end = view.offset().checked_add(view.length());
+                let bytes = self
+                    .buffers
+                    .bytes
+                    .get(view.buffer().index())
+                    .zip(end)
+                    .and_then(|(bytes, end)| bytes.get(view.offset()..end))
+                    .ok_or_else(|| format!("{place} reaches beyond its buffer"))?;
+                (place, Source::Bytes(bytes.into()))
+            }
+            gltf::image::Source::Uri { uri: "", .. } => {
+                return Err(format!(
+                    "{place}: it has neither a uri nor a bufferView with its mimeType"
+                ));
+            }
+            gltf::image::Source::Uri { uri, .. } => match data_uri(uri) {
+                Some(bytes) => {
+                    let bytes = bytes.map_err(|why| format!("{place}: {why}"))?;
+                    (place, Source::Bytes(bytes.into()))
+                }
+                None => {
+                    let folder = self.file.parent().unwrap_or(Path::new(""));
+                    let path = folder.join(&*path_of(uri));
+                    if !path.is_file() {
+                        return Err(format!("{place}: {} is not there", path.display()));
+                    }
+                    (path.display().to_string(), Source::File(path))
+                }
+            },
+        };
+        if let Source::Bytes(bytes) = &source {
+            check_format(bytes).map_err(|why| format!("{name}: {why}"))?;
+        }
+        let wrap = |mode| match mode {
+            WrappingMode::ClampToEdge => Wrap::Clamp,
+            WrappingMode::MirroredRepeat => Wrap::Mirror,
+            WrappingMode::Repeat => Wrap::Repeat,
+        };
+        let sampler = from.sampler();
+        let wrap = [wrap(sampler.wrap_s()), wrap(sampler.wrap_t())];
+        Ok(Texture::new(name, source, wrap))
+    }
 }
 
 fn mask(texture: Option<&Texture>, alpha: f32, cutoff: f32) -> Result<Mask, String> {
@@ -69,43 +193,4 @@ fn mask(texture: Option<&Texture>, alpha: f32, cutoff: f32) -> Result<Mask, Stri
     let texels = texture.texels()?;
     let opacity = |texel: [u8; 4]| f32::from(texel[3]) / 255.0 * alpha;
     Ok(Mask::of_texels(texels, texture.wrap, opacity, cutoff))
-}
-
-fn texture(
-    from: &gltf::Texture<'_>,
-    buffers: &[Arc<[u8]>],
-    file: &Path,
-) -> Result<Texture, String> {
-    let image = from.source();
-    let place = format!("image {}", image.index());
-    let (name, source) = match image.source() {
-        gltf::image::Source::View { view, .. } => {
-            let end = view.offset().checked_add(view.length());
-            let bytes = buffers
-                .get(view.buffer().index())
-                .zip(end)
-                .and_then(|(bytes, end)| bytes.get(view.offset()..end))
-                .ok_or_else(|| format!("{place} reaches beyond its buffer"))?;
-            (place, Source::Bytes(bytes.into()))
-        }
-        gltf::image::Source::Uri { uri, .. } => match data_uri(uri) {
-            Some(bytes) => {
-                let bytes = bytes.map_err(|why| format!("{place}: {why}"))?;
-                (place, Source::Bytes(bytes.into()))
-            }
-            None => {
-                let folder = file.parent().unwrap_or(Path::new(""));
-                let path = folder.join(&*path_of(uri));
-                (path.display().to_string(), Source::File(path))
-            }
-        },
-    };
-    let wrap = |mode| match mode {
-        WrappingMode::ClampToEdge => Wrap::Clamp,
-        WrappingMode::MirroredRepeat => Wrap::Mirror,
-        WrappingMode::Repeat => Wrap::Repeat,
-    };
-    let sampler = from.sampler();
-    let wrap = [wrap(sampler.wrap_s()), wrap(sampler.wrap_t())];
-    Ok(Texture::new(name, source, wrap))
 }

@@ -1,13 +1,21 @@
 //! glTF 2.0 files, parsed by the `gltf` crate and welded into a [`Mesh`](crate::Mesh).
 //!
 //! What becomes of one: the triangles of its default scene (of the first one, else of all meshes)
-//! with the transforms of their nodes; skins and morph targets at rest. `alphaMode: MASK` is a
-//! mask, `BLEND` counts as opaque. Primitives without normals are flat.
+//! with the transforms of their nodes and instances, morph targets by their weights, skins in the
+//! pose of their joints' nodes; animations stand still. `alphaMode: MASK` is a mask, which the alpha
+//! of vertices is a part of; `BLEND` counts as opaque. Primitives without normals are flat. What is
+//! passed over stands in the report.
 
 mod accessor;
 mod buffers;
+mod container;
 mod document;
+mod extensions;
 mod import;
 mod materials;
+mod nodes;
+mod pose;
+mod prepare;
+mod vertex_alpha;
 
 pub use import::{load_gltf, parse_gltf};

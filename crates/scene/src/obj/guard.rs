@@ -3,12 +3,17 @@
 //!
 //! `tobj` reports no line and no face, fails as a whole on an index out of range (and overflows on
 //! a huge one), takes an `l` record of three points for a triangle, reuses the normal of the corner
-//! before where one is missing, and does not join lines continued by `\`. All of that is settled
-//! here, line by line, before it sees them.
+//! before where one is missing, wants vertices above the faces that name them, and does not join
+//! lines continued by `\`. All of that is settled here, line by line, before it sees them: the file
+//! is read twice, first all of its vertices, then its faces.
 
-use crate::error::{FACES_SHOWN, FaceFault, FaceProblem, FaceRef, beginning};
+use crate::{
+    error::{FACES_SHOWN, FaceFault, FaceProblem, FaceRef, beginning},
+    text::line_text,
+};
 use glam::Vec2;
 use std::{
+    borrow::Cow,
     collections::HashSet,
     io::{self, BufRead, Read},
 };
@@ -31,7 +36,9 @@ pub(super) struct FaceRecord {
 
 /// The reader that `tobj` reads from.
 pub(super) struct Guard<'a> {
+    whole: &'a [u8],
     rest: &'a [u8],
+    turn: Turn,
     leave_out: HashSet<&'a str>,
     handed_on: Vec<u8>,
     consumed: usize,
@@ -59,18 +66,55 @@ pub(super) struct Guard<'a> {
     pub points: usize,
     /// Lines met.
     pub lines: usize,
+    /// Curves and surfaces met.
+    pub curved: usize,
+    /// Normals that are no three numbers; they have no direction.
+    pub normals_unread: usize,
+    /// Faces that name normals which are not there.
+    pub normals_absent: usize,
+    /// Faces that name texture coordinates which are not there, by their place in `faces`.
+    pub uvs_absent: Vec<(usize, FaceProblem)>,
     /// Whether materials and texture coordinates are of interest.
     with_materials: bool,
     uvs: Vec<Vec2>,
     material: u32,
     group_left_out: bool,
     number: u32,
-    vertices: usize,
-    normals: usize,
+    /// Those above the line.
+    above: Counts,
+    /// Those of the whole file, once its vertices are read.
+    total: Counts,
 }
 
-/// Vertex, normal and texture coordinates of a corner, from 1.
-type Named = (usize, Option<usize>, Option<usize>);
+/// What is handed on of the file.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Turn {
+    Vertices,
+    Faces,
+}
+
+/// Numbers of vertices, normals and texture coordinates.
+#[derive(Clone, Copy, Default)]
+struct Counts {
+    vertices: usize,
+    normals: usize,
+    uvs: usize,
+}
+
+/// How many of a kind a face can name.
+#[derive(Clone, Copy)]
+struct Available {
+    above: usize,
+    total: usize,
+}
+
+/// A corner: numbers from 1 of what it names, or why what it names is not there. Only its vertex
+/// must be.
+struct Named {
+    vertex: usize,
+    normal: Option<Result<usize, ()>>,
+    uv: Option<Result<usize, FaceProblem>>,
+}
 
 /// Name of the faces that stand before the first `g` or `o`.
 const UNNAMED: &str = "unnamed";
@@ -79,8 +123,9 @@ impl<'a> Guard<'a> {
     pub fn new(bytes: &'a [u8], leave_out: &'a [String], with_materials: bool) -> Self {
         let leave_out: HashSet<&str> = leave_out.iter().map(String::as_str).collect();
         Self {
-            // a byte order mark is no part of the first word
-            rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes),
+            whole: bytes,
+            rest: bytes,
+            turn: Turn::Vertices,
             handed_on: Vec::new(),
             consumed: 0,
             line: 0,
@@ -98,17 +143,26 @@ impl<'a> Guard<'a> {
             faces_left_out: 0,
             points: 0,
             lines: 0,
+            curved: 0,
+            normals_unread: 0,
+            normals_absent: 0,
+            uvs_absent: Vec::new(),
             group_left_out: leave_out.contains(UNNAMED),
             leave_out,
             number: 0,
-            vertices: 0,
-            normals: 0,
+            above: Counts::default(),
+            total: Counts::default(),
         }
     }
 
     /// What `tobj` was last given to read, shortened to what fits a message.
     pub fn current_line(&self) -> String {
         beginning(String::from_utf8_lossy(&self.handed_on).trim_end()).into_owned()
+    }
+
+    /// True if the file has no vertex.
+    pub fn is_empty(&self) -> bool {
+        self.total.vertices == 0
     }
 
     pub fn face_ref(&self, record: &FaceRecord) -> FaceRef {
@@ -121,9 +175,9 @@ impl<'a> Guard<'a> {
 
     /// Takes the next physical line off the file, without its line end; the flag says whether it
     /// had one.
-    fn next_line(&mut self) -> Result<Option<(&'a str, bool)>, String> {
+    fn next_line(&mut self) -> Option<(Cow<'a, str>, bool)> {
         if self.rest.is_empty() {
-            return Ok(None);
+            return None;
         }
         self.line = self.line.saturating_add(1);
         let (line, ended) = match self.rest.iter().position(|&byte| byte == b'\n') {
@@ -134,13 +188,27 @@ impl<'a> Guard<'a> {
             }
             None => (std::mem::take(&mut self.rest), false),
         };
-        match std::str::from_utf8(line) {
-            Ok(line) => Ok(Some((line.trim(), ended))),
-            Err(error) => Err(format!(
-                "not an OBJ file, or damaged: byte {} of the line is not UTF-8 text",
-                error.valid_up_to() + 1
-            )),
+        Some((line_text(line.trim_ascii()), ended))
+    }
+
+    /// Takes the next statement, which may be continued on more lines.
+    fn next_statement(&mut self) -> Option<(Cow<'a, str>, bool)> {
+        let (mut line, mut ended) = self.next_line()?;
+        // A name or a comment may end in a backslash (a Windows folder); only numbers are continued.
+        if !line.starts_with(['v', 'f', 'l', 'p']) || !line.ends_with('\\') {
+            return Some((line, ended));
         }
+        let mut joined = String::new();
+        while let Some(start) = line.strip_suffix('\\') {
+            joined.push_str(start);
+            joined.push(' ');
+            let Some((next, next_ended)) = self.next_line() else {
+                return Some((joined.into(), ended));
+            };
+            (line, ended) = (next, next_ended);
+        }
+        joined.push_str(&line);
+        Some((joined.into(), ended))
     }
 
     /// Prepares the next line for `tobj`; false at the end of the file.
@@ -148,38 +216,29 @@ impl<'a> Guard<'a> {
         self.handed_on.clear();
         self.consumed = 0;
         while self.handed_on.is_empty() {
-            let Some((line, mut ended)) = self.next_line()? else {
-                return Ok(false);
-            };
-            let mut joined = String::new();
-            let mut line = line;
-            // A name or a comment may end in a backslash (a Windows folder); only numbers are
-            // continued.
-            let numbers = line.starts_with(['v', 'f', 'l', 'p']);
-            while let Some(start) = line.strip_suffix('\\').filter(|_| numbers) {
-                joined.push_str(start);
-                joined.push(' ');
-                let Some((next, next_ended)) = self.next_line()? else {
-                    break;
-                };
-                (line, ended) = (next, next_ended);
-            }
-            if joined.is_empty() {
-                self.take(line, ended)?;
-            } else {
-                joined.push_str(line.trim_end_matches('\\'));
-                self.take(&joined, ended)?;
+            match (self.next_statement(), self.turn) {
+                (Some((line, _)), Turn::Vertices) => self.take_vertex(line.trim()),
+                (Some((line, ended)), Turn::Faces) => self.take(line.trim(), ended)?,
+                (None, Turn::Vertices) => self.begin_faces(),
+                (None, Turn::Faces) => return Ok(false),
             }
         }
         Ok(true)
     }
 
-    fn take(&mut self, line: &str, ended: bool) -> Result<(), String> {
-        let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
-        let numbers = rest.split('#').next().unwrap_or("");
+    fn begin_faces(&mut self) {
+        (self.rest, self.line) = (self.whole, 0);
+        (self.total, self.above) = (self.above, Counts::default());
+        self.turn = Turn::Faces;
+    }
+
+    /// Takes what faces name.
+    fn take_vertex(&mut self, line: &str) {
+        let (keyword, rest) = split(line);
+        let numbers = without_comment(rest);
         match keyword {
             "v" => {
-                self.vertices += 1;
+                self.above.vertices += 1;
                 // Six numbers are a position with a colour: the colour is not ours, and tobj fails
                 // where only some have one.
                 let count = numbers.split_whitespace().count();
@@ -187,10 +246,34 @@ impl<'a> Guard<'a> {
                 self.hand_on("v", numbers.split_whitespace().take(taken));
             }
             "vn" => {
-                self.normals += 1;
-                self.hand_on("vn", numbers.split_whitespace());
+                self.above.normals += 1;
+                let words = || numbers.split_whitespace().take(3);
+                let read = words().filter(|word| word.parse::<f32>().is_ok()).count();
+                match read {
+                    3 => self.hand_on("vn", words()),
+                    _ => {
+                        self.normals_unread += 1;
+                        self.hand_on("vn", ["0"; 3].into_iter());
+                    }
+                }
             }
-            "vt" if self.with_materials => self.take_uv(numbers),
+            "vt" if self.with_materials => {
+                self.above.uvs += 1;
+                self.take_uv(numbers);
+            }
+            "mtllib" if self.with_materials && !rest.trim().is_empty() => {
+                self.libraries.push(rest.trim().to_owned());
+            }
+            _ => {}
+        }
+    }
+
+    fn take(&mut self, line: &str, ended: bool) -> Result<(), String> {
+        let (keyword, rest) = split(line);
+        match keyword {
+            "v" => self.above.vertices += 1,
+            "vn" => self.above.normals += 1,
+            "vt" => self.above.uvs += 1,
             "usemtl" if self.with_materials => {
                 let name = rest.trim();
                 let known = self.materials.iter().position(|other| other == name);
@@ -199,10 +282,7 @@ impl<'a> Guard<'a> {
                     self.materials.push(name.to_owned());
                 }
             }
-            "mtllib" if self.with_materials && !rest.trim().is_empty() => {
-                self.libraries.push(rest.trim().to_owned());
-            }
-            "f" => self.take_face(numbers, ended)?,
+            "f" => self.take_face(without_comment(rest), ended)?,
             "g" | "o" => {
                 let name = if rest.trim().is_empty() {
                     UNNAMED
@@ -216,7 +296,8 @@ impl<'a> Guard<'a> {
             }
             "p" => self.points += 1,
             "l" => self.lines += 1,
-            // Smoothing groups, comments, free-form surfaces: nothing that we draw.
+            "curv" | "curv2" | "surf" => self.curved += 1,
+            // Smoothing groups, comments: nothing that we draw.
             _ => {}
         }
         Ok(())
@@ -247,9 +328,16 @@ impl<'a> Guard<'a> {
             return Ok(());
         }
         let mut parsed = Vec::with_capacity(4);
+        let (mut normals_absent, mut uvs_absent) = (false, None);
         for corner in corners.split_whitespace() {
             match self.corner(corner) {
-                Ok(corner) => parsed.push(corner),
+                Ok(corner) => {
+                    normals_absent |= corner.normal.is_some_and(|normal| normal.is_err());
+                    if let Some(Err(problem)) = &corner.uv {
+                        uvs_absent.get_or_insert_with(|| problem.clone());
+                    }
+                    parsed.push(corner);
+                }
                 Err(problem) => {
                     self.fault(problem);
                     return Ok(());
@@ -262,82 +350,83 @@ impl<'a> Guard<'a> {
             1 => self.points += 1,
             2 => self.lines += 1,
             _ => {
-                let has_normals = parsed.iter().all(|corner| corner.1.is_some());
-                let uvs = parsed.iter().all(|corner| corner.2.is_some());
-                let uvs = uvs.then_some(self.corner_uvs.len());
-                if uvs.is_some() {
-                    let named = parsed.iter().filter_map(|corner| corner.2);
-                    self.corner_uvs.extend(named.map(|uv| self.uvs[uv - 1]));
+                self.normals_absent += usize::from(normals_absent);
+                if let Some(problem) = uvs_absent {
+                    self.uvs_absent.push((self.faces.len(), problem));
                 }
-                self.handed_on.push(b'f');
-                for (vertex, normal, _) in parsed {
-                    let text = match normal {
-                        Some(normal) if has_normals => format!(" {vertex}//{normal}"),
-                        _ => format!(" {vertex}"),
-                    };
-                    self.handed_on.extend_from_slice(text.as_bytes());
-                }
-                self.handed_on.push(b'\n');
-                let group = (self.groups.len() - 1) as u32;
-                self.faces.push(FaceRecord {
-                    group,
-                    number: self.number,
-                    line: self.line,
-                    has_normals,
-                    material: self.material,
-                    uvs,
-                });
+                self.hand_on_face(&parsed);
             }
         }
         Ok(())
     }
 
-    /// Vertex, normal and texture coordinates of a corner, from 1, known to exist.
+    fn hand_on_face(&mut self, corners: &[Named]) {
+        let normals = corners.iter().map(|corner| corner.normal?.ok());
+        let normals: Option<Vec<usize>> = normals.collect();
+        let uvs = corners
+            .iter()
+            .map(|corner| corner.uv.as_ref()?.as_ref().ok());
+        let uvs: Option<Vec<Vec2>> = uvs.map(|uv| Some(self.uvs[*uv? - 1])).collect();
+        let uvs = uvs.map(|uvs| {
+            self.corner_uvs.extend(uvs);
+            self.corner_uvs.len() - corners.len()
+        });
+        self.handed_on.push(b'f');
+        for (at, corner) in corners.iter().enumerate() {
+            let text = match &normals {
+                Some(normals) => format!(" {}//{}", corner.vertex, normals[at]),
+                None => format!(" {}", corner.vertex),
+            };
+            self.handed_on.extend_from_slice(text.as_bytes());
+        }
+        self.handed_on.push(b'\n');
+        let group = (self.groups.len() - 1) as u32;
+        self.faces.push(FaceRecord {
+            group,
+            number: self.number,
+            line: self.line,
+            has_normals: normals.is_some(),
+            material: self.material,
+            uvs,
+        });
+    }
+
+    /// A corner whose vertex is known to exist.
     fn corner(&self, text: &str) -> Result<Named, FaceProblem> {
         let mut words = text.split('/');
         let (vertex, uv, normal) = (words.next().unwrap_or(""), words.next(), words.next());
+        let not_a_corner = || FaceProblem::NotACorner(text.to_owned());
         if words.next().is_some() {
-            return Err(FaceProblem::NotACorner(text.to_owned()));
+            return Err(not_a_corner());
         }
-        let resolve =
-            |written: &str, available: usize, missing: fn(String, usize) -> FaceProblem| {
-                // An index may count back from the last vertex; one that overflows names nothing
-                // either.
-                let digits = written.strip_prefix(['-', '+']).unwrap_or(written);
-                if digits.is_empty() || !digits.bytes().all(|byte| byte.is_ascii_digit()) {
-                    return Err(FaceProblem::NotACorner(text.to_owned()));
-                }
-                let index = match digits.parse::<usize>() {
-                    Ok(back) if written.starts_with('-') => {
-                        (available + 1).checked_sub(back).filter(|_| back > 0)
-                    }
-                    Ok(index) => Some(index),
-                    Err(_) => None,
-                };
-                match index {
-                    Some(index) if (1..=available).contains(&index) => Ok(index),
-                    _ => Err(missing(written.to_owned(), available)),
-                }
-            };
-        let vertex = resolve(vertex, self.vertices, |written, available| {
-            FaceProblem::NoSuchVertex { written, available }
-        })?;
+        let available = |of: fn(&Counts) -> usize| Available {
+            above: of(&self.above),
+            total: of(&self.total),
+        };
+        let vertices = available(|of| of.vertices);
+        let vertex = resolve(vertex, vertices).ok_or_else(not_a_corner)?;
+        let vertex = vertex
+            .map_err(|(written, available)| FaceProblem::NoSuchVertex { written, available })?;
         let normal = match normal {
             None | Some("") => None,
-            Some(normal) => Some(resolve(normal, self.normals, |written, available| {
-                FaceProblem::NoSuchNormal { written, available }
-            })?),
-        };
-        let uv = match uv {
-            // Without a file of materials nothing is looked up by them.
-            Some(uv) if !self.libraries.is_empty() && !uv.is_empty() => {
-                Some(resolve(uv, self.uvs.len(), |written, available| {
-                    FaceProblem::NoSuchUv { written, available }
-                })?)
+            Some(normal) => {
+                let found = resolve(normal, available(|of| of.normals)).ok_or_else(not_a_corner)?;
+                Some(found.map_err(|_| ()))
             }
-            _ => None,
         };
-        Ok((vertex, normal, uv))
+        let uv =
+            match uv {
+                // Without a file of materials nothing is looked up by them.
+                Some(uv) if !self.libraries.is_empty() && !uv.is_empty() => {
+                    let found = resolve(uv, available(|of| of.uvs)).ok_or_else(not_a_corner)?;
+                    Some(found.map_err(|(written, available)| FaceProblem::NoSuchUv {
+                        written,
+                        available,
+                    }))
+                }
+                _ => None,
+            };
+        Ok(Named { vertex, normal, uv })
     }
 
     fn fault(&mut self, problem: FaceProblem) {
@@ -354,6 +443,37 @@ impl<'a> Guard<'a> {
             });
         }
     }
+}
+
+/// A statement's keyword, and what follows.
+fn split(line: &str) -> (&str, &str) {
+    line.split_once(char::is_whitespace).unwrap_or((line, ""))
+}
+
+fn without_comment(rest: &str) -> &str {
+    rest.split('#').next().unwrap_or("")
+}
+
+/// The number, from 1, of what a corner names, or the text of one that names nothing and how many
+/// there are. `None` where it is no number. A positive one counts from the beginning of the file, to
+/// its end; a negative one back from the line. One that overflows names nothing either.
+fn resolve(written: &str, available: Available) -> Option<Result<usize, (String, usize)>> {
+    let digits = written.strip_prefix(['-', '+']).unwrap_or(written);
+    if digits.is_empty() || !digits.bytes().all(|byte| byte.is_ascii_digit()) {
+        return None;
+    }
+    let counts_back = written.starts_with('-');
+    let most = match counts_back {
+        true => available.above,
+        false => available.total,
+    };
+    let index = match digits.parse::<usize>() {
+        Ok(back) if counts_back => (most + 1).checked_sub(back).filter(|_| back > 0),
+        Ok(index) => Some(index),
+        Err(_) => None,
+    };
+    let found = index.filter(|index| (1..=most).contains(index));
+    Some(found.ok_or_else(|| (written.to_owned(), most)))
 }
 
 impl Read for Guard<'_> {

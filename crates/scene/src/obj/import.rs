@@ -2,13 +2,13 @@
 
 use super::{
     guard::{FaceRecord, Guard},
-    mtl,
+    mtl::{self, Found},
     options::ObjOptions,
     polygon,
 };
 use crate::{
     builder::{Corner, MeshBuilder},
-    error::{FACES_SHOWN, FaceFault, FaceProblem, SceneError},
+    error::{FACES_SHOWN, FaceFault, FaceProblem, SceneError, plural},
     mesh::Mesh,
     report::ImportReport,
 };
@@ -26,12 +26,12 @@ pub(super) fn import(
     options: &ObjOptions,
     path: &Path,
 ) -> Result<(Mesh, ImportReport), SceneError> {
-    let (materials, colours_missing) = mtl::materials(guard, options, path)?;
+    let found = mtl::materials(guard, options, path)?;
     let mut import = Import {
         guard,
         options,
         path,
-        with_materials: !materials.is_empty(),
+        found,
         builder: MeshBuilder::default(),
         uncut: Vec::new(),
         uncut_count: 0,
@@ -42,9 +42,10 @@ pub(super) fn import(
         faces_left_out: guard.faces_left_out,
         points: guard.points,
         lines: guard.lines,
-        colours_missing,
+        colours_missing: std::mem::take(&mut import.found.colours_missing),
         ..ImportReport::default()
     };
+    import.remark_and_check()?;
     import.run(models)?;
     if import.uncut_count > 0 {
         return Err(SceneError::ObjFaces {
@@ -53,14 +54,14 @@ pub(super) fn import(
             total: import.uncut_count,
         });
     }
-    Ok(import.builder.finish(materials))
+    Ok(import.builder.finish(import.found.materials))
 }
 
 struct Import<'a> {
     guard: &'a Guard<'a>,
     options: &'a ObjOptions,
     path: &'a Path,
-    with_materials: bool,
+    found: Found,
     builder: MeshBuilder,
     /// The first faces that cannot be cut, and how many there are.
     uncut: Vec<FaceFault>,
@@ -68,6 +69,57 @@ struct Import<'a> {
 }
 
 impl Import<'_> {
+    /// Says what was passed over. Texture coordinates that are not there are a fault where a mask is
+    /// looked up by them.
+    fn remark_and_check(&mut self) -> Result<(), SceneError> {
+        let (guard, report) = (self.guard, &mut self.builder.report);
+        for text in std::mem::take(&mut self.found.remarks) {
+            report.remark(text);
+        }
+        if guard.normals_unread > 0 {
+            let normals = plural(guard.normals_unread, "normal", "normals");
+            report.remark(format!("{normals} (vn) passed over: not three numbers"));
+        }
+        if guard.normals_absent > 0 {
+            let faces = plural(guard.normals_absent, "face names", "faces name");
+            report.remark(format!("{faces} normals that are not there: flat"));
+        }
+        if guard.curved > 0 {
+            let curved = plural(guard.curved, "curve or surface", "curves and surfaces");
+            report.remark(format!(
+                "{curved} (curv, surf) passed over: only faces are drawn"
+            ));
+        }
+        let (mut faults, mut total, mut harmless) = (Vec::new(), 0, 0);
+        for (face, problem) in &guard.uvs_absent {
+            let record = &guard.faces[*face];
+            let material = self.found.materials.get(record.material as usize);
+            if material.is_none_or(|material| material.mask.is_none()) {
+                harmless += 1;
+                continue;
+            }
+            total += 1;
+            if faults.len() < FACES_SHOWN {
+                faults.push(FaceFault {
+                    face: guard.face_ref(record),
+                    problem: problem.clone(),
+                });
+            }
+        }
+        if harmless > 0 {
+            let faces = plural(harmless, "face names", "faces name");
+            report.remark(format!("{faces} texture coordinates that are not there"));
+        }
+        match total {
+            0 => Ok(()),
+            _ => Err(SceneError::ObjFaces {
+                path: self.path.to_owned(),
+                faults,
+                total,
+            }),
+        }
+    }
+
     fn run(&mut self, models: &[tobj::Model]) -> Result<(), SceneError> {
         let corner_count: usize = models.iter().map(|model| model.mesh.indices.len()).sum();
         // Welded positions, normals and triangles are at most as many as corners.
@@ -100,9 +152,11 @@ impl Import<'_> {
                     Corner {
                         position: welded[mesh.indices[slot] as usize],
                         normal,
-                        uv: record
-                            .uvs
-                            .map(|uvs| self.guard.corner_uvs[uvs + slot - first]),
+                        uv: record.uvs.map(|uvs| {
+                            let uv = self.guard.corner_uvs[uvs + slot - first];
+                            let transform = self.found.uvs.get(record.material as usize);
+                            transform.map_or(uv, |transform| transform.apply(uv))
+                        }),
                     }
                 }));
                 self.add_face(record, &polygon);
@@ -176,7 +230,7 @@ impl Import<'_> {
         };
         let of_all = |_: &MeshBuilder| polygon::normal(&points).try_normalize();
         let group = &guard.groups[record.group as usize];
-        let material = self.with_materials.then_some(record.material);
+        let material = (!self.found.materials.is_empty()).then_some(record.material);
         for triangle in triangles {
             let corners = triangle.map(|corner| polygon[corner]);
             builder.add(corners, of_all, group, material, || guard.face_ref(record));

@@ -1,8 +1,10 @@
-//! The materials that an OBJ file names: files of materials, read by `tobj`, and their textures.
+//! The materials that the faces of an OBJ file use: colours, masks and their textures.
 
 use super::{
     guard::Guard,
+    mtl_file::{self, MtlMaterial},
     options::{ObjMaterials, ObjOptions},
+    texture_statement::{Channel, TextureStatement, UvTransform},
 };
 use crate::{
     error::SceneError,
@@ -15,7 +17,6 @@ use crate::{
 };
 use std::{
     collections::{BTreeMap, HashMap},
-    io::{self, BufRead, Read},
     path::{Path, PathBuf},
     sync::Arc,
 };
@@ -30,12 +31,28 @@ const MTL_FILE: Limit = Limit {
 /// Opacity from which on a surface is there: OBJ files say none.
 const CUTOFF: f32 = 0.5;
 
-const WAY_OUT: &str = "put it there, or have a scene file say `materials: Ignore`";
+/// What to do where a mask cannot be had.
+const WAY_OUT: &str = "put it there, or give --materials color (every surface is opaque) or \
+                       --materials ignore; a scene file says `materials: Color` or `Ignore`";
 
-/// Materials by the numbers that [`Guard::materials`] has them, and what is missing of colours.
-pub(super) type Found = (Vec<Material>, Vec<String>);
+/// What to do where a line cannot be read.
+const MEND: &str = "mend the line, or give --materials color (every surface is opaque); a scene \
+                    file says `materials: Color`";
 
-/// Reads the materials that the faces of an OBJ file use. None where it names no file of them.
+/// What was found of materials.
+#[derive(Default)]
+pub(super) struct Found {
+    /// By the numbers that [`Guard::materials`] has them; none where the file names no file of them.
+    pub materials: Vec<Material>,
+    /// What becomes of the texture coordinates of each; none at all where they stay as they are.
+    pub uvs: Vec<UvTransform>,
+    /// What could not be read of colours.
+    pub colours_missing: Vec<String>,
+    /// What was passed over.
+    pub remarks: Vec<String>,
+}
+
+/// Reads the materials that the faces of an OBJ file use.
 ///
 /// # Errors
 /// [`SceneError::Material`] where a mask depends on what cannot be read.
@@ -45,41 +62,61 @@ pub(super) fn materials(
     path: &Path,
 ) -> Result<Found, SceneError> {
     if let ObjMaterials::Made(patterns) = &options.materials {
-        return made(guard, patterns, path).map(|materials| (materials, Vec::new()));
+        let materials = made(guard, patterns, path)?;
+        return Ok(Found {
+            materials,
+            ..Found::default()
+        });
+    }
+    if guard.libraries.is_empty() {
+        return Ok(Found::default());
     }
     let mut reading = Reading {
         path,
         with_masks: options.materials == ObjMaterials::All,
-        missing: Vec::new(),
+        found: Found::default(),
         masks: HashMap::new(),
     };
-    if guard.libraries.is_empty() {
-        return Ok((Vec::new(), Vec::new()));
+    let (known, unread) = reading.libraries(guard);
+    let mut is_used = vec![false; guard.materials.len()];
+    for face in &guard.faces {
+        is_used[face.material as usize] = true;
     }
-    let mut known: HashMap<String, (PathBuf, tobj::Material)> = HashMap::new();
-    for library in &guard.libraries {
-        for file in reading.files(library) {
-            match load(&file) {
-                Ok(found) => known.extend(
-                    found
-                        .into_iter()
-                        .map(|material| (material.name.clone(), (file.clone(), material))),
-                ),
-                Err(reason) => reading.fail(file.display().to_string(), reason)?,
+    // The first stands for none.
+    let used = guard.materials.iter().zip(is_used).skip(1);
+    let mut unknown = used.filter(|(name, is_used)| *is_used && !known.contains_key(*name));
+    match unknown.next() {
+        Some((name, _)) if unread.is_empty() => reading.found.remarks.push(format!(
+            "material {name:?} is in no .mtl file that the file names: it is white and opaque"
+        )),
+        Some(_) => {
+            for (place, reason) in unread {
+                reading.fail(place, reason, WAY_OUT)?;
             }
         }
+        None => {
+            let passed = |(file, why): (String, String)| {
+                format!("{file} passed over: {why}; no face uses a material of it")
+            };
+            reading.found.remarks.extend(unread.into_iter().map(passed));
+        }
     }
-    let mut materials = Vec::with_capacity(guard.materials.len());
     for name in &guard.materials {
-        materials.push(match known.get(name) {
+        let (material, uvs) = match known.get(name) {
             Some((file, material)) => reading.material(file, material)?,
-            None => Material {
-                name: name.clone(),
-                ..Material::default()
-            },
-        });
+            None => (plain(name), UvTransform::IDENTITY),
+        };
+        reading.found.materials.push(material);
+        reading.found.uvs.push(uvs);
     }
-    Ok((materials, reading.missing))
+    Ok(reading.found)
+}
+
+fn plain(name: &str) -> Material {
+    Material {
+        name: name.to_owned(),
+        ..Material::default()
+    }
 }
 
 /// Materials that are known by name alone, some with a mask that is made here.
@@ -111,11 +148,34 @@ fn made(
 struct Reading<'a> {
     path: &'a Path,
     with_masks: bool,
-    missing: Vec<String>,
+    found: Found,
     masks: HashMap<String, Arc<Mask>>,
 }
 
+/// Materials by name, with the files that they stand in.
+type Known = HashMap<String, (PathBuf, MtlMaterial)>;
+
 impl Reading<'_> {
+    /// The materials of all files that `mtllib` lines name, and the files that cannot be read, with
+    /// the reason.
+    fn libraries(&self, guard: &Guard<'_>) -> (Known, Vec<(String, String)>) {
+        let (mut known, mut unread) = (Known::new(), Vec::new());
+        for file in guard
+            .libraries
+            .iter()
+            .flat_map(|library| self.files(library))
+        {
+            match MTL_FILE.read(&file) {
+                Ok(bytes) => {
+                    let materials = mtl_file::parse(&bytes).into_iter();
+                    known.extend(materials.map(|of| (of.name.clone(), (file.clone(), of))));
+                }
+                Err(why) => unread.push((file.display().to_string(), why.to_string())),
+            }
+        }
+        (known, unread)
+    }
+
     /// The files that a `mtllib` line names: one with spaces in its name, or several.
     fn files(&self, library: &str) -> Vec<PathBuf> {
         let whole = beside(self.path, library);
@@ -126,77 +186,131 @@ impl Reading<'_> {
         names.map(|name| beside(self.path, name)).collect()
     }
 
-    fn fail(&mut self, place: String, reason: String) -> Result<(), SceneError> {
+    fn fail(
+        &mut self,
+        place: String,
+        reason: String,
+        way_out: &'static str,
+    ) -> Result<(), SceneError> {
         if self.with_masks {
             let path = self.path.to_owned();
             return Err(SceneError::Material {
                 path,
                 place,
                 reason,
-                way_out: WAY_OUT,
+                way_out,
             });
         }
-        self.missing.push(format!("{place}: {reason}"));
+        self.found
+            .colours_missing
+            .push(format!("{place}: {reason}"));
         Ok(())
     }
 
-    fn material(&mut self, file: &Path, from: &tobj::Material) -> Result<Material, SceneError> {
+    fn material(
+        &mut self,
+        file: &Path,
+        from: &MtlMaterial,
+    ) -> Result<(Material, UvTransform), SceneError> {
         let place = format!("material {:?} of {}", from.name, file.display());
-        let texture = from.diffuse_texture.as_ref().map(|text| {
-            let (name, wrap) = texture_name(text);
-            let source = beside(file, &name);
+        let remarks = from
+            .remarks
+            .iter()
+            .map(|remark| format!("{place}: {remark}"));
+        self.found.remarks.extend(remarks);
+        let colour = from.diffuse_map.as_deref().map(TextureStatement::parse);
+        let texture = colour.as_ref().map(|statement| {
+            let source = beside(file, &statement.file);
             if !source.is_file() {
-                self.missing
-                    .push(format!("{place}: {} is not there", source.display()));
+                let missing = format!("{place}: {} is not there", source.display());
+                self.found.colours_missing.push(missing);
             }
             let name = source.display().to_string();
-            Texture::new(name, Source::File(source), [wrap; 2])
+            Texture::new(name, Source::File(source), [statement.wrap; 2])
         });
-        let mask = match self.with_masks {
-            true => self.mask(file, place, from)?,
-            false => None,
+        let (mask, mask_uvs) = match self.with_masks {
+            true => self.mask(file, &place, from)?,
+            false => (None, None),
         };
-        Ok(Material {
+        let colour_uvs = colour.map_or(UvTransform::IDENTITY, |statement| statement.uv);
+        let uvs = mask_uvs.unwrap_or(colour_uvs);
+        if texture.is_some() && uvs != colour_uvs {
+            let text = "-o and -s of map_Kd are not followed, those of map_d are";
+            self.found.remarks.push(format!("{place}: {text}"));
+        }
+        let material = Material {
             name: from.name.clone(),
             // As with a texture of other tools, which multiply both.
             base_color: from.diffuse.unwrap_or([1.0; 3]),
             texture,
             mask,
             double_sided: false,
-        })
+        };
+        Ok((material, uvs))
     }
 
+    /// The mask of a material, and what becomes of its texture coordinates if it has a texture.
     fn mask(
         &mut self,
         file: &Path,
-        place: String,
-        from: &tobj::Material,
-    ) -> Result<Option<Arc<Mask>>, SceneError> {
-        let opacity = from.dissolve.unwrap_or(1.0);
-        let Some(text) = &from.dissolve_texture else {
-            let hidden = || Arc::new(Mask::new([1, 1], [Wrap::Repeat; 2], |_, _| false));
-            return Ok((opacity < CUTOFF).then(hidden));
-        };
-        let (name, wrap) = texture_name(text);
-        let source = beside(file, &name);
-        let key = format!("{opacity} {wrap:?} {}", source.display());
-        if let Some(mask) = self.masks.get(&key) {
-            return Ok((!mask.is_solid()).then(|| mask.clone()));
+        place: &str,
+        from: &MtlMaterial,
+    ) -> Result<(Option<Arc<Mask>>, Option<UvTransform>), SceneError> {
+        if let Some(fault) = &from.fault {
+            self.fail(place.to_owned(), fault.clone(), MEND)?;
         }
-        let name = format!("map_d {}", source.display());
-        let texture = Texture::new(name, Source::File(source), [wrap; 2]);
-        let texels = match texture.texels() {
-            Ok(texels) => texels,
-            Err(why) => {
-                self.fail(place, why.to_owned())?;
-                return Ok(None);
+        let opacity = from.opacity();
+        let Some(text) = &from.dissolve_map else {
+            let hidden = || Arc::new(Mask::new([1, 1], [Wrap::Repeat; 2], |_, _| false));
+            let is_hidden = opacity < CUTOFF;
+            if is_hidden && from.dissolve.is_none() {
+                let text = "Tr hides it, whose opacity is 1 - Tr; write d if that is not meant";
+                self.found.remarks.push(format!("{place}: {text}"));
+            }
+            return Ok((is_hidden.then(hidden), None));
+        };
+        let statement = TextureStatement::parse(text);
+        for option in &statement.passed_over {
+            let text = format!("{option} of map_d is not followed");
+            self.found.remarks.push(format!("{place}: {text}"));
+        }
+        let (uvs, wrap) = (statement.uv, statement.wrap);
+        let source = beside(file, &statement.file);
+        let (channel, [base, gain]) = (statement.channel, statement.range);
+        let key = format!(
+            "{opacity} {wrap:?} {channel:?} {base} {gain} {}",
+            source.display()
+        );
+        let mask = match self.masks.get(&key) {
+            Some(mask) => mask.clone(),
+            None => {
+                let name = format!("map_d {}", source.display());
+                let texture = Texture::new(name, Source::File(source), [wrap; 2]);
+                let texels = match texture.texels() {
+                    Ok(texels) => texels,
+                    Err(why) => {
+                        self.fail(place.to_owned(), why.to_owned(), WAY_OUT)?;
+                        return Ok((None, None));
+                    }
+                };
+                let own = opacity_channel(texels);
+                let at = |texel| (base + gain * level(channel, own, texel)) * opacity;
+                let mask = Arc::new(Mask::of_texels(texels, [wrap; 2], at, CUTOFF));
+                self.masks.insert(key, mask.clone());
+                mask
             }
         };
-        let channel = opacity_channel(texels);
-        let at = |texel: [u8; 4]| f32::from(texel[channel]) / 255.0 * opacity;
-        let mask = Arc::new(Mask::of_texels(texels, texture.wrap, at, CUTOFF));
-        self.masks.insert(key, mask.clone());
-        Ok((!mask.is_solid()).then_some(mask))
+        Ok(((!mask.is_solid()).then_some(mask), Some(uvs)))
+    }
+}
+
+/// The number of a texel that counts, from 0 to 1.
+fn level(channel: Channel, own: usize, texel: [u8; 4]) -> f32 {
+    let of = |channel: usize| f32::from(texel[channel]) / 255.0;
+    match channel {
+        Channel::Own => of(own),
+        Channel::Of(channel) => of(channel),
+        Channel::Luminance => (of(0) + of(1) + of(2)) / 3.0,
     }
 }
 
@@ -212,102 +326,4 @@ fn opacity_channel(texels: &Texels) -> usize {
 fn beside(file: &Path, name: &str) -> PathBuf {
     let folder = file.parent().unwrap_or(Path::new(""));
     folder.join(name.replace('\\', "/"))
-}
-
-/// The file in a texture statement, whose options stand in front of it.
-fn texture_name(text: &str) -> (String, Wrap) {
-    let mut wrap = Wrap::Repeat;
-    let mut rest = text.trim();
-    while let Some(option) = rest
-        .split_whitespace()
-        .next()
-        .filter(|word| is_option(word))
-    {
-        rest = rest[option.len()..].trim_start();
-        while let Some(word) = rest.split_whitespace().next() {
-            let is_value = match option {
-                "-clamp" | "-blendu" | "-blendv" | "-cc" => matches!(word, "on" | "off"),
-                "-imfchan" => matches!(word, "r" | "g" | "b" | "m" | "l" | "z"),
-                "-type" => !word.contains('.'),
-                _ => word.parse::<f32>().is_ok(),
-            };
-            if !is_value {
-                break;
-            }
-            if option == "-clamp" && word == "on" {
-                wrap = Wrap::Clamp;
-            }
-            rest = rest[word.len()..].trim_start();
-        }
-    }
-    (rest.to_owned(), wrap)
-}
-
-fn is_option(word: &str) -> bool {
-    const OPTIONS: [&str; 12] = [
-        "-clamp", "-blendu", "-blendv", "-cc", "-imfchan", "-type", "-mm", "-o", "-s", "-t", "-bm",
-        "-texres",
-    ];
-    OPTIONS.contains(&word)
-}
-
-/// The materials of a file.
-fn load(path: &Path) -> Result<Vec<tobj::Material>, String> {
-    let bytes = MTL_FILE.read(path).map_err(|why| why.to_string())?;
-    let mut lines = Lines {
-        rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes),
-        begun: false,
-        number: 0,
-    };
-    let loaded = tobj::load_mtl_buf(&mut lines);
-    loaded
-        .map(|(materials, _)| materials)
-        .map_err(|why| format!("line {}: {why}", lines.number))
-}
-
-/// Counts the lines that `tobj` reads, which tells none.
-struct Lines<'a> {
-    rest: &'a [u8],
-    begun: bool,
-    number: u32,
-}
-
-impl Read for Lines<'_> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let read = self.fill_buf()?.read(buffer)?;
-        self.consume(read);
-        Ok(read)
-    }
-}
-
-impl BufRead for Lines<'_> {
-    fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        if !self.begun && !self.rest.is_empty() {
-            (self.begun, self.number) = (true, self.number.saturating_add(1));
-        }
-        let end = self.rest.iter().position(|&byte| byte == b'\n');
-        Ok(&self.rest[..end.map_or(self.rest.len(), |end| end + 1)])
-    }
-
-    fn consume(&mut self, amount: usize) {
-        let (taken, rest) = self.rest.split_at(amount.min(self.rest.len()));
-        self.begun &= taken.last() != Some(&b'\n');
-        self.rest = rest;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn options_stand_in_front_of_a_textures_name() {
-        let name = |text| texture_name(text).0;
-        assert_eq!(name("leaf.png"), "leaf.png");
-        assert_eq!(name("-s 1 1 1 -o 0.5 my leaf.png"), "my leaf.png");
-        assert_eq!(name("-bm 0.2 -imfchan l 2 leaves.tga"), "2 leaves.tga");
-        assert_eq!(name("-clamp on on.png"), "on.png");
-        assert_eq!(texture_name("-clamp on on.png").1, Wrap::Clamp);
-        assert_eq!(name("-leaf.png"), "-leaf.png");
-    }
 }

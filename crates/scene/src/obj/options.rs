@@ -1,6 +1,6 @@
 //! How an OBJ file becomes a mesh.
 
-use crate::pattern::Pattern;
+use crate::{material_use::MaterialUse, pattern::Pattern};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -48,6 +48,16 @@ pub enum ObjMaterials {
     All,
     /// Nothing but names: these materials get masks that are made here.
     Made(BTreeMap<String, Pattern>),
+}
+
+impl From<MaterialUse> for ObjMaterials {
+    fn from(of: MaterialUse) -> Self {
+        match of {
+            MaterialUse::Ignore => Self::Ignore,
+            MaterialUse::Color => Self::Color,
+            MaterialUse::All => Self::All,
+        }
+    }
 }
 
 /// How an OBJ file becomes a mesh.

@@ -6,10 +6,12 @@ use super::{
     options::{ObjMaterials, ObjOptions},
 };
 use crate::{
+    border::caught,
     error::{EXTENTS, SceneError},
     limit::Limit,
     mesh::Mesh,
     report::ImportReport,
+    text::without_mark,
 };
 use std::{collections::HashSet, path::Path};
 
@@ -43,21 +45,35 @@ pub fn parse_obj(
     path: &Path,
     options: &ObjOptions,
 ) -> Result<(Mesh, ImportReport), SceneError> {
+    let bytes = without_mark(bytes);
     let mut guard = Guard::new(
-        bytes,
+        &bytes,
         &options.leave_out,
         options.materials != ObjMaterials::Ignore,
     );
     let no_materials = |_: &Path| Ok(Default::default());
-    let loaded = tobj::load_obj_buf(&mut guard, &tobj::LoadOptions::default(), no_materials);
-    let (models, _) = loaded.map_err(|error| SceneError::ObjLine {
+    let loaded = caught("tobj", || {
+        tobj::load_obj_buf(&mut guard, &tobj::LoadOptions::default(), no_materials)
+    });
+    let loaded = loaded.and_then(|loaded| {
+        loaded.map_err(|error| match guard.fatal.take() {
+            Some(reason) => reason,
+            None => format!("{error} in {:?}", guard.current_line()),
+        })
+    });
+    let (models, _) = loaded.map_err(|reason| SceneError::ObjLine {
         path: path.to_owned(),
         line: guard.line,
-        reason: guard
-            .fatal
-            .take()
-            .unwrap_or_else(|| format!("{error} in {:?}", guard.current_line())),
+        reason,
     })?;
+    if guard.is_empty() && bytes.contains(&0) {
+        return Err(SceneError::ObjLine {
+            path: path.to_owned(),
+            line: 1,
+            reason: "not an OBJ file, or damaged: it holds no vertex, but bytes that are no text"
+                .to_owned(),
+        });
+    }
     if guard.fault_count > 0 {
         return Err(SceneError::ObjFaces {
             path: path.to_owned(),

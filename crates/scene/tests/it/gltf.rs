@@ -3,11 +3,15 @@
 use base64::{Engine, engine::general_purpose::STANDARD};
 use glam::{DVec3, Vec2, Vec3};
 use proptest::prelude::*;
-use skiagraph_scene::{ImportReport, Mesh, SceneError, Wrap, gltf::parse_gltf};
+use skiagraph_scene::{ImportReport, MaterialUse, Mesh, SceneError, Wrap, gltf::parse_gltf};
 use std::path::Path;
 
 fn parse(text: &str) -> Result<(Mesh, ImportReport), SceneError> {
-    parse_gltf(text.as_bytes(), Path::new("plant.gltf"))
+    parse_bytes(text.as_bytes(), "plant.gltf")
+}
+
+fn parse_bytes(bytes: &[u8], name: &str) -> Result<(Mesh, ImportReport), SceneError> {
+    parse_gltf(bytes, Path::new(name), MaterialUse::All)
 }
 
 fn error(text: &str) -> String {
@@ -126,7 +130,7 @@ fn a_masked_leaf_is_placed_coloured_and_cut_out() {
 
 #[test]
 fn a_binary_file_is_the_same() {
-    let (binary, _) = parse_gltf(&glb(), Path::new("plant.glb")).unwrap();
+    let (binary, _) = parse_bytes(&glb(), "plant.glb").unwrap();
     let (text, _) = parse(&with_data_uri()).unwrap();
     assert_eq!(binary.positions, text.positions);
     assert_eq!(binary.triangles, text.triangles);
@@ -167,7 +171,7 @@ fn broken_files_say_where_and_why() {
         error("{\"asset\": {\"version\": \"2.0\"}}"),
     ];
     insta::assert_snapshot!(told.join("\n"));
-    let cut = parse_gltf(&glb()[..200], Path::new("plant.glb")).unwrap_err();
+    let cut = parse_bytes(&glb()[..200], "plant.glb").unwrap_err();
     assert!(cut.to_string().starts_with("plant.glb: "), "{cut}");
 }
 
@@ -201,7 +205,7 @@ proptest! {
         if cut.index(4) == 0 {
             bytes.truncate(cut.index(bytes.len()));
         }
-        if let Err(error) = parse_gltf(&bytes, Path::new("plant.glb")) {
+        if let Err(error) = parse_bytes(&bytes, "plant.glb") {
             prop_assert!(error.to_string().starts_with("plant.glb: "), "{}", error);
         }
     }

@@ -8,6 +8,7 @@ mod solids;
 
 mod bench;
 mod bvh;
+mod foreign_files;
 mod generated;
 mod gltf;
 mod hostile;

@@ -114,17 +114,82 @@ fn broken_materials_say_where_and_what_to_do() {
     insta::assert_snapshot!(told.join("\n"));
 }
 
+/// The mask, the uvs of the first corner and the remarks that a file of materials makes.
+fn masked(mtl: &str) -> (Option<Vec<u32>>, glam::Vec2, String) {
+    let folder = folder(Some(mtl));
+    let (mesh, report) = load(folder.path(), ObjMaterials::All).unwrap();
+    let mask = mesh.surfaces.mask(0).map(|mask| mask.opaque.clone());
+    let remarks = report.remarks.join("\n");
+    let place = format!("{}/", folder.path().display());
+    (
+        mask,
+        mesh.surfaces.corner_uvs(0)[0],
+        remarks.replace(&place, ""),
+    )
+}
+
 #[test]
-fn texture_coordinates_are_checked_like_vertices() {
-    let folder = folder(Some("newmtl leaf\n"));
+fn options_of_a_mask_are_followed_or_told() {
+    let file = "textures/mask.tga";
+    let (plain, uv, remarks) = masked(&format!("newmtl leaf\nmap_d {file}\n"));
+    assert_eq!(
+        (plain, uv, remarks.as_str()),
+        (Some(vec![0b1001]), glam::Vec2::new(0.0, 1.0), "")
+    );
+    // A quarter to the right and half up, where v counts from below.
+    let (_, uv, _) = masked(&format!("newmtl leaf\nmap_d -s 2 4 -o 0.25 0.5 {file}\n"));
+    assert_eq!(uv, glam::Vec2::new(0.25, 0.5));
+    // Half and more everywhere: a mask of nothing but opaque texels is none.
+    let (raised, ..) = masked(&format!("newmtl leaf\nmap_d -mm 0.5 0.5 {file}\n"));
+    assert_eq!(raised, None);
+    let (lowered, ..) = masked(&format!("newmtl leaf\nmap_d -mm 0 0.6 {file}\n"));
+    assert_eq!(lowered, Some(vec![0b0001]));
+    let (_, _, remarks) = masked(&format!("newmtl leaf\nmap_d -t 1 1 1 {file}\n"));
+    assert_eq!(
+        remarks,
+        "material \"leaf\" of leaf.mtl: -t of map_d is not followed"
+    );
+    let text = format!("newmtl leaf\nmap_Kd -o 0.5 0 textures/colour.png\nmap_d {file}\n");
+    let (_, uv, remarks) = masked(&text);
+    assert_eq!(uv, glam::Vec2::new(0.0, 1.0));
+    assert!(
+        remarks.contains("-o and -s of map_Kd are not followed"),
+        "{remarks}"
+    );
+}
+
+#[test]
+fn transparency_hides_where_d_says_nothing() {
+    let (hidden, _, remarks) = masked("newmtl leaf\nTr 0.9\n");
+    assert_eq!(hidden, Some(vec![0]));
+    assert!(remarks.contains("Tr hides it"), "{remarks}");
+    for seen in ["Tr 0.4", "Tr 1\nd 1", "d 1\nTr 1", "Tr", "d"] {
+        assert_eq!(masked(&format!("newmtl leaf\n{seen}\n")).0, None, "{seen}");
+    }
+}
+
+#[test]
+fn materials_that_are_nowhere_are_told() {
+    let (_, _, remarks) = masked("newmtl other\n");
+    let told = "material \"leaf\" is in no .mtl file that the file names: it is white and opaque";
+    assert_eq!(remarks, told);
+}
+
+#[test]
+fn texture_coordinates_must_be_there_where_a_mask_is() {
+    let folder = folder(Some("newmtl leaf\nmap_d textures/mask.tga\n"));
     let text = LEAF.replace("4/4", "4/5");
     std::fs::write(folder.path().join("leaf.obj"), &text).unwrap();
     let error = load(folder.path(), ObjMaterials::All)
         .unwrap_err()
         .to_string();
-    assert!(
-        error.contains("(line 11) names texture coordinates 5, but 4 pairs stand above it"),
-        "{error}"
-    );
-    assert!(load(folder.path(), ObjMaterials::Ignore).is_ok());
+    let told = "(line 11) names texture coordinates 5, but the file has 4 pairs";
+    assert!(error.contains(told), "{error}");
+    for materials in [ObjMaterials::Ignore, ObjMaterials::Color] {
+        assert!(load(folder.path(), materials).is_ok());
+    }
+    std::fs::write(folder.path().join("leaf.mtl"), "newmtl leaf\n").unwrap();
+    let (_, report) = load(folder.path(), ObjMaterials::All).unwrap();
+    let told = "1 face names texture coordinates that are not there";
+    assert_eq!(report.remarks, [told]);
 }

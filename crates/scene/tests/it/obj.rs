@@ -108,6 +108,59 @@ fn faces_without_normals_are_flat() {
 }
 
 #[test]
+fn faces_that_name_normals_which_are_not_there_are_flat() {
+    for (normal, normals) in [
+        ("2", "vn 0 1 0\n"),
+        ("1", ""),
+        ("-1", ""),
+        ("0", "vn 0 1 0\n"),
+    ] {
+        let (mesh, report) = parse(format!("{SQUARE}{normals}f 1//{normal} 2//{normal} 3//1\n"));
+        assert_eq!(mesh.corner_normals(0), [glam::DVec3::Z; 3]);
+        assert_eq!(
+            report.remarks,
+            ["1 face names normals that are not there: flat"]
+        );
+    }
+}
+
+#[test]
+fn normals_that_are_no_numbers_have_no_direction() {
+    let (mesh, report) = parse(format!(
+        "{SQUARE}vn 1 0 zero\nvn 1\nvn 1 0 0\nf 1//1 2//2 3//3\n"
+    ));
+    let [one, two, three] = mesh.corner_normals(0);
+    assert_eq!(
+        [one, two, three],
+        [glam::DVec3::Z, glam::DVec3::Z, glam::DVec3::X]
+    );
+    assert_snapshot!(report, @"
+    2 corner normals without a direction replaced by the triangle's own
+    2 normals (vn) passed over: not three numbers
+    ");
+}
+
+#[test]
+fn positive_numbers_count_from_the_beginning_of_the_file_and_negative_ones_back() {
+    let (mesh, _) =
+        parse("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 0 0 1\nf 1 2 4\nf -4 -3 -1\n");
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 1, 2], [0, 1, 3], [0, 1, 3]]);
+    let error = error("f -1 1 2\nv 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    assert!(
+        error.contains("names vertex -1, but 0 vertices stand above it"),
+        "{error}"
+    );
+}
+
+#[test]
+fn curves_and_surfaces_are_told() {
+    let (_, report) = parse(format!(
+        "{SQUARE}f 1 2 3\nsurf 0 1 0 1 1 2 3 4\ncurv 0 1 1 2\n"
+    ));
+    assert_snapshot!(report, @"2 curves and surfaces (curv, surf) passed over: only faces are drawn");
+}
+
+#[test]
 fn normals_without_a_direction_are_replaced() {
     let (mesh, report) = parse(format!(
         "{SQUARE}vn 0 0 0\nvn nan 0 0\nvn 1 0 0\nf 1//1 2//2 3//3\n"
@@ -191,10 +244,9 @@ fn broken_files_are_explained() {
     assert_snapshot!(error(format!("{SQUARE}f 1 2 3\nf 1 2")), @"house.obj:6: the file ends in \
         the middle of a face");
     assert_snapshot!(error(format!("{SQUARE}f\n")), @"house.obj:5: a face without corners");
-    assert_snapshot!(error(b"v 0 0 0\nv 1 \xff 0\n"), @"house.obj:2: not an OBJ file, or damaged: \
-        byte 5 of the line is not UTF-8 text");
+    assert_snapshot!(error(b"v 0 0 0\nv 1 \xff 0\n"), @r#"house.obj:2: position parse error in "v 1 ÿ 0""#);
     assert_snapshot!(error(b"\x89PNG\r\n\x1a\n\0\0\0"), @"house.obj:1: not an OBJ file, or \
-        damaged: byte 1 of the line is not UTF-8 text");
+        damaged: it holds no vertex, but bytes that are no text");
 }
 
 #[test]
@@ -202,13 +254,9 @@ fn broken_faces_are_named() {
     let faces = "g wall\nf 1 2 3\nf 1 2 5\nf 0 1 2\ng roof\nf 1 2 -5\n";
     assert_snapshot!(error(format!("{SQUARE}{faces}")), @r#"
     house.obj: 3 faces cannot be used
-      face 2 of group "wall" (line 7) names vertex 5, but 4 vertices stand above it
-      face 3 of group "wall" (line 8) names vertex 0, but 4 vertices stand above it
+      face 2 of group "wall" (line 7) names vertex 5, but the file has 4 vertices
+      face 3 of group "wall" (line 8) names vertex 0, but the file has 4 vertices
       face 1 of group "roof" (line 10) names vertex -5, but 4 vertices stand above it
-    "#);
-    assert_snapshot!(error(format!("{SQUARE}vn 0 0 1\nf 1//1 2//1 3//2\n")), @r#"
-    house.obj: 1 face cannot be used
-      face 1 of group "unnamed" (line 6) names normal 2, but 1 normal stands above it
     "#);
     assert_snapshot!(error(format!("{SQUARE}f 1/2/3/4 2 3\nf 1 2 x\nf 1 2 3.5\nf // 1 2\n")), @"
     house.obj: 4 faces cannot be used
@@ -227,12 +275,12 @@ fn broken_faces_are_named() {
     let faces = huge.map(|index| format!("f 1 2 {index}\n")).concat();
     assert_snapshot!(error(format!("{SQUARE}{faces}")), @"
     house.obj: 3 faces cannot be used
-      face 1 of group \"unnamed\" (line 5) names vertex 99999999999999999999999, but 4 vertices \
-          stand above it
+      face 1 of group \"unnamed\" (line 5) names vertex 99999999999999999999999, but the file \
+          has 4 vertices
       face 2 of group \"unnamed\" (line 6) names vertex -9223372036854775808, but 4 vertices stand \
           above it
-      face 3 of group \"unnamed\" (line 7) names vertex 18446744073709551615, but 4 vertices stand \
-          above it
+      face 3 of group \"unnamed\" (line 7) names vertex 18446744073709551615, but the file has 4 \
+          vertices
     ");
     let vertices = "v 0 0 0\nv nan 0 0\nv 0 1e39 0\nv 0 1 0\nv 1 1 0\n";
     let faces = "g wall\nf 1 4 5\nf 1 2 4\nf 1 4 3\n";
@@ -243,11 +291,11 @@ fn broken_faces_are_named() {
     "#);
     assert_snapshot!(error(format!("{SQUARE}{}", "f 1 2 9\n".repeat(7))), @r#"
     house.obj: 7 faces cannot be used
-      face 1 of group "unnamed" (line 5) names vertex 9, but 4 vertices stand above it
-      face 2 of group "unnamed" (line 6) names vertex 9, but 4 vertices stand above it
-      face 3 of group "unnamed" (line 7) names vertex 9, but 4 vertices stand above it
-      face 4 of group "unnamed" (line 8) names vertex 9, but 4 vertices stand above it
-      face 5 of group "unnamed" (line 9) names vertex 9, but 4 vertices stand above it
+      face 1 of group "unnamed" (line 5) names vertex 9, but the file has 4 vertices
+      face 2 of group "unnamed" (line 6) names vertex 9, but the file has 4 vertices
+      face 3 of group "unnamed" (line 7) names vertex 9, but the file has 4 vertices
+      face 4 of group "unnamed" (line 8) names vertex 9, but the file has 4 vertices
+      face 5 of group "unnamed" (line 9) names vertex 9, but the file has 4 vertices
       and 2 more
     "#);
 }

@@ -2,8 +2,8 @@
 
 use insta::assert_snapshot;
 use skiagraph_scene::{
-    DirectionalLight, ObjSetup, QuadDiagonal, SceneError, SceneFile, SceneLibrary, SceneRequest,
-    View,
+    Concave, DirectionalLight, MaterialUse, ObjSetup, QuadDiagonal, SceneError, SceneFile,
+    SceneLibrary, SceneRequest, View,
 };
 use std::{fs, path::Path};
 
@@ -247,6 +247,8 @@ fn setup() -> ObjSetup {
         view,
         light: DirectionalLight::new(glam::DVec3::NEG_Y).into(),
         quads: QuadDiagonal::FirstThird,
+        concave: Concave::Cut,
+        materials: MaterialUse::All,
     }
 }
 

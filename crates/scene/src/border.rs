@@ -1,0 +1,40 @@
+//! The border to libraries that parse what others wrote.
+
+use std::{
+    any::Any,
+    panic::{AssertUnwindSafe, catch_unwind},
+};
+
+/// Calls a library's parser. What makes it panic is kept from it where that is known; a panic that
+/// is not known yet is an error like any other.
+///
+/// # Errors
+/// Names the library, and what it said.
+pub(crate) fn caught<T>(library: &str, parse: impl FnOnce() -> T) -> Result<T, String> {
+    // What the parser was filling is dropped with the error.
+    catch_unwind(AssertUnwindSafe(parse)).map_err(|payload| {
+        let said = message(payload.as_ref());
+        format!("the library `{library}` failed on it ({said}): save the file in another program")
+    })
+}
+
+fn message(payload: &(dyn Any + Send)) -> &str {
+    let text = payload.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| payload.downcast_ref::<&str>().copied())
+        .unwrap_or("without a word")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_of_a_library_is_an_error() {
+        assert_eq!(caught("obj", || 3), Ok(3));
+        let error = caught("obj", || Vec::<u8>::new()[7]).unwrap_err();
+        assert!(
+            error.contains("`obj`") && error.contains("index is 7"),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,77 @@
+//! Walks the nodes of a document: where each stands, and which are seen.
+
+use super::{document::Fault, prepare::Beside};
+use glam::{DMat4, Mat4};
+use gltf::{Document, Node};
+use std::collections::HashMap;
+
+/// The nodes of a document's scene.
+#[derive(Default)]
+pub(super) struct Nodes<'a> {
+    /// Those that have a mesh and are not hidden, in the order of the file, depth first.
+    pub seen: Vec<Node<'a>>,
+    /// Where nodes stand: those of the scene, and joints that are in none.
+    pub worlds: HashMap<usize, DMat4>,
+}
+
+impl<'a> Nodes<'a> {
+    /// Those of the default scene, else of the first; `None` in a document without scenes.
+    ///
+    /// # Errors
+    /// A node with two parents, or a transform that is not finite.
+    pub fn of(document: &'a Document, beside: &Beside) -> Result<Option<Self>, Fault> {
+        let mut scenes = document.scenes();
+        let Some(scene) = document.default_scene().or_else(|| scenes.next()) else {
+            return Ok(None);
+        };
+        let mut nodes = Self::default();
+        nodes.walk(scene.nodes().collect(), beside, true)?;
+        // A joint may stand outside of the scene.
+        let joints = document
+            .skins()
+            .flat_map(|skin| skin.joints().map(|of| of.index()));
+        let mut joints = joints.peekable();
+        if joints.any(|joint| !nodes.worlds.contains_key(&joint)) {
+            let mut has_parent = vec![false; document.nodes().len()];
+            for child in document.nodes().flat_map(|node| node.children()) {
+                has_parent[child.index()] = true;
+            }
+            let roots = document.nodes().filter(|node| {
+                !has_parent[node.index()] && !nodes.worlds.contains_key(&node.index())
+            });
+            let roots = roots.collect();
+            nodes.walk(roots, beside, false)?;
+        }
+        Ok(Some(nodes))
+    }
+
+    fn walk(&mut self, roots: Vec<Node<'a>>, beside: &Beside, is_scene: bool) -> Result<(), Fault> {
+        let mut open: Vec<(Node<'a>, DMat4, bool)> = Vec::new();
+        let begin = |node| (node, DMat4::IDENTITY, is_scene);
+        open.extend(roots.into_iter().rev().map(begin));
+        while let Some((node, above, seen)) = open.pop() {
+            let place = || format!("node {}", node.index());
+            let local = Mat4::from_cols_array_2d(&node.transform().matrix()).as_dmat4();
+            let transform = above * local;
+            if !transform.is_finite() {
+                return Err((place(), "its transform is not finite".to_owned()));
+            }
+            if self.worlds.insert(node.index(), transform).is_some() {
+                let why = "two nodes have it as a child, or it is its own";
+                return Err((place(), why.to_owned()));
+            }
+            let seen = seen && !beside.hidden.contains(&node.index());
+            let children: Vec<_> = node.children().collect();
+            open.extend(
+                children
+                    .into_iter()
+                    .rev()
+                    .map(|child| (child, transform, seen)),
+            );
+            if seen && node.mesh().is_some() {
+                self.seen.push(node);
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,228 @@
+//! What moves the vertices of a mesh before it is drawn: weights of morph targets, the joints of a
+//! skin in the pose of their nodes, and the transforms of instances.
+
+use super::{accessor, buffers::Buffers, nodes::Nodes, prepare::Instances};
+use glam::{DMat3, DMat4, DQuat, DVec3, Vec3};
+use gltf::{Accessor, Document, Primitive, Semantic, Skin};
+
+/// Positions and normals of vertices.
+pub(super) struct Vertices {
+    pub positions: Vec<DVec3>,
+    pub normals: Option<Vec<DVec3>>,
+    /// Vertices at which a skin turns the winding; none at all without a skin.
+    pub turned: Vec<bool>,
+}
+
+fn named(accessor: &Accessor<'_>, why: String) -> String {
+    format!("accessor {}: {why}", accessor.index())
+}
+
+/// Three numbers for each item.
+pub(super) fn vectors(accessor: &Accessor<'_>, buffers: &Buffers) -> Result<Vec<DVec3>, String> {
+    let read = accessor::floats::<3>(accessor, buffers).map_err(|why| named(accessor, why))?;
+    Ok(read
+        .into_iter()
+        .map(|of| Vec3::from(of).as_dvec3())
+        .collect())
+}
+
+impl Vertices {
+    /// Moves them by the morph targets of a primitive.
+    ///
+    /// # Errors
+    /// What is wrong with a target.
+    pub fn morph(
+        &mut self,
+        primitive: &Primitive<'_>,
+        weights: &[f32],
+        buffers: &Buffers,
+    ) -> Result<(), String> {
+        let targets = primitive.morph_targets().zip(weights);
+        for (target, &weight) in targets.filter(|(_, weight)| **weight != 0.0) {
+            let normals = self.normals.as_mut().zip(target.normals());
+            let positions = target.positions().map(|of| (&mut self.positions, of));
+            for (vertices, accessor) in positions.into_iter().chain(normals) {
+                let moved = vectors(&accessor, buffers)?;
+                if moved.len() < vertices.len() {
+                    let (has, needs) = (moved.len(), vertices.len());
+                    let why = format!("a morph target of {has} vertices for {needs}");
+                    return Err(named(&accessor, why));
+                }
+                for (vertex, by) in vertices.iter_mut().zip(moved) {
+                    *vertex += f64::from(weight) * by;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts them where the joints of a skin are; false where the primitive names no joints.
+    ///
+    /// # Errors
+    /// A vertex that names a joint which is not there.
+    pub fn skin(
+        &mut self,
+        primitive: &Primitive<'_>,
+        joints: &[DMat4],
+        buffers: &Buffers,
+    ) -> Result<bool, String> {
+        let sets: Vec<(Vec<[f32; 4]>, Vec<[f32; 4]>)> = (0..)
+            .map_while(|set| {
+                let names = primitive.get(&Semantic::Joints(set))?;
+                Some((names, primitive.get(&Semantic::Weights(set))?))
+            })
+            .map(|(names, weights)| {
+                let read = |of: &Accessor<'_>| {
+                    accessor::floats::<4>(of, buffers).map_err(|why| named(of, why))
+                };
+                Ok((read(&names)?, read(&weights)?))
+            })
+            .collect::<Result<_, String>>()?;
+        if sets.is_empty() {
+            return Ok(false);
+        }
+        self.turned = Vec::with_capacity(self.positions.len());
+        for vertex in 0..self.positions.len() {
+            let blend = blend(vertex, &sets, joints)?;
+            self.positions[vertex] = blend.transform_point3(self.positions[vertex]);
+            let linear = DMat3::from_mat4(blend);
+            if let Some(normal) = self.normals.as_mut().and_then(|of| of.get_mut(vertex)) {
+                *normal = of_normals(linear) * *normal;
+            }
+            self.turned.push(linear.determinant() < 0.0);
+        }
+        Ok(true)
+    }
+}
+
+/// What a linear map does to normals; nothing is left of those of a flattened one.
+pub(super) fn of_normals(linear: DMat3) -> DMat3 {
+    match linear.determinant() {
+        0.0 => DMat3::ZERO,
+        _ => linear.inverse().transpose(),
+    }
+}
+
+/// The mean of a vertex's joints by their weights, which are brought to a sum of 1. One without
+/// weights hangs on its first joint, as in other programs.
+fn blend(
+    vertex: usize,
+    sets: &[(Vec<[f32; 4]>, Vec<[f32; 4]>)],
+    joints: &[DMat4],
+) -> Result<DMat4, String> {
+    let joint = |named: f32| {
+        joints.get(named as usize).copied().ok_or_else(|| {
+            format!(
+                "vertex {vertex} names joint {named}, but its skin has {}",
+                joints.len()
+            )
+        })
+    };
+    let (mut sum, mut total) = (DMat4::ZERO, 0.0);
+    for (names, weights) in sets {
+        let short = || format!("vertex {vertex} has no joints");
+        let names = names.get(vertex).ok_or_else(short)?;
+        let weights = weights.get(vertex).ok_or_else(short)?;
+        for (&named, &weight) in names
+            .iter()
+            .zip(weights)
+            .filter(|(_, weight)| **weight != 0.0)
+        {
+            sum += joint(named)? * f64::from(weight);
+            total += f64::from(weight);
+        }
+    }
+    match total {
+        0.0 => joint(sets[0].0[vertex][0]),
+        _ => Ok(sum * (1.0 / total)),
+    }
+}
+
+/// The joints of a skin: where each stands, from where it was bound.
+///
+/// # Errors
+/// What is wrong with the skin.
+pub(super) fn joints(
+    skin: &Skin<'_>,
+    nodes: &Nodes<'_>,
+    buffers: &Buffers,
+) -> Result<Vec<DMat4>, String> {
+    let bound = match skin.inverse_bind_matrices() {
+        Some(accessor) => accessor::floats::<16>(&accessor, buffers)
+            .map_err(|why| named(&accessor, why))?
+            .iter()
+            .map(|columns| DMat4::from_cols_array(&columns.map(f64::from)))
+            .collect(),
+        None => vec![DMat4::IDENTITY; skin.joints().len()],
+    };
+    if bound.len() < skin.joints().len() {
+        let (has, needs) = (bound.len(), skin.joints().len());
+        return Err(format!(
+            "skin {}: {has} matrices for {needs} joints",
+            skin.index()
+        ));
+    }
+    let placed = skin.joints().zip(bound).map(|(joint, bound)| {
+        let world = nodes.worlds.get(&joint.index());
+        // One that stands nowhere is one of a circle.
+        let world = world.ok_or_else(|| format!("joint {} is its own child", joint.index()))?;
+        Ok(*world * bound)
+    });
+    placed.collect()
+}
+
+/// The transforms of a node's instances.
+///
+/// # Errors
+/// What is wrong with them.
+pub(super) fn instances(
+    of: Instances,
+    document: &Document,
+    buffers: &Buffers,
+) -> Result<Vec<DMat4>, String> {
+    let accessor = |number: Option<usize>| match number {
+        Some(number) => match document.accessors().nth(number) {
+            Some(accessor) => Ok(Some(accessor)),
+            None => Err(format!(
+                "its instances name accessor {number}, which is not there"
+            )),
+        },
+        None => Ok(None),
+    };
+    let translation = accessor(of.translation)?;
+    let translation = translation.map(|of| vectors(&of, buffers)).transpose()?;
+    let scale = accessor(of.scale)?;
+    let scale = scale.map(|of| vectors(&of, buffers)).transpose()?;
+    let rotation = match accessor(of.rotation)? {
+        Some(accessor) => {
+            Some(accessor::floats::<4>(&accessor, buffers).map_err(|why| named(&accessor, why))?)
+        }
+        None => None,
+    };
+    let counts = [
+        translation.as_ref().map(Vec::len),
+        rotation.as_ref().map(Vec::len),
+        scale.as_ref().map(Vec::len),
+    ];
+    let count = counts.into_iter().flatten().min().unwrap_or(0);
+    if counts.into_iter().flatten().any(|other| other != count) {
+        return Err("its instances have attributes of different counts".to_owned());
+    }
+    let turn = |[x, y, z, w]: [f32; 4]| {
+        let turn = DQuat::from_xyzw(x.into(), y.into(), z.into(), w.into());
+        match turn.length_squared() > 0.0 {
+            true => turn.normalize(),
+            false => DQuat::IDENTITY,
+        }
+    };
+    let at = |item: usize| {
+        DMat4::from_scale_rotation_translation(
+            scale.as_ref().map_or(DVec3::ONE, |of| of[item]),
+            rotation
+                .as_ref()
+                .map_or(DQuat::IDENTITY, |of| turn(of[item])),
+            translation.as_ref().map_or(DVec3::ZERO, |of| of[item]),
+        )
+    };
+    Ok((0..count).map(at).collect())
+}

@@ -1,0 +1,78 @@
+//! Text of files that other programs wrote: byte order marks and encodings.
+
+use std::borrow::Cow;
+
+/// The mark at the beginning of a file in UTF-8 that some editors write.
+const UTF8_MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// Characters of the bytes 0x80 to 0x9f in Windows-1252. The five that it leaves open stand for
+/// themselves, so that different names stay different.
+const WINDOWS_1252: [char; 32] = [
+    '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž', '\u{8f}',
+    '\u{90}', '‘', '’', '“', '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\u{9d}', 'ž', 'Ÿ',
+];
+
+/// A file's bytes without a byte order mark; those of UTF-16 become UTF-8. UTF-16 without a mark is
+/// known by the zero byte of its first character.
+pub(crate) fn without_mark(bytes: &[u8]) -> Cow<'_, [u8]> {
+    let (rest, word): (&[u8], fn([u8; 2]) -> u16) = match bytes {
+        [0xff, 0xfe, rest @ ..] => (rest, u16::from_le_bytes),
+        [0xfe, 0xff, rest @ ..] => (rest, u16::from_be_bytes),
+        [1..=255, 0, 1..=255, 0, ..] => (bytes, u16::from_le_bytes),
+        [0, 1..=255, 0, 1..=255, ..] => (bytes, u16::from_be_bytes),
+        _ => return bytes.strip_prefix(UTF8_MARK).unwrap_or(bytes).into(),
+    };
+    let words = rest.as_chunks::<2>().0.iter().map(|pair| word(*pair));
+    let text: String = char::decode_utf16(words)
+        .map(|read| read.unwrap_or(char::REPLACEMENT_CHARACTER))
+        .collect();
+    text.into_bytes().into()
+}
+
+/// A line as text. One that is not UTF-8 is read as Windows-1252, which gives every byte a
+/// character of its own: keywords and numbers are the same in all encodings that contain ASCII, and
+/// names that differ stay different.
+pub(crate) fn line_text(line: &[u8]) -> Cow<'_, str> {
+    match std::str::from_utf8(line) {
+        Ok(text) => text.into(),
+        Err(_) => {
+            let character = |&byte: &u8| match byte {
+                0x80..=0x9f => WINDOWS_1252[usize::from(byte - 0x80)],
+                _ => char::from(byte),
+            };
+            line.iter().map(character).collect::<String>().into()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text(bytes: &[u8]) -> String {
+        String::from_utf8(without_mark(bytes).into_owned()).unwrap()
+    }
+
+    #[test]
+    fn byte_order_marks_are_followed() {
+        assert_eq!(text(b"v 1"), "v 1");
+        assert_eq!(text(b"\xef\xbb\xbfv 1"), "v 1");
+        assert_eq!(text(b"\xff\xfev\0\xe9\0"), "vé");
+        assert_eq!(text(b"\xfe\xff\0v\0\xe9"), "vé");
+        assert_eq!(text(b"v\0 \0"), "v ");
+        assert_eq!(text(b"\0v\0 "), "v ");
+        // Half a character at the end, and half of a pair.
+        assert_eq!(text(b"\xff\xfev\0 "), "v");
+        assert_eq!(text(b"\xff\xfe\0\xd8v\0"), "\u{fffd}v");
+        assert_eq!(text(b"\0\0\0\0"), "\0\0\0\0");
+    }
+
+    #[test]
+    fn every_byte_has_a_character_of_its_own() {
+        assert_eq!(line_text("größe".as_bytes()), "größe");
+        assert_eq!(line_text(b"gr\xf6\xdfe \x80"), "größe €");
+        let all: Vec<u8> = (0..=255).collect();
+        let characters: std::collections::HashSet<char> = line_text(&all).chars().collect();
+        assert_eq!(characters.len(), 256);
+    }
+}

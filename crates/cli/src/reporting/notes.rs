@@ -22,8 +22,8 @@ pub fn unlit(view: &str, pixels: &PixelCounts) -> Option<String> {
     let what = match (pixels.facing_away, pixels.facing_light, pixels.lit) {
         (0, 0, _) => "shows no triangle: give another --eye, --look, --near or --far".to_owned(),
         (_, 0, _) => format!(
-            "has nothing in light: all {away} pixels that show a surface face away from it; --light \
-             is the direction in which the light travels"
+            "has nothing in light: all {away} pixels that show a surface face away from it; \
+             --light is the direction in which the light travels"
         ),
         (_, _, 0) => format!(
             "has nothing in light: {away} pixels face away from it, and all {facing} that face it \

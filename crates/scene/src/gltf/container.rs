@@ -1,6 +1,6 @@
 //! The container of a binary file: a header, then chunks.
 
-use super::document::Fault;
+use super::fault::{Fault, of_another_version};
 use crate::text::without_mark;
 use std::borrow::Cow;
 
@@ -30,9 +30,7 @@ pub(super) fn split(bytes: &[u8]) -> Result<(Cow<'_, [u8]>, Option<&[u8]>), Faul
         return Err(cut(HEADER));
     };
     if version != 2 {
-        return Err(fail(super::document::of_another_version(&format!(
-            "{version}.0"
-        ))));
+        return Err(fail(of_another_version(&format!("{version}.0"))));
     }
     let length = length as usize;
     if length > there {

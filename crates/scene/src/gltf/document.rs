@@ -3,17 +3,15 @@
 
 use super::{
     container,
+    fault::{Fault, of_another_version},
     prepare::{Beside, prepare},
 };
-use crate::{border::caught, error::beginning, material_use::MaterialUse};
+use crate::{border::caught, material_use::MaterialUse};
 use gltf::{
     Document, Error,
     json::{Root, deserialize, mesh::Semantic, validation::Checked},
 };
 use serde_json::{Value, json};
-
-/// A place in the file, and what is wrong there.
-pub(super) type Fault = (String, String);
 
 /// Most values in the JSON: each takes many times its text.
 const MOST_VALUES: usize = 1 << 25;
@@ -61,15 +59,6 @@ fn in_json(why: &serde_json::Error) -> Fault {
         false => "",
     };
     ("its JSON".to_owned(), format!("{why}{cut}"))
-}
-
-/// Why a file of another version is refused, and the way out.
-pub(super) fn of_another_version(version: &str) -> String {
-    format!(
-        "it is glTF {}, this program reads 2.0: convert it, glTF 1.0 for example with \
-         `gltf-pipeline -i old.gltf -o new.gltf`",
-        beginning(version)
-    )
 }
 
 /// Refuses other versions than 2; in 1.0 lists were objects.

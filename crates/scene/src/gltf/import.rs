@@ -3,7 +3,8 @@
 use super::{
     accessor,
     buffers::{self, Buffers, GLTF_FILE},
-    document::{self, Fault, Parsed},
+    document::{self, Parsed},
+    fault::Fault,
     materials::Reader,
     nodes::Nodes,
     pose::{self, Vertices, of_normals, vectors},
@@ -20,7 +21,7 @@ use crate::{
     report::ImportReport,
 };
 use glam::{DMat3, DMat4, DVec3, Vec2};
-use gltf::{Document, Semantic, mesh::Mode};
+use gltf::{Document, Semantic, accessor::DataType, mesh::Mode};
 use std::path::Path;
 
 /// Most corners of all triangles together: a small file may place one mesh any number of times.
@@ -133,6 +134,8 @@ struct Arrays {
     /// Alpha of the vertices' colours under a mask.
     alphas: Option<Vec<f32>>,
     indices: Vec<u32>,
+    /// The index that begins another strip or fan: the largest of its kind, which names no vertex.
+    restart: u32,
 }
 
 impl<'a> Import<'a> {
@@ -222,7 +225,7 @@ impl<'a> Import<'a> {
             true => DMat4::IDENTITY,
             false => placing.node,
         };
-        let triangles = self.triangles(primitive.mode(), &arrays.indices);
+        let triangles = self.triangles(primitive.mode(), &arrays.indices, arrays.restart);
         for instance in &placing.instances {
             self.place(
                 &arrays,
@@ -377,6 +380,11 @@ impl<'a> Import<'a> {
                 .map_err(|why| named((accessor.index(), why)))?,
             None => (0..positions.len() as u32).collect(),
         };
+        let restart = match primitive.indices().map(|of| of.data_type()) {
+            Some(DataType::U8) => u8::MAX.into(),
+            Some(DataType::U16) => u16::MAX.into(),
+            _ => u32::MAX,
+        };
         Ok(Arrays {
             vertices: Vertices {
                 positions,
@@ -386,11 +394,14 @@ impl<'a> Import<'a> {
             uvs,
             alphas,
             indices,
+            restart,
         })
     }
 
-    /// The triangles that a mode makes of indices. Points and lines are counted.
-    fn triangles(&mut self, mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
+    /// The triangles that a mode makes of indices; `restart` begins another strip or fan. Points
+    /// and lines are counted.
+    fn triangles(&mut self, mode: Mode, indices: &[u32], restart: u32) -> Vec<[u32; 3]> {
+        let runs = indices.split(|&index| index == restart);
         let report = &mut self.builder.report;
         match mode {
             Mode::Points => report.points += indices.len(),
@@ -401,25 +412,25 @@ impl<'a> Import<'a> {
                 let triangles = indices.chunks_exact(3);
                 return triangles.map(|of| [of[0], of[1], of[2]]).collect();
             }
-            Mode::TriangleStrip => {
-                let triangles = indices.windows(3).enumerate();
-                return triangles
-                    .map(|(at, of)| match at % 2 {
-                        0 => [of[0], of[1], of[2]],
-                        _ => [of[1], of[0], of[2]],
-                    })
-                    .collect();
-            }
-            Mode::TriangleFan => {
-                let rim = indices.get(1..).unwrap_or_default();
-                return rim
-                    .windows(2)
-                    .map(|of| [of[0], of[1], indices[0]])
-                    .collect();
-            }
+            Mode::TriangleStrip => return runs.flat_map(strip).collect(),
+            Mode::TriangleFan => return runs.flat_map(fan).collect(),
         }
         Vec::new()
     }
+}
+
+/// Every second triangle of a strip is wound the other way.
+fn strip(indices: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+    let triangles = indices.windows(3).enumerate();
+    triangles.map(|(at, of)| match at % 2 {
+        0 => [of[0], of[1], of[2]],
+        _ => [of[1], of[0], of[2]],
+    })
+}
+
+fn fan(indices: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+    let rim = indices.get(1..).unwrap_or_default();
+    rim.windows(2).map(|of| [of[0], of[1], indices[0]])
 }
 
 /// Name of the group that a mesh's triangles are in.

@@ -34,7 +34,8 @@ pub(super) struct Read {
     pub cut: Option<Cut>,
 }
 
-/// How a masked material is cut out: where alpha, times that of the texture, is the cutoff at least.
+/// How a masked material is cut out: where alpha, times that of the texture, is the cutoff at
+/// least.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cut {
     pub alpha: f32,

@@ -2,15 +2,16 @@
 //!
 //! What becomes of one: the triangles of its default scene (of the first one, else of all meshes)
 //! with the transforms of their nodes and instances, morph targets by their weights, skins in the
-//! pose of their joints' nodes; animations stand still. `alphaMode: MASK` is a mask, which the alpha
-//! of vertices is a part of; `BLEND` counts as opaque. Primitives without normals are flat. What is
-//! passed over stands in the report.
+//! pose of their joints' nodes; animations stand still. `alphaMode: MASK` is a mask, which the
+//! alpha of vertices is a part of; `BLEND` counts as opaque. Primitives without normals are flat.
+//! What is passed over stands in the report.
 
 mod accessor;
 mod buffers;
 mod container;
 mod document;
 mod extensions;
+mod fault;
 mod import;
 mod materials;
 mod nodes;

@@ -3,8 +3,8 @@
 //! but is followed, is read here.
 
 use super::{
-    document::Fault,
     extensions::{self, Kind},
+    fault::Fault,
 };
 use crate::{error::beginning, material_use::MaterialUse};
 use serde_json::{Map, Value, json};

@@ -194,7 +194,8 @@ impl<'a> Guard<'a> {
     /// Takes the next statement, which may be continued on more lines.
     fn next_statement(&mut self) -> Option<(Cow<'a, str>, bool)> {
         let (mut line, mut ended) = self.next_line()?;
-        // A name or a comment may end in a backslash (a Windows folder); only numbers are continued.
+        // A name or a comment may end in a backslash (a Windows folder); only numbers are
+        // continued.
         if !line.starts_with(['v', 'f', 'l', 'p']) || !line.ends_with('\\') {
             return Some((line, ended));
         }
@@ -455,8 +456,8 @@ fn without_comment(rest: &str) -> &str {
 }
 
 /// The number, from 1, of what a corner names, or the text of one that names nothing and how many
-/// there are. `None` where it is no number. A positive one counts from the beginning of the file, to
-/// its end; a negative one back from the line. One that overflows names nothing either.
+/// there are. `None` where it is no number. A positive one counts from the beginning of the file,
+/// to its end; a negative one back from the line. One that overflows names nothing either.
 fn resolve(written: &str, available: Available) -> Option<Result<usize, (String, usize)>> {
     let digits = written.strip_prefix(['-', '+']).unwrap_or(written);
     if digits.is_empty() || !digits.bytes().all(|byte| byte.is_ascii_digit()) {

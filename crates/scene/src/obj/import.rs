@@ -69,8 +69,8 @@ struct Import<'a> {
 }
 
 impl Import<'_> {
-    /// Says what was passed over. Texture coordinates that are not there are a fault where a mask is
-    /// looked up by them.
+    /// Says what was passed over. Texture coordinates that are not there are a fault where a mask
+    /// is looked up by them.
     fn remark_and_check(&mut self) -> Result<(), SceneError> {
         let (guard, report) = (self.guard, &mut self.builder.report);
         for text in std::mem::take(&mut self.found.remarks) {

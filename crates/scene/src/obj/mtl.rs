@@ -42,7 +42,8 @@ const MEND: &str = "mend the line, or give --materials color (every surface is o
 /// What was found of materials.
 #[derive(Default)]
 pub(super) struct Found {
-    /// By the numbers that [`Guard::materials`] has them; none where the file names no file of them.
+    /// By the numbers that [`Guard::materials`] has them; none where the file names no file of
+    /// them.
     pub materials: Vec<Material>,
     /// What becomes of the texture coordinates of each; none at all where they stay as they are.
     pub uvs: Vec<UvTransform>,

@@ -1,6 +1,7 @@
-//! Files of other programs (`tests/faults/`): each loads as its control does, or says what cannot be
-//! read and the way out.
+//! Files of other programs (`tests/faults/`): each loads as its control does, or says what cannot
+//! be read and the way out.
 
+use base64::{Engine, engine::general_purpose::STANDARD};
 use glam::{DVec3, Vec3};
 use skiagraph_scene::{
     Concave, ImportReport, MaterialUse, Mesh, ObjMaterials, ObjOptions, SceneError,
@@ -454,7 +455,8 @@ fn instances_are_turned_scaled_and_mirrored() {
     // Of the four corners of the floor: places, and scales that mirror.
     let instances = |attributes: &str| {
         let extension = format!(
-            r#"{{"mesh":1,"scale":[0.5,0.5,0.5],"extensions":{{"EXT_mesh_gpu_instancing":{{"attributes":{{{attributes}}}}}}}}}"#
+            r#"{{"mesh":1,"scale":[0.5,0.5,0.5],
+                "extensions":{{"EXT_mesh_gpu_instancing":{{"attributes":{{{attributes}}}}}}}}}"#
         );
         control(PLATE, &extension)
     };
@@ -479,6 +481,45 @@ fn instances_are_turned_scaled_and_mirrored() {
     assert!(error.contains("attributes of different counts"), "{error}");
     let error = instances(r#""TRANSLATION":44"#).unwrap_err().to_string();
     assert!(error.contains("accessor 44, which is not there"), "{error}");
+}
+
+/// The floor's indices, as a strip and as a fan, in two runs.
+#[test]
+fn the_largest_index_begins_another_strip() {
+    let text: String = CONTROL.split_whitespace().collect();
+    let indices: [u16; 8] = [0, 2, 1, 65535, 0, 3, 2, 65535];
+    let data: Vec<u8> = indices.iter().flat_map(|of| of.to_le_bytes()).collect();
+    let data = STANDARD.encode(data);
+    let text = text
+        .replace(
+            r#"{"bufferView":1,"componentType":5123,"count":6,"#,
+            r#"{"bufferView":4,"componentType":5123,"count":8,"#,
+        )
+        .replace(
+            r#""bufferViews":["#,
+            r#""bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteLength":1},
+                {"buffer":0,"byteOffset":60,"byteLength":96},
+                {"buffer":0,"byteOffset":156,"byteLength":72},{"buffer":1,"byteLength":16},"#,
+        )
+        .replace(
+            r#""buffers":["#,
+            &format!(
+                r#""extensionsRequired":["EXT_mesh_primitive_restart"],
+                   "buffers":[{{"byteLength":16,"uri":"data:a;base64,{data}"}},"#
+            ),
+        )
+        .replace(r#""buffer":1"#, r#""buffer":9"#)
+        .replace(r#""buffer":0"#, r#""buffer":1"#)
+        .replace(r#""buffer":9"#, r#""buffer":0"#);
+    for mode in ["5", "6"] {
+        let text = text.replacen(
+            r#""indices":1"#,
+            &format!(r#""indices":1,"mode":{mode}"#),
+            1,
+        );
+        let parsed = parse_gltf(text.as_bytes(), Path::new("a.gltf"), MaterialUse::All);
+        assert_plates(mode, &parsed.unwrap().0, ONE);
+    }
 }
 
 #[test]

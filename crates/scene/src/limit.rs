@@ -1,5 +1,6 @@
 //! Reading a file whole, and never more of it than a file of its kind has.
 
+use crate::text::without_mark;
 use std::{
     fs::File,
     io::{self, Read},
@@ -50,12 +51,12 @@ impl Limit {
         Ok(bytes)
     }
 
-    /// The text of the file at `path`.
+    /// The text of the file at `path`, without a byte order mark.
     ///
     /// # Errors
     /// As [`Self::read`]; and bytes that are no UTF-8.
     pub fn read_text(&self, path: &Path) -> io::Result<String> {
-        String::from_utf8(self.read(path)?)
+        String::from_utf8(without_mark(&self.read(path)?).into_owned())
             .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is no text in UTF-8"))
     }
 

@@ -6,6 +6,7 @@ mod command_line;
 mod dissertation;
 mod endless_files;
 mod faults;
+mod foreign_files;
 mod new;
 mod on_a_gpu;
 mod paths;

@@ -1,6 +1,6 @@
 //! The bytes of buffers and images: in the file itself, in data URIs, or in files beside it.
 
-use super::prepare::Beside;
+use super::beside::Beside;
 use crate::{error::beginning, limit::Limit};
 use base64::{Engine, engine::general_purpose::STANDARD};
 use std::{borrow::Cow, collections::HashMap, path::Path, sync::Arc};

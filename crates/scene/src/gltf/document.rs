@@ -2,9 +2,10 @@
 //! need to refuse, are seen to before it looks.
 
 use super::{
+    beside::Beside,
     container,
     fault::{Fault, of_another_version},
-    prepare::{Beside, prepare},
+    prepare::prepare,
 };
 use crate::{border::caught, material_use::MaterialUse};
 use gltf::{

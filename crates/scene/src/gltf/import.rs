@@ -2,13 +2,13 @@
 
 use super::{
     accessor,
+    beside::Beside,
     buffers::{self, Buffers, GLTF_FILE},
     document::{self, Parsed},
     fault::Fault,
     materials::Reader,
     nodes::Nodes,
     pose::{self, Vertices, of_normals, vectors},
-    prepare::Beside,
     vertex_alpha::Materials,
 };
 use crate::{

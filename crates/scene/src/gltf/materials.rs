@@ -1,8 +1,8 @@
 //! Materials of a glTF file: base colour, mask, double-sidedness.
 
 use super::{
+    beside::Beside,
     buffers::{Buffers, data_uri, path_of},
-    prepare::Beside,
 };
 use crate::{
     mask::Mask,

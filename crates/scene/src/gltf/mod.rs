@@ -7,6 +7,7 @@
 //! What is passed over stands in the report.
 
 mod accessor;
+mod beside;
 mod buffers;
 mod container;
 mod document;
@@ -17,6 +18,8 @@ mod materials;
 mod nodes;
 mod pose;
 mod prepare;
+mod prepare_looks;
+mod prepare_storage;
 mod vertex_alpha;
 
 pub use import::{load_gltf, parse_gltf};

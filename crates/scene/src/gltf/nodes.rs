@@ -1,6 +1,6 @@
 //! Walks the nodes of a document: where each stands, and which are seen.
 
-use super::{fault::Fault, prepare::Beside};
+use super::{beside::Beside, fault::Fault};
 use glam::{DMat4, Mat4};
 use gltf::{Document, Node};
 use std::collections::HashMap;

@@ -1,7 +1,7 @@
 //! What moves the vertices of a mesh before it is drawn: weights of morph targets, the joints of a
 //! skin in the pose of their nodes, and the transforms of instances.
 
-use super::{accessor, buffers::Buffers, nodes::Nodes, prepare::Instances};
+use super::{accessor, beside::Instances, buffers::Buffers, nodes::Nodes};
 use glam::{DMat3, DMat4, DQuat, DVec3, Vec3};
 use gltf::{Accessor, Document, Primitive, Semantic, Skin};
 

@@ -464,3 +464,38 @@ fn a_bare_obj_needs_a_view_and_a_light() {
         light: a view and a light (--eye, --look, --light …) can only be given with a mesh \
         file");
 }
+
+#[test]
+fn a_byte_order_mark_is_no_part_of_a_scene_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("garden.ron");
+    for text in [format!("\u{feff}{SCENE_OF_PARK}"), SCENE_OF_PARK.to_owned()] {
+        std::fs::write(&file, text).unwrap();
+        let (scene, _) = SceneLibrary::default().load(&request(&file)).unwrap();
+        assert_eq!(scene.name, "garden");
+    }
+}
+
+const SCENE_OF_PARK: &str = r#"(
+    format: 1, name: "garden", mesh: Generated("park"),
+    light: (direction: (0, -1, 0)),
+    views: [(name: "a", eye: (0, 5, 0), direction: (0, 0, 1), fov_y_degrees: 60, near: 1, far: 9)],
+)"#;
+
+#[test]
+fn a_scene_file_that_stands_in_for_a_built_in_one_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let library = SceneLibrary {
+        scenes: folder.path().to_owned(),
+        assets: Vec::new(),
+    };
+    assert_eq!(library.stand_in("park"), None);
+    let file = folder.path().join("park.ron");
+    let (_, text) = library.locate("park").unwrap();
+    std::fs::write(&file, &text).unwrap();
+    assert_eq!(library.stand_in("park"), None);
+    std::fs::write(&file, SCENE_OF_PARK).unwrap();
+    assert_eq!(library.stand_in("park"), Some(file));
+    std::fs::write(folder.path().join("garden.ron"), SCENE_OF_PARK).unwrap();
+    assert_eq!(library.stand_in("garden"), None);
+}

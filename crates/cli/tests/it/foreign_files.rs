@@ -1,0 +1,105 @@
+//! Files of other programs, from the command line: pictures as their controls', and options that
+//! load at once what was refused.
+
+use crate::support::{results, skiagraph};
+use std::{fs, path::Path};
+use tempfile::TempDir;
+
+fn faults() -> &'static Path {
+    Path::new(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../scene/tests/faults"
+    ))
+}
+
+/// A folder with the files of one of `crates/scene/tests/faults/`.
+fn folder(of: &str) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for file in fs::read_dir(faults().join(of)).unwrap() {
+        let file = file.unwrap();
+        fs::copy(file.path(), folder.path().join(file.file_name())).unwrap();
+    }
+    folder
+}
+
+const COMPARE: &str = "compare rt --size 128x128 --frames 1 --warmup 0 --images none --scene";
+
+/// Pixels that `rt` has in shadow, and those that it has wrong.
+#[track_caller]
+fn shadow(folder: &TempDir, scene: &str) -> (u64, u64) {
+    let (runs, _) = results(folder.path(), &format!("{COMPARE} {scene}"));
+    let run = &runs[0];
+    let count = |of: &str| run.pointer(of).and_then(serde_json::Value::as_u64).unwrap();
+    (count("/pixels/shadow"), count("/measured/wrong/certain"))
+}
+
+#[test]
+fn foreign_files_have_the_pictures_of_their_controls() {
+    let control = shadow(&folder("quantized-positions"), "control.gltf");
+    assert_eq!(control, (108, 0));
+    for (of, scene, pixels) in [
+        ("mtl-one-number", "plate.obj", 108),
+        ("skin-pose", "centimetres.gltf", 108),
+        ("mask-vertex-alpha", "g2_mask_vertex_alpha.gltf", 0),
+    ] {
+        assert_eq!(shadow(&folder(of), scene), (pixels, 0), "{scene}");
+    }
+}
+
+#[test]
+fn a_bare_mesh_that_is_refused_has_an_option_that_loads_it() {
+    let folder = folder("bare-obj-way-out");
+    let run = "run rt --size 16x16 --scene";
+    for (scene, option) in [
+        ("missing_mtl.obj", "--materials ignore"),
+        ("missing_mtl.obj", "--materials color"),
+        ("bow_tie.obj", "--concave fan"),
+    ] {
+        let output = skiagraph(folder.path(), &format!("{run} {scene}"));
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{told}");
+        assert!(
+            told.contains(option.split_whitespace().next().unwrap()),
+            "{told}"
+        );
+        let output = skiagraph(folder.path(), &format!("{run} {scene} {option}"));
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{told}");
+    }
+    let output = skiagraph(folder.path(), "run rt --scene park --materials ignore");
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{told}");
+    assert!(told.contains("leave them out with --scene park"), "{told}");
+}
+
+#[test]
+fn a_light_from_below_says_so() {
+    let folder = folder("quantized-positions");
+    let output = skiagraph(
+        folder.path(),
+        &format!("{COMPARE} control.gltf --light 0,1,0"),
+    );
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{told}");
+    assert!(told.contains("shines from below"), "{told}");
+    assert!(told.contains("--light 0,-1,0 shines from above"), "{told}");
+    assert!(told.contains("has nothing in light"), "{told}");
+}
+
+/// In a folder whose `pipelines/` or `scenes/` holds another text under a built-in name.
+#[test]
+fn files_that_stand_in_for_built_in_ones_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let show = skiagraph(folder.path(), "show rt --flat");
+    let told = String::from_utf8_lossy(&show.stderr);
+    assert!(
+        show.status.success() && !told.contains("stands in"),
+        "{told}"
+    );
+    fs::create_dir(folder.path().join("pipelines")).unwrap();
+    fs::write(folder.path().join("pipelines/rt.ron"), &show.stdout).unwrap();
+    let output = skiagraph(folder.path(), "show rt");
+    let told = String::from_utf8_lossy(&output.stderr);
+    let expected = "./pipelines stands in for built-in presets, which differ: rt";
+    assert!(told.contains(expected), "{told}");
+}

@@ -1,0 +1,62 @@
+//! What is read of a document's JSON beside what the `gltf` crate reads, and the means to.
+
+use super::extensions::{self, Kind};
+use crate::error::beginning;
+use serde_json::{Map, Value};
+use std::collections::{BTreeSet, HashMap, HashSet};
+
+/// What was read of a document beside what the `gltf` crate reads.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Beside {
+    /// Nodes that are hidden with all below them (KHR_node_visibility).
+    pub hidden: HashSet<usize>,
+    /// Nodes whose mesh is there several times (EXT_mesh_gpu_instancing).
+    pub instances: HashMap<usize, Instances>,
+    /// Textures whose picture cannot be read, and why.
+    pub unread: HashMap<usize, String>,
+    /// Distances of a buffer view's items, bytes, which the `gltf` crate refuses.
+    pub strides: HashMap<usize, usize>,
+    /// Buffers that are needed.
+    pub buffers: HashSet<usize>,
+    /// What was passed over.
+    pub remarks: BTreeSet<String>,
+}
+
+/// Accessors of the transforms of instances.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Instances {
+    pub translation: Option<usize>,
+    pub rotation: Option<usize>,
+    pub scale: Option<usize>,
+}
+
+pub(super) type Fields = Map<String, Value>;
+
+/// The objects of one of the document's lists, with their numbers.
+pub(super) fn each(root: &mut Value, list: &str, mut with: impl FnMut(usize, &mut Fields)) {
+    let items = root.get_mut(list).and_then(Value::as_array_mut);
+    for (index, item) in items.into_iter().flatten().enumerate() {
+        if let Some(fields) = item.as_object_mut() {
+            with(index, fields);
+        }
+    }
+}
+
+pub(super) fn index(value: Option<&Value>) -> Option<usize> {
+    usize::try_from(value?.as_u64()?).ok()
+}
+
+/// Takes the extensions off an object, and says which are not followed.
+pub(super) fn taken(fields: &mut Fields, of: &str, beside: &mut Beside) -> Fields {
+    fields.remove("extras");
+    let Some(Value::Object(taken)) = fields.remove("extensions") else {
+        return Fields::new();
+    };
+    for name in taken.keys() {
+        if extensions::kind(name) == Kind::Unknown {
+            let text = format!("{} of {of} is not followed", beginning(name));
+            beside.remarks.insert(text);
+        }
+    }
+    taken
+}

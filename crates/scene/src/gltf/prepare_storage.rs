@@ -1,0 +1,156 @@
+//! Reduces accessors, buffer views and buffers to those in use.
+
+use super::{
+    beside::{Beside, each, index, taken},
+    extensions::{self, Kind},
+    fault::Fault,
+};
+use serde_json::{Value, json};
+use std::collections::{BTreeMap, HashSet};
+
+/// Reduces them; materials and meshes are reduced before.
+///
+/// # Errors
+/// A buffer view in use is packed, and nothing stands in for it.
+pub(super) fn storage(root: &mut Value, beside: &mut Beside) -> Result<(), Fault> {
+    let accessors = used_accessors(root, beside);
+    let mut views = accessor_list(root, beside, &accessors);
+    views.extend(used_images(root));
+    buffer_views(root, beside, &views)
+}
+
+/// The buffer views of pictures that are read.
+fn used_images(root: &Value) -> Vec<usize> {
+    let images = root.get("images").and_then(Value::as_array);
+    let views = images.into_iter().flatten();
+    views
+        .filter_map(|image| index(image.get("bufferView")))
+        .collect()
+}
+
+fn used_accessors(root: &Value, beside: &Beside) -> HashSet<usize> {
+    let mut used = HashSet::new();
+    let list = |name| {
+        root.get(name)
+            .and_then(Value::as_array)
+            .into_iter()
+            .flatten()
+    };
+    for primitive in list("meshes").flat_map(|mesh| {
+        let primitives = mesh.get("primitives").and_then(Value::as_array);
+        primitives.into_iter().flatten()
+    }) {
+        let fields = |of: Option<&Value>| -> Vec<usize> {
+            let fields = of.and_then(Value::as_object).into_iter().flatten();
+            fields.filter_map(|(_, value)| index(Some(value))).collect()
+        };
+        used.extend(index(primitive.get("indices")));
+        used.extend(fields(primitive.get("attributes")));
+        let targets = primitive.get("targets").and_then(Value::as_array);
+        for target in targets.into_iter().flatten() {
+            used.extend(fields(Some(target)));
+        }
+    }
+    used.extend(list("skins").filter_map(|skin| index(skin.get("inverseBindMatrices"))));
+    for of in beside.instances.values() {
+        used.extend(
+            [of.translation, of.rotation, of.scale]
+                .into_iter()
+                .flatten(),
+        );
+    }
+    used
+}
+
+/// Bounds that nobody reads are there, unused accessors are plain, and those without a buffer view
+/// are zeros that the `gltf` crate accepts. Returns the buffer views in use.
+fn accessor_list(root: &mut Value, beside: &mut Beside, used: &HashSet<usize>) -> HashSet<usize> {
+    let mut views = HashSet::new();
+    let nothing = root
+        .get("bufferViews")
+        .and_then(Value::as_array)
+        .map_or(0, Vec::len);
+    let mut needs_nothing = false;
+    each(root, "accessors", |number, accessor| {
+        taken(accessor, "accessors", beside);
+        if !used.contains(&number) {
+            accessor.clear();
+            accessor.insert("componentType".into(), 5126.into());
+            accessor.insert("count".into(), 1.into());
+            accessor.insert("type".into(), "SCALAR".into());
+        }
+        accessor.insert("min".into(), json!([0, 0, 0]));
+        accessor.insert("max".into(), json!([0, 0, 0]));
+        views.extend(index(accessor.get("bufferView")));
+        let sparse = accessor.get("sparse");
+        for of in ["/indices/bufferView", "/values/bufferView"] {
+            views.extend(sparse.and_then(|sparse| index(sparse.pointer(of))));
+        }
+        if sparse.is_none() && !accessor.contains_key("bufferView") {
+            needs_nothing = true;
+            let none = json!({
+                "count": 0,
+                "indices": {"bufferView": nothing, "componentType": 5123},
+                "values": {"bufferView": nothing},
+            });
+            accessor.insert("sparse".into(), none);
+        }
+    });
+    if needs_nothing {
+        let buffer = root
+            .get("buffers")
+            .and_then(Value::as_array)
+            .map_or(0, Vec::len);
+        for (list, item) in [
+            ("bufferViews", json!({"buffer": buffer, "byteLength": 0})),
+            ("buffers", json!({"byteLength": 0})),
+        ] {
+            match root.get_mut(list).and_then(Value::as_array_mut) {
+                Some(items) => items.push(item),
+                None => root[list] = json!([item]),
+            }
+        }
+    }
+    views
+}
+
+/// # Errors
+/// A buffer view in use is packed, and nothing stands in for it.
+fn buffer_views(root: &mut Value, beside: &mut Beside, used: &HashSet<usize>) -> Result<(), Fault> {
+    let mut empty = BTreeMap::new();
+    each(root, "buffers", |number, buffer| {
+        buffer.remove("extras");
+        let has_bytes = buffer.contains_key("uri") || number == 0;
+        let stands_in = buffer.remove("extensions").is_some_and(|of| {
+            let marked = |of: &Value| of.get("fallback") == Some(&true.into());
+            of.as_object().is_some_and(|of| of.values().any(marked))
+        });
+        empty.insert(number, stands_in || !has_bytes);
+    });
+    let mut fault = None;
+    each(root, "bufferViews", |number, view| {
+        let extensions = taken(view, "buffer views", beside);
+        view.remove("target");
+        if let Some(stride) = index(view.get("byteStride")).filter(|of| !(4..=252).contains(of)) {
+            view.remove("byteStride");
+            if stride > 0 {
+                beside.strides.insert(number, stride);
+            }
+        }
+        let Some(buffer) = index(view.get("buffer")).filter(|_| used.contains(&number)) else {
+            return;
+        };
+        let mut names = extensions.keys();
+        let packed = names.find(|name| extensions::kind(name) == Kind::Packed);
+        match packed {
+            Some(name) if empty.get(&buffer) == Some(&true) => {
+                let place = format!("buffer view {number}");
+                fault.get_or_insert((place, extensions::packed(name)));
+            }
+            _ => {
+                beside.buffers.insert(buffer);
+            }
+        }
+    });
+    fault.map_or(Ok(()), Err)
+}

@@ -29,6 +29,21 @@ pub(crate) fn without_mark(bytes: &[u8]) -> Cow<'_, [u8]> {
     text.into_bytes().into()
 }
 
+/// Takes the next line off a text, without its end; the flag says whether it had one. Lines end as
+/// on Unix, on Windows or on old Macs.
+pub(crate) fn next_line<'a>(rest: &mut &'a [u8]) -> Option<(&'a [u8], bool)> {
+    if rest.is_empty() {
+        return None;
+    }
+    let Some(end) = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')) else {
+        return Some((std::mem::take(rest), false));
+    };
+    let (line, behind) = rest.split_at(end);
+    let length = if behind.starts_with(b"\r\n") { 2 } else { 1 };
+    *rest = &behind[length..];
+    Some((line, true))
+}
+
 /// A line as text. One that is not UTF-8 is read as Windows-1252, which gives every byte a
 /// character of its own: keywords and numbers are the same in all encodings that contain ASCII, and
 /// names that differ stay different.
@@ -65,6 +80,15 @@ mod tests {
         assert_eq!(text(b"\xff\xfev\0 "), "v");
         assert_eq!(text(b"\xff\xfe\0\xd8v\0"), "\u{fffd}v");
         assert_eq!(text(b"\0\0\0\0"), "\0\0\0\0");
+    }
+
+    #[test]
+    fn lines_end_in_three_ways() {
+        let mut rest = &b"a\nb\r\nc\rd\n\re"[..];
+        let lines = std::iter::from_fn(|| next_line(&mut rest));
+        let lines: Vec<(&[u8], bool)> = lines.collect();
+        let ended = [&b"a"[..], b"b", b"c", b"d", b""].map(|line| (line, true));
+        assert_eq!(lines, [&ended[..], &[(b"e", false)]].concat());
     }
 
     #[test]

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     builder::{Corner, MeshBuilder},
-    error::{FaceRef, SceneError},
+    error::{FaceRef, SceneError, plural},
     material::Material,
     material_use::MaterialUse,
     mesh::Mesh,
@@ -72,6 +72,7 @@ pub fn parse_gltf(
         file: path,
         of: materials,
         colours_missing: Vec::new(),
+        blended: 0,
     };
     let materials = read_materials(&document, reader, &mut builder.report).map_err(fail)?;
     let mut import = Import {
@@ -102,6 +103,10 @@ fn read_materials(
         materials.push(read.map_err(|why| (place, why))?);
     }
     report.colours_missing = reader.colours_missing;
+    if reader.blended > 0 {
+        let count = plural(reader.blended, "material", "materials");
+        report.remark(format!("{count} of alphaMode BLEND taken for opaque"));
+    }
     Ok(Materials::new(materials))
 }
 

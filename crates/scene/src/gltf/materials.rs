@@ -75,6 +75,8 @@ pub(super) struct Reader<'a> {
     pub of: MaterialUse,
     /// What could not be read of colours.
     pub colours_missing: Vec<String>,
+    /// Number of materials that are blended over what is behind them.
+    pub blended: usize,
 }
 
 impl Reader<'_> {
@@ -87,6 +89,8 @@ impl Reader<'_> {
         let [red, green, blue, alpha] = pbr.base_color_factor();
         let info = pbr.base_color_texture();
         let with_masks = self.of == MaterialUse::All;
+        let is_blended = with_masks && from.alpha_mode() == AlphaMode::Blend;
+        self.blended += usize::from(is_blended);
         let is_masked = with_masks && from.alpha_mode() == AlphaMode::Mask;
         let texture = match &info {
             Some(info) => match self.texture(&info.texture()) {

@@ -9,7 +9,7 @@
 
 use crate::{
     error::{FACES_SHOWN, FaceFault, FaceProblem, FaceRef, beginning},
-    text::line_text,
+    text::{line_text, next_line},
 };
 use glam::Vec2;
 use std::{
@@ -176,18 +176,8 @@ impl<'a> Guard<'a> {
     /// Takes the next physical line off the file, without its line end; the flag says whether it
     /// had one.
     fn next_line(&mut self) -> Option<(Cow<'a, str>, bool)> {
-        if self.rest.is_empty() {
-            return None;
-        }
+        let (line, ended) = next_line(&mut self.rest)?;
         self.line = self.line.saturating_add(1);
-        let (line, ended) = match self.rest.iter().position(|&byte| byte == b'\n') {
-            Some(end) => {
-                let line = &self.rest[..end];
-                self.rest = &self.rest[end + 1..];
-                (line, true)
-            }
-            None => (std::mem::take(&mut self.rest), false),
-        };
         Some((line_text(line.trim_ascii()), ended))
     }
 

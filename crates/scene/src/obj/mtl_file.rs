@@ -6,7 +6,7 @@
 
 use crate::{
     error::beginning,
-    text::{line_text, without_mark},
+    text::{line_text, next_line, without_mark},
 };
 
 /// A material, as far as it matters here.
@@ -42,7 +42,9 @@ pub(super) fn parse(bytes: &[u8]) -> Vec<MtlMaterial> {
     let bytes = without_mark(bytes);
     let mut materials: Vec<MtlMaterial> = Vec::new();
     let mut is_named = false;
-    for (number, line) in (1..).zip(bytes.split(|&byte| byte == b'\n')) {
+    let mut rest = &*bytes;
+    let lines = std::iter::from_fn(|| next_line(&mut rest));
+    for (number, (line, _)) in (1..).zip(lines) {
         let line = line_text(line.trim_ascii());
         let (keyword, rest) = line
             .trim()

@@ -326,6 +326,11 @@ fn what_moves_no_triangle_refuses_no_file() {
             r#""version":2.0,"generator":7"#.into(),
             "",
         ),
+        (
+            r#""asset""#,
+            r#""materials":[{"alphaMode":"BLEND"}],"asset""#.into(),
+            "of alphaMode BLEND",
+        ),
         // Looks of a material.
         (
             r#""asset""#,

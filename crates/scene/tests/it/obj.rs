@@ -233,6 +233,14 @@ fn odd_but_valid_text() {
 }
 
 #[test]
+fn lines_of_old_macs_are_lines() {
+    let text = format!("# a house\n{SQUARE}f 1 2 3\nf 1 3 9\n");
+    let told = error(text.replace('\n', "\r"));
+    assert!(told.contains("(line 7) names vertex 9"), "{told}");
+    assert_eq!(error(text.replace('\n', "\r\n")), told);
+}
+
+#[test]
 fn broken_files_are_explained() {
     assert_snapshot!(error(""), @"house.obj: no triangles: the file holds 0 faces, 0 lines and 0 \
         points");

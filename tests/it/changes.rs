@@ -45,7 +45,9 @@ impl Park {
     }
 
     fn provider(&self) -> SceneProvider {
-        graphs::provider(&self.scene, &self.view(), VIEWPORT)
+        let mut provider = graphs::provider(&self.scene, &self.view(), VIEWPORT);
+        provider.set_parts(self.movable.clone());
+        provider
     }
 
     fn lean(&self, degrees: f64) -> [DAffine3; 2] {
@@ -107,18 +109,19 @@ fn after_each_change_the_picture_is_a_new_executors() {
         }),
         ("transforms", |park, provider| {
             let maps = park.lean(4.0);
-            provider.set_transforms(&park.movable, &maps).unwrap();
+            provider.set_transforms(&maps).unwrap();
         }),
         ("deformed", |park, provider| {
-            let (positions, normals) = park.movable.moved(&park.lean(-6.0));
-            provider.deform(positions, normals).unwrap();
+            let mesh = park.movable.moved(&park.lean(-6.0)).unwrap();
+            provider.deform(mesh.positions, mesh.normals).unwrap();
         }),
         ("deformed badly", |park, provider| {
-            let (positions, normals) = park.movable.bent(|_, place| {
+            let bent = park.movable.bent(|_, place| {
                 let turned = DMat3::from_rotation_y(0.02 * place.x);
                 (turned * place, turned)
             });
-            provider.deform(positions, normals).unwrap();
+            let mesh = bent.unwrap();
+            provider.deform(mesh.positions, mesh.normals).unwrap();
         }),
         ("mesh", |park, provider| {
             let mut mesh = park.scene.mesh.clone();
@@ -181,9 +184,7 @@ fn passes_that_read_nothing_of_a_change_are_skipped() {
     executor.refresh(&mut provider).unwrap();
     assert_eq!(next(&gpu, &mut executor).skipped, of_map);
 
-    provider
-        .set_transforms(&park.movable, &park.lean(1.0))
-        .unwrap();
+    provider.set_transforms(&park.lean(1.0)).unwrap();
     executor.refresh(&mut provider).unwrap();
     assert_eq!(next(&gpu, &mut executor).skipped, [""; 0]);
     assert_eq!(next(&gpu, &mut executor).skipped, of_map);
@@ -208,7 +209,7 @@ fn another_provider_is_seen_though_it_has_changed_nothing_itself() {
 }
 
 #[test]
-fn only_what_is_read_is_made_and_a_deformed_mesh_keeps_its_memory() {
+fn only_what_is_read_is_made_and_trees_are_refitted() {
     let (gpu, park) = (open(), Park::new());
     let how = |provider: &SceneProvider, name: &str| {
         let built = provider.built().iter().find(|built| built.name == name);
@@ -223,13 +224,13 @@ fn only_what_is_read_is_made_and_a_deformed_mesh_keeps_its_memory() {
         let first = names(&provider);
         for degrees in [1.0, 2.0, 3.0] {
             let maps = park.lean(degrees);
-            provider.set_transforms(&park.movable, &maps).unwrap();
+            provider.set_transforms(&maps).unwrap();
             executor.refresh(&mut provider).unwrap();
         }
         assert_eq!(names(&provider), first, "{preset}");
-        assert_eq!(how(&provider, "scene.positions"), Some((How::Rewritten, 4)));
+        assert_eq!(how(&provider, "scene.positions"), Some((How::Made, 4)));
         assert_eq!(how(&provider, "scene.indices"), Some((How::Made, 1)));
-        // The first deformation builds the tree that is kept from then on.
+        // It has parts, so the first tree is kept.
         let traces = preset != "nsm";
         let expected = traces.then_some((How::Refitted, 4));
         assert_eq!(how(&provider, "scene.bvh_nodes"), expected, "{preset}");
@@ -249,9 +250,9 @@ fn a_branch_is_prepared_on_a_thread_while_frames_go_on() {
     let plan = executor.plan();
     let maps = park.lean(5.0);
     std::thread::scope(|scope| {
-        let (branch, park, gpu) = (&mut branch, &park, &gpu);
+        let (branch, gpu) = (&mut branch, &gpu);
         scope.spawn(move || {
-            branch.set_transforms(&park.movable, &maps).unwrap();
+            branch.set_transforms(&maps).unwrap();
             branch.prepare(plan, &gpu.device, &gpu.queue).unwrap();
         });
     });
@@ -275,9 +276,14 @@ fn what_does_not_fit_the_mesh_or_the_plan_is_refused() {
     let mut executor = start(&gpu, &graph("nsm"), &mut provider);
     let error = provider.deform(vec![], vec![]).unwrap_err().to_string();
     assert!(error.contains("`set_mesh`"), "{error}");
-    let (mut positions, normals) = park.movable.moved(&[]);
+    let rest = &park.movable.rest;
+    let (mut positions, normals) = (rest.positions.clone(), rest.normals.clone());
     positions[3].y = f32::NAN;
-    assert!(provider.deform(positions, normals).is_err());
+    let error = provider.deform(positions, normals).unwrap_err().to_string();
+    assert!(
+        error.contains("position 3 of a deformed mesh is ["),
+        "{error}"
+    );
 
     let mut mesh = park.scene.mesh.clone();
     mesh.triangles.pop();

@@ -118,10 +118,10 @@ fn instances_have_the_shadows_of_one_mesh() {
     let of = [&floor, &stone, &stone];
     let parts = Movable::joined(&of);
     let light = DirectionalLight::new(DVec3::new(0.4, -1.0, -0.3));
-    let mut host = SceneProvider::of_mesh(parts.rest.clone(), light);
+    let mut host = SceneProvider::of_parts(parts, light);
     for time in [0.0, 1.0, 2.0] {
         host.set_camera(&view(time).camera(VIEWPORT));
-        host.set_transforms(&parts, &places(time)).unwrap();
+        host.set_transforms(&places(time)).unwrap();
         let mut scene = SceneProvider::of_mesh(moved(&of, &places(time)), light);
         scene.set_camera(&view(time).camera(VIEWPORT));
         for preset in PRESETS {

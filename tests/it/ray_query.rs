@@ -103,10 +103,11 @@ fn a_deformed_mesh_has_a_structure_of_its_own() {
         values(&report, "visibility")
     };
     let mut provider = graphs::provider(&scene, view, viewport);
+    provider.set_parts(movable);
     let mut executor = start(&mut provider);
     let before = visible(&mut executor);
     let shift = DAffine3::from_translation(DVec3::new(3.0, 1.0, -2.0));
-    provider.set_transforms(&movable, &[shift]).unwrap();
+    provider.set_transforms(&[shift]).unwrap();
     executor.refresh(&mut provider).unwrap();
     let after = visible(&mut executor);
     let mut anew = graphs::provider(provider.scene(), view, viewport);

@@ -1,6 +1,6 @@
 //! What can go wrong on a device, and the scopes that bring it back as errors.
 
-use skiagraph_graph::{Diagnostics, Panicked, Plan, caught};
+use skiagraph_graph::{Diagnostics, Panicked, Plan, Provided, caught};
 use std::time::Duration;
 
 /// Why a plan could not be allocated or a frame not be run.
@@ -50,6 +50,33 @@ pub enum ExecuteError {
         /// The resource.
         name: String,
         /// The provider's words.
+        why: String,
+    },
+    /// A provided resource is another than the graph was planned for: other numbers of items, or
+    /// another kind of light.
+    #[error(
+        "{}: plan the graph anew (`executor.plan().with(|request| request.provider = …)`) and hand \
+         the plan to `replace_graph`",
+        change(name, planned, given)
+    )]
+    OtherThanPlanned {
+        /// The resource.
+        name: String,
+        /// What the provider described when the graph was planned.
+        planned: Provided,
+        /// What it describes now.
+        given: Provided,
+    },
+    /// A pass reads a provided resource that the host has not set yet.
+    #[error("{place}: pass `{pass}` reads `{name}`, which is not there yet: {why}")]
+    NotProvided {
+        /// The resource.
+        name: String,
+        /// The first pass that reads it.
+        pass: String,
+        /// The pass's place in the document.
+        place: String,
+        /// What the provider says is [missing](crate::Provider::missing).
         why: String,
     },
     /// An import that the plan does not know.
@@ -142,6 +169,26 @@ pub enum ExecuteError {
     /// A mistake of this crate.
     #[error("internal error: {0}")]
     Internal(&'static str),
+}
+
+/// How a provided resource differs from what was planned for.
+fn change(name: &str, planned: &Provided, given: &Provided) -> String {
+    if let (Some(planned), Some(given)) = (&planned.kind, &given.kind)
+        && planned != given
+    {
+        let (planned, given) = (planned.word(), given.word());
+        return format!("`{name}` is {given} now, but the graph was planned for {planned}");
+    }
+    let count = |provided: &Provided| match provided.items {
+        Some(items) => format!("{items} items of {} bytes", provided.stride),
+        None => format!("items of {} bytes", provided.stride),
+    };
+    if planned.binding == given.binding {
+        let (planned, given) = (count(planned), count(given));
+        return format!("`{name}` has {given} now, but the graph was planned for {planned}");
+    }
+    let (planned, given) = (planned.binding, given.binding);
+    format!("`{name}` is bound as {given:?} now, but the graph was planned for {planned:?}")
 }
 
 /// Runs `make` inside error scopes, so that what wgpu finds wrong comes back as an error, and so

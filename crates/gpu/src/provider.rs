@@ -13,9 +13,20 @@ pub trait Provider: Describe {
         0
     }
 
-    /// Builds the buffer, or hands out the one built before. Called only for names that a live pass
-    /// binds. The buffer needs the [usages](skiagraph_graph::ProvidedBinding::usages) that it is
-    /// described with; `COPY_SRC` where it may be saved, or read as it was in the frame before.
+    /// What the host still has to set before a resource can be built; `None` if it can be built
+    /// now. Executors are made without what is missing, [`refresh`](crate::Executor::refresh) asks
+    /// again, and until it is there `encode` fails with these words, in passes that read it.
+    fn missing(&self, name: &str) -> Option<String> {
+        let _ = name;
+        None
+    }
+
+    /// Builds the buffer, or hands out the one built before. Frames that are encoded and not yet
+    /// submitted read what it holds when they are submitted: a provider whose executors may be
+    /// encoded for one submission hands out another buffer for another content. Called only for
+    /// names that a live pass binds. The buffer needs the
+    /// [usages](skiagraph_graph::ProvidedBinding::usages) that it is described with; `COPY_SRC`
+    /// where it may be saved, or read as it was in the frame before.
     ///
     /// # Errors
     /// Why it cannot be built.

@@ -1,8 +1,7 @@
 //! What was uploaded, by name, each with the version of what is in it.
 
-use crate::{built::How, error::Error, names::*};
-use std::collections::{BTreeMap, BTreeSet};
-use wgpu::util::DeviceExt;
+use crate::{error::Error, names::*};
+use std::collections::BTreeMap;
 
 /// Where to.
 #[derive(Clone, Copy)]
@@ -12,22 +11,16 @@ pub(crate) struct On<'a> {
 }
 
 /// Buffers by the names of resources.
-#[derive(Default)]
+///
+/// None is written again once it was handed out: what the queue writes comes before all that is
+/// submitted later, so a frame that was encoded with the buffer and not submitted yet would show
+/// what was set for another one. Another content is another buffer.
+#[derive(Clone, Default)]
 pub(crate) struct Buffers {
     held: BTreeMap<&'static str, (wgpu::Buffer, u64)>,
-    /// Those that were made here: only they are written again.
-    own: BTreeSet<&'static str>,
 }
 
 impl Buffers {
-    /// The same buffers for another provider, which makes its own before it writes.
-    pub fn shared(&self) -> Self {
-        Self {
-            held: self.held.clone(),
-            own: BTreeSet::new(),
-        }
-    }
-
     /// The buffer of that name, if what is in it is of that version.
     pub fn of(&self, name: &str, version: u64) -> Option<&wgpu::Buffer> {
         let held = self.held.get(name).filter(|(_, of)| *of == version);
@@ -41,15 +34,14 @@ impl Buffers {
         }
     }
 
-    /// Writes items into the buffer of that name, one zero item if there are none; makes the buffer
-    /// if there is none of that size, or if another provider gives it as well.
-    pub fn write<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+    /// Makes the buffer of that name with these items, one zero item if there are none.
+    pub fn make<T: bytemuck::NoUninit + bytemuck::Zeroable>(
         &mut self,
         name: &'static str,
         items: &[T],
         version: u64,
         on: On,
-    ) -> Result<How, Error> {
+    ) -> Result<(), Error> {
         let dummy = [T::zeroed()];
         let items = if items.is_empty() { &dummy } else { items };
         let content: &[u8] = bytemuck::cast_slice(items);
@@ -62,18 +54,9 @@ impl Buffers {
                 limit,
             });
         }
-        if let Some((buffer, of)) = self.held.get_mut(name)
-            && buffer.size() == bytes
-            && self.own.contains(name)
-        {
-            on.queue.write_buffer(buffer, 0, content);
-            *of = version;
-            return Ok(How::Rewritten);
-        }
-        let buffer = buffer_of(name, content, usage_of(name, on.device), on.device);
+        let buffer = buffer_of(name, content, usage_of(name, on.device), on);
         self.held.insert(name, (buffer, version));
-        self.own.insert(name);
-        Ok(How::Made)
+        Ok(())
     }
 }
 
@@ -92,13 +75,17 @@ pub(crate) fn buffer_of(
     name: &str,
     content: &[u8],
     usage: wgpu::BufferUsages,
-    device: &wgpu::Device,
+    on: On,
 ) -> wgpu::Buffer {
-    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+    let buffer = on.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(name),
-        contents: content,
+        size: content.len() as u64,
         usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
-    })
+        mapped_at_creation: false,
+    });
+    // Nothing that was encoded reads it yet.
+    on.queue.write_buffer(&buffer, 0, content);
+    buffer
 }
 
 /// The most bytes that a storage buffer can have and be bound whole.

@@ -18,10 +18,8 @@ pub struct Built {
 /// What was done for a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum How {
-    /// Made in memory of its own.
+    /// Made of what is set.
     Made,
-    /// Made anew in the memory that it had.
-    Rewritten,
     /// A hierarchy whose boxes were fitted to a deformed mesh; its tree is as it was.
     Refitted,
 }

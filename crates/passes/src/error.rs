@@ -64,10 +64,10 @@ pub enum Error {
         /// As shaders would have it.
         crate::uniforms::CameraUniform,
     ),
-    /// Places or normals that do not fit the mesh.
+    /// Not as many places or normals as the mesh has.
     #[error(
-        "a deformed mesh has {} positions and {} normals, all finite, as before; given were {} and \
-         {}: for another mesh there is `set_mesh`",
+        "a deformed mesh has {} positions and {} normals, as before; given were {} and {}: for \
+         another mesh there is `set_mesh`",
         expected[0], expected[1], given[0], given[1]
     )]
     Deformed {
@@ -76,6 +76,25 @@ pub enum Error {
         /// Those that were given.
         given: [usize; 2],
     },
+    /// A place or normal that is infinite or no number.
+    #[error("{what} {index} of a deformed mesh is {value}, which is not finite")]
+    NotFinite {
+        /// `position` or `normal`.
+        what: &'static str,
+        /// Which one, counted from 0.
+        index: usize,
+        /// What was given.
+        value: glam::Vec3,
+    },
+    /// Transforms for a mesh in one piece.
+    #[error(
+        "the provider's mesh has no parts to be moved: make it with `SceneProvider::of_parts`, or \
+         give it parts with `set_parts`"
+    )]
+    NoParts,
+    /// A part that cannot be moved so.
+    #[error(transparent)]
+    Move(#[from] skiagraph_scene::MoveError),
     /// The device cannot bind a buffer of that size.
     #[error("`{name}` needs a buffer of {bytes} bytes, but the device binds at most {limit}")]
     TooLarge {

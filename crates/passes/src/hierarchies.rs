@@ -1,16 +1,22 @@
 //! The hierarchies over a mesh: built, and fitted again when the mesh is deformed.
 
 use crate::{built::How, error::Error};
+use glam::Vec3;
 use skiagraph_scene::{Bvh, BvhNode, LightSpace, LightSpaceNode, Mesh};
 
 /// A tree is built anew when a deformation has made rays this many times as dear as they were.
 const WORSE: f64 = 1.5;
 
+/// Of how many directions of light the trees are kept: of the suns that take turns with one
+/// provider.
+const DIRECTIONS: usize = 4;
+
 /// Trees that are worth keeping, as the mesh is deformed from time to time.
 #[derive(Clone, Default)]
 pub(crate) struct Hierarchies {
     bvh: Option<Kept>,
-    light_space: Option<(LightSpace, Kept)>,
+    /// By the directions of rays; the last one was asked for last.
+    light_spaces: Vec<(Vec3, Kept)>,
 }
 
 #[derive(Clone)]
@@ -31,15 +37,14 @@ pub(crate) struct Words {
 impl Hierarchies {
     /// Of a mesh whose topology is that of the last time, or after [`forget`](Self::forget).
     pub fn bvh(&mut self, mesh: &Mesh, most: usize, keep: bool) -> Words {
-        if let Some(Kept { bvh, cost }) = &mut self.bvh {
-            bvh.refit(mesh);
-            if bvh.cost() <= WORSE * *cost {
-                return Words {
-                    nodes: bvh.nodes.iter().map(node_words).collect(),
-                    primitives: None,
-                    how: How::Refitted,
-                };
-            }
+        if let Some(kept) = &mut self.bvh
+            && kept.refit(mesh)
+        {
+            return Words {
+                nodes: kept.bvh.nodes.iter().map(node_words).collect(),
+                primitives: None,
+                how: How::Refitted,
+            };
         }
         let mut bvh = Bvh::build(mesh).merged(most);
         let words = Words {
@@ -54,7 +59,8 @@ impl Hierarchies {
         words
     }
 
-    /// The same along the rays to a light. Its tree is kept for rays of the same direction.
+    /// The same along the rays to a light. Trees are kept for rays of the directions that were
+    /// asked for last.
     ///
     /// # Errors
     /// More triangles than its links can name.
@@ -68,15 +74,18 @@ impl Hierarchies {
         let too_large = || Error::LightSpace {
             triangles: mesh.triangles.len(),
         };
-        if let Some((before, Kept { bvh, cost })) = &mut self.light_space
-            && before.direction == space.direction
-        {
-            bvh.refit(mesh);
-            if bvh.cost() <= WORSE * *cost {
-                let nodes = space.refit(bvh, mesh).ok_or_else(too_large)?;
+        let mut trees = self.light_spaces.iter();
+        if let Some(at) = trees.position(|(direction, _)| *direction == space.direction) {
+            let is_last = at + 1 == self.light_spaces.len();
+            let (direction, mut kept) = self.light_spaces.remove(at);
+            if kept.refit(mesh) {
+                let nodes = space.refit(&kept.bvh, mesh).ok_or_else(too_large)?;
+                // Of another direction are those of the last time.
+                let primitives = (!is_last).then(|| kept.bvh.primitives.clone());
+                self.light_spaces.push((direction, kept));
                 return Ok(Words {
                     nodes: nodes.iter().map(light_space_words).collect(),
-                    primitives: None,
+                    primitives,
                     how: How::Refitted,
                 });
             }
@@ -90,11 +99,14 @@ impl Hierarchies {
             primitives: Some(primitives_of(&mut bvh, keep)),
             how: How::Made,
         };
-        self.light_space = (keep && !bvh.nodes.is_empty()).then(|| {
+        if keep && !bvh.nodes.is_empty() {
             // Its boxes are of the light's space; those of the world tell when it has become bad.
             bvh.refit(mesh);
-            (space, Kept::new(bvh))
-        });
+            if self.light_spaces.len() == DIRECTIONS {
+                self.light_spaces.remove(0);
+            }
+            self.light_spaces.push((space.direction, Kept::new(bvh)));
+        }
         Ok(words)
     }
 
@@ -116,6 +128,12 @@ impl Kept {
     fn new(bvh: Bvh) -> Self {
         let cost = bvh.cost();
         Self { bvh, cost }
+    }
+
+    /// Fits the boxes to the mesh; whether the tree is as good as it was.
+    fn refit(&mut self, mesh: &Mesh) -> bool {
+        self.bvh.refit(mesh);
+        self.bvh.cost() <= WORSE * self.cost
     }
 }
 

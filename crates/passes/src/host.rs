@@ -1,7 +1,7 @@
 //! What a host program gives to a preset, from what it has.
 
 use crate::provider::SceneProvider;
-use skiagraph_scene::{Indexed, IndexedError, Light, LightKind, Mesh, Scene};
+use skiagraph_scene::{Indexed, IndexedError, Light, LightKind, Mesh, Movable, Scene};
 use std::sync::{Arc, mpsc};
 
 impl SceneProvider {
@@ -13,6 +13,15 @@ impl SceneProvider {
             views: Vec::new(),
             lights: vec![Light::only(light.into())],
         }))
+    }
+
+    /// Provides a mesh of parts that [`set_transforms`](Self::set_transforms) moves, under a light.
+    /// Both can be changed, and a camera must be set. Parts that were [joined](Movable::joined)
+    /// have no places until they are given some, before or after executors are made.
+    pub fn of_parts(parts: impl Into<Arc<Movable>>, light: impl Into<LightKind>) -> Self {
+        let mut provider = Self::of_mesh(Mesh::default(), light);
+        provider.set_parts(parts);
+        provider
     }
 }
 

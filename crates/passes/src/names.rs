@@ -1,5 +1,7 @@
 //! The names of what a scene gives, and what each depends on.
 
+use crate::eye::Eye;
+use skiagraph_scene::LightKind;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 pub(crate) const POSITIONS: &str = "scene.positions";
@@ -58,35 +60,140 @@ pub(crate) fn next_version() -> u64 {
     LAST.fetch_add(1, Ordering::Relaxed) + 1
 }
 
-/// When what was set last.
-#[derive(Clone, Copy, Debug)]
+/// What was set lately, each with a number for its content. What is set again gets the number that
+/// it had: executors that have seen it have nothing to do.
+#[derive(Clone, Debug)]
+pub(crate) struct Lately<T> {
+    /// The last one is set.
+    known: Vec<(T, u64)>,
+}
+
+impl<T: PartialEq> Lately<T> {
+    /// How many are remembered: more than executors take turns with one provider.
+    const MOST: usize = 32;
+
+    pub fn new(value: T) -> Self {
+        Self {
+            known: vec![(value, next_version())],
+        }
+    }
+
+    pub fn set(&mut self, value: T) {
+        let known = self.known.iter().position(|(known, _)| *known == value);
+        let number = match known {
+            Some(at) => self.known.remove(at).1,
+            None => next_version(),
+        };
+        if self.known.len() == Self::MOST {
+            self.known.remove(0);
+        }
+        self.known.push((value, number));
+    }
+
+    /// That of what is set.
+    pub fn number(&self) -> u64 {
+        self.known.last().map_or(0, |(_, number)| *number)
+    }
+}
+
+/// Numbers for the contents of resources.
+#[derive(Clone, Debug)]
 pub(crate) struct Versions {
-    pub camera: u64,
-    pub light: u64,
+    camera: Lately<Eye>,
+    light: Lately<LightKind>,
+    lights: Lately<Vec<LightKind>>,
+    /// The light, and the lights, each with the shape that it is laid around.
+    light_over: Lately<[u64; 2]>,
+    lights_over: Lately<[u64; 2]>,
     /// Places and normals of the mesh's corners.
-    pub shape: u64,
+    shape: u64,
+    /// In which order the corners of triangles come.
+    winding: u64,
     /// All else of the mesh.
-    pub mesh: u64,
+    mesh: u64,
 }
 
 impl Versions {
-    pub fn new() -> Self {
+    pub fn new(eye: Eye, light: LightKind, lights: Vec<LightKind>) -> Self {
+        let (light, lights, shape) = (Lately::new(light), Lately::new(lights), next_version());
         Self {
-            camera: next_version(),
-            light: next_version(),
-            shape: next_version(),
+            camera: Lately::new(eye),
+            light_over: Lately::new([light.number(), shape]),
+            lights_over: Lately::new([lights.number(), shape]),
+            light,
+            lights,
+            shape,
+            winding: next_version(),
             mesh: next_version(),
         }
     }
 
-    /// That of a resource: the latest of what it is made of.
+    pub fn set_camera(&mut self, eye: Eye) {
+        self.camera.set(eye);
+    }
+
+    pub fn set_light(&mut self, light: LightKind) {
+        self.light.set(light);
+        self.lay();
+    }
+
+    pub fn set_lights(&mut self, lights: Vec<LightKind>) {
+        self.lights.set(lights);
+        self.lay();
+    }
+
+    /// Another mesh.
+    pub fn change_mesh(&mut self) {
+        self.mesh = next_version();
+        self.change_winding();
+        self.change_shape();
+    }
+
+    /// Triangles are wound the other way.
+    pub fn change_winding(&mut self) {
+        self.winding = next_version();
+    }
+
+    /// Corners are elsewhere.
+    pub fn change_shape(&mut self) {
+        self.shape = next_version();
+        self.lay();
+    }
+
+    fn lay(&mut self) {
+        self.light_over.set([self.light.number(), self.shape]);
+        self.lights_over.set([self.lights.number(), self.shape]);
+    }
+
+    /// That of a resource.
     pub fn of(&self, name: &str) -> u64 {
         match name {
-            CAMERA | UNPROJECTION => self.camera,
-            LIGHT_AREA => self.light,
-            LIGHT | LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.light.max(self.shape),
+            CAMERA | UNPROJECTION => self.camera.number(),
+            LIGHT_AREA => self.light.number(),
+            LIGHT | LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.light_over.number(),
             POSITIONS | NORMALS | BVH_NODES | BVH_PRIMITIVES | TLAS => self.shape,
+            INDICES | NORMAL_INDICES | UV_INDICES | ADJACENCY | MASKS => self.winding,
             _ => self.mesh,
         }
     }
+
+    /// That of `lights` and `light_areas`, and of what is in them.
+    pub fn of_lists(&self) -> u64 {
+        self.lights_over.number()
+    }
+}
+
+/// Whether a resource is made of the places of the mesh's corners.
+pub(crate) fn is_of_shape(name: &str) -> bool {
+    matches!(
+        name,
+        POSITIONS
+            | NORMALS
+            | BVH_NODES
+            | BVH_PRIMITIVES
+            | LIGHT
+            | LIGHT_SPACE_NODES
+            | LIGHT_SPACE_PRIMITIVES
+            | TLAS
+    )
 }

@@ -10,14 +10,13 @@ use crate::{
     lights,
     names::*,
     ray_query,
+    shape::Shape,
     uniforms::{CameraUniform, LightAreaUniform, LightUniform, UnprojectionUniform},
 };
-use glam::{DAffine3, Vec3};
 use skiagraph_gpu::{Provider, ProviderError};
 use skiagraph_graph::{Describe, Plan, Provided, ProvidedBinding};
 use skiagraph_scene::{
-    Adjacency, BvhNode, Camera, LightKind, LightSpace, LightSpaceNode, Mesh, Movable, Scene, View,
-    packed_masks::mask_words,
+    Adjacency, BvhNode, LightKind, LightSpace, LightSpaceNode, Scene, packed_masks::mask_words,
 };
 use std::{collections::BTreeMap, sync::Arc, time::Instant};
 
@@ -51,164 +50,69 @@ use std::{collections::BTreeMap, sync::Arc, time::Instant};
 /// therefore belongs to the device that it was first used with. What is set (camera, light, mesh)
 /// is seen by executors that are made from then on, and by others from their next
 /// [`refresh`](skiagraph_gpu::Executor::refresh) on, which makes anew what follows from it as far
-/// as a live pass reads it. wgpu binds no buffer of size zero: an array of an empty scene holds one
+/// as a live pass reads it. No buffer is written once it was handed out, so any number of executors
+/// may be refreshed and encoded for one submission, each with a light, a camera and a mesh of its
+/// own; and what is set as it was before is no change for those that have seen it. wgpu binds no
+/// buffer of size zero: an array of an empty scene holds one
 /// zero item, its hierarchy one leaf around a triangle without area, which no ray hits;
 /// [`Describe::describe`] still says 0 items, so that nothing is drawn.
 pub struct SceneProvider {
-    scene: Arc<Scene>,
-    eye: Eye,
-    light: LightKind,
+    pub(crate) scene: Arc<Scene>,
+    pub(crate) eye: Eye,
+    pub(crate) light: LightKind,
     /// All lights of the scene, or the view's own.
-    lights: Vec<LightKind>,
+    pub(crate) lights: Vec<LightKind>,
     /// By their names, of `lights` and what is in it, with the versions of what is in them.
-    light_buffers: BTreeMap<String, (wgpu::Buffer, u64)>,
-    versions: Versions,
+    pub(crate) light_buffers: BTreeMap<String, (wgpu::Buffer, u64)>,
+    pub(crate) versions: Versions,
     /// Words of [`MASKS`], made at once: plans ask how many there are.
-    masks: Vec<u32>,
-    buffers: Buffers,
-    tlas: Option<(wgpu::Tlas, u64)>,
-    hierarchies: Hierarchies,
-    /// Whether the mesh was deformed, so that trees are worth their memory.
-    is_deformed: bool,
-    built: Vec<Built>,
+    pub(crate) masks: Vec<u32>,
+    pub(crate) buffers: Buffers,
+    pub(crate) tlas: Option<(wgpu::Tlas, u64)>,
+    pub(crate) hierarchies: Hierarchies,
+    pub(crate) shape: Shape,
+    pub(crate) built: Vec<Built>,
 }
 
 impl SceneProvider {
     /// Provides `scene`. Builds nothing; until [`set_view`](Self::set_view) the `camera` is all
     /// zeros, and the light is the scene's.
     pub fn new(scene: Arc<Scene>) -> Self {
+        let (eye, light, lights) = (Eye::default(), scene.light(), lights::of(&scene));
         Self {
-            light: scene.light(),
-            lights: lights::of(&scene),
+            versions: Versions::new(eye, light, lights.clone()),
+            light,
+            lights,
             light_buffers: BTreeMap::new(),
-            versions: Versions::new(),
             masks: mask_words(&scene.mesh),
             scene,
-            eye: Eye::default(),
+            eye,
             buffers: Buffers::default(),
             tlas: None,
             hierarchies: Hierarchies::default(),
-            is_deformed: false,
+            shape: Shape::default(),
             built: Vec::new(),
         }
     }
 
-    /// The scene, with the mesh as it was set last.
-    pub fn scene(&self) -> &Arc<Scene> {
-        &self.scene
-    }
-
-    /// The camera of a view, and its first light or the scene's.
-    pub fn set_view(&mut self, view: &View, viewport: [u32; 2]) {
-        self.set_camera(&view.camera(viewport));
-        let light = self.scene.light_of(view);
-        let mut lights = lights::of(&self.scene);
-        // A view may be under one of the scene's lights, or have one that is nobody else's.
-        if !lights.contains(&light) {
-            lights = vec![light];
-        }
-        if lights != self.lights {
-            self.lights = lights;
-            self.versions.light = next_version();
-        }
-        self.set_light(light);
-    }
-
-    /// Another camera.
-    pub fn set_camera(&mut self, camera: &Camera) {
-        self.set_eye(&Eye::from(camera));
-    }
-
-    /// Another camera, by its matrices.
-    pub fn set_eye(&mut self, eye: &Eye) {
-        if *eye != self.eye {
-            self.eye = *eye;
-            self.versions.camera = next_version();
-        }
-    }
-
-    /// The light.
-    pub fn light(&self) -> LightKind {
-        self.light
-    }
-
-    /// Which of [`lights`](Self::lights) the light is; the first, if it is none of them.
-    pub fn light_number(&self) -> usize {
-        let number = self.lights.iter().position(|light| *light == self.light);
-        number.unwrap_or_default()
-    }
-
-    /// All lights of the scene, or the view's own.
-    pub fn lights(&self) -> &[LightKind] {
-        &self.lights
-    }
-
-    /// Another light. A plan depends on the light's kind: what was planned under a light of another
-    /// kind is planned anew.
-    pub fn set_light(&mut self, light: LightKind) {
-        if light != self.light {
-            self.light = light;
-            self.versions.light = next_version();
-        }
-    }
-
-    /// Another mesh. A plan counts items: what was planned for a mesh of other counts is planned
-    /// anew ([`replace_graph`](skiagraph_gpu::Executor::replace_graph)).
-    pub fn set_mesh(&mut self, mesh: Mesh) {
-        self.masks = mask_words(&mesh);
-        Arc::make_mut(&mut self.scene).mesh = mesh;
-        self.hierarchies.forget();
-        self.is_deformed = false;
-        self.versions.mesh = next_version();
-        self.versions.shape = next_version();
-    }
-
-    /// The same mesh at other places: positions and normals in the order and number of those that
-    /// are there. Their buffers are written anew in place, hierarchies are refitted (or built, the
-    /// first time, or when refitting has made them bad), adjacency and all else is kept.
-    ///
-    /// # Errors
-    /// Other numbers of positions or normals, or some that are not finite.
-    pub fn deform(&mut self, positions: Vec<Vec3>, normals: Vec<Vec3>) -> Result<(), Error> {
-        let mesh = &self.scene.mesh;
-        let expected = [mesh.positions.len(), mesh.normals.len()];
-        let given = [positions.len(), normals.len()];
-        let is_finite = |list: &[Vec3]| list.iter().all(|v| v.is_finite());
-        if given != expected || !is_finite(&positions) || !is_finite(&normals) {
-            return Err(Error::Deformed { expected, given });
-        }
-        let mesh = &mut Arc::make_mut(&mut self.scene).mesh;
-        (mesh.positions, mesh.normals) = (positions, normals);
-        self.is_deformed = true;
-        self.versions.shape = next_version();
-        Ok(())
-    }
-
-    /// The mesh that [`Movable`] was made of, each of its parts moved by a map of the same index:
-    /// [`deform`](Self::deform) of what they make of it.
-    ///
-    /// # Errors
-    /// Those of [`deform`](Self::deform).
-    pub fn set_transforms(&mut self, movable: &Movable, maps: &[DAffine3]) -> Result<(), Error> {
-        let (positions, normals) = movable.moved(maps);
-        self.deform(positions, normals)
-    }
-
     /// One more provider of the same, which shares what was built: to be changed and
     /// [prepared](Self::prepare) on a thread while frames are made with this one, and then given to
-    /// `refresh` in its place. What it makes anew is in memory of its own, so this one must not be
-    /// deformed any more once the other is in use.
+    /// `refresh` in its place, or to be set otherwise beside it. It is the scene as it is now: what
+    /// is set in one of the two afterwards, the other one does not show.
     pub fn branch(&self) -> Self {
         Self {
             scene: Arc::clone(&self.scene),
-            masks: self.masks.clone(),
+            eye: self.eye,
+            light: self.light,
             lights: self.lights.clone(),
             light_buffers: self.light_buffers.clone(),
-            buffers: self.buffers.shared(),
+            versions: self.versions.clone(),
+            masks: self.masks.clone(),
+            buffers: self.buffers.clone(),
             tlas: self.tlas.clone(),
             hierarchies: self.hierarchies.clone(),
+            shape: self.shape.clone(),
             built: self.built.clone(),
-            ..*self
         }
     }
 
@@ -225,6 +129,8 @@ impl SceneProvider {
     ) -> Result<(), ProviderError> {
         for name in plan.provided() {
             match name {
+                // It is asked for again when it can be made.
+                _ if self.missing(name).is_some() => {}
                 TLAS => drop(self.build_acceleration_structure(name, device, queue)?),
                 // What the executor keeps of the frame before is not ours.
                 _ if self.describe(name).is_some() => drop(self.build(name, device, queue)?),
@@ -254,8 +160,8 @@ impl SceneProvider {
     }
 
     /// That of `lights`, of `light_areas`, or of what is in them.
-    fn light_buffer(&mut self, name: &str, content: &[u8], device: &wgpu::Device) -> wgpu::Buffer {
-        let version = self.versions.of(LIGHT);
+    fn light_buffer(&mut self, name: &str, content: &[u8], on: On) -> wgpu::Buffer {
+        let version = self.versions.of_lists();
         if let Some((buffer, of)) = self.light_buffers.get(name)
             && *of == version
         {
@@ -263,7 +169,7 @@ impl SceneProvider {
         }
         let began = Instant::now();
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::STORAGE;
-        let buffer = buffer_of(name, content, usage, device);
+        let buffer = buffer_of(name, content, usage, on);
         let entry = (buffer.clone(), version);
         self.light_buffers.insert(name.to_owned(), entry);
         self.note(lights::list_of(name), How::Made, began);
@@ -293,14 +199,15 @@ impl SceneProvider {
         on: On,
     ) -> Result<How, Error> {
         let version = self.versions.of(name);
-        self.buffers.write(name, items, version, on)
+        self.buffers.make(name, items, version, on)?;
+        Ok(How::Made)
     }
 
     fn upload_hierarchy(&mut self, on: On) -> Result<How, Error> {
         // Beyond some four million triangles the boxes of all leaves exceed what Vulkan promises
         // to bind, and so the smallest leaves are joined.
         let most = binding_limit(on.device) / size_of::<BvhNode>() as u64;
-        let (mesh, keep) = (&self.scene.mesh, self.is_deformed);
+        let (mesh, keep) = (&self.scene.mesh, self.shape.is_deformed);
         let words = self.hierarchies.bvh(mesh, most as usize, keep);
         self.upload_tree([BVH_NODES, BVH_PRIMITIVES], words, on)
     }
@@ -335,7 +242,7 @@ impl SceneProvider {
         };
         // As in the other hierarchy, leaves are joined where there are too many nodes to bind.
         let most = binding_limit(on.device) / size_of::<LightSpaceNode>() as u64;
-        let (mesh, keep) = (&self.scene.mesh, self.is_deformed);
+        let (mesh, keep) = (&self.scene.mesh, self.shape.is_deformed);
         let trees = &mut self.hierarchies;
         let words = trees.light_space(space, mesh, most as usize, keep)?;
         self.upload_tree([LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES], words, on)
@@ -443,9 +350,18 @@ impl Describe for SceneProvider {
 impl Provider for SceneProvider {
     fn version(&self, name: &str) -> u64 {
         match lights::describe(name, &self.lights) {
-            Some(_) => self.versions.of(LIGHT),
+            Some(_) => self.versions.of_lists(),
             None => self.versions.of(name),
         }
+    }
+
+    fn missing(&self, name: &str) -> Option<String> {
+        let is_of_shape = is_of_shape(name) || lights::describe(name, &self.lights).is_some();
+        (self.shape.is_unplaced && is_of_shape).then(|| {
+            "the parts of the mesh have no places yet: call `SceneProvider::set_transforms`, then \
+             `Executor::refresh`"
+                .to_owned()
+        })
     }
 
     fn build(
@@ -456,7 +372,7 @@ impl Provider for SceneProvider {
     ) -> Result<wgpu::Buffer, ProviderError> {
         let why = |error: Error| ProviderError(error.to_string());
         if let Some(content) = lights::content(name, &self.lights, &self.scene.mesh) {
-            return Ok(self.light_buffer(name, &content, device));
+            return Ok(self.light_buffer(name, &content, On { device, queue }));
         }
         let known = NAMES.into_iter().find(|&known| known == name);
         let name = known.ok_or_else(|| why(unknown(name)))?;

@@ -74,7 +74,7 @@ pub use material::{Material, Surfaces};
 pub use material_use::MaterialUse;
 pub use mesh::{Group, Mesh};
 pub use motion::{Motion, PartMotion, RigidKey};
-pub use movable::Movable;
+pub use movable::{Movable, MoveError, MovedPart, PartChange};
 #[cfg(feature = "files")]
 pub use obj::{Concave, ObjMaterials, ObjOptions, QuadDiagonal, load_obj};
 pub use parts::Parts;

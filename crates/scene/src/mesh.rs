@@ -50,6 +50,19 @@ impl Mesh {
         self.normal_indices[primitive as usize].map(|index| self.normals[index as usize].as_dvec3())
     }
 
+    /// Winds a triangle the other way: its second and third corner change places, with their
+    /// normals and texture coordinates.
+    ///
+    /// # Panics
+    /// If `primitive` is not below `triangles.len()`.
+    pub fn turn(&mut self, primitive: usize) {
+        self.triangles[primitive].swap(1, 2);
+        self.normal_indices[primitive].swap(1, 2);
+        if let Some(uvs) = self.surfaces.uv_indices.get_mut(primitive) {
+            uvs.swap(1, 2);
+        }
+    }
+
     /// The position of each corner of each triangle.
     pub fn corner_positions(&self) -> impl Iterator<Item = Vec3> {
         let corners = self.triangles.iter().flatten();

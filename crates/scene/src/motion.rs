@@ -2,9 +2,10 @@
 
 use crate::{
     keys::{not_later, spline},
-    movable::Movable,
+    mesh::Mesh,
+    movable::{Movable, MoveError},
 };
-use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use std::f64::consts::TAU;
 
 /// A part, by the name of its groups, with its motion.
@@ -90,6 +91,12 @@ impl PartMotion {
             Motion::Sway { degrees, .. } if degrees.is_nan() || degrees.abs() >= 90.0 => {
                 wrong(format!("degrees are {degrees}, expected less than 90"))
             }
+            Motion::Sway {
+                axis, up, degrees, ..
+            } if folds(*axis, *up, *degrees) => wrong(format!(
+                "leaning by {degrees} degrees along {axis}, which is partly up or down, it is \
+                 turned inside out: lean less, or across {up}"
+            )),
             Motion::Sway { seconds, .. } if !(seconds.is_finite() && *seconds > 0.0) => {
                 wrong(format!("seconds are {seconds}, expected more than 0"))
             }
@@ -145,8 +152,18 @@ impl PartMotion {
     }
 }
 
-/// Positions and normals of a mesh whose parts are those of the motions, in their order, at a time.
-pub fn moved(movable: &Movable, motions: &[PartMotion], at: f64) -> (Vec<Vec3>, Vec<Vec3>) {
+/// Whether a sway turns the top of its part inside out: the determinant of its derivative,
+/// 1 + 2 (h / H) tan(a) (axis · up), is not above 0 everywhere.
+fn folds(axis: DVec3, up: DVec3, degrees: f64) -> bool {
+    let along = axis.normalize().dot(up.normalize()).abs();
+    2.0 * degrees.abs().to_radians().tan() * along >= 1.0
+}
+
+/// A mesh whose parts are those of the motions, in their order, at a time.
+///
+/// # Errors
+/// A part that f32 cannot hold there.
+pub fn moved(movable: &Movable, motions: &[PartMotion], at: f64) -> Result<Mesh, MoveError> {
     let parts = motions.iter().enumerate();
     let maps = parts.map(|(part, motion)| motion.map(movable.span(part, motion.up()), at));
     let maps: Vec<_> = maps.collect();
@@ -214,6 +231,9 @@ mod tests {
             upright.contains("moves: \"tree\": axis [0, 1, 0]"),
             "{upright}"
         );
+        let inside_out = sway(DVec3::new(1.0, 1.0, 0.0), 40.0).check().unwrap_err();
+        assert!(inside_out.contains("turned inside out"), "{inside_out}");
+        sway(DVec3::new(1.0, 1.0, 0.0), 30.0).check().unwrap();
         let flat = sway(DVec3::X, 90.0).check().unwrap_err();
         assert!(flat.contains("degrees are 90"), "{flat}");
     }

@@ -1,4 +1,4 @@
-//! Parts of a mesh that move by themselves: rigidly, or bent.
+//! Parts of a mesh that move by themselves: by an affine map, or bent.
 
 use crate::mesh::{Group, Mesh};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
@@ -7,17 +7,95 @@ use std::collections::{BTreeMap, HashSet};
 /// A mesh some parts of which move.
 #[derive(Clone, Debug)]
 pub struct Movable {
-    /// At rest. Its moving parts have normals of their own, one per corner's position.
+    /// At rest. Its moving parts have normals of their own, one per corner's position. The parts of
+    /// [`joined`](Self::joined) lie on each other here, each in a space of its own.
     pub rest: Mesh,
     parts: Vec<Part>,
+    is_joined: bool,
 }
 
 /// What one part is made of.
 #[derive(Clone, Debug)]
 struct Part {
+    /// Primitive ids.
+    triangles: Vec<u32>,
     positions: Vec<u32>,
     /// Normals, each with the position at which it stands.
     normals: Vec<(u32, u32)>,
+}
+
+/// One part of a [`Movable`] after it was moved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MovedPart {
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    /// Whether it was mirrored, so that its triangles are wound the other way than at rest.
+    pub is_mirrored: bool,
+}
+
+/// What [`Movable::put`] changed of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PartChange {
+    /// Whether a position or normal is another one.
+    pub is_elsewhere: bool,
+    /// Whether triangles are wound the other way.
+    pub is_turned: bool,
+}
+
+/// Why parts cannot be moved so. Parts are counted from 0.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MoveError {
+    /// Not as many maps as parts.
+    #[error(
+        "each part needs one map, in the order of the parts; there are {parts} parts, but {maps} \
+         maps"
+    )]
+    Count {
+        /// Number of parts.
+        parts: usize,
+        /// Number of maps that were given.
+        maps: usize,
+    },
+    /// A map has entries that are infinite or no numbers.
+    #[error("the map of part {part} has entries that are not finite: {map}")]
+    NotFinite {
+        /// Which part.
+        part: usize,
+        /// Its map: three columns and the translation.
+        map: DAffine3,
+    },
+    /// A map cannot be inverted.
+    #[error(
+        "the map of part {part} is singular: it flattens the part, which has no normals then; give \
+         it a scale other than 0, or move a part that is to vanish to where no light and no camera \
+         sees it"
+    )]
+    Singular {
+        /// Which part.
+        part: usize,
+    },
+    /// A position is moved beyond what f32 holds.
+    #[error("the map of part {part} moves {from} to {to}, which f32 cannot hold")]
+    OutOfRange {
+        /// Which part.
+        part: usize,
+        /// The position at rest.
+        from: Vec3,
+        /// Where it would be.
+        to: DVec3,
+    },
+    /// A bend mirrors one place of a part and not another.
+    #[error(
+        "part {part} is bent so far that it is turned inside out at {at} (at rest) and not \
+         elsewhere: bend it less"
+    )]
+    Folded {
+        /// Which part.
+        part: usize,
+        /// A place at which it is mirrored, at rest.
+        at: Vec3,
+    },
 }
 
 impl Movable {
@@ -30,7 +108,11 @@ impl Movable {
         let mut rest = mesh.clone();
         let parts = parts.iter().map(|name| Part::cut(&mut rest, name));
         let parts = parts.collect::<Result<_, _>>()?;
-        Ok(Self { rest, parts })
+        Ok(Self {
+            rest,
+            parts,
+            is_joined: false,
+        })
     }
 
     /// Several meshes as one, each a part in a space of its own, such as the instances of one mesh:
@@ -45,35 +127,158 @@ impl Movable {
             Part::append(&mut rest, mesh)
         });
         let parts = parts.collect();
-        Self { rest, parts }
+        Self {
+            rest,
+            parts,
+            is_joined: true,
+        }
     }
 
-    /// Positions and normals after each part was moved by the map of its index; parts without one
-    /// stay.
-    pub fn moved(&self, maps: &[DAffine3]) -> (Vec<Vec3>, Vec<Vec3>) {
-        self.bent(|part, place| {
-            let map = maps.get(part).copied().unwrap_or_default();
-            (map.transform_point3(place), map.matrix3)
-        })
+    /// Number of parts.
+    pub fn parts(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// True if the parts are in spaces of their own, so that [`rest`](Self::rest) is no scene
+    /// before each has its map.
+    pub fn is_joined(&self) -> bool {
+        self.is_joined
+    }
+
+    /// The mesh after each part was moved by the map of its index. The triangles of a part that its
+    /// map mirrors are wound the other way.
+    ///
+    /// # Errors
+    /// Other than one map for each part, or a map by which a part cannot be moved.
+    pub fn moved(&self, maps: &[DAffine3]) -> Result<Mesh, MoveError> {
+        self.check_count(maps.len())?;
+        self.all(|part| self.moved_part(part, &maps[part]))
     }
 
     /// The same by any map, which is given the part and a place on it at rest, and returns the
     /// place where that is now and the map's derivative there.
-    pub fn bent(&self, map: impl Fn(usize, DVec3) -> (DVec3, DMat3)) -> (Vec<Vec3>, Vec<Vec3>) {
-        let at_rest = &self.rest.positions;
-        let (mut positions, mut normals) = (at_rest.clone(), self.rest.normals.clone());
-        for (index, part) in self.parts.iter().enumerate() {
-            let map = |position: u32| map(index, at_rest[position as usize].as_dvec3());
-            for &position in &part.positions {
-                positions[position as usize] = map(position).0.as_vec3();
+    ///
+    /// # Errors
+    /// A map by which a part cannot be moved, or that mirrors only some of it.
+    pub fn bent(&self, map: impl Fn(usize, DVec3) -> (DVec3, DMat3)) -> Result<Mesh, MoveError> {
+        self.all(|part| self.bent_part(part, |place| map(part, place)))
+    }
+
+    fn all(&self, of: impl Fn(usize) -> Result<MovedPart, MoveError>) -> Result<Mesh, MoveError> {
+        let mut mesh = self.rest.clone();
+        for part in 0..self.parts.len() {
+            let moved = of(part)?;
+            self.put(part, &moved, false, &mut mesh);
+        }
+        Ok(mesh)
+    }
+
+    /// That there is a map for each part.
+    ///
+    /// # Errors
+    /// If there is not.
+    pub fn check_count(&self, maps: usize) -> Result<(), MoveError> {
+        let parts = self.parts.len();
+        match maps == parts {
+            true => Ok(()),
+            false => Err(MoveError::Count { parts, maps }),
+        }
+    }
+
+    /// One part moved by a map.
+    ///
+    /// # Errors
+    /// A map that is not finite, singular, or that moves a corner beyond what f32 holds.
+    ///
+    /// # Panics
+    /// If there is no such part.
+    pub fn moved_part(&self, part: usize, map: &DAffine3) -> Result<MovedPart, MoveError> {
+        if !map.is_finite() {
+            return Err(MoveError::NotFinite { part, map: *map });
+        }
+        self.bent_part(part, |place| (map.transform_point3(place), map.matrix3))
+    }
+
+    fn bent_part(
+        &self,
+        part: usize,
+        map: impl Fn(DVec3) -> (DVec3, DMat3),
+    ) -> Result<MovedPart, MoveError> {
+        let Part {
+            positions, normals, ..
+        } = &self.parts[part];
+        let at_rest = |position: u32| self.rest.positions[position as usize];
+        let mut mirrored_at = None;
+        let mut is_upright = false;
+        let mut place = |&position: &u32| {
+            let from = at_rest(position);
+            let (to, derivative) = map(from.as_dvec3());
+            match derivative.determinant() {
+                sign if sign < 0.0 => mirrored_at = Some(from),
+                sign if sign > 0.0 => is_upright = true,
+                _ => return Err(MoveError::Singular { part }),
             }
-            for &(normal, position) in &part.normals {
-                let across = map(position).1.inverse().transpose();
-                let normal = &mut normals[normal as usize];
-                *normal = (across * normal.as_dvec3()).normalize_or_zero().as_vec3();
+            match to.as_vec3() {
+                place if place.is_finite() => Ok(place),
+                _ => Err(MoveError::OutOfRange { part, from, to }),
+            }
+        };
+        let positions = positions.iter().map(&mut place);
+        let positions = positions.collect::<Result<_, _>>()?;
+        if let Some(at) = mirrored_at.filter(|_| is_upright) {
+            return Err(MoveError::Folded { part, at });
+        }
+        let normal = |&(normal, position): &(u32, u32)| {
+            let across = map(at_rest(position).as_dvec3()).1.inverse().transpose();
+            let normal = across * self.rest.normals[normal as usize].as_dvec3();
+            let normal = normal.normalize_or_zero().as_vec3();
+            match normal.is_finite() {
+                true => Ok(normal),
+                false => Err(MoveError::Singular { part }),
+            }
+        };
+        let normals = normals.iter().map(normal).collect::<Result<_, _>>()?;
+        Ok(MovedPart {
+            positions,
+            normals,
+            is_mirrored: mirrored_at.is_some(),
+        })
+    }
+
+    /// Puts a moved part into the mesh, which is [`rest`](Self::rest) with parts moved. Triangles
+    /// are turned of a part that was mirrored in the mesh (`was_mirrored`) and is not now, or the
+    /// other way round.
+    ///
+    /// # Panics
+    /// If there is no such part, or the mesh is another one.
+    pub fn put(
+        &self,
+        part: usize,
+        moved: &MovedPart,
+        was_mirrored: bool,
+        mesh: &mut Mesh,
+    ) -> PartChange {
+        let part = &self.parts[part];
+        let mut change = PartChange {
+            is_elsewhere: false,
+            is_turned: moved.is_mirrored != was_mirrored,
+        };
+        let mut put = |place: &mut Vec3, now: Vec3| {
+            change.is_elsewhere |= *place != now;
+            *place = now;
+        };
+        for (&position, place) in part.positions.iter().zip(&moved.positions) {
+            put(&mut mesh.positions[position as usize], *place);
+        }
+        for (&(normal, _), direction) in part.normals.iter().zip(&moved.normals) {
+            put(&mut mesh.normals[normal as usize], *direction);
+        }
+        if change.is_turned {
+            for &primitive in &part.triangles {
+                mesh.turn(primitive as usize);
             }
         }
-        (positions, normals)
+        change
     }
 
     /// The lowest and highest place of a part at rest along an axis; 0 of a part without corners.
@@ -113,6 +318,7 @@ impl Part {
             rest.normal_indices.push(own);
         }
         Self {
+            triangles: (first..rest.triangles.len() as u32).collect(),
             positions: (first_position..rest.positions.len() as u32).collect(),
             normals: at_positions(&own),
         }
@@ -159,7 +365,10 @@ impl Part {
                 });
             }
         }
+        let mut triangles: Vec<u32> = inside.into_iter().collect();
+        triangles.sort_unstable();
         Ok(Self {
+            triangles,
             positions,
             normals: at_positions(&own),
         })

@@ -10,7 +10,7 @@ use crate::{
     motion::{PartMotion, moved},
     movable::Movable,
 };
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 /// The most frames that a path may have: five and a half minutes at thirty per second.
 const MOST_FRAMES: f64 = 10_000.0;
@@ -92,9 +92,14 @@ impl CameraPath {
         Ok(Some(movable))
     }
 
-    /// Positions and normals in a frame, of what [`movable`](Self::movable) gave.
-    pub fn shape(&self, movable: &Movable, frame: u32) -> (Vec<Vec3>, Vec<Vec3>) {
+    /// The mesh in a frame, of what [`movable`](Self::movable) gave. Its triangles are those at
+    /// rest: no motion mirrors a part.
+    ///
+    /// # Errors
+    /// A part that f32 cannot hold where it is then; names the path, the part and the frame.
+    pub fn shape(&self, movable: &Movable, frame: u32) -> Result<Mesh, String> {
         moved(movable, &self.moves, self.at(frame))
+            .map_err(|reason| format!("path {:?}: moves: frame {frame}: {reason}", self.view.name))
     }
 
     /// The view of a frame, with the path's own name.

@@ -29,7 +29,10 @@ pub fn gather(
     meshes: Res<Assets<Mesh>>,
     mut gathered: ResMut<Casters>,
 ) -> Result {
-    let mut casters: Vec<_> = casters.iter().collect();
+    // One of scale 0, as programs hide things, throws no shadow, and has no normals to be moved.
+    let has_extent = |place: &GlobalTransform| place.affine().matrix3.determinant() != 0.0;
+    let casters = casters.iter().filter(|(.., place)| has_extent(place));
+    let mut casters: Vec<_> = casters.collect();
     casters.sort_by_key(|(entity, ..)| *entity);
     let of: Vec<_> = casters
         .iter()

@@ -11,7 +11,7 @@ use bevy::{
         view::ExtractedView,
     },
 };
-use glam::{DAffine3, DMat4};
+use glam::DMat4;
 use skiagraph_gpu::{Executor, Frame, import};
 use skiagraph_graph::{Graph, LayeredSources, PlanRequest, Sources};
 use skiagraph_passes::{Depth, EmbeddedSources, Eye, SceneProvider, registry};
@@ -46,7 +46,6 @@ struct Running {
     provider: SceneProvider,
     executor: Executor,
     parts: Arc<Movable>,
-    maps: Vec<DAffine3>,
 }
 
 /// What Bevy's prepass has drawn.
@@ -108,7 +107,7 @@ impl Running {
         prepass: &Prepass,
     ) -> Result<Self> {
         let light = DirectionalLight::new(glam::DVec3::NEG_Y);
-        let mut provider = SceneProvider::of_mesh(parts.rest.clone(), light);
+        let mut provider = SceneProvider::of_parts(Arc::clone(parts), light);
         let sources = LayeredSources(vec![Box::new(Document), Box::new(EmbeddedSources)]);
         let graph = Graph::load("shadows.ron", &registry(), &sources)?;
         let size = prepass.depth.size();
@@ -125,7 +124,6 @@ impl Running {
             executor: Executor::new(device, queue, plan, &mut provider)?,
             provider,
             parts: Arc::clone(parts),
-            maps: Vec::new(),
         })
     }
 
@@ -141,13 +139,10 @@ impl Running {
         }
         let is_another = !Arc::ptr_eq(parts, &self.parts);
         if is_another {
-            self.provider.set_mesh(parts.rest.clone());
+            self.provider.set_parts(Arc::clone(parts));
             self.parts = Arc::clone(parts);
         }
-        if is_another || casters.maps != self.maps {
-            self.provider.set_transforms(&self.parts, &casters.maps)?;
-            self.maps.clone_from(&casters.maps);
-        }
+        self.provider.set_transforms(&casters.maps)?;
         if is_another {
             let plan = self
                 .executor

@@ -127,7 +127,6 @@ fn remade(before: &[Built], now: &[Built]) -> Vec<Remade> {
         name: built.name.to_owned(),
         how: match built.how {
             How::Made => "made",
-            How::Rewritten => "rewritten",
             How::Refitted => "refitted",
         }
         .to_owned(),

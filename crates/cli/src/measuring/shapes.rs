@@ -13,20 +13,15 @@ impl Shapes {
     /// Of the first frames of a path; `None` where nothing moves.
     ///
     /// # Errors
-    /// A part that the mesh has not, or that is welded to others.
+    /// A part that the mesh has not, that is welded to others, or that f32 cannot hold where it is
+    /// moved to.
     pub fn of(path: &CameraPath, mesh: &Mesh, frames: usize) -> Result<Option<Self>, CliError> {
         let Some(movable) = path.movable(mesh).map_err(CliError::Input)? else {
             return Ok(None);
         };
-        let shape = |frame| {
-            let (positions, normals) = path.shape(&movable, frame);
-            Mesh {
-                positions,
-                normals,
-                ..movable.rest.clone()
-            }
-        };
-        let frames = (0..path.frames()).take(frames).map(shape).collect();
+        let shape = |frame| path.shape(&movable, frame).map_err(CliError::Input);
+        let frames = (0..path.frames()).take(frames).map(shape);
+        let frames = frames.collect::<Result<_, _>>()?;
         Ok(Some(Self { frames }))
     }
 

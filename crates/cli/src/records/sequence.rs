@@ -56,7 +56,7 @@ pub struct SequenceFrame {
 pub struct Remade {
     /// Its name.
     pub name: String,
-    /// `made`, `rewritten` in the memory that it had, or `refitted`, of a hierarchy.
+    /// `made`, or `refitted`, of a hierarchy.
     pub how: String,
     /// What that took on the CPU, uploads included; not part of the frame's times.
     pub ms: f64,

@@ -87,18 +87,21 @@ impl Executor {
     }
 
     /// Encodes a frame, which the host submits; returns its number. It never waits: any number of
-    /// frames may be under way.
+    /// frames may be under way. Buffers with `grow` that were too small for a frame of before, as
+    /// submissions have told since, are larger from this frame on: see [`Plan::grown`].
     ///
     /// # Errors
-    /// If an output is asked for that the plan does not have, an import is missing, the device is
-    /// lost or has no memory to read something back, or refuses a pass that is bound in this frame
-    /// for the first time. Nothing has been encoded then.
+    /// If an output is asked for that the plan does not have, an import or something of the
+    /// provider's is missing, the device is lost or has no memory to read something back, or
+    /// refuses a pass that is bound in this frame for the first time. Nothing has been encoded
+    /// then.
     pub fn encode(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         frame: &Frame<'_>,
     ) -> Result<u32, ExecuteError> {
         check_device_lost(&self.device)?;
+        self.grow_by_itself()?;
         self.state.decide(frame.all, &mut self.turn);
         let Turn { runs, ping_pong } = &self.turn;
         self.state.bind(runs, ping_pong, &self.device)?;

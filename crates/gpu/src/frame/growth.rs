@@ -3,12 +3,19 @@
 use super::{executor::Executor, replan::ReplanReport, watch::Watch};
 use crate::{
     error::{ExecuteError, poll},
-    provider::Provider,
+    provider::{Provider, ProviderError},
 };
+use skiagraph_graph::{Describe, Plan, Provided};
+use std::collections::BTreeMap;
+
+/// Stands for the provider where nothing of its has changed: by name, the version that the executor
+/// has, or what is missing.
+struct Unchanged(BTreeMap<String, Result<u64, String>>);
 
 impl Executor {
-    /// Makes buffers with `grow` larger that were too small for a frame that is done; call it
-    /// between frames. It never waits: a counter that has not arrived is looked at the next time.
+    /// Makes buffers with `grow` larger that were too small for a frame that is done, as the next
+    /// [`encode`](Self::encode) would do; for a host that wants the new plan at a time of its own,
+    /// or to know of it. It never waits: a counter that has not arrived is looked at the next time.
     /// `None` if there was nothing to do. Where the memory limit or the device refuses larger
     /// buffers, what the document does for items that have no room holds, and nothing is tried
     /// until the plan changes otherwise.
@@ -24,6 +31,32 @@ impl Executor {
             return Ok(None);
         }
         poll(&self.device, wgpu::PollType::Poll)?;
+        match self.larger() {
+            Some(plan) => self.grow_to(plan, provider),
+            None => Ok(None),
+        }
+    }
+
+    /// The same with what the executor has of the provider, by the counters that submissions have
+    /// brought.
+    pub(super) fn grow_by_itself(&mut self) -> Result<(), ExecuteError> {
+        let Some(plan) = self.larger() else {
+            return Ok(());
+        };
+        let memory = &self.state.memory;
+        let known = memory.provided().map(|(id, version)| {
+            let missing = || memory.missing(id).unwrap_or_default().to_owned();
+            (
+                self.plan().resource(id).name.clone(),
+                version.ok_or_else(missing),
+            )
+        });
+        let mut unchanged = Unchanged(known.collect());
+        self.grow_to(plan, &mut unchanged).map(drop)
+    }
+
+    /// The plan with room for all that frames which are done have asked for; `None` if they had it.
+    fn larger(&mut self) -> Option<Result<Plan, ExecuteError>> {
         let watches = self.state.watches.iter_mut();
         let wanted = watches.filter_map(|watch| {
             let wanted = watch.wanted()?;
@@ -31,17 +64,21 @@ impl Executor {
         });
         let wanted: Vec<(String, u64)> = wanted.collect();
         if wanted.is_empty() {
-            return Ok(None);
+            return None;
         }
         let mut grown = self.plan().grown().clone();
         grown.extend(wanted);
         let larger = self.plan().with(|request| request.grown = grown);
-        let report = match larger {
-            Ok(plan) => self.replace_graph(plan, provider),
-            // The host's limit for memory.
-            Err(diagnostics) => Err(diagnostics.into()),
-        };
-        match report {
+        // An error is the host's limit for memory.
+        Some(larger.map_err(ExecuteError::from))
+    }
+
+    fn grow_to(
+        &mut self,
+        plan: Result<Plan, ExecuteError>,
+        provider: &mut dyn Provider,
+    ) -> Result<Option<ReplanReport>, ExecuteError> {
+        match plan.and_then(|plan| self.replace_graph(plan, provider)) {
             Err(
                 ExecuteError::Plan(_)
                 | ExecuteError::OutOfMemory { .. }
@@ -53,5 +90,40 @@ impl Executor {
             }
             report => report.map(Some),
         }
+    }
+}
+
+impl Describe for Unchanged {
+    fn names(&self) -> Vec<String> {
+        self.0.keys().cloned().collect()
+    }
+
+    /// Nothing: what the plan says of it holds.
+    fn describe(&self, _: &str) -> Option<Provided> {
+        None
+    }
+}
+
+impl Provider for Unchanged {
+    fn version(&self, name: &str) -> u64 {
+        let known = self.0.get(name).and_then(|known| known.as_ref().ok());
+        known.copied().unwrap_or_default()
+    }
+
+    fn missing(&self, name: &str) -> Option<String> {
+        match self.0.get(name) {
+            Some(Ok(_)) => None,
+            Some(Err(missing)) => Some(missing.clone()),
+            None => Some("call `Executor::refresh`".to_owned()),
+        }
+    }
+
+    fn build(
+        &mut self,
+        name: &str,
+        _: &wgpu::Device,
+        _: &wgpu::Queue,
+    ) -> Result<wgpu::Buffer, ProviderError> {
+        Err(ProviderError(format!("`{name}` was there before")))
     }
 }

@@ -3,7 +3,11 @@
 use super::executor::{Executor, list};
 use crate::{
     error::{ExecuteError, check_device_lost},
-    memory::{import::differs, memory::Maker, physical::Physical},
+    memory::{
+        import::differs,
+        memory::{Maker, Memory},
+        physical::Physical,
+    },
     provider::Provider,
 };
 use skiagraph_graph::{Origin, Resource, ResourceId, ResourceKind, Target};
@@ -102,18 +106,19 @@ impl Executor {
         Ok(())
     }
 
-    /// Asks the provider for every resource of another [version](Provider::version) than before.
+    /// Asks the provider for every resource of another [version](Provider::version) than before,
+    /// and for what it could not build then. Frames that were encoded before keep what they were
+    /// encoded with.
     ///
     /// # Errors
     /// If one cannot be built, or is described otherwise than when the graph was planned (more
-    /// items, say: that needs another plan, see [`replace_graph`](Self::replace_graph)), or the
-    /// device is lost. The rest stays as it was and is asked for again the next time.
+    /// items, say, or a light of another kind: [`ExecuteError::OtherThanPlanned`]), or the device
+    /// is lost. The rest stays as it was and is asked for again the next time.
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
-        let known: Vec<(ResourceId, u64)> = self.state.memory.provided().collect();
+        let known: Vec<(ResourceId, Option<u64>)> = self.state.memory.provided().collect();
         for (id, version) in known {
             let state = &mut self.state;
-            let resource = state.plan.resource(id);
-            if provider.version(&resource.name) == version {
+            if Some(provider.version(&state.plan.resource(id).name)) == version {
                 continue;
             }
             check_device_lost(&self.device)?;
@@ -123,10 +128,15 @@ impl Executor {
                 queue: &self.queue,
                 provider: &mut *provider,
             };
-            state.memory.refresh(id, resource, None, &mut maker)?;
+            state.memory.refresh(id, &state.plan, None, &mut maker)?;
             state.contents.touch(id);
-            if state.memory.host(id) != before.as_ref() {
-                state.unbind(id);
+            let now = state.memory.host(id);
+            if now == before.as_ref() {
+                continue;
+            }
+            match Memory::is_alike(now, before.as_ref()) {
+                true => state.rebind(id),
+                false => state.unbind(id),
             }
         }
         Ok(())

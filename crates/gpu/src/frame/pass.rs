@@ -27,6 +27,8 @@ pub(super) struct GpuPass {
     ping_pong: Vec<ResourceId>,
     /// Its steps, bound, for each state of those that there was so far.
     variants: Vec<(Vec<Versions>, Vec<Step<Handles>>)>,
+    /// The states for which the device has taken it as it is but for the content of buffers.
+    tried: Vec<Vec<Versions>>,
     /// What decides whether it runs again.
     pub seen: Seen,
 }
@@ -59,16 +61,21 @@ impl GpuPass {
                 let serves = same_pipeline(linked.steps.get(index)?, step);
                 serves.then_some(made)
             });
-            let uniform = before.and_then(|made| made.params[index].clone());
+            // Frames that are not submitted yet read those of before.
+            let same = old.is_some_and(|(linked, _)| {
+                linked.steps.get(index).and_then(Step::params) == step.params()
+            });
+            let uniform = before.filter(|_| same);
+            let uniform = uniform.and_then(|made| made.params[index].clone());
             let made_step = || match before {
                 Some(made) => made.pipelines[index].clone(),
                 None => pipelines.of(device, &pass.name, (index, step)),
             };
             let pipeline = scoped(device, &pass.name, made_step).map_err(refused)?;
             made.push(pipeline);
-            params.push(match (uniform, step.params()) {
-                (Some(buffer), Some(bytes)) if buffer.size() == bytes.len() as u64 => Some(buffer),
-                _ => scoped(device, &pass.name, || upload(device, &pass.name, step))
+            params.push(match uniform {
+                Some(buffer) => Some(buffer),
+                None => scoped(device, &pass.name, || upload(device, &pass.name, step))
                     .map_err(refused)??,
             });
         }
@@ -78,6 +85,7 @@ impl GpuPass {
             params,
             ping_pong: two_versions(plan, pass),
             variants: Vec::new(),
+            tried: Vec::new(),
             seen: Seen {
                 inputs: inputs(plan, at),
                 versions: None,
@@ -101,8 +109,8 @@ impl GpuPass {
         Some(steps)
     }
 
-    /// Binds the pass for a state of the ping-pong, and encodes it once into a throw-away encoder,
-    /// so that whatever the device refuses is refused here.
+    /// Binds the pass for a state of the ping-pong, and the first time encodes it once into a
+    /// throw-away encoder, so that whatever the device refuses is refused here.
     pub fn bind(
         &mut self,
         plan: &Plan,
@@ -128,40 +136,60 @@ impl GpuPass {
                 .collect::<Result<Vec<_>, _>>()
         })
         .map_err(refused)??;
-        scoped(device, &pass.name, || {
-            let mut encoder =
-                device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            encode_all(&steps, &pass.name, &mut encoder, Meters::default());
-            encoder.finish()
-        })
-        .map_err(refused)?;
         let states = self.ping_pong.iter();
-        let state = states
+        let state: Vec<Versions> = states
             .map(|id| ping_pong.get(id).copied().unwrap_or_default())
             .collect();
+        if !self.tried.contains(&state) {
+            scoped(device, &pass.name, || {
+                let mut encoder =
+                    device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+                encode_all(&steps, &pass.name, &mut encoder, Meters::default());
+                encoder.finish()
+            })
+            .map_err(refused)?;
+            self.tried.push(state.clone());
+        }
         self.variants.push((state, steps));
         Ok(())
     }
 
     /// Forgets what is bound: something that the pass uses is another than before.
     pub fn unbind(&mut self) {
+        self.rebind();
+        self.tried.clear();
+    }
+
+    /// The same where what it uses is another buffer of the same size and usage: what the device
+    /// took before, it takes again.
+    pub fn rebind(&mut self) {
         self.variants.clear();
     }
 
     /// Takes over what `old` had bound.
     pub fn rebind_as(&mut self, old: &mut GpuPass) {
         self.variants = std::mem::take(&mut old.variants);
+        self.tried = std::mem::take(&mut old.tried);
     }
 
-    /// Writes the params of each step, which make it a pass with other params; its name.
-    pub fn upload(&mut self, queue: &wgpu::Queue, pass: &LinkedPass) -> String {
-        for (buffer, step) in self.params.iter().zip(&pass.steps) {
-            if let (Some(buffer), Some(bytes)) = (buffer, step.params()) {
-                queue.write_buffer(buffer, 0, bytes);
-            }
-        }
+    /// The uniforms `params` of each step as a linked pass has them.
+    pub fn params_of(
+        pass: &LinkedPass,
+        device: &wgpu::Device,
+    ) -> Result<Vec<Option<wgpu::Buffer>>, ExecuteError> {
+        let refused = |error| named(error, &pass.name, &pass.name.span.to_string());
+        let params = pass.steps.iter().map(|step| {
+            scoped(device, &pass.name, || upload(device, &pass.name, step)).map_err(refused)?
+        });
+        params.collect()
+    }
+
+    /// Sets other params, in memory of their own: a frame that is not submitted yet reads those of
+    /// before.
+    pub fn set_params(&mut self, params: Vec<Option<wgpu::Buffer>>) {
+        self.params = params;
+        self.rebind();
         self.seen.stale = true;
-        pass.name.value.clone()
     }
 }
 

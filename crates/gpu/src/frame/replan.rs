@@ -80,16 +80,28 @@ impl Executor {
         check_device_lost(&self.device)?;
         self.refresh(provider)?;
         let state = &mut self.state;
+        let before = state.plan.param(name).cloned();
         let changed = state.plan.set_in_uniforms(name, value);
-        let (plan, passes) = (&state.plan, &mut state.passes);
-        let upload = |position: usize| {
-            let pass = plan.pass(plan.schedule().passes[position]);
-            passes[position].upload(&self.queue, pass)
+        let params = changed.iter().map(|&at| {
+            let pass = state.plan.pass(state.plan.schedule().passes[at]);
+            GpuPass::params_of(pass, &self.device)
+        });
+        let params = match params.collect::<Result<Vec<_>, _>>() {
+            Ok(params) => params,
+            Err(error) => {
+                if let Some(before) = before {
+                    state.plan.set_in_uniforms(name, before);
+                }
+                return Err(with_table(error, &state.plan));
+            }
         };
-        Ok(ReplanReport {
-            uploads: changed.into_iter().map(upload).collect(),
-            ..ReplanReport::default()
-        })
+        let mut report = ReplanReport::default();
+        for (at, params) in changed.into_iter().zip(params) {
+            let pass = &mut state.passes[at];
+            pass.set_params(params);
+            report.uploads.push(pass.name.to_string());
+        }
+        Ok(report)
     }
 
     /// Another plan: of the same graph, of one that was loaded again, or of any other. Pipelines,
@@ -157,13 +169,13 @@ impl Executor {
         Watch::take_over(&mut self.state.watches, std::mem::take(&mut before.watches));
         self.ping_pong = self.state.ping_pong(false);
         self.flights.staging.clear();
-        report.uploads = self.upload(&before.plan, &positions);
+        report.uploads = self.note_params(&before.plan, &positions);
         Ok(report)
     }
 
-    /// Uploads the params of passes whose bytes differ from those before; such a pass counts as
+    /// The passes that were made with other params than those of before; such a pass counts as
     /// changed.
-    fn upload(&mut self, before: &Plan, positions: &[Option<usize>]) -> Vec<String> {
+    fn note_params(&mut self, before: &Plan, positions: &[Option<usize>]) -> Vec<String> {
         let mut uploads = Vec::new();
         let schedule = self.state.plan.live().zip(positions);
         for ((pass, position), made) in schedule.zip(&mut self.state.passes) {
@@ -171,11 +183,10 @@ impl Executor {
                 continue;
             };
             let old = before.pass(before.schedule().passes[position]);
-            let bytes = |step: &Step<Ids>| step.params().map(<[u8]>::to_vec);
-            if pass.steps.iter().map(bytes).eq(old.steps.iter().map(bytes)) {
-                continue;
+            if !has_same_params(old, pass) {
+                made.seen.stale = true;
+                uploads.push(pass.name.value.clone());
             }
-            uploads.push(made.upload(&self.queue, pass));
         }
         uploads
     }
@@ -189,6 +200,12 @@ fn has_same_pipelines(old: &LinkedPass, new: &LinkedPass) -> bool {
     old.steps.len() == new.steps.len() && old.steps.iter().zip(&new.steps).all(is_same)
 }
 
+/// Whether all steps of a pass have the bytes of params that they had.
+fn has_same_params(old: &LinkedPass, new: &LinkedPass) -> bool {
+    let old = old.steps.iter().map(Step::params);
+    old.eq(new.steps.iter().map(Step::params))
+}
+
 /// What of an executor's state a new plan keeps.
 struct Kept<'a> {
     old: &'a State,
@@ -196,7 +213,8 @@ struct Kept<'a> {
     memory: &'a Memory,
     /// Of each pass of the plan: its position before.
     positions: Vec<Option<usize>>,
-    /// The resources that are in the memory that they were in before, and what they were then.
+    /// The resources that are in the memory that they were in before, or are the provider's and as
+    /// large as before; and what they were then.
     same: BTreeMap<ResourceId, ResourceId>,
 }
 
@@ -220,6 +238,12 @@ impl<'a> Kept<'a> {
             let former = *formers.get(resource.name.as_str())?;
             let is_same = match (&resource.kind, &old.plan.resource(former).kind) {
                 (ResourceKind::Sampler(a), ResourceKind::Sampler(b)) => a == b,
+                // Another content is another buffer, as versions tell: no memory is lost by that.
+                (ResourceKind::Provided(_), ResourceKind::Provided(_))
+                    if Memory::is_alike(memory.host(id), old.memory.host(former)) =>
+                {
+                    true
+                }
                 _ => memory.same(id, &old.memory, former),
             };
             is_same.then_some((id, former))
@@ -347,13 +371,17 @@ impl<'a> Kept<'a> {
         kept
     }
 
-    /// The position before of a pass that needs no binding: word for word what it was, on the same
+    /// The position before of a pass that needs no binding: word for word what it was, on the very
     /// memory.
     fn bound(&self, at: usize) -> Option<usize> {
         let [pass, old] = self.with_its_memory(at)?;
         let mut numbers = pass.accesses.iter().zip(&old.accesses);
-        let same_numbers = numbers.all(|(new, old)| new.resource == old.resource);
-        self.positions[at].filter(|_| pass.steps == old.steps && same_numbers)
+        let same_numbers = numbers.all(|(new, old)| {
+            let (id, former) = (new.resource, old.resource);
+            id == former && self.memory.host(id) == self.old.memory.host(former)
+        });
+        let same_steps = pass.steps == old.steps && has_same_params(old, pass);
+        self.positions[at].filter(|_| same_steps && same_numbers)
     }
 
     /// What a pass saw of its inputs when it ran last.

@@ -18,7 +18,7 @@ use crate::{
     pipelines::pipelines::Pipelines,
     timing::statistics::Counters,
 };
-use skiagraph_graph::{Origin, Plan, ResourceId, ResourceKind};
+use skiagraph_graph::{LinkedPass, Origin, Plan, ResourceId, ResourceKind};
 use std::{sync::Arc, time::Instant};
 
 /// A plan and what was made for it; another plan has another one.
@@ -86,11 +86,18 @@ impl State {
 
     /// Forgets what the passes that use a resource have bound.
     pub fn unbind(&mut self, id: ResourceId) {
-        for (pass, made) in self.plan.live().zip(&mut self.passes) {
-            if pass.accesses.iter().any(|access| access.resource == id) {
-                made.unbind();
-            }
-        }
+        self.users(id).for_each(GpuPass::unbind);
+    }
+
+    /// The same where the resource is another buffer of the same make.
+    pub fn rebind(&mut self, id: ResourceId) {
+        self.users(id).for_each(GpuPass::rebind);
+    }
+
+    fn users(&mut self, id: ResourceId) -> impl Iterator<Item = &mut GpuPass> {
+        let passes = self.plan.live().zip(&mut self.passes);
+        let uses = move |pass: &LinkedPass| pass.accesses.iter().any(|it| it.resource == id);
+        passes.filter_map(move |(pass, made)| uses(pass).then_some(made))
     }
 
     /// Binds the passes that run and are not bound for this state of the ping-pong.
@@ -104,23 +111,19 @@ impl State {
             if !runs[at] || made.is_bound(ping_pong) {
                 continue;
             }
-            if let Some(name) = missing_import(&self.plan, &self.memory, at) {
-                let pass = &self.plan.pass(self.plan.schedule().passes[at]).name;
-                return Err(ExecuteError::NotImported {
-                    name,
-                    pass: pass.value.clone(),
-                    place: pass.span.to_string(),
-                });
+            if let Some(id) = missing(&self.plan, &self.memory, at) {
+                return Err(not_there(&self.plan, &self.memory, id, at));
             }
             made.bind(&self.plan, at, &self.memory, ping_pong, device)?;
         }
         Ok(())
     }
 
-    /// Binds every pass whose imports are there, as a frame in which all run will need it.
+    /// Binds every pass for which all is there that the host gives, as a frame in which all run
+    /// will need it.
     pub fn bind_what_can_be(&mut self, device: &wgpu::Device) -> Result<(), ExecuteError> {
         let ready: Vec<bool> = (0..self.passes.len())
-            .map(|at| missing_import(&self.plan, &self.memory, at).is_none())
+            .map(|at| missing(&self.plan, &self.memory, at).is_none())
             .collect();
         self.bind(&ready, &self.ping_pong(true), device)
     }
@@ -181,12 +184,33 @@ pub(super) fn frame_uniform(plan: &Plan) -> Option<ResourceId> {
     live.find(is_frame).copied()
 }
 
-/// An import that a pass uses and the host has not handed over.
-fn missing_import(plan: &Plan, memory: &Memory, at: usize) -> Option<String> {
-    let mut accesses = plan.pass(plan.schedule().passes[at]).accesses.iter();
-    let missing = accesses.find(|access| {
-        plan.resource(access.resource).origin == Origin::Host
-            && memory.host(access.resource).is_none()
-    })?;
-    Some(plan.resource(missing.resource).name.clone())
+/// What a pass uses of the host's and is not there: an import that was not handed over, or what the
+/// provider could not build yet; also if the pass reads it as it was in the frame before.
+fn missing(plan: &Plan, memory: &Memory, at: usize) -> Option<ResourceId> {
+    let accesses = plan.pass(plan.schedule().passes[at]).accesses.iter();
+    let mut of_host = accesses.filter_map(|access| {
+        let id = access.resource;
+        match plan.resource(id).origin {
+            Origin::Host => Some(id),
+            Origin::Previous(base) => (plan.resource(base).origin == Origin::Host).then_some(base),
+            _ => None,
+        }
+    });
+    of_host.find(|id| memory.host(*id).is_none())
+}
+
+/// The error of a pass that runs without that.
+fn not_there(plan: &Plan, memory: &Memory, id: ResourceId, at: usize) -> ExecuteError {
+    let name = plan.resource(id).name.clone();
+    let pass = &plan.pass(plan.schedule().passes[at]).name;
+    let (pass, place) = (pass.value.clone(), pass.span.to_string());
+    match memory.missing(id) {
+        Some(why) => ExecuteError::NotProvided {
+            name,
+            pass,
+            place,
+            why: why.to_owned(),
+        },
+        None => ExecuteError::NotImported { name, pass, place },
+    }
 }

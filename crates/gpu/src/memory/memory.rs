@@ -27,8 +27,10 @@ pub(crate) struct Memory {
     /// Imports that no live pass uses, for plans in which one does.
     spare: BTreeMap<String, Physical>,
     samplers: BTreeMap<ResourceId, wgpu::Sampler>,
-    /// Versions of the provided resources.
-    provided: BTreeMap<ResourceId, u64>,
+    /// Versions of the provided resources; none of those that the provider cannot build yet.
+    provided: BTreeMap<ResourceId, Option<u64>>,
+    /// What is missing of the latter, in the provider's words.
+    missing: BTreeMap<ResourceId, String>,
 }
 
 /// Who makes memory.
@@ -90,24 +92,19 @@ impl Memory {
         match (&resource.kind, resource.origin) {
             // The base has the smaller number, so it is there.
             (ResourceKind::Provided(provided), Origin::Previous(base)) => {
-                let base = self.buffer(base, &PingPong::new())?;
-                if !base.usage().contains(wgpu::BufferUsages::COPY_SRC) {
-                    return Err(ExecuteError::Provider {
-                        name: resource.name.trim_end_matches(".previous").to_owned(),
-                        why: "it is read as it was in the frame before, so it must be made with \
-                              BufferUsages::COPY_SRC"
-                            .to_owned(),
-                    });
-                }
+                let size = match self.buffer(base, &PingPong::new()) {
+                    Ok(base) => base.size(),
+                    // It is missing, and as large as described when it comes.
+                    Err(_) => provided.items.unwrap_or(1).max(1) * provided.stride,
+                };
                 let usage = provided.binding.usages();
-                let size = base.size();
                 self.own_buffer(id, &resource.name, (size, usage), old, maker.device)?;
             }
             (_, Origin::Previous(base)) => {
                 self.bases.insert(id, base);
             }
             (ResourceKind::Provided(_) | ResourceKind::AccelerationStructure, _) => {
-                self.refresh(id, resource, old, maker)?;
+                self.refresh(id, plan, old, maker)?;
             }
             (ResourceKind::Frame, _) => {
                 let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_SRC;
@@ -254,18 +251,19 @@ impl Memory {
     pub fn refresh(
         &mut self,
         id: ResourceId,
-        resource: &Resource,
+        plan: &Plan,
         old: Option<(&Plan, &Memory)>,
         maker: &mut Maker<'_>,
     ) -> Result<(), ExecuteError> {
+        let resource = plan.resource(id);
         let (provider, device) = (&mut *maker.provider, maker.device);
         let version = provider.version(&resource.name);
         if let Some((plan, memory)) = old
             && let Some((known, physical)) = memory.host_by_name(plan, &resource.name)
-            && memory.provided.get(&known) == Some(&version)
+            && memory.version(known) == Some(version)
         {
             self.host.insert(id, physical.clone());
-            self.provided.insert(id, version);
+            self.provided.insert(id, Some(version));
             return Ok(());
         }
         // The plan has counted items and sized buffers by what was described to it.
@@ -273,15 +271,20 @@ impl Memory {
             ResourceKind::Provided(planned) => *planned,
             _ => Provided::ACCELERATION_STRUCTURE,
         };
-        if let Some(now) = provider.describe(&resource.name)
-            && now != planned
+        if let Some(given) = provider.describe(&resource.name)
+            && given != planned
         {
-            return Err(ExecuteError::Provider {
+            return Err(ExecuteError::OtherThanPlanned {
                 name: resource.name.clone(),
-                why: format!(
-                    "it is {now:?} now, and was planned as {planned:?}: plan the graph anew"
-                ),
+                planned,
+                given,
             });
+        }
+        if let Some(why) = provider.missing(&resource.name) {
+            self.host.remove(&id);
+            self.provided.insert(id, None);
+            self.missing.insert(id, why);
+            return Ok(());
         }
         let built = scoped(device, &resource.name, || match resource.kind {
             ResourceKind::AccelerationStructure => provider
@@ -291,24 +294,38 @@ impl Memory {
                 .build(&resource.name, device, maker.queue)
                 .map(Physical::Buffer),
         })?;
-        let built = built.map_err(|why| ExecuteError::Provider {
+        let refused = |why: String| ExecuteError::Provider {
             name: resource.name.clone(),
-            why: why.0,
-        })?;
+            why,
+        };
+        let built = built.map_err(|why| refused(why.0))?;
+        if !is_copyable(&built) && is_read_as_before(id, plan) {
+            return Err(refused(
+                "it is read as it was in the frame before, so it must be made with \
+                 BufferUsages::COPY_SRC"
+                    .to_owned(),
+            ));
+        }
         // Only now: what could not be built is asked for again.
         self.host.insert(id, built);
-        self.provided.insert(id, version);
+        self.provided.insert(id, Some(version));
+        self.missing.remove(&id);
         Ok(())
     }
 
-    /// The provided resources with the versions that are there.
-    pub fn provided(&self) -> impl Iterator<Item = (ResourceId, u64)> + '_ {
+    /// The provided resources with the versions that are there; none of those that are missing.
+    pub fn provided(&self) -> impl Iterator<Item = (ResourceId, Option<u64>)> + '_ {
         self.provided.iter().map(|(id, version)| (*id, *version))
     }
 
     /// The version that a provided resource was built of.
     pub fn version(&self, id: ResourceId) -> Option<u64> {
-        self.provided.get(&id).copied()
+        self.provided.get(&id).copied().flatten()
+    }
+
+    /// What the provider says is missing of a resource that it could not build.
+    pub fn missing(&self, id: ResourceId) -> Option<&str> {
+        self.missing.get(&id).map(String::as_str)
     }
 
     /// What the host gave for a provided resource or an import.
@@ -326,6 +343,17 @@ impl Memory {
         self.spare.insert(name.to_owned(), physical);
     }
 
+    /// Whether a provided buffer of one state of an executor and that of another are of one make,
+    /// so that passes which were bound to one can be bound to the other.
+    pub fn is_alike(one: Option<&Physical>, other: Option<&Physical>) -> bool {
+        match (one, other) {
+            (Some(Physical::Buffer(one)), Some(Physical::Buffer(other))) => {
+                one.size() == other.size() && one.usage() == other.usage()
+            }
+            _ => false,
+        }
+    }
+
     /// Whether a resource has the very memory in two states of an executor, and so its content.
     pub fn same(&self, id: ResourceId, other: &Memory, of_other: ResourceId) -> bool {
         let versions = |memory: &Memory, id: ResourceId| -> Option<Vec<Physical>> {
@@ -338,6 +366,19 @@ impl Memory {
         let (a, b) = (versions(self, id), versions(other, of_other));
         a.is_some() && a == b
     }
+}
+
+fn is_copyable(built: &Physical) -> bool {
+    match built {
+        Physical::Buffer(buffer) => buffer.usage().contains(wgpu::BufferUsages::COPY_SRC),
+        _ => true,
+    }
+}
+
+/// Whether a live pass reads a provided resource as it was in the frame before.
+fn is_read_as_before(id: ResourceId, plan: &Plan) -> bool {
+    let mut live = plan.schedule().lifetimes.keys();
+    live.any(|other| plan.resource(*other).origin == Origin::Previous(id))
 }
 
 /// The bytes of a buffer that a part of a resource is.

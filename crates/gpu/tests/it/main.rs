@@ -30,6 +30,7 @@ mod growth;
 mod history;
 mod imports;
 mod memory;
+mod provided;
 mod readback;
 mod refusals;
 mod robustness;

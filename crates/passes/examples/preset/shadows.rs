@@ -8,7 +8,6 @@ use wgpu::{CommandEncoder, Device, Queue, TextureView};
 type Failed = Box<dyn std::error::Error>;
 
 pub struct Shadows {
-    parts: Movable,
     provider: SceneProvider,
     executor: Executor,
 }
@@ -16,9 +15,8 @@ pub struct Shadows {
 impl Shadows {
     /// Of these meshes, for pictures of so many pixels.
     pub fn new(on: (&Device, &Queue), size: [u32; 2], of: &[&Mesh]) -> Result<Self, Failed> {
-        let parts = Movable::joined(of);
         let light = DirectionalLight::new(DVec3::NEG_Y);
-        let mut provider = SceneProvider::of_mesh(parts.rest.clone(), light);
+        let mut provider = SceneProvider::of_parts(Movable::joined(of), light);
         let graph = Graph::load("pipelines/light_buffer.ron", &registry(), &EmbeddedSources)?;
         let mut request = PlanRequest::new(size, &provider);
         request.limits = on.0.limits();
@@ -26,7 +24,6 @@ impl Shadows {
         let plan = graph.plan(&request)?;
         Ok(Self {
             executor: Executor::new(on.0, on.1, plan, &mut provider)?,
-            parts,
             provider,
         })
     }
@@ -41,7 +38,7 @@ impl Shadows {
     ) -> Result<TextureView, Failed> {
         self.provider.set_camera(camera);
         self.provider.set_light(DirectionalLight::new(light).into());
-        self.provider.set_transforms(&self.parts, places)?;
+        self.provider.set_transforms(places)?;
         self.executor.refresh(&mut self.provider)?;
         self.executor.encode(encoder, &Frame::default())?;
         let visibility = self.executor.output_view("visibility");

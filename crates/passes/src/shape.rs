@@ -1,0 +1,20 @@
+//! Where the mesh of a provider is, and how it came there.
+
+use glam::DAffine3;
+use skiagraph_scene::Movable;
+use std::sync::Arc;
+
+/// How the corners of the mesh came to be where they are.
+#[derive(Clone, Default)]
+pub(crate) struct Shape {
+    /// What moves by itself, if anything does.
+    pub parts: Option<Arc<Movable>>,
+    /// Where the parts are, one map each; none if they were deformed since.
+    pub maps: Vec<DAffine3>,
+    /// Of each part, whether its triangles are wound the other way than at rest.
+    pub mirrored: Vec<bool>,
+    /// Whether the parts are in spaces of their own and were never given places.
+    pub is_unplaced: bool,
+    /// Whether the mesh moves, so that trees are worth their memory.
+    pub is_deformed: bool,
+}

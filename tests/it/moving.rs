@@ -124,7 +124,9 @@ fn parts_that_stand_still_cost_nothing() {
             executor.refresh(&mut provider).unwrap();
         }
         assert_eq!(made(&provider), first, "{preset}");
-        maps[3].translation.y += 2.0;
+        for map in &mut maps[1..] {
+            map.translation.y += 2.0;
+        }
         provider.set_transforms(&maps).unwrap();
         executor.refresh(&mut provider).unwrap();
         assert_ne!(made(&provider), first, "{preset}");
@@ -133,7 +135,7 @@ fn parts_that_stand_still_cost_nothing() {
         let moved = shown(&gpu, &mut start(&gpu, preset, &mut anew));
         assert!(shown(&gpu, &mut executor) == moved, "{preset}");
         let changed = moved.iter().zip(&expected).filter(|(a, b)| a != b).count();
-        assert!(changed > 0, "{preset}: {expected:?}");
+        assert!(changed > 0, "{preset}");
     }
 }
 

@@ -120,27 +120,32 @@ fn same(seen: &[u32], expected: &[u32], what: &str) {
 #[test]
 fn executors_of_one_provider_show_their_own_lights_and_meshes() {
     let (gpu, parts) = (open(), parts());
-    for preset in PRESETS {
-        for lamp in lamps() {
-            let mut provider = provider(&parts);
-            let mut of_sun = start(&gpu, preset, &mut provider);
+    let [spot, bulb] = lamps();
+    let cases = [
+        ("rt", bulb),
+        ("light_buffer", spot),
+        ("light_buffer", bulb),
+        ("nsm", spot),
+    ];
+    for (preset, lamp) in cases {
+        let mut provider = provider(&parts);
+        let mut of_sun = start(&gpu, preset, &mut provider);
+        provider.set_light(lamp);
+        let mut of_lamp = start(&gpu, preset, &mut provider);
+        for time in [0.0, 2.0] {
+            let mut encoder = encoder(&gpu);
+            provider.set_transforms(&places(time)).unwrap();
+            provider.set_light(sun());
+            encode(&mut of_sun, &mut provider, &mut encoder);
+            provider.set_transforms(&places(time + 1.0)).unwrap();
             provider.set_light(lamp);
-            let mut of_lamp = start(&gpu, preset, &mut provider);
-            for time in [0.0, 1.0, 2.0] {
-                let mut encoder = encoder(&gpu);
-                provider.set_transforms(&places(time)).unwrap();
-                provider.set_light(sun());
-                encode(&mut of_sun, &mut provider, &mut encoder);
-                provider.set_transforms(&places(time + 1.0)).unwrap();
-                provider.set_light(lamp);
-                encode(&mut of_lamp, &mut provider, &mut encoder);
-                gpu.queue.submit([encoder.finish()]);
-                let what = format!("{preset}, {time}, {}", lamp.word());
-                let expected = alone(&gpu, preset, mesh(&parts, time), sun(), 0.0);
-                same(&seen(&mut of_sun), &expected, &format!("{what}: sun"));
-                let expected = alone(&gpu, preset, mesh(&parts, time + 1.0), lamp, 0.0);
-                same(&seen(&mut of_lamp), &expected, &format!("{what}: lamp"));
-            }
+            encode(&mut of_lamp, &mut provider, &mut encoder);
+            gpu.queue.submit([encoder.finish()]);
+            let what = format!("{preset}, {time}, {}", lamp.word());
+            let expected = alone(&gpu, preset, mesh(&parts, time), sun(), 0.0);
+            same(&seen(&mut of_sun), &expected, &format!("{what}: sun"));
+            let expected = alone(&gpu, preset, mesh(&parts, time + 1.0), lamp, 0.0);
+            same(&seen(&mut of_lamp), &expected, &format!("{what}: lamp"));
         }
     }
 }
@@ -199,7 +204,7 @@ fn a_branch_for_each_light_shows_its_own_mesh() {
         let mut branch = provider.branch();
         branch.set_light(lamps()[0]);
         let mut of_lamp = start(&gpu, preset, &mut branch);
-        for (sun_at, lamp_at) in [(1.0, 0.0), (2.0, 0.0), (2.0, 1.0), (3.0, 2.0)] {
+        for (sun_at, lamp_at) in [(1.0, 0.0), (2.0, 1.0)] {
             let mut encoder = encoder(&gpu);
             provider.set_transforms(&places(sun_at)).unwrap();
             branch.set_transforms(&places(lamp_at)).unwrap();

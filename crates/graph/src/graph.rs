@@ -241,6 +241,12 @@ impl Graph {
         self.document.lights.iter()
     }
 
+    /// The words of the section `proven_on`: backends that give less than WebGPU, on which the
+    /// graph is known to be right.
+    pub fn proven_on(&self) -> impl Iterator<Item = &Located<Name>> {
+        self.document.proven_on.iter()
+    }
+
     /// Names of what the host must import.
     pub fn inputs(&self) -> Vec<&str> {
         let inputs = self.document.inputs.iter();

@@ -48,7 +48,7 @@ pub use panics::{Panicked, caught};
 pub use plan::{CulledPass, MemoryEntry, OutputSummary, PartSummary, PassSummary, Plan, text};
 pub use provided_kind::ProvidedKind;
 pub use provider::{Describe, Import, NoProvider, Provided, ProvidedBinding};
-pub use request::{Capture, PlanRequest};
+pub use request::{Capture, PartialBackend, PlanRequest};
 pub use resource::{
     Buffer, FRAME_BYTES, Growth, Origin, Resource, ResourceId, ResourceKind, Sampler,
     SubresourceRange, Target, Texture,

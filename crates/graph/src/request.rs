@@ -7,6 +7,16 @@ use crate::{
 };
 use std::collections::BTreeMap;
 
+/// A backend that gives less than WebGPU: what is checked and proven of a graph elsewhere need not
+/// hold there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PartialBackend {
+    /// The word by which documents list it in `proven_on`.
+    pub name: String,
+    /// What it has less, for a message: "no …".
+    pub lacks: String,
+}
+
 /// What a plan is made for.
 #[derive(Clone, Debug)]
 pub struct PlanRequest<'a> {
@@ -22,6 +32,10 @@ pub struct PlanRequest<'a> {
     pub limits: wgt::Limits,
     /// Features that the device will have.
     pub features: wgt::Features,
+    /// The backend that the device will have, if it gives less than WebGPU: graphs that do not list
+    /// it in `proven_on` are refused. An executor refuses them too, so what is left out here is
+    /// only told later.
+    pub partial_backend: Option<PartialBackend>,
     /// Bytes that the graph's own textures and buffers may take together; one that takes more is
     /// refused with a table of what takes the most, before anything is allocated. `None`: whatever
     /// the device gives. (wgpu does not tell how much memory there is.)
@@ -53,6 +67,7 @@ impl<'a> PlanRequest<'a> {
             captures: Vec::new(),
             limits: wgt::Limits::default(),
             features: wgt::Features::empty(),
+            partial_backend: None,
             memory_limit: None,
             imports: BTreeMap::new(),
             grown: BTreeMap::new(),
@@ -83,6 +98,7 @@ pub(crate) struct Request {
     outputs: Option<Vec<String>>,
     captures: Vec<Capture>,
     features: wgt::Features,
+    partial_backend: Option<PartialBackend>,
     memory_limit: Option<u64>,
     any_adapter: bool,
     provider: Described,
@@ -99,6 +115,7 @@ impl Request {
             captures: request.captures.clone(),
             limits: request.limits.clone(),
             features: request.features,
+            partial_backend: request.partial_backend.clone(),
             memory_limit: request.memory_limit,
             grown: request.grown.clone(),
             any_adapter: request.any_adapter,
@@ -120,6 +137,7 @@ impl Request {
             captures: self.captures.clone(),
             limits: self.limits.clone(),
             features: self.features,
+            partial_backend: self.partial_backend.clone(),
             memory_limit: self.memory_limit,
             imports: self.imports.clone(),
             grown: self.grown.clone(),

@@ -254,7 +254,7 @@ impl Kinds<'_> {
             ]),
             "passes" => self.passes(),
             "outputs" => self.list::<Output>(),
-            "lights" => self.list::<Name>(),
+            "lights" | "proven_on" => self.list::<Name>(),
             "claims" => self.map::<ClaimEntry>(),
             // `extends`, `description`
             _ => json!({ "type": "string" }),

@@ -31,6 +31,7 @@ pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports)
         // What a method takes and promises holds of it as it is written, not of what others make
         // of it.
         lights: own.lights,
+        proven_on: own.proven_on,
         claims: own.claims,
         broken_params: base.broken_params.or(own.broken_params),
         incomplete: base.incomplete.or(own.incomplete),

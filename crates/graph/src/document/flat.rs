@@ -26,6 +26,7 @@ pub(crate) fn flat(document: &RawDocument) -> String {
     }
     flat.nodes("outputs", &document.outputs);
     flat.nodes("lights", &document.lights);
+    flat.nodes("proven_on", &document.proven_on);
     flat.map(1, "claims", &document.claims);
     flat.line(0, ")", &[]);
     flat.text

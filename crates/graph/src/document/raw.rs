@@ -33,6 +33,7 @@ pub(crate) struct RawDocument {
     pub outputs: Vec<Node>,
     pub set: RawMap,
     pub lights: Vec<Node>,
+    pub proven_on: Vec<Node>,
     pub claims: RawMap,
     /// A param could not be read: nothing of the document has a size then.
     pub broken_params: Option<Reported>,
@@ -107,7 +108,7 @@ pub(crate) fn stem(path: &str) -> &str {
 }
 
 /// The sections of a document, and what each holds.
-pub(crate) const SECTIONS: [(&str, &str); 12] = [
+pub(crate) const SECTIONS: [(&str, &str); 13] = [
     ("format", "The version of the language, 2."),
     ("extends", "Another document, of which this one is an edit."),
     ("description", "A sentence, shown by `skiagraph presets`."),
@@ -125,6 +126,10 @@ pub(crate) const SECTIONS: [(&str, &str); 12] = [
     ("passes", "What is done, in this order."),
     ("outputs", "What comes out."),
     ("lights", "The kinds of light that the method takes."),
+    (
+        "proven_on",
+        "Backends short of WebGPU, such as `gl`, on which the graph is known to be right.",
+    ),
     (
         "claims",
         "What the method promises, by `exact` and `certain`.",
@@ -161,6 +166,7 @@ pub(crate) fn split(file: SourceFile, reports: &mut Reports) -> Result<RawDocume
         outputs: sections.list("outputs"),
         set: sections.map("set"),
         lights: sections.list("lights"),
+        proven_on: sections.list("proven_on"),
         claims: sections.map("claims"),
         passes: entries(passes, sections.reports),
         broken_params: None,

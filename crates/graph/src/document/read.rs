@@ -34,6 +34,7 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
         entries: Vec::new(),
         outputs: Vec::new(),
         lights: Vec::new(),
+        proven_on: Vec::new(),
         claims: Vec::new(),
         broken_materials: Vec::new(),
         broken_params: raw.broken_params,
@@ -87,6 +88,11 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
     }
     for node in &raw.lights {
         keep(node.parse(), reports, |kind| document.lights.push(kind));
+    }
+    for node in &raw.proven_on {
+        keep(node.parse(), reports, |backend| {
+            document.proven_on.push(backend)
+        });
     }
     for (name, node) in raw.claims {
         keep(node.parse(), reports, |value| {

@@ -37,6 +37,8 @@ pub(crate) struct Document {
     pub outputs: Vec<Output>,
     /// The kinds of light that it takes.
     pub lights: Vec<Located<Name>>,
+    /// Backends that give less than WebGPU, on which it is proven all the same.
+    pub proven_on: Vec<Located<Name>>,
     pub claims: Vec<(Located<String>, ClaimEntry)>,
     /// Names of materials and inputs that could not be read.
     pub broken_materials: Vec<(String, Reported)>,

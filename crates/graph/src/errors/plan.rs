@@ -49,6 +49,13 @@ pub(crate) enum OutputError {
         takes: Vec<String>,
         place: Span,
     },
+    #[error("`{graph}` is not proven on the backend {backend}, which has {lacks}")]
+    NotProven {
+        graph: String,
+        backend: String,
+        lacks: String,
+        place: Span,
+    },
     #[error("the viewport has no pixels")]
     NoViewport(Span),
     #[error("the size of `{}` is not known: no shader sees it", **.0)]
@@ -79,6 +86,7 @@ impl Mistake for OutputError {
             Self::UnreadableOutput { .. } => Code::FormatMismatch,
             Self::NoViewport(_) | Self::UnsizedBuffer(_) => Code::Size,
             Self::Light { .. } => Code::Light,
+            Self::NotProven { .. } => Code::Feature,
             Self::ImportUsage { .. } => Code::Import,
             Self::Memory { .. } => Code::Memory,
             _ => Code::Output,
@@ -111,6 +119,10 @@ impl Mistake for OutputError {
             Self::Light { takes, place, .. } => told
                 .at(place, "")
                 .help(format!("it takes: {}", takes.join(", "))),
+            Self::NotProven { backend, place, .. } => told.at(place, "").help(format!(
+                "run it on another backend; a graph whose answers on this one are known to be \
+                 right says `proven_on: [{backend}]`"
+            )),
             Self::NoViewport(span) => told.at(span, ""),
             Self::UnsizedBuffer(name) => told
                 .at(name.span, "")

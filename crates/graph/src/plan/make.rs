@@ -56,6 +56,11 @@ impl Graph {
         if request.viewport.contains(&0) {
             reports.report(OutputError::NoViewport(self.place()));
         }
+        let backend = request.partial_backend.as_ref();
+        if let Some(error) = backend.and_then(|backend| self.not_proven(backend)) {
+            reports.report(error);
+            return Outcome::lacking(reports, Deciding::default());
+        }
         let Ok(params) = params else {
             return Outcome::failed(reports, Deciding::default());
         };

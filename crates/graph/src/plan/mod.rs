@@ -1,5 +1,6 @@
 //! Phase 6: everything that a device needs to know, in one place.
 
+mod backend;
 pub(crate) mod check;
 mod idle;
 pub(crate) mod items;

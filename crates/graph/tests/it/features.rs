@@ -2,7 +2,7 @@
 
 use crate::support::{Files, Triangle, checked, codes, load, names, right};
 use skiagraph_graph::{
-    Code, Ids, Plan, PlanRequest,
+    Code, Ids, PartialBackend, Plan, PlanRequest,
     step::{Draw, DrawCall, Step},
 };
 use wgt::{ColorWrites, TextureAspect};
@@ -360,4 +360,49 @@ fn all_targets_of_a_pass_have_as_many_samples() {
     );
     let mixed = mixed.edited("graph.ron", "color: [", r#"depth: "depth", color: ["#);
     assert_eq!(codes(&checked(&mixed)), [Code::Size]);
+}
+
+/// One draw, with this section besides.
+fn backend_sections(section: &str) -> String {
+    let image = r#"Texture(name: "image", format: Rgba8Unorm)"#;
+    let draw = r#"Raster(name: "draw", draw: 3, fragment: "fragment", color: ["image"])"#;
+    format!(r#"materials: [{image}], passes: [{draw}], outputs: ["image"], {section}"#)
+}
+
+fn backend_files(section: &str) -> Files {
+    Files::graph(&backend_sections(section)).with("draw.wgsl", DRAW)
+}
+
+#[test]
+fn a_backend_that_gives_less_runs_what_is_proven_on_it() {
+    let lesser = PartialBackend {
+        name: "gl".to_owned(),
+        lacks: "no depth to load".to_owned(),
+    };
+    let mut request = PlanRequest::new([8, 8], &Triangle);
+    request.partial_backend = Some(lesser.clone());
+    for section in ["", "proven_on: [other]"] {
+        let graph = right(load(&backend_files(section)));
+        let refused = graph.plan(&request).expect_err("it is not proven there");
+        assert_eq!(codes(refused.iter()), [Code::Feature]);
+        let text = refused.to_string();
+        assert!(
+            text.contains("is not proven on the backend gl, which has no depth to load")
+                && text.contains("proven_on: [gl]"),
+            "{text}"
+        );
+        // A plan that was made for another backend is refused by the executor.
+        let plan = right(graph.plan(&PlanRequest::new([8, 8], &Triangle)));
+        assert!(plan.check_backend(&lesser).is_err());
+    }
+    let graph = right(load(&backend_files("proven_on: [other, gl]")));
+    let plan = right(graph.plan(&request));
+    assert!(plan.check_backend(&lesser).is_ok());
+    // A plan that is made again is made for the same backend.
+    assert!(plan.with_viewport([9, 9]).is_ok());
+    // It is said of the document alone, not of what others make of it.
+    let extended = Files::graph(r#"extends: "base.ron""#)
+        .document("base.ron", &backend_sections("proven_on: [gl]"))
+        .with("draw.wgsl", DRAW);
+    assert!(right(load(&extended)).plan(&request).is_err());
 }

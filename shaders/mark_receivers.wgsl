@@ -1,9 +1,9 @@
 // Stage to find, for each texel of the grid, the farthest receiver that faces the light; one thread
 // for 16 pixels.
 
-#import "shared/facing.wgsl"
 #import "shared/light_buffer.wgsl"
 #import "shared/pixel_blocks.wgsl"
+#import "shared/receiver.wgsl"
 
 struct MarkedTexel {
     farthest: atomic<u32>,
@@ -12,8 +12,6 @@ struct MarkedTexel {
     cover: u32,
 }
 
-// As shared/receiver.wgsl has it; read as it was written, which some adapters do sooner.
-var position: texture_storage_2d<rgba32float, read>;
 var<storage, read_write> texels: array<MarkedTexel>;
 
 @compute @workgroup_size(8, 8)
@@ -31,7 +29,7 @@ fn mark(pixel: vec2<u32>, summed: vec2<f32>) {
     if any(pixel >= textureDimensions(position)) {
         return;
     }
-    let receiver = textureLoad(position, pixel);
+    let receiver = textureLoad(position, pixel, 0);
     if !faces_light(receiver) {
         return;
     }

@@ -79,22 +79,16 @@ fn test_casters(receiver: vec3<f32>, own: u32) -> u32 {
     var is_hit = false;
     var number = texel.z;
     // Testing costs the most: threads that run in step do it together.
-    loop {
+    while !is_hit && number != LIST_END {
         var candidate = NO_PRIMITIVE;
-        loop {
+        while candidate == NO_PRIMITIVE && number != LIST_END {
             let entry = entries[number - 1u];
             number = entry.x;
             let inside = inside_of(entry.zw, offset) | behind_of(entry.zw, coarse);
             let may_hit = (entry.y != own) & (inside >= 0);
             candidate = select(NO_PRIMITIVE, entry.y, may_hit);
-            if may_hit || number == LIST_END {
-                break;
-            }
         }
         is_hit = candidate != NO_PRIMITIVE && intersect(ray, candidate, t_min, &hit);
-        if is_hit || number == LIST_END {
-            break;
-        }
     }
     return select(STATUS_LIGHT, STATUS_SHADOW, is_hit);
 }

@@ -20,9 +20,11 @@ struct MapFit {
     w: vec4<f32>,
 }
 
-// Maps in layers lie in one buffer, each where a device can bind it alone.
+// Maps in layers lie in one buffer, each where a device can bind it alone: every 256 bytes. (GLSL
+// does not know `@size`, and naga passes over it there.)
 struct MapFitSlot {
-    @size(256) fit: MapFit,
+    fit: MapFit,
+    rest: array<vec4<f32>, 12>,
 }
 
 var<uniform> map_fit: MapFit;

@@ -15,7 +15,10 @@ fn main() {
     // `cargo bench` says `--bench`; without it the engines are only tried.
     let measured = std::env::args().any(|argument| argument == "--bench");
     let (edge, turns) = if measured { (512, 5) } else { (48, 1) };
-    let gpu = match device::open_with(None, RAY_QUERY) {
+    let gpu = match device::open_with(&device::Wanted {
+        features: RAY_QUERY,
+        ..Default::default()
+    }) {
         Ok(gpu) => gpu,
         Err(error) => {
             println!("NOTHING WAS MEASURED: {error}");

@@ -7,8 +7,8 @@ use crate::support::{
     graphs::{open, plan, plan_files, provider, run, shares, values},
 };
 use glam::{DVec3, Vec3};
-use skiagraph_gpu::Executor;
-use skiagraph_graph::{ParamValue, PassSummary};
+use skiagraph_gpu::{Executor, device::partial};
+use skiagraph_graph::{Code, Graph, ParamValue, PassSummary, PlanRequest};
 use skiagraph_passes::presets;
 use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
 use std::sync::Arc;
@@ -391,4 +391,39 @@ fn a_param_that_only_uniforms_hold_needs_no_other_plan() {
         }
     }
     assert!(written.contains(&"nsm: bias".to_owned()), "{written:?}");
+}
+
+/// GL gives less than WebGPU: what was not compared there is refused before anything is made.
+#[test]
+fn on_gl_only_what_is_proven_there_is_planned() {
+    let scene = scene();
+    let provider = provider(&scene, &scene.views[0], VIEWPORT);
+    let mut request = PlanRequest::new(VIEWPORT, &provider);
+    request.limits = open().device.limits();
+    request.features = wgpu::Features::all();
+    request.partial_backend = partial(wgpu::Backend::Gl);
+    assert!(partial(wgpu::Backend::Vulkan).is_none());
+    let mut proven = Vec::new();
+    for preset in presets::presets() {
+        let graph = Graph::load(
+            &preset.path,
+            &presets::registry(),
+            &presets::EmbeddedSources,
+        );
+        let graph = graph.unwrap_or_else(|error| panic!("{error}"));
+        match graph.plan(&request) {
+            Ok(_) => proven.push(preset.name),
+            Err(refused) => {
+                let codes = refused.iter().map(|mistake| mistake.code);
+                assert_eq!(codes.collect::<Vec<_>>(), [Code::Feature], "{refused}");
+                let text = refused.to_string();
+                assert!(
+                    text.contains(&preset.path) && text.contains("backend gl"),
+                    "{text}"
+                );
+            }
+        }
+    }
+    // .ci/run compares these with the reference on GL.
+    assert_eq!(proven, ["light_buffer", "rt"]);
 }

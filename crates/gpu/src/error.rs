@@ -261,25 +261,6 @@ impl From<Diagnostics> for ExecuteError {
     }
 }
 
-/// An error if the device is lost. wgpu tells that only to the one callback that the host may have
-/// set, but a lost device maps no buffers. `MAP_WRITE` is memory that the host sees anyway; any
-/// other usage would cost a second buffer, to be copied from.
-pub(crate) fn check_device_lost(device: &wgpu::Device) -> Result<(), ExecuteError> {
-    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("is the device there"),
-        size: wgpu::MAP_ALIGNMENT,
-        usage: wgpu::BufferUsages::MAP_WRITE,
-        mapped_at_creation: true,
-    });
-    let mapped = buffer.get_mapped_range(..).is_ok();
-    match mapped {
-        true => Ok(()),
-        false => Err(ExecuteError::DeviceLost(
-            "it maps no buffers any more".to_owned(),
-        )),
-    }
-}
-
 /// Waits until all that was submitted is done; false if it is not after so long a time.
 pub(crate) fn wait(device: &wgpu::Device, timeout: Option<Duration>) -> Result<bool, ExecuteError> {
     let all = wgpu::PollType::Wait {

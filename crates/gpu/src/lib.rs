@@ -10,6 +10,7 @@ mod frame;
 pub mod import;
 mod memory;
 mod pipelines;
+mod presence;
 mod provider;
 mod readback;
 mod signal;

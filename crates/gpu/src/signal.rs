@@ -60,6 +60,15 @@ impl Signal {
         });
     }
 
+    /// Asks for the mapping of a buffer that no submitted work uses, and says when it is mapped;
+    /// where the device is lost, says at once that it failed.
+    pub fn when_mapped_now(&self, buffer: &wgpu::Buffer, mode: wgpu::MapMode) {
+        let teller = self.teller();
+        buffer.map_async(mode, .., move |result| {
+            teller.tell(if result.is_ok() { DONE } else { FAILED });
+        });
+    }
+
     /// What was under way before must be over.
     fn teller(&self) -> Teller {
         self.0.store(UNDER_WAY, Ordering::Release);

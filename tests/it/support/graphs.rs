@@ -229,7 +229,11 @@ pub const RAY_QUERY: wgpu::Features = wgpu::Features::EXPERIMENTAL_RAY_QUERY;
 /// an adapter fails the test with the way out.
 pub fn open() -> Gpu {
     static GPU: LazyLock<Gpu> = LazyLock::new(|| {
-        device::open_with(None, RAY_QUERY).unwrap_or_else(|error| panic!("{error}"))
+        let wanted = device::Wanted {
+            features: RAY_QUERY,
+            ..Default::default()
+        };
+        device::open_with(&wanted).unwrap_or_else(|error| panic!("{error}"))
     });
     GPU.clone()
 }

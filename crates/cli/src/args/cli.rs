@@ -95,7 +95,8 @@ pub enum Command {
     )]
     Stress(StressArgs),
     /// Check graphs and their shaders. Needs no GPU: what is beyond the limits that every GPU has
-    /// is a warning. With --adapter it is asked of that GPU, and an error where it cannot run them.
+    /// is a warning. With --adapter or --backend it is asked of that GPU, and an error where it
+    /// cannot run them.
     #[command(
         after_help = "Examples:\n  skiagraph check my_method.ron pipelines/*.ron\n  \
         skiagraph check my_method.ron --adapter llvmpipe\n  \

@@ -13,6 +13,10 @@ pub struct GpuArgs {
     /// found.
     #[arg(long, global = true, value_name = "NAME")]
     pub adapter: Option<String>,
+    /// Interface through which the GPU is used. Without it: those that $WGPU_BACKEND lists, else
+    /// Vulkan, Metal or Direct3D 12. On GL a method that is not proven there is refused.
+    #[arg(long, global = true, value_name = "BACKEND")]
+    pub backend: Option<BackendWord>,
     /// Memory for the textures and buffers of a graph: 512MiB, 2GiB, or bytes. A graph that needs
     /// more is refused with a table of what takes the most. Without it: on a software adapter what
     /// the machine has free, else what the driver gives.
@@ -23,6 +27,30 @@ pub struct GpuArgs {
     #[arg(long, global = true, value_name = "SECONDS", default_value_t = 300,
           value_parser = clap::value_parser!(u64).range(..=MAX_SECONDS))]
     pub timeout: u64,
+}
+
+/// An interface to GPUs that this program knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum BackendWord {
+    /// Vulkan.
+    Vulkan,
+    /// Metal.
+    Metal,
+    /// Direct3D 12.
+    Dx12,
+    /// OpenGL and OpenGL ES.
+    Gl,
+}
+
+impl From<BackendWord> for wgpu::Backends {
+    fn from(word: BackendWord) -> Self {
+        match word {
+            BackendWord::Vulkan => Self::VULKAN,
+            BackendWord::Metal => Self::METAL,
+            BackendWord::Dx12 => Self::DX12,
+            BackendWord::Gl => Self::GL,
+        }
+    }
 }
 
 /// A day: far above any frame, and far below what a clock can add.

@@ -64,9 +64,9 @@ fn check_once(args: &CheckArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         .iter()
         .map(|name| preset::locate(name, &sources))
         .collect();
-    let adapter = match gpu.adapter {
-        Some(_) => Some(open(gpu, paths.iter().flatten(), &sources)?),
-        None => None,
+    let adapter = match gpu.adapter.is_some() || gpu.backend.is_some() {
+        true => Some(open(gpu, paths.iter().flatten(), &sources)?),
+        false => None,
     };
     let mut found = Vec::new();
     for (argument, path) in args.graphs.iter().zip(paths) {

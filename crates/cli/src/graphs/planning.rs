@@ -2,8 +2,13 @@
 
 use crate::graphs::light_kinds;
 use glam::{DVec3, Vec3};
-use skiagraph_gpu::{Provider, device::Gpu};
-use skiagraph_graph::{Code, Diagnostics, Graph, Plan, PlanRequest, Registry, Sources};
+use skiagraph_gpu::{
+    Provider,
+    device::{Gpu, partial},
+};
+use skiagraph_graph::{
+    Code, Diagnostics, Graph, PartialBackend, Plan, PlanRequest, Registry, Sources,
+};
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{
     DirectionalLight, Light, LightKind, Mesh, PointLight, Scene, SpotLight, View,
@@ -17,6 +22,8 @@ pub struct Capabilities {
     pub limits: wgpu::Limits,
     /// Its features.
     pub features: wgpu::Features,
+    /// Its backend, if that gives less than WebGPU.
+    pub partial_backend: Option<PartialBackend>,
     /// Bytes of memory for the graph, where that is known.
     pub memory: Option<u64>,
 }
@@ -27,6 +34,7 @@ impl Capabilities {
         Self {
             limits: gpu.device.limits(),
             features: gpu.device.features(),
+            partial_backend: partial(gpu.adapter.get_info().backend),
             memory: gpu.memory,
         }
     }
@@ -43,6 +51,7 @@ impl Capabilities {
         Self {
             limits,
             features: wgpu::Features::all(),
+            partial_backend: None,
             memory: None,
         }
     }
@@ -52,6 +61,7 @@ impl Capabilities {
         let mut request = PlanRequest::new(viewport, provider);
         request.limits = self.limits;
         request.features = self.features;
+        request.partial_backend = self.partial_backend;
         request.memory_limit = self.memory;
         request
     }

@@ -4,7 +4,7 @@ use crate::args::shared::GpuArgs;
 use crate::error::{CliError, with_causes};
 use crate::records::results::Adapter;
 use skiagraph_gpu::{
-    device::{self, Gpu, GpuError},
+    device::{self, Gpu, GpuError, Wanted},
     timing::{self, Trust},
 };
 use skiagraph_graph::Graph;
@@ -20,8 +20,13 @@ pub fn open<'a>(
 ) -> Result<Gpu, CliError> {
     let all = |all, graph: &Graph| all | graph.features();
     let features = graphs.into_iter().fold(wgpu::Features::empty(), all);
-    let mut gpu = device::open_with(args.adapter.as_deref(), features)
-        .map_err(|error: GpuError| CliError::NoGpu(error.to_string()))?;
+    let wanted = Wanted {
+        adapter: args.adapter.as_deref(),
+        backends: args.backend.map(wgpu::Backends::from),
+        features,
+    };
+    let mut gpu =
+        device::open_with(&wanted).map_err(|error: GpuError| CliError::NoGpu(error.to_string()))?;
     let is_software = gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
     gpu.memory = args
         .memory_limit

@@ -212,6 +212,7 @@ mod tests {
     fn a_lost_device_is_an_error_of_its_own_exit_code() {
         let args = GpuArgs {
             adapter: None,
+            backend: None,
             memory_limit: None,
             timeout: 300,
         };

@@ -39,6 +39,7 @@ fn arguments(methods: &[&str]) -> ViewArgs {
 fn gpu() -> GpuArgs {
     GpuArgs {
         adapter: None,
+        backend: None,
         memory_limit: None,
         timeout: 300,
     }

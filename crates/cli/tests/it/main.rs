@@ -2,6 +2,7 @@
 
 mod support;
 
+mod backends;
 mod command_line;
 mod dissertation;
 mod endless_files;

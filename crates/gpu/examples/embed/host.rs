@@ -32,7 +32,7 @@ impl Host {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
         // wgpu's flags of a debug build hand labels to the driver, on which the software driver of
         // Mesa 22.3 crashes.
-        descriptor.flags = wgpu::InstanceFlags::empty().with_env();
+        descriptor.flags = wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL.with_env();
         let instance = wgpu::Instance::new(descriptor);
         let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
         let (device, queue) = pollster::block_on(adapter.request_device(&Default::default()))?;

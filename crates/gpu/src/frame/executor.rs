@@ -8,9 +8,11 @@ use super::{
     uniform::FrameUniform,
 };
 use crate::{
-    error::{ExecuteError, check_device_lost, poll, wait, with_table},
+    device::partial,
+    error::{ExecuteError, poll, wait, with_table},
     memory::{memory::Maker, physical::PingPong},
     pipelines::pipelines::Pipelines,
+    presence::Presence,
     provider::Provider,
     timing::{statistics::Counters, timer::Timer},
 };
@@ -31,6 +33,7 @@ const CALLBACK: Duration = Duration::from_secs(10);
 /// `.previous` finds was made there.
 pub struct Executor {
     pub(super) device: wgpu::Device,
+    pub(super) presence: Presence,
     pub(super) queue: wgpu::Queue,
     pub(super) pipelines: Pipelines,
     pub(super) state: State,
@@ -58,7 +61,8 @@ impl Executor {
         plan: Plan,
         provider: &mut dyn Provider,
     ) -> Result<Self, ExecuteError> {
-        check_device_lost(device)?;
+        let presence = Presence::new(device)?;
+        check_backend(device, &plan)?;
         let mut pipelines = Pipelines::default();
         let mut maker = Maker {
             device,
@@ -68,6 +72,7 @@ impl Executor {
         let state = State::new(plan, &mut pipelines, &mut maker)?;
         let mut executor = Self {
             device: device.clone(),
+            presence,
             queue: queue.clone(),
             pipelines,
             ping_pong: state.ping_pong(true),
@@ -100,7 +105,7 @@ impl Executor {
         encoder: &mut wgpu::CommandEncoder,
         frame: &Frame<'_>,
     ) -> Result<u32, ExecuteError> {
-        check_device_lost(&self.device)?;
+        self.presence.check()?;
         self.grow_by_itself()?;
         self.state.decide(frame.all, &mut self.turn);
         let Turn { runs, ping_pong } = &self.turn;
@@ -186,7 +191,7 @@ impl Executor {
             return Ok(None);
         }
         poll(&self.device, wgpu::PollType::Poll)?;
-        self.flights.report(&self.device)
+        self.flights.report(&self.device, &self.presence)
     }
 
     /// How many frames have asked for times or contents that were not handed out yet. A host that
@@ -226,10 +231,10 @@ impl Executor {
         }
         // A device that was destroyed is waited for without complaint, but has no query buffers to
         // take times from.
-        check_device_lost(&self.device)?;
+        self.presence.check()?;
         let waited = Instant::now();
         loop {
-            if let Some(report) = self.flights.report(&self.device)? {
+            if let Some(report) = self.flights.report(&self.device, &self.presence)? {
                 return Ok(report);
             }
             if self.under_way() == 0 {
@@ -250,7 +255,7 @@ impl Executor {
         }
         // The profiler never gives up a frame whose timestamps cannot be mapped.
         self.flights.give_up_times();
-        let report = self.flights.report(&self.device)?;
+        let report = self.flights.report(&self.device, &self.presence)?;
         report.ok_or(ExecuteError::NotSubmitted)
     }
 
@@ -263,6 +268,14 @@ impl Executor {
             passes: list(&ran.collect::<Vec<_>>()),
         }
     }
+}
+
+/// Refuses a plan whose graph is not proven on the device's backend.
+pub(super) fn check_backend(device: &wgpu::Device, plan: &Plan) -> Result<(), ExecuteError> {
+    if let Some(backend) = partial(device.adapter_info().backend) {
+        plan.check_backend(&backend)?;
+    }
+    Ok(())
 }
 
 /// Names for a message.

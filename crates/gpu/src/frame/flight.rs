@@ -7,7 +7,8 @@ use super::{
     uniform::FrameUniform,
 };
 use crate::{
-    error::{ExecuteError, check_device_lost, poll},
+    error::{ExecuteError, poll},
+    presence::Presence,
     signal::{Progress, Signal},
     timing::{
         statistics::Counters,
@@ -109,14 +110,18 @@ impl Flights {
 
     /// The report of the oldest frame that brings one, if it is done. Frames that were never
     /// submitted bring none.
-    pub fn report(&mut self, device: &wgpu::Device) -> Result<Option<FrameReport>, ExecuteError> {
+    pub fn report(
+        &mut self,
+        device: &wgpu::Device,
+        presence: &Presence,
+    ) -> Result<Option<FrameReport>, ExecuteError> {
         self.sweep();
         while let Some(mut flight) = self.under_way.pop_front() {
             match flight.done.progress() {
                 Progress::UnderWay => {
                     self.under_way.push_front(flight);
                     // Nobody says that what was under way on a lost device will not come.
-                    check_device_lost(device)?;
+                    presence.check()?;
                     return Ok(None);
                 }
                 Progress::Done => {}
@@ -124,7 +129,7 @@ impl Flights {
                     // What was written into its queries is for nobody.
                     flight.timer = None;
                     self.put_aside(flight);
-                    check_device_lost(device)?;
+                    presence.check()?;
                     continue;
                 }
             }
@@ -160,7 +165,7 @@ impl Flights {
             });
             self.put_aside(flight);
             if report.is_err() {
-                check_device_lost(device)?;
+                presence.check()?;
             }
             return report.map(Some);
         }

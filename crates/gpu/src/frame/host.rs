@@ -2,7 +2,7 @@
 
 use super::executor::{Executor, list};
 use crate::{
-    error::{ExecuteError, check_device_lost},
+    error::ExecuteError,
     memory::{
         import::differs,
         memory::{Maker, Memory},
@@ -71,7 +71,7 @@ impl Executor {
         };
         // Most hosts hand over the same texture in every frame.
         if self.state.memory.host(id) != Some(&physical) {
-            check_device_lost(&self.device)?;
+            self.presence.check()?;
         }
         self.state.contents.touch(id);
         if self.state.memory.import(id, physical) {
@@ -121,7 +121,7 @@ impl Executor {
             if Some(provider.version(&state.plan.resource(id).name)) == version {
                 continue;
             }
-            check_device_lost(&self.device)?;
+            self.presence.check()?;
             let before = state.memory.host(id).cloned();
             let mut maker = Maker {
                 device: &self.device,

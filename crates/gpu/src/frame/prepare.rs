@@ -3,8 +3,9 @@
 
 use super::{executor::Executor, replan::ReplanReport};
 use crate::{
-    error::{ExecuteError, check_device_lost, named, scoped},
+    error::{ExecuteError, named, scoped},
     pipelines::pipelines::{Pipelines, same_pipeline},
+    presence::Presence,
     provider::Provider,
 };
 use skiagraph_graph::{Ids, Plan, step::Step};
@@ -36,7 +37,7 @@ impl Preparer {
             mut pipelines,
             known,
         } = self;
-        check_device_lost(&device)?;
+        Presence::new(&device)?;
         for pass in plan.live() {
             let old = known.get(pass.name.as_str());
             let is_new = |(at, step): (usize, _)| {

@@ -10,7 +10,7 @@
 
 use super::{
     contents::Contents,
-    executor::Executor,
+    executor::{Executor, check_backend},
     fetch::Readable,
     pass::{GpuPass, Seen},
     poison::Poison,
@@ -18,7 +18,7 @@ use super::{
     watch::Watch,
 };
 use crate::{
-    error::{ExecuteError, check_device_lost, with_table},
+    error::{ExecuteError, with_table},
     memory::memory::{Maker, Memory},
     pipelines::pipelines::{Pipelines, same_pipeline},
     provider::Provider,
@@ -77,7 +77,7 @@ impl Executor {
             let plan = self.plan().with_param(name, value)?;
             return self.replace_graph(plan, provider);
         }
-        check_device_lost(&self.device)?;
+        self.presence.check()?;
         self.refresh(provider)?;
         let state = &mut self.state;
         let before = state.plan.param(name).cloned();
@@ -115,7 +115,8 @@ impl Executor {
         plan: Plan,
         provider: &mut dyn Provider,
     ) -> Result<ReplanReport, ExecuteError> {
-        check_device_lost(&self.device)?;
+        self.presence.check()?;
+        check_backend(&self.device, &plan)?;
         let mut maker = Maker {
             device: &self.device,
             queue: &self.queue,

@@ -216,6 +216,34 @@ fn a_dispatch_may_come_from_a_buffer() {
     assert_eq!(words(&files, "visited"), [8 * (6 + 5)]);
 }
 
+/// What Vulkan leaves open, a driver that hangs included: the device was opened with wgpu's check.
+#[test]
+fn an_indirect_dispatch_of_more_groups_than_there_may_be_does_nothing() {
+    let files = Files::graph(
+        r#"
+        materials: [Buffer(name: "groups"), Buffer(name: "visited")],
+        passes: [
+            Clear(name: "reset", target: "visited"),
+            Compute(name: "ask", dispatch: Groups(1, 1, 1), overwrites: ["groups"]),
+            Compute(name: "visit", dispatch: Indirect("groups")),
+        ],
+        outputs: ["visited"],
+        "#,
+    );
+    let most = GPU.device.limits().max_compute_workgroups_per_dimension;
+    let visit = "var<storage, read_write> visited: atomic<u32>;
+        @compute @workgroup_size(1) fn main() { atomicAdd(&visited, 1u); }";
+    let files = files.with("visit.wgsl", visit);
+    for (groups, expected) in [(most, most), (most + 1, 0)] {
+        let ask = format!(
+            "var<storage, read_write> groups: vec3<u32>;
+            @compute @workgroup_size(1) fn main() {{ groups = vec3({groups}u, 1u, 1u); }}"
+        );
+        let files = files.clone().with("ask.wgsl", ask);
+        assert_eq!(words(&files, "visited"), [expected], "{groups} groups");
+    }
+}
+
 #[test]
 fn a_graph_knows_its_frame_and_what_was_before() {
     let files = Files::graph(

@@ -13,7 +13,11 @@ use std::sync::LazyLock;
 /// A device with all that the adapter has of what graphs may ask for.
 pub static GPU: LazyLock<Gpu> = LazyLock::new(|| {
     let wanted = wgpu::Features::VERTEX_WRITABLE_STORAGE;
-    device::open_with(None, wanted).unwrap_or_else(|error| panic!("{error}"))
+    device::open_with(&device::Wanted {
+        features: wanted,
+        ..Default::default()
+    })
+    .unwrap_or_else(|error| panic!("{error}"))
 });
 
 /// Writes the param `value` into its only target.

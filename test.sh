@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Runs the tests. They create GPU devices, so a machine without any adapter gets a software Vulkan
 # driver first, and a browser in which one test opens `report.html` (`chromium`, or the program that
-# $CHROMIUM names). Arguments go to `cargo test`:
+# $CHROMIUM names; Debian's package of it holds the validation layer that another test asks).
+# Arguments go to `cargo test`:
 #
 #   ./test.sh                          all tests but the suites that take minutes
 #   ./test.sh --all                    these, too

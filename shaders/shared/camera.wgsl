@@ -13,7 +13,7 @@ struct Camera {
     up: vec3<f32>,
     half_height: f32,
     forward: vec3<f32>,
-    // far / (far - near): clip z per unit of distance.
+    // near / (far - near): clip z per unit of distance before the far plane.
     depth_scale: f32,
     // Where the ray of a pixel goes through it: from its centre, in pixels, y down; and the same in
     // clip space, y up.
@@ -27,13 +27,16 @@ fn relative_to_eye(position: vec3<f32>) -> vec3<f32> {
     return (position - camera.eye) - camera.eye_low;
 }
 
-// wgpu clip space: x right, y up, z from 0 at the near plane to w at the far plane.
+// wgpu clip space: x right, y up, z from w at the near plane to 0 at the far plane. A depth is
+// about near / distance then, of which f32 keeps as many digits however far it is; the other way
+// round, far depths crowd below 1. What is drawn with it clears depth to 0 and compares with
+// Greater.
 fn camera_clip(relative: vec3<f32>) -> vec4<f32> {
     let distance = dot(camera.forward, relative);
     return vec4(
         dot(camera.right, relative) / camera.half_width - camera.jitter_clip.x * distance,
         dot(camera.up, relative) / camera.half_height - camera.jitter_clip.y * distance,
-        (distance - camera.near) * camera.depth_scale,
+        (camera.far - distance) * camera.depth_scale,
         distance,
     );
 }

@@ -22,6 +22,7 @@ mod cpu_one_rings;
 mod cpu_reference;
 mod cpu_status;
 mod cpu_triangles;
+mod depth;
 mod dissertation;
 mod documents;
 mod extents;

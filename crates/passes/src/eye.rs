@@ -5,7 +5,7 @@ use crate::{
     uniforms::{CameraUniform, UnprojectionUniform},
 };
 use glam::{DMat4, DVec2, DVec3};
-use skiagraph_scene::Camera;
+use skiagraph_scene::{Camera, LEAST_DEPTH};
 
 /// Which end of the depth buffer is near.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +25,7 @@ const FARTHEST: f64 = 65536.0;
 /// What is reconstructed from a depth buffer (`shared/from_depth.ron`) is right for any of them.
 /// Fits to the eye's frustum (`fit: eye`, `pssm`) are laid over a symmetric one that holds it; one
 /// without a far plane counts as ending at 65,536 times its near plane. `shared/gbuffer.ron` draws
-/// that symmetric frustum, too.
+/// that symmetric frustum, too, in reversed depth whatever the host's is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Eye {
     pub(crate) camera: CameraUniform,
@@ -120,7 +120,7 @@ impl From<&Camera> for Eye {
             unprojection: UnprojectionUniform {
                 relative_from_clip: matrix.as_mat4(),
                 origin: uniform.eye,
-                is_reversed: 0,
+                is_reversed: 1,
                 origin_low: uniform.eye_low,
                 padding: 0.0,
             },
@@ -183,7 +183,8 @@ impl Frustum {
         let numbers = [near, far, half[0], half[1], 1.0 / near];
         let is_held = numbers
             .iter()
-            .all(|&it| it > 0.0 && (it as f32).is_finite());
+            .all(|&it| it > 0.0 && (it as f32).is_finite())
+            && near >= LEAST_DEPTH * far;
         if !(near < far && is_held && forward.is_finite()) {
             return Err(EyeError::Frustum { near, far });
         }
@@ -290,8 +291,9 @@ mod tests {
             light: None,
         };
         let own = Eye::from(&view_of.camera([30, 20]));
-        let projection = proj::perspective(50_f64.to_radians(), 1.5, 0.5, 80.0);
-        let (given, _) = seen(projection, Depth::Standard);
+        // Planes that change places reverse the depth.
+        let projection = proj::perspective(50_f64.to_radians(), 1.5, 80.0, 0.5);
+        let (given, _) = seen(projection, Depth::Reversed);
         let is_near = |a: f32, b: f32| (a - b).abs() <= 1e-5 * (1.0 + b.abs());
         let numbers = |eye: &Eye| -> Vec<f32> {
             [

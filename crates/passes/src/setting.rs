@@ -27,7 +27,8 @@ impl SceneProvider {
         self.set_light(light);
     }
 
-    /// Another camera.
+    /// Another camera, whose depths are as `shared/gbuffer.ron` draws them: 1 near, 0 far. For
+    /// depths that a host draws itself, [`set_eye`](Self::set_eye) knows which end is near.
     pub fn set_camera(&mut self, camera: &Camera) {
         self.set_eye(&Eye::from(camera));
     }

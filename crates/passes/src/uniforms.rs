@@ -27,7 +27,7 @@ pub struct CameraUniform {
     pub half_height: f32,
     /// Unit viewing direction.
     pub forward: Vec3,
-    /// far / (far − near): clip z per unit of distance beyond the near plane.
+    /// near / (far − near): clip z per unit of distance before the far plane.
     pub depth_scale: f32,
     /// Where the ray of a pixel goes through it: from its centre, in pixels, y down.
     pub jitter: Vec2,
@@ -48,7 +48,7 @@ impl From<&Camera> for CameraUniform {
             up: camera.up.as_vec3(),
             half_height: camera.half_height as f32,
             forward: camera.forward.as_vec3(),
-            depth_scale: (camera.far / (camera.far - camera.near)) as f32,
+            depth_scale: (camera.near / (camera.far - camera.near)) as f32,
             jitter: camera.jitter.as_vec2(),
             jitter_clip: camera.jitter_clip().as_vec2(),
         }

@@ -46,6 +46,7 @@ pub mod statistics;
 mod strata;
 mod sums;
 mod tree;
+mod visible;
 
 pub use area::{AreaVisibility, RightAnswer};
 pub use blockers::BlockerCounts;

@@ -217,30 +217,16 @@ impl<'a> Oracle<'a> {
         let max_distance = self.tree.max_distance(camera.eye);
         per_pixel(camera.viewport, progress, |x, y, stack| {
             let ray = Ray::new(camera.eye, camera.pixel_direction(x, y), max_distance, 0.0);
-            let mut nearest = (camera.far, BACKGROUND);
-            self.tree.walk(&ray, stack, |caster, t_max| {
-                if let Some(hit) = caster.hit(&ray)
-                    && (hit.front || caster.double_sided)
-                    && hit.t >= camera.near
-                    && (hit.t, caster.primitive) < nearest
-                {
-                    nearest = (hit.t, caster.primitive);
-                    // Boxes err by rounding, and an equally near triangle of lower id still counts:
-                    // a hair further.
-                    *t_max = hit.t * (1.0 + 1e-12);
-                }
-                ControlFlow::Continue(())
-            });
-            Ok(nearest.1)
+            Ok(self.nearest(camera, &ray, stack))
         })
     }
 
     /// Classifies every pixel of a G-buffer. `primitives` holds the primitive id that each pixel
     /// shows, row by row from the top left, [`BACKGROUND`] for none. The receiver is where the ray
-    /// through the pixel's centre meets the *plane* of that primitive: at a triangle's edge a
-    /// rasteriser, which snaps vertices, may name a primitive that the centre lies slightly outside
-    /// of, and the point outside is then the receiver. Casters are two-sided and count at t > 0 by
-    /// more than f64 rounding.
+    /// through the pixel's centre meets that primitive: at a triangle's edge a rasteriser, which
+    /// snaps corners, may name a primitive that the centre lies slightly outside of, and the
+    /// receiver is within its edges all the same ([`Receiver::new`]). Casters are two-sided and
+    /// count at t > 0 by more than f64 rounding.
     ///
     /// # Errors
     /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Light`], [`Error::Offset`],
@@ -321,18 +307,10 @@ impl<'a> Oracle<'a> {
             Some(uncertainty) => self.visibility(origin, way, uncertainty, excluded, stack),
             None => (self.occluded(origin, way, excluded, stack), true),
         };
-        // A rasteriser's snapping puts it beyond its primitive, where a neighbour may lie on top of
-        // it.
-        let snapped = |border: DVec3| {
-            let origin = border + (origin - receiver.position);
-            self.occluded(origin, way, excluded, stack) != shadow
-        };
         let class = if shadow { Class::Shadow } else { Class::Lit };
         Answer {
             class,
-            indeterminate: indeterminate
-                || facing.indeterminate
-                || receiver.on_border.is_some_and(snapped),
+            indeterminate: indeterminate || facing.indeterminate,
             ..facing
         }
     }

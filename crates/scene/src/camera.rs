@@ -24,6 +24,9 @@ pub struct View {
     pub light: Option<Light>,
 }
 
+/// The least share of the far plane's distance that the near plane's may be.
+pub const LEAST_DEPTH: f64 = 1e-30;
+
 /// A view on a viewport: orthonormal frame and extents, in f64.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -107,6 +110,16 @@ impl View {
                 self.near, self.far
             ));
         }
+        // Depths just before the far plane are this small, and f32 must still tell them apart.
+        if self.near < LEAST_DEPTH * self.far {
+            return Err(format!(
+                "view {name:?}: near is {} and far is {}, more than {:e} times as much; f32 holds \
+                 no depths of both: bring them nearer to each other",
+                self.near,
+                self.far,
+                1.0 / LEAST_DEPTH
+            ));
+        }
         // Shaders get it in 32 bits.
         let camera = self.camera([1, 1]).view_projection();
         if !camera.as_mat4().is_finite() {
@@ -167,7 +180,8 @@ impl Camera {
         inside.then_some([x as u32, y as u32])
     }
 
-    /// World to wgpu clip space (x right, y up, z in 0..1 from near to far).
+    /// World to wgpu clip space (x right, y up, z from 1 at the near plane to 0 at the far plane:
+    /// reversed, so that f32 tells far surfaces apart however near the near plane is).
     pub fn view_projection(&self) -> DMat4 {
         let rotation = DMat4::from_cols(
             self.right.extend(0.0),
@@ -176,7 +190,7 @@ impl Camera {
             glam::DVec4::W,
         )
         .transpose();
-        let range = self.far / (self.near - self.far);
+        let range = self.near / (self.far - self.near);
         let projection = DMat4::from_cols_array(&[
             1.0 / self.half_width,
             0.0,
@@ -192,7 +206,7 @@ impl Camera {
             -1.0,
             0.0,
             0.0,
-            self.near * range,
+            self.far * range,
             0.0,
         ]);
         let camera = projection * rotation * DMat4::from_translation(-self.eye);
@@ -282,7 +296,7 @@ mod tests {
                         && (pixel.1 - f64::from(y) - 0.5).abs() < 1e-9
                 );
                 let depth =
-                    camera.far / (camera.far - camera.near) * (1.0 - camera.near / distance);
+                    camera.near / (camera.far - camera.near) * (camera.far / distance - 1.0);
                 assert!(
                     (clip.z - depth).abs() < 1e-12,
                     "{} instead of {depth}",
@@ -290,6 +304,26 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn planes_whose_depths_f32_cannot_hold_are_refused() {
+        let view = |near, far| View {
+            name: "main".into(),
+            eye: DVec3::ZERO,
+            direction: DVec3::NEG_Z,
+            up: DVec3::Y,
+            fov_y_degrees: 60.0,
+            near,
+            far,
+            light: None,
+        };
+        assert_eq!(view(1e-10, 1e10).check(), Ok(()));
+        let refused = view(1e-20, 1e11).check().unwrap_err();
+        assert!(
+            refused.contains("bring them nearer to each other"),
+            "{refused}"
+        );
     }
 
     #[test]

@@ -57,7 +57,7 @@ pub mod weld;
 
 pub use adjacency::{Adjacency, NO_NEIGHBOUR};
 pub use bvh::{Bvh, BvhNode, LightSpace, LightSpaceNode};
-pub use camera::{Camera, View};
+pub use camera::{Camera, LEAST_DEPTH, View};
 pub use error::{SceneError, SceneMistake};
 #[cfg(feature = "files")]
 pub use gltf::load_gltf;

@@ -219,6 +219,7 @@ impl<'a> Comparison<'a> {
             fingerprint: subject.fingerprint(self.setup.fingerprint),
             judge,
             own,
+            wrong_surfaces: frames.wrong_surfaces(),
             frames: match subject {
                 Subject::Still(_) => self.args.frames.into(),
                 Subject::Path(_) => frames.shots.len() as u64,

@@ -9,7 +9,9 @@ use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::frame;
 use crate::measuring::guarantee::{self, WITHOUT_CULLING};
-use crate::measuring::reference::{PrimaryVisibility, Tracing, own_counts, right_answer};
+use crate::measuring::reference::{
+    PrimaryVisibility, Tracing, own_counts, right_answer, wrong_surfaces,
+};
 use crate::measuring::steady;
 use crate::measuring::stop::Stop;
 use crate::pictures::run_pictures::{PicturePlace, draw_pictures, stem, write_pictures};
@@ -145,10 +147,11 @@ impl HardCaseContext<'_> {
             failed: None,
             pixels: PixelCounts::default(),
             band: 0,
+            wrong_surface: 0,
             cells: Vec::new(),
         };
-        let right = match self.right_answer(&scene, &mut provider) {
-            Ok(right) => right,
+        let (right, wrong_surface) = match self.right_answer(&scene, &mut provider) {
+            Ok(answer) => answer,
             Err(error) if ends_all(&error) => return Err(error),
             Err(error) => {
                 case.failed = Some(with_causes(&error));
@@ -157,6 +160,7 @@ impl HardCaseContext<'_> {
         };
         let counts = own_counts(&right.reference);
         (case.pixels, case.band) = (counts.pixels, counts.band);
+        case.wrong_surface = wrong_surface;
         if !case.exceeds_cap() {
             case.verdict = Verdict::Pass;
         }
@@ -206,12 +210,12 @@ impl HardCaseContext<'_> {
         Ok(case)
     }
 
-    /// The right answer.
+    /// The right answer, and how many pixels show a surface which is not seen there.
     fn right_answer(
         &self,
         scene: &Scene,
         provider: &mut SceneProvider,
-    ) -> Result<RightAnswer, CliError> {
+    ) -> Result<(RightAnswer, u64), CliError> {
         let [view] = &scene.views[..] else {
             return Err(CliError::Input(format!(
                 "{} has no single view",
@@ -226,15 +230,18 @@ impl HardCaseContext<'_> {
             mode: OracleMode::Exact,
             samples: REFERENCE_SAMPLES,
         };
-        right_answer(
+        let camera = view.camera(self.viewport);
+        let right = right_answer(
             &oracle,
-            &view.camera(self.viewport),
+            &camera,
             &scene.light_of(view),
             &ids,
             tracing,
             &|_| (),
             &scene.name,
-        )
+        )?;
+        let wrong = wrong_surfaces(&oracle, &camera, &ids, &|_| (), &scene.name)?;
+        Ok((right, wrong))
     }
 
     /// One frame of a method, counted; of one that remembers, the worst of its steady state.

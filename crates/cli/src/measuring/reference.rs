@@ -108,6 +108,8 @@ pub struct Judge<'a> {
     mode: OracleMode,
     /// The right answer.
     pub right: RightAnswer,
+    /// Pixels that show a surface which is not seen there: on it, methods are judged all the same.
+    pub wrong_surfaces: u64,
 }
 
 impl<'a> Judge<'a> {
@@ -139,6 +141,14 @@ impl<'a> Judge<'a> {
             what,
         )?;
         step.end();
+        let step = Step::begin(
+            format!("what is visible, {what}"),
+            camera.viewport[1].into(),
+            "rows",
+        );
+        let rows_done = |rows| step.set_done(rows);
+        let wrong_surfaces = wrong_surfaces(&oracle, &camera, &primitives, &rows_done, what)?;
+        step.end();
         Ok(Self {
             oracle,
             camera,
@@ -146,6 +156,7 @@ impl<'a> Judge<'a> {
             primitives,
             mode: tracing.mode,
             right,
+            wrong_surfaces,
         })
     }
 
@@ -192,8 +203,32 @@ pub fn right_answer(
         interrupted: interrupt::flag(),
     };
     let right = oracle.right_answer(camera, light, primitives, (mode, samples), progress);
-    right.map_err(|error| match error {
+    right.map_err(|error| named(error, what))
+}
+
+/// Counts the pixels that show a surface which is not seen there; `rows_done` hears how far it is.
+///
+/// # Errors
+/// Ctrl-C, ids of another mesh.
+pub fn wrong_surfaces(
+    oracle: &Oracle,
+    camera: &Camera,
+    primitives: &[u32],
+    rows_done: &(dyn Fn(u64) + Sync),
+    what: &str,
+) -> Result<u64, CliError> {
+    let progress = Progress {
+        rows_done,
+        interrupted: interrupt::flag(),
+    };
+    let wrong = oracle.wrong_surfaces(camera, primitives, progress);
+    wrong.map_err(|error| named(error, what))
+}
+
+/// Of what there is no reference, and why.
+fn named(error: Error, what: &str) -> CliError {
+    match error {
         Error::Interrupted => CliError::interrupted(),
         error => CliError::Input(format!("no reference for {what}: {error}")),
-    })
+    }
 }

@@ -41,6 +41,8 @@ pub struct MeasureContext<'a> {
     pub judge: &'a Judge<'a>,
     /// The reference's own pixels, of all frames of a path.
     pub own: Statistics,
+    /// Pixels that show a surface which is not seen there, of all frames of a path.
+    pub wrong_surfaces: u64,
     /// Timed frames.
     pub frames: u64,
     /// Frames before them.
@@ -298,6 +300,7 @@ impl MeasureContext<'_> {
             promise: guarantee::promise(method),
             pixels: counts.pixels,
             band: counts.band,
+            wrong_surface: Some(self.wrong_surfaces),
             area: area.map(|area| AreaReference::of(area, reference)),
             measured: None,
             unavailable: None,

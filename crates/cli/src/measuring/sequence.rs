@@ -91,6 +91,11 @@ impl<'a> Path<'a> {
         (index as f64 / self.frames_per_second) as f32
     }
 
+    /// Pixels of all frames that show a surface which is not seen there.
+    pub fn wrong_surfaces(&self) -> u64 {
+        self.judges.iter().map(|judge| judge.wrong_surfaces).sum()
+    }
+
     /// The reference's pixels of all frames together.
     pub fn own_counts(&self) -> Statistics {
         let mut all = Statistics::default();

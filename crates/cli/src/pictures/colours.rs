@@ -23,9 +23,9 @@ pub const NEGATIVE_INFINITY: [u8; 3] = [0, 192, 255];
 /// Near and far plane of the perspective camera whose depths a texture holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClipPlanes {
-    /// Distance of the near plane, depth 0.
+    /// Distance of the near plane, depth 1.
     pub near: f64,
-    /// Distance of the far plane, depth 1.
+    /// Distance of the far plane, depth 0: what is cleared to.
     pub far: f64,
 }
 
@@ -39,7 +39,7 @@ impl ClipPlanes {
     /// The distance along the viewing direction that a depth stands for.
     pub fn distance(self, depth: f32) -> f32 {
         let Self { near, far } = self;
-        (near * far / (far - f64::from(depth) * (far - near))) as f32
+        (near * far / (near + f64::from(depth) * (far - near))) as f32
     }
 }
 
@@ -117,10 +117,18 @@ pub fn id_colour(id: u32) -> [u8; 3] {
         .map(|channel| 48 + (channel * 207 / 255) as u8)
 }
 
-/// Depths from the least to the greatest, 1 apart: that is what they are cleared to. A camera's are
-/// shown as distances, which its depths would squeeze into a hair below 1.
+/// What depths are cleared to: a camera's, which are reversed, to 0, a light's to 1.
+pub fn cleared(planes: Option<ClipPlanes>) -> f32 {
+    match planes {
+        Some(_) => 0.0,
+        None => 1.0,
+    }
+}
+
+/// Depths from the nearest to the farthest, those apart that nothing has written. A camera's are
+/// shown as distances, which its depths would squeeze into a hair above 0.
 pub fn depths(values: &[f32], planes: Option<ClipPlanes>) -> (Vec<u8>, String) {
-    let is_cleared = |depth: f32| depth == 1.0;
+    let is_cleared = |depth: f32| depth == cleared(planes);
     let distance = |depth| planes.map_or(depth, |planes| planes.distance(depth));
     let written = || values.iter().copied().filter(|&depth| !is_cleared(depth));
     let (stored, shown) = (range(written()), range(written().map(distance)));
@@ -137,7 +145,10 @@ pub fn depths(values: &[f32], planes: Option<ClipPlanes>) -> (Vec<u8>, String) {
         ),
         None => format!("stored depth, black to white {}", span(stored)),
     }];
-    legend.extend(mark("grey 1, nothing there", count(values, is_cleared)));
+    legend.extend(mark(
+        &format!("grey {}, nothing there", cleared(planes)),
+        count(values, is_cleared),
+    ));
     legend.extend(non_finite_marks(
         &values.iter().copied().map(distance).collect::<Vec<_>>(),
     ));

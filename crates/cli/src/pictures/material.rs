@@ -191,16 +191,17 @@ mod tests {
             near: 1.0,
             far: 11.0,
         };
-        // Depth of a distance z: far (z - near) / (z (far - near)).
-        let depth = |z: f32| 11.0 * (z - 1.0) / (z * 10.0);
-        let bytes = float_bytes(&[depth(2.0), depth(3.0), depth(7.0), 1.0]);
-        let content = texture(F::Depth32Float, [4, 1], bytes);
-        let grey = |planes| {
+        // Depth of a distance z: near (far - z) / (z (far - near)).
+        let depth = |z: f32| (11.0 - z) / (z * 10.0);
+        let written = [2.0, 3.0, 7.0].map(depth);
+        let grey = |planes, empty| {
+            let bytes = float_bytes(&[&written[..], &[empty]].concat());
+            let content = texture(F::Depth32Float, [4, 1], bytes);
             let Picture { image, legend } = Picture::of("depth", &content, planes).unwrap();
             assert_eq!(image.rgb[9..], EMPTY);
             ([image.rgb[0], image.rgb[3], image.rgb[6]], legend)
         };
-        let (linear, legend) = grey(Some(planes));
+        let (linear, legend) = grey(Some(planes), 0.0);
         assert_eq!(
             linear,
             [0, 51, 255],
@@ -210,17 +211,18 @@ mod tests {
             legend.starts_with("distance along the view, black to white 2"),
             "{legend}"
         );
-        assert!(legend.ends_with("grey 1, nothing there (1)"), "{legend}");
-        let (stored, legend) = grey(None);
+        assert!(legend.ends_with("grey 0, nothing there (1)"), "{legend}");
+        let (stored, legend) = grey(None, 1.0);
         assert_eq!(
             stored,
-            [0, 119, 255],
+            [255, 136, 0],
             "and nearly half way between their depths"
         );
         assert!(
-            legend.starts_with("stored depth, black to white 0.55 …"),
+            legend.starts_with("stored depth, black to white 0.05"),
             "{legend}"
         );
+        assert!(legend.ends_with("grey 1, nothing there (1)"), "{legend}");
     }
 
     #[test]

@@ -151,6 +151,10 @@ pub struct Run {
     /// Of those facing the light, the ones whose answer flips within the rounding error of receiver
     /// and casters.
     pub band: u64,
+    /// Pixels that show a surface which is not seen there: another one stands before it by more
+    /// than rounding. All methods are judged on what is shown. Absent in files of older programs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wrong_surface: Option<u64>,
     /// Of a light that has an extent, how the reference was sampled; absent where it has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area: Option<AreaReference>,
@@ -496,6 +500,7 @@ pub(crate) mod tests {
                 shadow: 40_000,
             },
             band: 12,
+            wrong_surface: Some(0),
             area: None,
             measured: None,
             unavailable: None,

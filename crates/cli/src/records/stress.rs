@@ -85,6 +85,9 @@ pub struct Case {
     /// Of those facing the light, the ones whose answer flips within the rounding error of receiver
     /// and casters.
     pub band: u64,
+    /// Pixels that show a surface which is not seen there: another one stands before it by more
+    /// than rounding.
+    pub wrong_surface: u64,
     /// One per method that runs, and one more without culling where that is what is judged.
     pub cells: Vec<Cell>,
 }
@@ -317,6 +320,7 @@ pub(crate) mod tests {
                 shadow: 400,
             },
             band,
+            wrong_surface: 0,
             cells,
         };
         if case.exceeds_cap() {

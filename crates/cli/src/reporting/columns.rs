@@ -119,6 +119,7 @@ const CSV: &[Figure] = &[
     ("every_pass_slowest_frame_ms",
         Measure(|of| path(of, |by| Some(Time(by.slowest_with_every_pass()?.1.ms()))))),
     ("worst_frame_rmse", Measure(|of| path(of, |by| Some(Real(by.worst()?.1.graded?.rmse))))),
+    ("wrong_surface", Always(|_, run| run.wrong_surface.map_or(Unknown, Count))),
 ];
 
 /// Figures that only tables show.

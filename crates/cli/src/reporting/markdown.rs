@@ -6,7 +6,7 @@ use crate::records::results::{Measured, Results, Run, step};
 use crate::reporting::columns::{self, Column, STEPS};
 use crate::reporting::graded::{area_reference, by_answer, graded};
 use crate::reporting::notes::{
-    band_warning, certain_wrong, path_costs, remembering, times_missing,
+    band_warning, certain_wrong, path_costs, remembering, surface_warning, times_missing,
 };
 use crate::wording::{command_line, frames, ms, share, thousands};
 use std::{collections::BTreeSet, env};
@@ -111,6 +111,7 @@ pub fn viewport(results: &Results, runs: &[Run]) -> String {
         }
     }
     let mut notes: Vec<String> = band_warning(first).into_iter().collect();
+    notes.extend(surface_warning(first));
     notes.extend(certain_wrong(runs));
     notes.extend(graded(runs));
     notes.extend(runs.iter().filter_map(remembering));

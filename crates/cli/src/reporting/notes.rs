@@ -34,6 +34,25 @@ pub fn unlit(view: &str, pixels: &PixelCounts) -> Option<String> {
     Some(format!("warning: view `{view}` {what}"))
 }
 
+/// That pixels of a view and viewport show what is not seen there, if any do. No method is to blame
+/// for it, and none is judged by it.
+pub fn surface_warning(run: &Run) -> Option<String> {
+    let count = run.wrong_surface.filter(|count| *count > 0)?;
+    let background = run.pixels.background + run.pixels.facing_away;
+    let all = background + run.pixels.facing_light;
+    Some(format!("warning: {}", wrong_surface(count, all)))
+}
+
+/// That so many of all pixels show what is not seen there.
+pub fn wrong_surface(count: u64, all: u64) -> String {
+    format!(
+        "{} of {} pixels show a surface that another one hides, or none where there is one; every \
+         method is judged on the surface that is shown",
+        thousands(count),
+        thousands(all)
+    )
+}
+
 /// Of each method that is wrong of certain pixels: how many, and what blocks them. All maps of a
 /// method, whose runs stand together, are in one line.
 pub fn certain_wrong(runs: &[Run]) -> Vec<String> {
@@ -201,6 +220,21 @@ mod tests {
     use crate::records::results::tests::sample;
     use crate::records::steady::{Cycle, Steady};
     use skiagraph_reference::{BlockerCounts, PixelCounts};
+
+    #[test]
+    fn surfaces_that_are_not_seen_are_said() {
+        let mut run = sample().runs.remove(0);
+        assert_eq!(surface_warning(&run), None);
+        run.wrong_surface = Some(1_234);
+        assert_eq!(
+            surface_warning(&run).unwrap(),
+            "warning: 1,234 of 131,072 pixels show a surface that another one hides, or none where \
+             there is one; every method is judged on the surface that is shown"
+        );
+        // From a file of an older program.
+        run.wrong_surface = None;
+        assert_eq!(surface_warning(&run), None);
+    }
 
     #[test]
     fn what_was_judged_of_a_method_that_remembers_is_said() {

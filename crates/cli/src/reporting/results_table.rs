@@ -5,7 +5,7 @@ use crate::records::statistics::Spread;
 use crate::reporting::columns::{self, Column, are_paths};
 use crate::reporting::graded::{area_reference, by_answer, graded};
 use crate::reporting::notes::{
-    band_warning, certain_wrong, path_costs, remembering, times_missing,
+    band_warning, certain_wrong, path_costs, remembering, surface_warning, times_missing,
 };
 use crate::reporting::table::table;
 use crate::wording::{frames, ms, percent, size, thousands};
@@ -79,6 +79,7 @@ fn heading(results: &Results, run: &Run, runs: &[Run]) -> String {
         ),
     });
     lines.extend(band_warning(run));
+    lines.extend(surface_warning(run));
     format!("{title}\n{}\n", lines.join("\n"))
 }
 

@@ -3,6 +3,7 @@
 use crate::records::stress::{
     Case, Casters, Cell, Column, Guarantee, OutsideBand, Report, Verdict,
 };
+use crate::reporting::notes::wrong_surface;
 use crate::reporting::table::table;
 use crate::wording::{percent, size, thousands};
 
@@ -23,6 +24,16 @@ pub fn render(report: &Report, command_for: CommandFor) -> String {
         if let Some(reason) = &column.unavailable {
             text += &format!("{} is unavailable: {reason}\n", named(report, column));
         }
+    }
+    for case in report.cases.iter().filter(|case| case.wrong_surface > 0) {
+        text += &format!(
+            "{}: warning: {}\n",
+            case.name,
+            wrong_surface(
+                case.wrong_surface,
+                report.viewport.map(u64::from).iter().product()
+            )
+        );
     }
     text += &format!("{}\n", summary(report));
     let failures = failures(report, command_for);

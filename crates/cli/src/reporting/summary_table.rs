@@ -3,7 +3,9 @@
 
 use crate::records::results::{Promise, Results, Run};
 use crate::reporting::columns::are_paths;
-use crate::reporting::notes::{band_warning, blocked_by, path_costs, remembering, times_missing};
+use crate::reporting::notes::{
+    band_warning, blocked_by, path_costs, remembering, surface_warning, times_missing,
+};
 use crate::reporting::summary::{Row, by_wall, rows};
 use crate::reporting::verdict::{Verdict, verdict};
 use crate::reporting::{graded, results_table::timed_frames, table::table};
@@ -232,6 +234,7 @@ impl<'a> Summary<'a> {
             notes.push("* the fastest with no wrong pixel outside the band".into());
         }
         notes.extend(self.open_parts());
+        notes.extend(self.wrong_surfaces());
         let all = self.groups.iter().flat_map(|group| &group.rows);
         notes.extend(all.clone().filter_map(|row| {
             let why = row.unavailable?;
@@ -304,6 +307,20 @@ impl<'a> Summary<'a> {
                 if methods.len() == 1 { "s" } else { "" }
             )
         })
+    }
+
+    /// Of each view, that pixels show what is not seen there.
+    fn wrong_surfaces(&self) -> Vec<String> {
+        let views = self.views();
+        let mut told = BTreeSet::new();
+        let each = self.runs.iter().filter(|run| told.insert(&run.view));
+        let notes = each.filter_map(|run| Some((run, surface_warning(run)?)));
+        notes
+            .map(|(run, note)| match views.len() {
+                1 => note,
+                _ => format!("{}: {note}", run.view),
+            })
+            .collect()
     }
 
     /// What blocks the pixels of which a method was certain and wrong, over all views.

@@ -1,6 +1,6 @@
 //! The numbers of a material: under the cursor, as a histogram, as a heat map.
 
-use crate::pictures::colours::{ClipPlanes, EMPTY, INVALID};
+use crate::pictures::colours::{ClipPlanes, EMPTY, INVALID, cleared};
 use crate::viewer::heat;
 use skiagraph_gpu::Content;
 use skiagraph_reference::Image;
@@ -106,7 +106,7 @@ impl Texels {
         (0..texels).map(move |texel| {
             let number = self.number(texel * self.channels + channel);
             match self.is_depth {
-                true if number == 1.0 => None,
+                true if number == f64::from(cleared(self.planes)) => None,
                 true => Some(
                     self.planes
                         .map_or(number, |planes| f64::from(planes.distance(number as f32))),
@@ -207,8 +207,8 @@ mod tests {
             near: 1.0,
             far: 11.0,
         };
-        let depth = |z: f32| 11.0 * (z - 1.0) / (z * 10.0);
-        let content = floats(F::Depth32Float, [3, 1], &[depth(2.0), depth(4.0), 1.0]);
+        let depth = |z: f32| (11.0 - z) / (z * 10.0);
+        let content = floats(F::Depth32Float, [3, 1], &[depth(2.0), depth(4.0), 0.0]);
         let texels = Texels::of(&content, Some(planes)).unwrap();
         let histogram = texels.histogram(0);
         assert_eq!(histogram.finite, 2);

@@ -18,6 +18,7 @@ mod report;
 mod saves;
 mod schema;
 mod stress;
+mod surfaces;
 mod together;
 mod tutorial;
 mod watch;

@@ -10,3 +10,4 @@ mod indeterminate;
 mod lamps;
 mod shimmer;
 mod standard_views;
+mod visible;

@@ -1,0 +1,251 @@
+//! Which primitive each pixel sees, and whether a G-buffer says so.
+
+use crate::{
+    error::Error,
+    error_bound::F32_ROUNDING,
+    oracle::Oracle,
+    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel},
+    ray::{Corners, Ray},
+    tree::Caster,
+};
+use glam::{DVec3, Vec3};
+use skiagraph_scene::Camera;
+use std::ops::ControlFlow;
+
+/// How far from a pixel's centre its sample may count as lying, in pixels: a step of the grid to
+/// which a rasteriser moves corners. Vulkan asks of it 4 bits, WebGPU nothing.
+const SNAPPING: f64 = 1.0 / 16.0;
+
+/// Roundings of a corner's distance along the view, in units of its distance to the eye: relative
+/// to the eye (2), products and sums (5), the depth made of it (1).
+const CORNER_ROUNDINGS: f64 = 8.0;
+
+/// Roundings of a depth that is interpolated from a triangle's corners, in units of the greatest
+/// depth that it has in the picture.
+const DEPTH_ROUNDINGS: f64 = 8.0;
+
+impl Oracle<'_> {
+    /// Number of pixels of a G-buffer that show a surface which is not seen there: another one
+    /// stands before it, or it is elsewhere, or there is a surface where it shows none.
+    /// `primitives` as for [`shade`](Self::shade).
+    ///
+    /// What the rounding of a rasteriser may do is allowed for: corners moved by a sixteenth of a
+    /// pixel, depths by a few ulps of the triangle's nearest one. So is a pixel that two surfaces
+    /// share.
+    ///
+    /// # Errors
+    /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Interrupted`].
+    pub fn wrong_surfaces(
+        &self,
+        camera: &Camera,
+        primitives: &[u32],
+        progress: Progress,
+    ) -> Result<u64, Error> {
+        check_pixel_count("primitives", camera.viewport, primitives.len())?;
+        let count = self.mesh.triangles.len() as u64;
+        let max_distance = self.tree.max_distance(camera.eye);
+        let wrong = per_pixel(camera.viewport, progress, |x, y, stack| {
+            let shown = primitives[x as usize + y as usize * camera.viewport[0] as usize];
+            if shown != BACKGROUND && u64::from(shown) >= count {
+                return Err(Error::UnknownPrimitive {
+                    x,
+                    y,
+                    primitive: shown,
+                    count,
+                });
+            }
+            let direction = camera.pixel_direction(x, y);
+            let ray = Ray::new(camera.eye, direction, max_distance, 0.0);
+            if self.nearest(camera, &ray, stack) == shown {
+                return Ok(false);
+            }
+            let sample = Sample::new(camera, direction, max_distance);
+            Ok(self.is_wrong(&sample, shown, stack))
+        })?;
+        Ok(wrong.into_iter().filter(|&is_wrong| is_wrong).count() as u64)
+    }
+
+    /// The nearest front face that a ray from the eye meets between the planes; of equally near
+    /// ones the lowest id, as a depth test keeps the first one drawn.
+    pub(crate) fn nearest(&self, camera: &Camera, ray: &Ray, stack: &mut Vec<u32>) -> u32 {
+        let mut nearest = (camera.far, BACKGROUND);
+        self.tree.walk(ray, stack, |caster, t_max| {
+            if let Some(hit) = caster.hit(ray)
+                && (hit.front || caster.double_sided)
+                && hit.t >= camera.near
+                && (hit.t, caster.primitive) < nearest
+            {
+                nearest = (hit.t, caster.primitive);
+                // Boxes err by rounding, and an equally near triangle of lower id still counts: a
+                // hair further.
+                *t_max = hit.t * (1.0 + 1e-12);
+            }
+            ControlFlow::Continue(())
+        });
+        nearest.1
+    }
+
+    /// Whether no rasteriser may show this primitive at the sample.
+    fn is_wrong(&self, sample: &Sample, shown: u32, stack: &mut Vec<u32>) -> bool {
+        let end = match shown {
+            BACKGROUND => sample.camera.far * (1.0 - 16.0 * F32_ROUNDING),
+            _ => {
+                let corners = self
+                    .mesh
+                    .corners(shown)
+                    .map(|corner| corner.as_vec3().into());
+                if !sample.may_touch(&corners) {
+                    return true;
+                }
+                sample.least_distance(&corners)
+            }
+        };
+        let mut is_hidden = false;
+        self.tree.walk(&sample.rays[0], stack, |caster, t_max| {
+            *t_max = t_max.min(end);
+            if caster.primitive != shown && sample.surely_shows(caster, end) {
+                is_hidden = true;
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
+        });
+        is_hidden
+    }
+}
+
+/// A pixel's centre, and the corners of the square that its sample may be anywhere in.
+struct Sample<'a> {
+    camera: &'a Camera,
+    directions: [DVec3; 5],
+    rays: [Ray; 5],
+}
+
+impl<'a> Sample<'a> {
+    /// `direction` is the centre's.
+    fn new(camera: &'a Camera, direction: DVec3, max_distance: f64) -> Self {
+        let [width, height] = camera.viewport.map(f64::from);
+        let right = camera.right * (2.0 * SNAPPING * camera.half_width / width);
+        let up = camera.up * (2.0 * SNAPPING * camera.half_height / height);
+        let moved = [DVec3::ZERO, right + up, right - up, up - right, -right - up];
+        let directions = moved.map(|by| direction + by);
+        let ray = |direction| Ray::new(camera.eye, direction, max_distance, 0.0);
+        Self {
+            camera,
+            directions,
+            rays: directions.map(ray),
+        }
+    }
+
+    /// Whether a triangle may cover some of the square: false only where all of it is beyond one
+    /// edge, whichever side is seen.
+    fn may_touch(&self, corners: &Corners) -> bool {
+        let edges = self.edges(corners);
+        [1.0, -1.0]
+            .iter()
+            .any(|side| (0..3).all(|edge| edges.iter().any(|edges| side * edges[edge] >= 0.0)))
+    }
+
+    /// The least distance along the view at which a rasteriser may put a triangle's plane; minus
+    /// infinity for one that is all but edge-on.
+    fn least_distance(&self, corners: &Corners) -> f64 {
+        let [a, b, c] = self.relative(corners);
+        let normal = (b - a).cross(c - a);
+        let mut least = f64::INFINITY;
+        for direction in self.directions {
+            let distance = normal.dot(a) / normal.dot(direction);
+            if distance.is_nan() || distance <= 0.0 {
+                return f64::NEG_INFINITY;
+            }
+            least = least.min(distance);
+        }
+        least - self.distance_error(corners, least)
+    }
+
+    /// Whether a rasteriser shows this triangle at a sample anywhere in the square, or what is
+    /// before it: it covers all of the square, between the near plane and `end`.
+    fn surely_shows(&self, caster: &Caster<'_>, end: f64) -> bool {
+        let mut span = [f64::INFINITY, 0.0f64];
+        for ray in &self.rays {
+            let Some(hit) = caster.hit(ray) else {
+                return false;
+            };
+            if !(hit.front || caster.double_sided) {
+                return false;
+            }
+            span = [span[0].min(hit.t), span[1].max(hit.t)];
+        }
+        if self.mask_may_flip(caster) {
+            return false;
+        }
+        let error = self.distance_error(&caster.corners, span[1]);
+        span[0] - error > self.camera.near && span[1] + error < end
+    }
+
+    /// Whether a triangle's mask says different things within the square.
+    fn mask_may_flip(&self, caster: &Caster<'_>) -> bool {
+        caster.masked.as_ref().is_some_and(|masked| {
+            let [centre, corners @ ..] = self.edges(&caster.corners);
+            let spread = |edge: usize| {
+                let off = corners.iter().map(|of| (of[edge] - centre[edge]).abs());
+                off.fold(0.0, f64::max)
+            };
+            masked.ask(centre, [0, 1, 2].map(spread)).flips
+        })
+    }
+
+    /// The edge functions of each ray.
+    fn edges(&self, corners: &Corners) -> [[f64; 3]; 5] {
+        let of = |ray: &Ray| Ray::edges(corners.map(|corner| ray.sheared(corner)));
+        self.rays.each_ref().map(of)
+    }
+
+    /// What rounding may move a surface by, along the view, at that distance.
+    fn distance_error(&self, corners: &Corners, distance: f64) -> f64 {
+        let relative = self.relative(corners);
+        let farthest = relative.iter().map(|corner| corner.length());
+        let farthest = farthest.fold(0.0, f64::max);
+        // Depth is about near / distance: off by so many ulps of near / nearest, it is off by so
+        // many of distance² / nearest along the view.
+        let nearest = self.nearest_in_picture(&relative).min(distance);
+        F32_ROUNDING
+            * (CORNER_ROUNDINGS * farthest + DEPTH_ROUNDINGS * distance * distance / nearest)
+    }
+
+    /// The least distance along the view of what the picture has of a triangle: of its part in the
+    /// frustum, cut as Sutherland and Hodgman do it, *Reentrant Polygon Clipping*, 1974.
+    fn nearest_in_picture(&self, relative: &[DVec3; 3]) -> f64 {
+        let camera = self.camera;
+        let mut part: Vec<DVec3> = relative
+            .iter()
+            .map(|corner| {
+                DVec3::new(
+                    camera.right.dot(*corner) / camera.half_width,
+                    camera.up.dot(*corner) / camera.half_height,
+                    camera.forward.dot(*corner),
+                )
+            })
+            .collect();
+        let planes: [&dyn Fn(DVec3) -> f64; 5] = [
+            &|at| at.z - camera.near,
+            &|at| at.z - at.x,
+            &|at| at.z + at.x,
+            &|at| at.z - at.y,
+            &|at| at.z + at.y,
+        ];
+        for inside in planes {
+            let cut = |(&from, &to): (&DVec3, &DVec3)| {
+                let (begin, end) = (inside(from), inside(to));
+                let crosses = (begin < 0.0) != (end < 0.0);
+                let border = crosses.then(|| from.lerp(to, begin / (begin - end)));
+                (begin >= 0.0).then_some(from).into_iter().chain(border)
+            };
+            let next = part.iter().cycle().skip(1);
+            part = part.iter().zip(next).flat_map(cut).collect();
+        }
+        part.iter().map(|at| at.z).fold(f64::INFINITY, f64::min)
+    }
+
+    fn relative(&self, corners: &Corners) -> [DVec3; 3] {
+        corners.map(|corner| Vec3::from(corner).as_dvec3() - self.camera.eye)
+    }
+}

@@ -1,0 +1,146 @@
+//! Pixels of a G-buffer that show a surface which is not seen there are counted, and no others.
+
+use glam::DVec3;
+use skiagraph_reference::{BACKGROUND, Oracle, OracleMode, Progress};
+use skiagraph_scene::{Camera, Indexed, Mesh, Scene, SceneLibrary, SceneRequest, View};
+
+const VIEWPORT: [u32; 2] = [64, 64];
+
+/// A floor of 100 × 100 around the origin, and a plate of 20 × 20 by so much above it.
+fn plate_over_floor(gap: f32) -> Mesh {
+    let square = |half: f32, y: f32| {
+        [(-half, -half), (-half, half), (half, half), (half, -half)].map(|(x, z)| [x, y, z])
+    };
+    Mesh::indexed(&Indexed {
+        positions: &[square(50.0, 0.0), square(10.0, gap)].concat(),
+        normals: &[],
+        indices: &[0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7],
+    })
+    .unwrap()
+}
+
+/// From far above, so narrow that the floor fills the picture.
+fn far_above(near: f64) -> Camera {
+    let view = View {
+        name: "far".into(),
+        eye: DVec3::new(300.0, 3000.0, 10.0),
+        direction: DVec3::new(-300.0, -3000.0, -10.0),
+        up: DVec3::Y,
+        fov_y_degrees: 1.0,
+        near,
+        far: 10_000.0,
+        light: None,
+    };
+    view.camera(VIEWPORT)
+}
+
+fn wrong(mesh: &Mesh, camera: &Camera, shown: &[u32]) -> u64 {
+    Oracle::new(mesh)
+        .wrong_surfaces(camera, shown, Progress::default())
+        .unwrap()
+}
+
+fn seen(mesh: &Mesh, camera: &Camera) -> Vec<u32> {
+    Oracle::new(mesh)
+        .primary(camera, Progress::default())
+        .unwrap()
+}
+
+fn of_plate(id: u32) -> bool {
+    (2..4).contains(&id)
+}
+
+#[test]
+fn a_floor_that_stands_before_its_plate_is_counted() {
+    let mesh = plate_over_floor(1.0);
+    for near in [100.0, 0.1, 1e-10] {
+        let camera = far_above(near);
+        let right = seen(&mesh, &camera);
+        assert_eq!(wrong(&mesh, &camera, &right), 0);
+        let plate = right.iter().filter(|id| of_plate(**id)).count() as u64;
+        assert!(plate > 300, "{plate}");
+        let counted = wrong(&mesh, &camera, &seen(&plate_over_floor(-1.0), &camera));
+        // But for pixels that plate and floor, or the plate's halves, share.
+        assert!(
+            counted <= plate && counted * 10 > plate * 8,
+            "{counted} of {plate}"
+        );
+        // Nothing at all is wrong wherever there is something.
+        let nothing = wrong(&mesh, &camera, &[BACKGROUND; 64 * 64]);
+        assert!(nothing > 64 * 60, "{nothing}");
+        // A plate where it is not.
+        let elsewhere = wrong(&mesh, &camera, &[2; 64 * 64]);
+        assert!(elsewhere > 64 * 40, "{elsewhere}");
+    }
+}
+
+#[test]
+fn what_rounding_cannot_tell_apart_is_not_counted() {
+    // An ulp of 3000 is 2.4e-4.
+    let mesh = plate_over_floor(2e-4);
+    let camera = far_above(0.1);
+    let swapped = seen(&plate_over_floor(-1.0), &camera);
+    assert!(swapped != seen(&mesh, &camera));
+    assert_eq!(wrong(&mesh, &camera, &swapped), 0);
+}
+
+/// The ids that a rasteriser might write whose corners are off by so many pixels.
+fn snapped(camera: &Camera, by: f64) -> Camera {
+    let step = |half: f64, pixels: u32| 2.0 * half / f64::from(pixels) * by;
+    Camera {
+        forward: camera.forward + camera.right * step(camera.half_width, camera.viewport[0])
+            - camera.up * step(camera.half_height, camera.viewport[1]),
+        ..*camera
+    }
+}
+
+fn park() -> Scene {
+    let request = SceneRequest {
+        argument: "park".into(),
+        obj: None,
+    };
+    SceneLibrary::default().load(&request).unwrap().0
+}
+
+/// Receivers lie within their triangles however coarse the grid is, and touch no neighbour.
+#[test]
+fn a_coarse_grid_makes_no_more_pixels_indeterminate() {
+    let park = park();
+    let oracle = Oracle::new(&park.mesh);
+    for view in &park.views[..3] {
+        let camera = view.camera([160, 120]);
+        let [fine, coarse] = [1.0 / 512.0, 1.0 / 32.0].map(|by| {
+            let shown = oracle.primary(&snapped(&camera, by), Progress::default());
+            let (mode, progress) = (OracleMode::Exact, Progress::default());
+            let right = oracle.shade(&camera, park.light(), &shown.unwrap(), mode, progress);
+            let indeterminate = right.unwrap().indeterminate;
+            indeterminate.into_iter().filter(|it| *it).count()
+        });
+        println!("{}: {fine} and {coarse} indeterminate", view.name);
+        assert!(
+            coarse <= fine + 5 && coarse < 30,
+            "{}: {fine}, {coarse}",
+            view.name
+        );
+    }
+}
+
+#[test]
+fn a_rasterisers_grid_is_allowed_for() {
+    let park = park();
+    let oracle = Oracle::new(&park.mesh);
+    for view in &park.views[..3] {
+        let camera = view.camera([160, 120]);
+        let counted = |by| {
+            let shown = oracle.primary(&snapped(&camera, by), Progress::default());
+            let progress = Progress::default();
+            oracle
+                .wrong_surfaces(&camera, &shown.unwrap(), progress)
+                .unwrap()
+        };
+        assert_eq!(counted(1.0 / 32.0), 0, "{}", view.name);
+        assert_eq!(counted(1.0 / 512.0), 0, "{}", view.name);
+        // A pixel further is no rounding.
+        assert!(counted(1.0) > 100, "{}", view.name);
+    }
+}

@@ -1,8 +1,8 @@
 // Stage to find the receiver of each pixel: its position, and dot(n, l) of its interpolated normal
 // in w, 0 outside of a spot light's cone; one thread per pixel. The ray through the pixel's centre
-// is met with the plane of the pixel's primitive anew instead of interpolating rasterised
-// attributes, whose precision is the adapter's affair: the edge functions of Davidovic et al., "3D
-// Rasterization", TUGraz 2012.
+// is met with the pixel's primitive anew instead of interpolating rasterised attributes, whose
+// precision is the adapter's affair, and stays within it: the edge functions of Davidovic et al.,
+// "3D Rasterization", TUGraz 2012.
 
 #import "shared/camera.wgsl"
 #import "shared/light.wgsl"
@@ -34,7 +34,7 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
     let a = relative_to_eye(world);
     let b = relative_to_eye(corner_position(3u * id + 1u));
     let c = relative_to_eye(corner_position(3u * id + 2u));
-    let at = pixel_weights(direction, a, b, c);
+    let at = receiver_weights(direction, viewport, a, b, c);
     let weights = at.weights;
 
     // From a corner along the edges, so that the point stays in the primitive's plane whatever the

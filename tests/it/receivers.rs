@@ -1,7 +1,7 @@
 //! Receivers as `shaders/surface.wgsl` finds them, in f32 on the CPU, against the oracle's bounds.
 
 use glam::{DVec3, Vec3};
-use skiagraph_reference::Receiver;
+use skiagraph_reference::{Receiver, receiver::INSET};
 use skiagraph_scene::{Camera, DirectionalLight, Mesh, View};
 use skiagraph_tests::cpu_reference::predicates::receiver_error_bound;
 
@@ -18,8 +18,15 @@ fn in_f32(mesh: &Mesh, camera: &Camera, [x, y]: [u32; 2], light: DVec3) -> (Vec3
     let normals = mesh.normal_indices[0].map(|i| mesh.normals[i as usize]);
     let relative = corners.map(|corner| (corner - eye) - eye_low);
     let [a, b, c] = relative;
-    let edges = [(b, c), (c, a), (a, b)].map(|(p, q)| direction.dot((p + q).cross(q - p)));
-    let weights = edges.map(|edge| edge / (edges[0] + edges[1] + edges[2]));
+    let planes = [(b, c), (c, a), (a, b)].map(|(p, q)| (p + q).cross(q - p));
+    let edges = planes.map(|plane| direction.dot(plane));
+    let across = right * (2.0 * half_width / camera.viewport[0] as f32);
+    let down = up * (2.0 * half_height / camera.viewport[1] as f32);
+    let margins =
+        planes.map(|plane| INSET as f32 * (across.dot(plane).abs() + down.dot(plane).abs()));
+    let side = (edges[0] + edges[1] + edges[2]).signum();
+    let inside: [f32; 3] = std::array::from_fn(|i| (side * edges[i]).max(margins[i]));
+    let weights = inside.map(|edge| edge / (inside[0] + inside[1] + inside[2]));
     let most = weights[0].max(weights[1]).max(weights[2]);
     let first = [1, 2]
         .into_iter()
@@ -82,7 +89,7 @@ fn f32_stays_within_the_bounds() {
             ..Mesh::default()
         };
         let sun = DirectionalLight::new(-light).into();
-        let exact = Receiver::new(&mesh, 0, view.eye, ray, &sun);
+        let exact = Receiver::new(&mesh, 0, &camera, pixel, &sun);
         let Some(uncertainty) = exact.uncertainty else {
             continue;
         };

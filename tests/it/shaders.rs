@@ -170,9 +170,13 @@ fn constants_that_shaders_and_rust_share_agree() {
             .unwrap()
             .trim()
             .trim_end_matches('u')
-            .parse::<u32>()
-            .unwrap()
+            .to_owned()
     };
+    let inset: f64 = constant("shared/pixel_weights.wgsl", "INSET")
+        .parse()
+        .unwrap();
+    assert_eq!(inset, skiagraph_reference::receiver::INSET);
+    let constant = |path, name| constant(path, name).parse::<u32>().unwrap();
     // One entry per level at most: an inner node pushes one child and goes on with the other.
     let stack = constant("shared/trace_entries.wgsl", "STACK_SIZE");
     assert!(stack >= skiagraph_scene::bvh::MAX_DEPTH);

@@ -33,6 +33,10 @@ const POSITIONAL_FACING_ROUNDINGS: f64 = FACING_ROUNDINGS + 4.0;
 /// the cosine (5).
 const CONE_ROUNDINGS: f64 = 16.0;
 
+/// How far within its primitive's edges a receiver lies, in pixels: far more than f32 may move it,
+/// so that it does not touch what adjoins.
+pub const INSET: f64 = 1.0 / 64.0;
+
 /// Share of the determinant beyond which the edge functions' error makes the hit meaningless.
 const INDETERMINATE: f64 = 0.25;
 
@@ -40,11 +44,8 @@ const INDETERMINATE: f64 = 0.25;
 pub struct Receiver {
     /// The primitive that it lies on.
     pub primitive: u32,
-    /// Hit on the primitive's plane, world space.
+    /// Its place on the primitive, world space.
     pub position: DVec3,
-    /// The point of the primitive's border where it would lie, had the rasteriser not snapped
-    /// corners; `None` where it lies on the primitive.
-    pub on_border: Option<DVec3>,
     /// The way to the light.
     pub towards: Towards,
     /// Whether it lies outside of a spot light's cone.
@@ -86,31 +87,33 @@ impl Receiver {
                 count,
             });
         }
-        let direction = camera.pixel_direction(x, y);
-        Ok(Some(Self::new(
-            mesh, primitive, camera.eye, direction, light,
-        )))
+        Ok(Some(Self::new(mesh, primitive, camera, [x, y], light)))
     }
 
-    /// The point where the ray from `eye` along `direction` meets the plane of `primitive`.
+    /// The point where the ray through a pixel's centre meets `primitive`.
     ///
-    /// Barycentrics are not clamped: a rasteriser snaps vertices to a subpixel grid, so that a
-    /// pixel's centre may lie a little outside the primitive that covers it, and a deferred shader
-    /// that does not clamp sees the same point. A primitive exactly edge-on has no such point; its
-    /// centroid stands in, and the pixel is always indeterminate.
+    /// A rasteriser snaps corners to a grid within the pixel, so that the centre may lie a little
+    /// outside of the primitive that covers it, where a neighbour may stand before it or beneath
+    /// it. So it is moved inside, [`INSET`] of a pixel from the edges, or, in a primitive that is
+    /// narrower than two of them, to its middle; shaders do the same. A primitive exactly edge-on
+    /// has no such point; its centroid stands in, and the pixel is always indeterminate.
     pub fn new(
         mesh: &Mesh,
         primitive: u32,
-        eye: DVec3,
-        direction: DVec3,
+        camera: &Camera,
+        [x, y]: [u32; 2],
         light: &LightKind,
     ) -> Self {
+        let (eye, direction) = (camera.eye, camera.pixel_direction(x, y));
         let world = mesh.corners(primitive);
         let mut normals = mesh.corner_normals(primitive);
         let [a, b, c] = world.map(|corner| corner - eye);
         let pairs = [(b, c), (c, a), (a, b)];
-        let edges = pairs.map(|(p, q)| direction.dot((p + q).cross(q - p)));
+        let planes = pairs.map(|(p, q)| (p + q).cross(q - p));
+        let edges = planes.map(|plane| direction.dot(plane));
         let determinant: f64 = edges.iter().sum();
+        let inside = inset(camera, planes, edges);
+        let sum: f64 = inside.iter().sum();
         // Seen from behind, which only a double-sided primitive is.
         if determinant > 0.0 && mesh.surfaces.is_double_sided(primitive) {
             normals = normals.map(|normal| -normal);
@@ -122,18 +125,17 @@ impl Receiver {
             * (EDGE_ROUNDINGS * farthest + 2.0 * eye.length())
             * F32_ROUNDING
             * direction.length();
-        let errors = pairs.map(|(p, q)| lever * (q - p).length() / determinant.abs());
+        let errors = pairs.map(|(p, q)| lever * (q - p).length());
+        // Or it might be seen from the other side.
+        let determinate = errors.iter().sum::<f64>() < INDETERMINATE * determinant.abs();
+        let errors = errors.map(|error| error / sum);
         let error: f64 = errors.iter().sum();
-        let determinate = error < INDETERMINATE;
 
-        let weights = match determinant {
+        let weights = match sum {
             0.0 => [1.0 / 3.0; 3],
-            _ => edges.map(|edge| edge / determinant),
+            _ => inside.map(|edge| edge / sum),
         };
         let position = weighted(weights, world);
-        let clamped = weights.map(|weight| weight.max(0.0));
-        let on_border =
-            (clamped != weights).then(|| weighted(clamped, world) / clamped.iter().sum::<f64>());
         let towards = light.towards(position);
         let to_light = towards.direction;
         let n_dot_l = weighted(weights, normals).dot(to_light);
@@ -186,7 +188,6 @@ impl Receiver {
         Self {
             primitive,
             position,
-            on_border,
             towards,
             outside_cone: beyond_edge > 0.0,
             on_cone_edge: matches!(light, LightKind::Spot(_)) && beyond_edge.abs() <= cone_error,
@@ -195,6 +196,21 @@ impl Receiver {
             uncertainty,
         }
     }
+}
+
+/// Edge functions of a ray to a triangle of any winding, at least those of a point [`INSET`] of a
+/// pixel within the edge; `planes` are those through the eye and an edge.
+fn inset(camera: &Camera, planes: [DVec3; 3], edges: [f64; 3]) -> [f64; 3] {
+    let [width, height] = camera.viewport.map(f64::from);
+    let steps = [
+        camera.right * (2.0 * camera.half_width / width),
+        camera.up * (2.0 * camera.half_height / height),
+    ];
+    let side = edges.iter().sum::<f64>().signum();
+    std::array::from_fn(|i| {
+        let of_a_pixel: f64 = steps.iter().map(|step| step.dot(planes[i]).abs()).sum();
+        (side * edges[i]).max(INSET * of_a_pixel)
+    })
 }
 
 /// Weights of a primitive's corners where the ray from `eye` meets its plane; a third each where it

@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-use skiagraph_reference::{BACKGROUND, OracleMode};
+use skiagraph_reference::{BACKGROUND, OracleMode, receiver::INSET};
 use skiagraph_scene::{Bvh, Camera, LIGHT_GAP, LightKind, Mesh};
 
 /// Visibility and status per pixel.
@@ -32,9 +32,15 @@ pub fn shade(
         let corners = mesh.triangles[primitive as usize].map(|i| mesh.positions[i as usize]);
         let normals = mesh.normal_indices[primitive as usize].map(|i| mesh.normals[i as usize]);
         let [a, b, c] = corners.map(|corner| corner - eye);
-        let weights = [(b, c), (c, a), (a, b)].map(|(p, q)| direction.dot((p + q).cross(q - p)));
-        let sum = weights[0] + weights[1] + weights[2];
-        let weights = weights.map(|weight| weight / sum);
+        let planes = [(b, c), (c, a), (a, b)].map(|(p, q)| (p + q).cross(q - p));
+        let edges = planes.map(|plane| direction.dot(plane));
+        let across = right * (2.0 * half_width / width as f32);
+        let down = up * (2.0 * half_height / height as f32);
+        let margins =
+            planes.map(|plane| INSET as f32 * (across.dot(plane).abs() + down.dot(plane).abs()));
+        let side = (edges[0] + edges[1] + edges[2]).signum();
+        let inside: [f32; 3] = std::array::from_fn(|i| (side * edges[i]).max(margins[i]));
+        let weights = inside.map(|edge| edge / (inside[0] + inside[1] + inside[2]));
         let normal: Vec3 = (0..3).map(|i| normals[i] * weights[i]).sum();
         let position: Vec3 = (0..3).map(|i| corners[i] * weights[i]).sum();
         let (to_light, distance, shines) = towards(&light, position);

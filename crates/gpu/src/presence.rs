@@ -56,11 +56,25 @@ impl Presence {
         match progress {
             // Mapped already: another thread has polled the device.
             Progress::UnderWay | Progress::Done => Ok(()),
+            // Or a thread that was polling has mapped it behind the last check's back, or says so
+            // only now: a buffer that is new tells for sure.
+            Progress::Failed | Progress::Dropped if maps_another(&self.device) => Ok(()),
             Progress::Failed | Progress::Dropped => Err(ExecuteError::DeviceLost(
                 "it maps no buffers any more".to_owned(),
             )),
         }
     }
+}
+
+/// Makes a buffer that is mapped from the first, which a lost device does not.
+fn maps_another(device: &wgpu::Device) -> bool {
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(NAME),
+        size: wgpu::MAP_ALIGNMENT,
+        usage: wgpu::BufferUsages::MAP_WRITE | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: true,
+    });
+    buffer.get_mapped_range(..).is_ok()
 }
 
 const NAME: &str = "is the device there";

@@ -317,6 +317,30 @@ fn lose_the_device(before: bool) {
     assert!(executor.output_view("sum").is_some());
 }
 
+/// An executor asks for a mapping to find out if its device is there, which a poll may bring.
+#[test]
+fn other_threads_may_poll_while_frames_are_encoded() {
+    let gpu = device::open(None).unwrap_or_else(|error| panic!("{error}"));
+    let plan = planned(&sums(), &sums_request());
+    let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut NoProvider).unwrap();
+    let is_over = std::sync::atomic::AtomicBool::new(false);
+    std::thread::scope(|threads| {
+        for _ in 0..2 {
+            threads.spawn(|| {
+                while !is_over.load(std::sync::atomic::Ordering::Relaxed) {
+                    gpu.device.poll(wgpu::PollType::Poll).unwrap();
+                }
+            });
+        }
+        let lost = (0..5000).find_map(|_| {
+            let (image, _) = made(&gpu.device);
+            executor.import_texture("image", &image).err()
+        });
+        is_over.store(true, std::sync::atomic::Ordering::Relaxed);
+        assert!(lost.is_none(), "{lost:?}");
+    });
+}
+
 /// A host may plan on one thread and encode on another.
 #[test]
 fn plans_and_executors_can_go_to_other_threads() {

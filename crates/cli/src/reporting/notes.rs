@@ -219,7 +219,7 @@ mod tests {
     use super::*;
     use crate::records::results::tests::sample;
     use crate::records::steady::{Cycle, Steady};
-    use skiagraph_reference::{BlockerCounts, PixelCounts};
+    use skiagraph_reference::BlockerCounts;
 
     #[test]
     fn surfaces_that_are_not_seen_are_said() {

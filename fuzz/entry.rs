@@ -1,5 +1,5 @@
-//! Entries of the fuzz targets and of their stable twin (`tests/it/hostile.rs`): bytes in, an answer
-//! out, and no panic on the way.
+//! Entries of the fuzz targets and of their stable twin (`tests/it/hostile.rs`): bytes in, an
+//! answer out, and no panic on the way.
 
 use skiagraph_draw::Drawing;
 use skiagraph_graph::{

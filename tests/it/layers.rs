@@ -300,6 +300,7 @@ fn degenerate() -> Vec<(&'static str, Mesh)> {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn degenerate_casters_leave_no_certain_pixel_wrong() {
     for (name, mesh) in degenerate() {
         for preset in ["crsm", "crsma_full", "crsma", "crsm_depth"] {

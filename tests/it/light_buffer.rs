@@ -155,6 +155,7 @@ fn mixed(seed: u64) -> Arc<Scene> {
 
 /// Of the receivers in reach of the light: what a list must hold, and what it may.
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn lists_hold_each_caster_that_shades_a_receiver_and_no_stranger() {
     for fit in FITS {
         let [mut shading, mut covered, mut border] = [0; 3];
@@ -338,6 +339,7 @@ fn depth_at(caster: &TexelTriangle, point: DVec2) -> Option<f64> {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn answers_are_those_of_rays_whatever_the_map() {
     let [mut lit, mut shadow] = [0; 2];
     for seed in 0..24 {
@@ -504,6 +506,7 @@ fn long_lists_are_walked() {
 
 /// More parts of large triangles than there is room for: nobody knows whose lists lack them.
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn parts_without_room_leave_all_to_rays() {
     let corners = (0..70_000).flat_map(|layer| {
         let height = 0.5 + 1e-6 * layer as f32;

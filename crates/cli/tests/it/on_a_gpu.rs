@@ -201,6 +201,7 @@ fn a_bare_compare_takes_the_presets_that_presets_lists() {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn a_bare_stress_takes_the_presets_that_presets_lists() {
     let (folder, listed) = presets_on_disk();
     let line = "stress --case box_on_floor --size 16x16 --map-size 8 --format json";
@@ -412,6 +413,7 @@ fn timeless(mut value: Value) -> Value {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn a_resumed_comparison_is_the_one_in_one_go() {
     let folder = tempfile::tempdir().unwrap();
     let compare = |methods: &str, rest: &str| {
@@ -456,6 +458,7 @@ fn a_resumed_comparison_is_the_one_in_one_go() {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn settings_stand_beside_each_other_and_runs_that_are_there_stay() {
     let folder = tempfile::tempdir().unwrap();
     let common = "--size 16x16 --map-size 8 --frames 1 --warmup 0 --out out";
@@ -488,6 +491,7 @@ fn settings_stand_beside_each_other_and_runs_that_are_there_stay() {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn a_view_and_a_light_of_ones_own_on_any_scene() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("mesh.obj"), SHEET_AND_BOX).unwrap();
@@ -562,6 +566,7 @@ fn a_views_own_light_is_drawn_judged_and_remembered() {
 
 /// Under a light that has an extent all is judged by shares; a graph needs no status.
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn a_light_with_extent_is_judged_by_shares() {
     let folder = tempfile::tempdir().unwrap();
     let bare = LIT.replace(", \"status\"]", "]");
@@ -667,6 +672,7 @@ const EVERY_LIGHT: &str = r#"(
 
 /// Spot, point and directional: each layer against its own light, whatever the others are.
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn a_layer_for_each_light_is_judged_by_itself() {
     let folder = tempfile::tempdir().unwrap();
     let turned = EVERY_LIGHT.replace("lights[index]", "lights[lights.count - 1 - index]");
@@ -785,6 +791,7 @@ fn what_blocks_certain_wrong_pixels_is_told() {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn a_document_holds_what_was_measured_and_needs_no_pictures() {
     let folder = tempfile::tempdir().unwrap();
     let line = "compare nsm rt --view all --size 16x16 --map-size 8 --frames 1 --cached-frames 0 \
@@ -864,6 +871,7 @@ fn dissertation_of_park() -> String {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn the_dissertations_charts_stand_beside_ours() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("d.csv"), dissertation_of_park()).unwrap();
@@ -941,6 +949,7 @@ fn the_dissertations_charts_stand_beside_ours() {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn results_of_other_conditions_are_not_resumed() {
     let folder = tempfile::tempdir().unwrap();
     let compare = |rest: &str| {

@@ -77,6 +77,7 @@ fn every_frame_is_judged_and_exact_methods_do_not_shimmer() {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn a_moving_light_is_followed_by_what_is_kept_and_by_the_reference() {
     let folder = tempfile::tempdir().unwrap();
     let line = "compare rt light_buffer nsm --path sunrise --size 64x64 --map-size 128 --warmup 1 \
@@ -102,6 +103,7 @@ fn a_moving_light_is_followed_by_what_is_kept_and_by_the_reference() {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn a_jittered_camera_is_followed_by_gbuffer_and_reference() {
     let folder = tempfile::tempdir().unwrap();
     let line = "compare rt light_buffer --path walk --size 64x64 --warmup 0 --images none \
@@ -121,6 +123,7 @@ fn a_jittered_camera_is_followed_by_gbuffer_and_reference() {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn moving_parts_are_followed_by_what_is_kept_and_by_the_reference() {
     let folder = tempfile::tempdir().unwrap();
     // From frame to frame the lamp moves until the seventh, the tree always.
@@ -232,6 +235,7 @@ fn outside_band(frames: &[Value]) -> f64 {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn figures_lines_and_pictures_say_of_which_path_and_frame_they_are() {
     let folder = tempfile::tempdir().unwrap();
     let line = "compare pcf nsm --path all --size 32x32 --map-size 32 --warmup 0 --cached-frames 0 \

@@ -118,6 +118,7 @@ fn set_times(run: &mut Value) {
 }
 
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn the_page_works_in_a_browser() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

@@ -1,8 +1,7 @@
 //! Several frames under way at once: each brings what was asked of it, and nobody waits.
 
 use crate::support::Files;
-use crate::tiny;
-use crate::tiny::{GPU, encoder, image, made, u32s};
+use crate::tiny::{self, GPU, encoder, image, made, u32s};
 use skiagraph_gpu::{Executor, Frame, FrameReport};
 use skiagraph_graph::{NoProvider, ParamValue};
 use std::time::{Duration, Instant};

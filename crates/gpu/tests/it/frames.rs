@@ -2,8 +2,7 @@
 //! documents against an interpreter.
 
 use crate::buffers::{INPUT, OLD, SEED, SEED_PARAM, compute, document, writes};
-use crate::host;
-use crate::host::{GPU, executor, frame, request, set, submit, words};
+use crate::host::{self, GPU, executor, frame, request, set, submit, words};
 use crate::program::{Event, ITEMS, Value, any_program};
 use crate::support::{Files, load, right};
 use proptest::prelude::*;

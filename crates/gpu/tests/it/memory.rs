@@ -2,8 +2,7 @@
 //! unwritten.
 
 use crate::buffers::{INPUT, compute, document, writes};
-use crate::host;
-use crate::host::{executor, planned, request, submit, words};
+use crate::host::{self, executor, planned, request, submit, words};
 use crate::support::Files;
 use skiagraph_gpu::{Executor, Frame};
 use skiagraph_graph::{Capture, NoProvider};

@@ -1,8 +1,7 @@
 //! Outputs that are more than one picture come back whole, and parts of them as parts.
 
 use crate::support::Files;
-use crate::tiny;
-use crate::tiny::{frame, made, run, run_with, u32s};
+use crate::tiny::{self, frame, made, run, run_with, u32s};
 use skiagraph_gpu::Content;
 
 /// Every texel says where it is.

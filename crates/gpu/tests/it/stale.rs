@@ -3,8 +3,7 @@
 
 use crate::buffers::{INPUT, SEED, SEED_PARAM, compute, document, writes};
 use crate::host::{GPU, encoder, executor, frame, numbers, planned, request, set, words};
-use crate::support;
-use crate::support::{Files, wrong};
+use crate::support::{self, Files, wrong};
 use skiagraph_gpu::{Executor, Frame, Provider, ProviderError, import};
 use skiagraph_graph::{Capture, Describe, NoProvider, ParamValue, Provided, ProvidedBinding};
 use std::time::Duration;

@@ -1,8 +1,7 @@
 //! Documents made of documents: names, params, repeats and features, without a GPU. (What comes out
 //! on a device: `crates/gpu/tests/it/compose.rs`.)
 
-use crate::support;
-use crate::support::{Files, Triangle, codes, load, names, right, wrong};
+use crate::support::{self, Files, Triangle, codes, load, names, right, wrong};
 use skiagraph_graph::{
     Code, Diagnostics, Graph, NoProvider, ParamValue, Plan, PlanRequest, Registry,
 };

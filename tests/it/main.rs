@@ -1,5 +1,7 @@
 //! Tests across Skiagraph's crates, one module for each subject.
 
+#![allow(clippy::too_many_lines, reason = "a table of cases may be long")]
+
 #[path = "support/bounds.rs"]
 mod bounds;
 #[path = "../../fuzz/entry.rs"]

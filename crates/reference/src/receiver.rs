@@ -113,7 +113,7 @@ impl Receiver {
         let edges = planes.map(|plane| direction.dot(plane));
         let determinant: f64 = edges.iter().sum();
         let inside = inset(camera, planes, edges);
-        let sum: f64 = inside.iter().sum();
+        let sum = inside.iter().sum::<f64>();
         // Seen from behind, which only a double-sided primitive is.
         if determinant > 0.0 && mesh.surfaces.is_double_sided(primitive) {
             normals = normals.map(|normal| -normal);
@@ -130,7 +130,6 @@ impl Receiver {
         let determinate = errors.iter().sum::<f64>() < INDETERMINATE * determinant.abs();
         let errors = errors.map(|error| error / sum);
         let error: f64 = errors.iter().sum();
-
         let weights = match sum {
             0.0 => [1.0 / 3.0; 3],
             _ => inside.map(|edge| edge / sum),
@@ -142,21 +141,13 @@ impl Receiver {
         // The larger of both lengths: a shader may sum corners relative to the eye and add the eye
         // last.
         let length = |corner: DVec3| corner.length().max((corner - eye).length());
-        let lengths: f64 = weights
-            .iter()
-            .zip(world)
-            .map(|(w, corner)| w.abs() * length(corner))
-            .sum();
+        let lengths = mean(weights, world.map(length));
         let position_error = POSITION_ROUNDINGS * F32_ROUNDING * lengths;
         let roundings = match light.position() {
             Some(_) => POSITIONAL_FACING_ROUNDINGS,
             None => FACING_ROUNDINGS,
         };
-        let normal_lengths = weights
-            .iter()
-            .zip(normals)
-            .map(|(w, n)| w.abs() * n.length())
-            .sum::<f64>();
+        let normal_lengths = mean(weights, normals.map(DVec3::length));
         let facing_error = roundings * F32_ROUNDING * normal_lengths;
         // Weight i off by errorᵢ moves the point along (cornerᵢ − point), before dividing by the
         // new sum of weights.
@@ -222,6 +213,11 @@ pub(crate) fn weights(mesh: &Mesh, primitive: u32, eye: DVec3, direction: DVec3)
         0.0 => [1.0 / 3.0; 3],
         determinant => edges.map(|edge| edge / determinant),
     }
+}
+
+/// Mean of the lengths of what is weighted, by the weights' magnitudes.
+fn mean(weights: [f64; 3], lengths: [f64; 3]) -> f64 {
+    (0..3).map(|i| weights[i].abs() * lengths[i]).sum()
 }
 
 fn weighted(weights: [f64; 3], points: [DVec3; 3]) -> DVec3 {

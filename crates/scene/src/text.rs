@@ -15,14 +15,21 @@ const WINDOWS_1252: [char; 32] = [
 /// A file's bytes without a byte order mark; those of UTF-16 become UTF-8. UTF-16 without a mark is
 /// known by the zero byte of its first character.
 pub(crate) fn without_mark(bytes: &[u8]) -> Cow<'_, [u8]> {
-    let (rest, word): (&[u8], fn([u8; 2]) -> u16) = match bytes {
-        [0xff, 0xfe, rest @ ..] => (rest, u16::from_le_bytes),
-        [0xfe, 0xff, rest @ ..] => (rest, u16::from_be_bytes),
-        [1..=255, 0, 1..=255, 0, ..] => (bytes, u16::from_le_bytes),
-        [0, 1..=255, 0, 1..=255, ..] => (bytes, u16::from_be_bytes),
+    let (rest, is_big_endian) = match bytes {
+        [0xff, 0xfe, rest @ ..] => (rest, false),
+        [0xfe, 0xff, rest @ ..] => (rest, true),
+        [1..=255, 0, 1..=255, 0, ..] => (bytes, false),
+        [0, 1..=255, 0, 1..=255, ..] => (bytes, true),
         _ => return bytes.strip_prefix(UTF8_MARK).unwrap_or(bytes).into(),
     };
-    let words = rest.as_chunks::<2>().0.iter().map(|pair| word(*pair));
+    let word = |pair: &[u8; 2]| {
+        if is_big_endian {
+            u16::from_be_bytes(*pair)
+        } else {
+            u16::from_le_bytes(*pair)
+        }
+    };
+    let words = rest.as_chunks::<2>().0.iter().map(word);
     let text: String = char::decode_utf16(words)
         .map(|read| read.unwrap_or(char::REPLACEMENT_CHARACTER))
         .collect();

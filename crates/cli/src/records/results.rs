@@ -474,6 +474,7 @@ pub(crate) mod tests {
 
     /// Results with every field in use: one full run, one without a map or GPU times, one
     /// unavailable.
+    #[allow(clippy::too_many_lines, reason = "every field has a value")]
     pub(crate) fn sample() -> Results {
         let spread = |ms: f64| Spread {
             min: ms,

@@ -1,5 +1,7 @@
 //! Tests of `crates/cli`, one module for each subject.
 
+#![allow(clippy::too_many_lines, reason = "a table of cases may be long")]
+
 mod support;
 
 mod backends;

@@ -157,6 +157,7 @@ const WAR: Hazard = Hazard::WriteAfterRead;
 const WAW: Hazard = Hazard::WriteAfterWrite;
 
 #[test]
+#[allow(clippy::too_many_lines, reason = "a table of cases may be long")]
 fn edges_of_each_hazard() {
     type Table = (&'static str, Vec<Vec<Use>>, Vec<(usize, usize, Hazard)>);
     let table: Vec<Table> = vec![

@@ -136,10 +136,8 @@ fn called(of: &Specialised<'_>, first: &Function) -> BTreeSet<Handle<Function>> 
                 Statement::Loop {
                     body, continuing, ..
                 } => open.extend([body, continuing]),
-                Statement::Call { function, .. } => {
-                    if found.insert(*function) {
-                        open.push(&of.module.functions[*function].body);
-                    }
+                Statement::Call { function, .. } if found.insert(*function) => {
+                    open.push(&of.module.functions[*function].body);
                 }
                 _ => {}
             }

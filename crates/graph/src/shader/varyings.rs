@@ -63,10 +63,13 @@ impl Varyings {
 /// How many variables between stages a built-in value counts for.
 fn variables(builtin: BuiltIn, ty: &TypeInner) -> u32 {
     match (builtin, ty) {
-        (BuiltIn::ClipDistances, TypeInner::Array { size, .. }) => match size {
-            naga::ArraySize::Constant(count) => count.get().div_ceil(4),
-            _ => 0,
-        },
+        (
+            BuiltIn::ClipDistances,
+            TypeInner::Array {
+                size: naga::ArraySize::Constant(count),
+                ..
+            },
+        ) => count.get().div_ceil(4),
         (
             BuiltIn::FrontFacing
             | BuiltIn::SampleIndex

@@ -6,11 +6,14 @@ use std::borrow::Cow;
 
 const HEADER: usize = 12;
 
+/// JSON, and the buffer behind it.
+type Parts<'a> = (Cow<'a, [u8]>, Option<&'a [u8]>);
+
 /// A file's JSON, and the buffer behind it in a binary file. Chunks of other kinds are passed over.
 ///
 /// # Errors
 /// The file is cut off, or of another version.
-pub(super) fn split(bytes: &[u8]) -> Result<(Cow<'_, [u8]>, Option<&[u8]>), Fault> {
+pub(super) fn split(bytes: &[u8]) -> Result<Parts<'_>, Fault> {
     if !bytes.starts_with(b"glTF") {
         return Ok((without_mark(bytes), None));
     }

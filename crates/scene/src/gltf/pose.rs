@@ -66,7 +66,7 @@ impl Vertices {
         joints: &[DMat4],
         buffers: &Buffers,
     ) -> Result<bool, String> {
-        let sets: Vec<(Vec<[f32; 4]>, Vec<[f32; 4]>)> = (0..)
+        let sets: Vec<JointSet> = (0..)
             .map_while(|set| {
                 let names = primitive.get(&Semantic::Joints(set))?;
                 Some((names, primitive.get(&Semantic::Weights(set))?))
@@ -95,6 +95,9 @@ impl Vertices {
     }
 }
 
+/// Numbers of four joints for each vertex, and their weights.
+type JointSet = (Vec<[f32; 4]>, Vec<[f32; 4]>);
+
 /// What a linear map does to normals; nothing is left of those of a flattened one.
 pub(super) fn of_normals(linear: DMat3) -> DMat3 {
     match linear.determinant() {
@@ -105,11 +108,7 @@ pub(super) fn of_normals(linear: DMat3) -> DMat3 {
 
 /// The mean of a vertex's joints by their weights, which are brought to a sum of 1. One without
 /// weights hangs on its first joint, as in other programs.
-fn blend(
-    vertex: usize,
-    sets: &[(Vec<[f32; 4]>, Vec<[f32; 4]>)],
-    joints: &[DMat4],
-) -> Result<DMat4, String> {
+fn blend(vertex: usize, sets: &[JointSet], joints: &[DMat4]) -> Result<DMat4, String> {
     let joint = |named: f32| {
         joints.get(named as usize).copied().ok_or_else(|| {
             format!(

@@ -98,7 +98,7 @@ pub fn scene(bytes: &[u8]) -> String {
     answer
 }
 
-/// What is wrong with a graph. A panic that was caught is naga's, which has some; one of ours is a
+/// The fault of a graph. A panic that was caught is naga's, which has some; one of ours is a
 /// finding.
 fn said(errors: &Diagnostics) -> String {
     for found in errors

@@ -62,9 +62,9 @@ pub enum ExecuteError {
     OtherThanPlanned {
         /// The resource.
         name: String,
-        /// What the provider described when the graph was planned.
+        /// The provider's description when the graph was planned.
         planned: Provided,
-        /// What it describes now.
+        /// Its description now.
         given: Provided,
     },
     /// A pass reads a provided resource that the host has not set yet.
@@ -76,7 +76,7 @@ pub enum ExecuteError {
         pass: String,
         /// The pass's place in the document.
         place: String,
-        /// What the provider says is [missing](crate::Provider::missing).
+        /// The provider's word for it: [missing](crate::Provider::missing).
         why: String,
     },
     /// An import that the plan does not know.

@@ -13,9 +13,9 @@ pub trait Provider: Describe {
         0
     }
 
-    /// What the host still has to set before a resource can be built; `None` if it can be built
-    /// now. Executors are made without what is missing, [`refresh`](crate::Executor::refresh) asks
-    /// again, and until it is there `encode` fails with these words, in passes that read it.
+    /// Names the part that the host has to set before a resource can be built; `None` if it can be
+    /// built now. Executors are made without what is missing, [`refresh`](crate::Executor::refresh)
+    /// asks again, and until it is there `encode` fails with these words, in passes that read it.
     fn missing(&self, name: &str) -> Option<String> {
         let _ = name;
         None

@@ -18,7 +18,7 @@ pub struct Panicked {
 }
 
 impl Panicked {
-    /// What an author can do.
+    /// The way out for an author.
     pub(crate) fn way_out(&self) -> String {
         format!(
             "this is a mistake of the library ({}), which may take the same written differently",
@@ -28,14 +28,14 @@ impl Panicked {
 }
 
 thread_local! {
-    /// What the panic hook hears while this thread is inside of [`caught`]; `None` outside.
+    /// Panic that the hook heard while this thread is inside of [`caught`]; `None` outside.
     static HEARD: RefCell<Option<Option<Panicked>>> = const { RefCell::new(None) };
 }
 
 /// Runs what calls a library, and makes an error of its panic. Nothing is printed of it: the panic
 /// hook of the process is kept, and asked on threads that are not inside of this function.
 ///
-/// What `run` changes must be of no more use after a panic than the library leaves it.
+/// State that `run` changes may be left half changed by a panic and must not be relied on.
 ///
 /// # Errors
 /// The panic. (A process that is built with `panic = "abort"` ends instead.)

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 pub struct PartialBackend {
     /// The word by which documents list it in `proven_on`.
     pub name: String,
-    /// What it has less, for a message: "no …".
+    /// Abilities that it lacks, for a message: "no …".
     pub lacks: String,
 }
 

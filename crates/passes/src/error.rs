@@ -83,7 +83,7 @@ pub enum Error {
         what: &'static str,
         /// Which one, counted from 0.
         index: usize,
-        /// What was given.
+        /// The number that was given.
         value: glam::Vec3,
     },
     /// Transforms for a mesh in one piece.

@@ -7,7 +7,7 @@ use skiagraph_scene::{Bvh, BvhNode, LightSpace, LightSpaceNode, Mesh};
 /// A tree is built anew when a deformation has made rays this many times as dear as they were.
 const WORSE: f64 = 1.5;
 
-/// Of how many directions of light the trees are kept: of the suns that take turns with one
+/// Number of directions of light whose trees are kept: those of the suns that take turns with one
 /// provider.
 const DIRECTIONS: usize = 4;
 

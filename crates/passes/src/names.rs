@@ -60,8 +60,8 @@ pub(crate) fn next_version() -> u64 {
     LAST.fetch_add(1, Ordering::Relaxed) + 1
 }
 
-/// What was set lately, each with a number for its content. What is set again gets the number that
-/// it had: executors that have seen it have nothing to do.
+/// Settings made lately, each with a number for its content. A setting made again gets the number
+/// that it had: executors that have seen it have nothing to do.
 #[derive(Clone, Debug)]
 pub(crate) struct Lately<T> {
     /// The last one is set.

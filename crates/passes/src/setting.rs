@@ -1,4 +1,4 @@
-//! What is set on a provider: camera, light and mesh, as a host has them in each frame.
+//! Settings of a provider: camera, light and mesh, as a host has them in each frame.
 
 use crate::{error::Error, eye::Eye, lights, provider::SceneProvider, shape::Shape};
 use glam::{DAffine3, Vec3};
@@ -16,7 +16,7 @@ impl SceneProvider {
         self.set_camera(&view.camera(viewport));
         let light = self.scene.light_of(view);
         let mut lights = lights::of(&self.scene);
-        // A view may be under one of the scene's lights, or have one that is nobody else's.
+        // A view may be under one of the scene's lights, or have one of its own.
         if !lights.contains(&light) {
             lights = vec![light];
         }

@@ -7,11 +7,11 @@ use std::sync::Arc;
 /// How the corners of the mesh came to be where they are.
 #[derive(Clone, Default)]
 pub(crate) struct Shape {
-    /// What moves by itself, if anything does.
+    /// Parts that move by themselves, if there are any.
     pub parts: Option<Arc<Movable>>,
     /// Where the parts are, one map each; none if they were deformed since.
     pub maps: Vec<DAffine3>,
-    /// Of each part, whether its triangles are wound the other way than at rest.
+    /// True for each part whose triangles are wound the other way than at rest.
     pub mirrored: Vec<bool>,
     /// Whether the parts are in spaces of their own and were never given places.
     pub is_unplaced: bool,

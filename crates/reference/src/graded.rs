@@ -120,12 +120,12 @@ impl Graded {
 pub struct JudgedPixels {
     /// Pixels facing the light (PFL).
     pub facing_light: u64,
-    /// Of these: indeterminate.
+    /// Number of these that are indeterminate.
     pub in_band: u64,
 }
 
 impl Graded {
-    /// Of several pictures together, each with its pixels. FLIP is the mean of theirs.
+    /// Errors of several pictures together, each with its pixels. FLIP is the mean of theirs.
     pub fn together(pictures: impl IntoIterator<Item = (Self, JudgedPixels)>) -> Self {
         let mut all = Self::default();
         let (mut count, mut facing, mut outside) = (0.0, 0.0, 0.0);

@@ -29,7 +29,7 @@ impl Oracle<'_> {
     /// stands before it, or it is elsewhere, or there is a surface where it shows none.
     /// `primitives` as for [`shade`](Self::shade).
     ///
-    /// What the rounding of a rasteriser may do is allowed for: corners moved by a sixteenth of a
+    /// Allows for the rounding of a rasteriser: corners moved by a sixteenth of a
     /// pixel, depths by a few ulps of the triangle's nearest one. So is a pixel that two surfaces
     /// share.
     ///
@@ -199,7 +199,7 @@ impl<'a> Sample<'a> {
         self.rays.each_ref().map(of)
     }
 
-    /// What rounding may move a surface by, along the view, at that distance.
+    /// Length by which rounding may move a surface along the view, at that distance.
     fn distance_error(&self, corners: &Corners, distance: f64) -> f64 {
         let relative = self.relative(corners);
         let farthest = relative.iter().map(|corner| corner.length());

@@ -62,9 +62,9 @@ pub struct ObjSetup {
     pub light: Light,
     /// How polygons are split.
     pub quads: QuadDiagonal,
-    /// What becomes of concave ones.
+    /// How concave ones become triangles.
     pub concave: Concave,
-    /// What is taken of its materials.
+    /// Materials of it that are read.
     pub materials: MaterialUse,
 }
 

@@ -33,7 +33,7 @@ pub struct MovedPart {
     pub is_mirrored: bool,
 }
 
-/// What [`Movable::put`] changed of a mesh.
+/// Changes that [`Movable::put`] made to a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartChange {
     /// Whether a position or normal is another one.

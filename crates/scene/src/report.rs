@@ -30,8 +30,8 @@ pub struct ImportReport {
     pub zero_area: Degenerate,
     /// What could not be read of colours.
     pub colours_missing: Vec<String>,
-    /// What was passed over, or read in a way that a user may not expect: one sentence each, none
-    /// of them twice.
+    /// Parts that were passed over, or read in a way that a user may not expect: one sentence each,
+    /// none of them twice.
     pub remarks: Vec<String>,
 }
 

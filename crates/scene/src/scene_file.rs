@@ -88,7 +88,7 @@ pub enum MeshSource {
         /// What becomes of concave ones.
         #[serde(default)]
         concave: Concave,
-        /// What is taken of its materials.
+        /// Materials of it that are read.
         #[serde(default)]
         materials: ObjMaterials,
         /// Where the file can be downloaded, for the message that it is missing; absent for a mesh
@@ -100,7 +100,7 @@ pub enum MeshSource {
     Gltf {
         /// Path, as of `Obj`.
         file: String,
-        /// What is taken of its materials.
+        /// Materials of it that are read.
         #[serde(default)]
         materials: MaterialUse,
         /// As of `Obj`.

@@ -91,15 +91,15 @@ pub struct SceneArgs {
     /// Far plane distance. Without it, with --eye or for a mesh: just behind the whole mesh.
     #[arg(long, value_name = "LENGTH", value_parser = values::positive)]
     pub far: Option<f64>,
-    /// What is taken of a mesh's materials. Without it: all.
+    /// Materials of a mesh that are read; without it all.
     #[arg(long, value_name = "WHAT")]
     pub materials: Option<Materials>,
-    /// What becomes of a mesh's polygons that are not convex. Without it: cut.
+    /// How polygons of a mesh that are not convex become triangles; without it they are cut.
     #[arg(long, value_name = "HOW")]
     pub concave: Option<ConcavePolygons>,
 }
 
-/// What is taken of a mesh file's materials.
+/// Materials of a mesh file that are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Materials {
     /// Colours and masks; a mask that is missing is an error.
@@ -120,7 +120,7 @@ impl From<Materials> for MaterialUse {
     }
 }
 
-/// What becomes of polygons of an OBJ file that are not convex.
+/// How polygons of an OBJ file that are not convex become triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ConcavePolygons {
     /// They are cut as their outline is; one that crosses itself is an error.

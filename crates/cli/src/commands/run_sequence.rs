@@ -20,7 +20,7 @@ use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{CameraPath, Scene, SceneLibrary, View};
 
-/// What is saved of a frame.
+/// The file in which a frame is saved.
 pub fn of_frame(save: &Save, index: usize) -> Save {
     Save {
         file: numbered(&save.file, index),

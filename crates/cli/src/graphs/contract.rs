@@ -257,7 +257,7 @@ impl Judgement {
         Ok(Self { counts, graded })
     }
 
-    /// Of two pictures of a still view: by grades where there are any, else by wrong pixels.
+    /// Compares two pictures of a still view: by grades where there are any, else by wrong pixels.
     pub fn is_worse_than(&self, other: &Self) -> bool {
         match (&self.graded, &other.graded) {
             (Some(one), Some(other)) => one.rmse > other.rmse,

@@ -123,7 +123,7 @@ fn check_under(
     Graph::check(path, registry, sources, &request)
 }
 
-/// What stands in for a scene's light.
+/// A light that stands in for a scene's.
 #[derive(Clone, Copy)]
 enum StandIn {
     Directional,

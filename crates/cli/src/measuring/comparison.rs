@@ -261,7 +261,7 @@ impl<'a> Comparison<'a> {
         Ok(())
     }
 
-    /// What is done, with what is in the folder besides and stays.
+    /// The runs that are done, with those in the folder that stay.
     pub fn whole(&self) -> Results {
         self.folder.whole(&self.results)
     }

@@ -90,7 +90,7 @@ pub fn run(
 /// Frames after which buffers are as large as they get: each brings the count of the one before.
 const GROWING: u32 = 8;
 
-/// What it took to give buffers room for all that a frame needs.
+/// Frames that it took to give buffers room for all that a frame needs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Growth {
     /// Frames that were run for it; 0 where no buffer grows.

@@ -225,7 +225,7 @@ pub fn wrong_surfaces(
     wrong.map_err(|error| named(error, what))
 }
 
-/// Of what there is no reference, and why.
+/// Why there is no reference of a view.
 fn named(error: Error, what: &str) -> CliError {
     match error {
         Error::Interrupted => CliError::interrupted(),

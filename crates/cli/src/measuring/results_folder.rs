@@ -100,7 +100,7 @@ mod tests {
     use super::*;
     use crate::records::results::tests::sample;
 
-    /// What is in the folder's two files.
+    /// Names of the runs in the folder's two files.
     fn kept(folder: &Path) -> Vec<String> {
         let results = read_back::kept(folder).unwrap();
         let names = results.runs.iter().map(|run| run.preset.clone());

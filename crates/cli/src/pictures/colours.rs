@@ -117,7 +117,7 @@ pub fn id_colour(id: u32) -> [u8; 3] {
         .map(|channel| 48 + (channel * 207 / 255) as u8)
 }
 
-/// What depths are cleared to: a camera's, which are reversed, to 0, a light's to 1.
+/// Depth that means nothing was drawn: 0 of a camera, whose depths are reversed, 1 of a light.
 pub fn cleared(planes: Option<ClipPlanes>) -> f32 {
     match planes {
         Some(_) => 0.0,

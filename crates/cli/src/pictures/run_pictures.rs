@@ -31,9 +31,9 @@ pub fn write_pictures(folder: &Path, files: &[PictureFile]) -> Result<(), CliErr
     files.try_for_each(|file| write_whole(&folder.join(&file.name), &file.png))
 }
 
-/// What pictures are of: a run on a view or case, or a frame of a camera path.
+/// Subject of pictures: a run on a view or case, or a frame of a camera path.
 pub struct PicturePlace<'a> {
-    /// What the names of the method's pictures begin with.
+    /// Beginning of the names of the method's pictures.
     pub stem: String,
     /// The view, path or case.
     pub view: &'a str,

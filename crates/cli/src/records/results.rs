@@ -445,7 +445,7 @@ pub struct Cached {
 /// File names of a run's pictures.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Images {
-    /// Of a camera path, the frame that they show, counted from 0: the worst. Its number is in
+    /// Frame of a camera path that they show, counted from 0: the worst. Its number is in
     /// their names. Absent of a still view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<usize>,

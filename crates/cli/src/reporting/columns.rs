@@ -288,7 +288,7 @@ fn shimmer(measured: &Measured) -> Option<Part> {
     })
 }
 
-/// Of a camera path: the worst frame, and its share of wrong pixels.
+/// Worst frame of a camera path, and its share of wrong pixels.
 fn worst(measured: &Measured) -> Option<(u64, Part)> {
     let (index, frame) = measured.sequence.as_ref()?.worst()?;
     let part = Part {

@@ -136,7 +136,7 @@ impl<'a> Row<'a> {
         Some(all.into_iter().fold(Part { count: 0, of: 0 }, add))
     }
 
-    /// Of camera paths: the worst frame of all, by its error.
+    /// Worst frame of all camera paths, by its error.
     pub fn worst_frame(&self) -> Option<&'a SequenceFrame> {
         let paths = self.runs.iter();
         let worst = paths.filter_map(|(_, of)| Some(of.sequence.as_ref()?.worst()?.1));

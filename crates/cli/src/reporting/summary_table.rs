@@ -44,7 +44,7 @@ pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
         .collect()
 }
 
-/// What lines that warn begin with; the page makes them stand out by it.
+/// Beginning of lines that warn; the page makes them stand out by it.
 const WARNING: &str = "warning: ";
 
 /// What stands in a row that could not run.
@@ -309,7 +309,7 @@ impl<'a> Summary<'a> {
         })
     }
 
-    /// Of each view, that pixels show what is not seen there.
+    /// Says of each view that pixels show a surface that is not seen there.
     fn wrong_surfaces(&self) -> Vec<String> {
         let views = self.views();
         let mut told = BTreeSet::new();

@@ -80,7 +80,7 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-/// What the process does now, as standard error, too, belongs to the whole process.
+/// Work that the process does now. Standard error, too, belongs to the whole process.
 struct Now {
     /// All runs of the command.
     runs: Option<Share>,

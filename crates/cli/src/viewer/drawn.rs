@@ -285,7 +285,7 @@ fn table(text: &str) -> Drawn {
     }
 }
 
-/// What each mip and layer of a texture is, or of a part of one; nothing where there is only one.
+/// Names of the mips and layers of a texture or of a part of one; empty where there is only one.
 fn part_names(content: &Content, of: Option<&PartSummary>) -> Vec<String> {
     let Content::Texture { parts, .. } = content else {
         return Vec::new();

@@ -184,8 +184,9 @@ pub(super) fn frame_uniform(plan: &Plan) -> Option<ResourceId> {
     live.find(is_frame).copied()
 }
 
-/// What a pass uses of the host's and is not there: an import that was not handed over, or what the
-/// provider could not build yet; also if the pass reads it as it was in the frame before.
+/// A resource of the host that a pass uses and that is not there: an import that was not handed
+/// over, or what the provider could not build yet; also if the pass reads it as it was in the frame
+/// before.
 fn missing(plan: &Plan, memory: &Memory, at: usize) -> Option<ResourceId> {
     let accesses = plan.pass(plan.schedule().passes[at]).accesses.iter();
     let mut of_host = accesses.filter_map(|access| {

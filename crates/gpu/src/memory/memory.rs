@@ -29,7 +29,7 @@ pub(crate) struct Memory {
     samplers: BTreeMap<ResourceId, wgpu::Sampler>,
     /// Versions of the provided resources; none of those that the provider cannot build yet.
     provided: BTreeMap<ResourceId, Option<u64>>,
-    /// What is missing of the latter, in the provider's words.
+    /// The missing part of the latter, in the provider's words.
     missing: BTreeMap<ResourceId, String>,
 }
 
@@ -323,7 +323,7 @@ impl Memory {
         self.provided.get(&id).copied().flatten()
     }
 
-    /// What the provider says is missing of a resource that it could not build.
+    /// The part of a resource that the provider could not build, in its words.
     pub fn missing(&self, id: ResourceId) -> Option<&str> {
         self.missing.get(&id).map(String::as_str)
     }

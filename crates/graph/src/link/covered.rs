@@ -3,7 +3,7 @@
 use crate::resource::{Resource, ResourceKind, SubresourceRange};
 use std::ops::Range;
 
-/// What a part has in common with another one, in the aspect of that.
+/// The common part of two parts, in the aspect of the second.
 pub(super) fn within(part: &SubresourceRange, of: &SubresourceRange) -> Option<SubresourceRange> {
     let common = |a: &Range<u32>, b: &Range<u32>| a.start.max(b.start)..a.end.min(b.end);
     part.overlaps(of).then(|| SubresourceRange {

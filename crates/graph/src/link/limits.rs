@@ -1,5 +1,5 @@
-//! What shaders ask of a device beside their bindings: memory of workgroups and threads, values
-//! between stages, numbers of locations and bindings.
+//! Limits of a device that shaders meet beside their bindings: memory of workgroups and threads,
+//! values between stages, numbers of locations and bindings.
 
 use super::{linker::Linker, pass::LinkedProgram};
 use crate::{
@@ -27,7 +27,7 @@ const MOST_OF_ALL: u64 = 65_536;
 const MOST_OF_A_VALUE: u64 = 2048 * 16;
 
 impl Linker<'_, '_> {
-    /// What each entry point of a program takes.
+    /// Checks the memory that each entry point of a program takes.
     pub(super) fn footprints(&mut self, program: &LinkedProgram) -> Result<(), Reported> {
         let mut wrong = None;
         for &index in &program.entries {
@@ -107,7 +107,7 @@ impl Linker<'_, '_> {
         Ok(())
     }
 
-    /// What a draw's stages hand on, which must fit together and into the adapter.
+    /// Checks that the values between a draw's stages fit together and into the adapter.
     pub(super) fn stages(
         &mut self,
         program: &LinkedProgram,

@@ -15,7 +15,7 @@ struct Declaration<'t> {
     name: Option<&'t str>,
     /// The words in it.
     words: BTreeSet<&'t str>,
-    /// Of a function: the text between its braces, and its type in words, empty if it has none.
+    /// Body of a function between its braces, and its type in words, empty if it has none.
     body: Option<(Range<usize>, String)>,
 }
 
@@ -90,7 +90,7 @@ fn in_order_of_need(declarations: &[Declaration<'_>]) -> Vec<usize> {
     order
 }
 
-/// What a module declares, in order.
+/// Declarations of a module, in order.
 fn declarations(text: &str) -> Vec<Declaration<'_>> {
     let mut found = Vec::new();
     let (mut at, mut start, mut depth) = (0, None, 0usize);
@@ -181,7 +181,7 @@ fn statement_ends(body: &str) -> Vec<(usize, usize)> {
 mod tests {
     use super::*;
 
-    /// What of a text is blamed where every text with the word `bad` panics.
+    /// The part of a text that is blamed where every text with the word `bad` panics.
     fn blamed(text: &str) -> Option<&str> {
         let panics = |text: &str| text.contains("bad");
         blamed_range(text, &panics).map(|range| &text[range])

@@ -1,5 +1,5 @@
-//! What an entry point takes of a device: the memory that its workgroups share, and what each of
-//! its threads keeps for itself. Sizes are sums in 64 bits; nothing is allocated.
+//! Memory and values that an entry point takes of a device: the memory that its workgroups share,
+//! and what each of its threads keeps for itself. Sizes are sums in 64 bits; nothing is allocated.
 
 use super::{compiled::Specialised, expand::Expanded};
 use crate::source::span::{Located, Span};
@@ -30,10 +30,10 @@ impl Memory {
     }
 }
 
-/// What an entry point takes, with the functions that it calls.
+/// Memory that an entry point takes, with the functions that it calls.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Footprint {
-    /// Of a workgroup, each variable in sixteens, as WebGPU counts.
+    /// Bytes of a workgroup, each variable rounded up to sixteen, as WebGPU counts.
     pub workgroup: Memory,
     /// `var<private>`, of a thread.
     pub private: Memory,

@@ -33,7 +33,8 @@ pub struct Shader {
     pub(crate) module: naga::Module,
     info: ModuleInfo,
     layouter: Layouter,
-    /// Of entry points with the values of their overrides, as far as they were asked for.
+    /// Footprints of entry points with the values of their overrides, as far as they were asked
+    /// for.
     footprints: Mutex<HashMap<Specialisation, Result<Arc<Footprint>, ShaderError>>>,
 }
 
@@ -85,7 +86,7 @@ impl Shader {
         })
     }
 
-    /// What an entry point takes of a device with these values of its overrides. It is compiled as
+    /// Footprint of an entry point with these values of its overrides. It is compiled as
     /// a device would.
     pub(crate) fn footprint(
         &self,

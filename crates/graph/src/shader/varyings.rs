@@ -1,4 +1,4 @@
-//! What passes from one stage to the next: locations, with their types and how they are
+//! Values that pass from one stage to the next: locations, with their types and how they are
 //! interpolated, and what of the limit built-in values take.
 
 use super::reflect::Shader;
@@ -14,7 +14,7 @@ pub(crate) struct Varying {
     pub sampling: Option<naga::Sampling>,
 }
 
-/// What an entry point takes or gives.
+/// Values that an entry point takes or gives.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Varyings {
     pub locations: Vec<Varying>,

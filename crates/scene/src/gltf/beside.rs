@@ -1,11 +1,11 @@
-//! What is read of a document's JSON beside what the `gltf` crate reads, and the means to.
+//! The part of a document's JSON that the `gltf` crate does not read, and how it is read.
 
 use super::extensions::{self, Kind};
 use crate::error::beginning;
 use serde_json::{Map, Value};
 use std::collections::{BTreeSet, HashMap, HashSet};
 
-/// What was read of a document beside what the `gltf` crate reads.
+/// The part of a document that the `gltf` crate does not read.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Beside {
     /// Nodes that are hidden with all below them (KHR_node_visibility).
@@ -18,7 +18,7 @@ pub(super) struct Beside {
     pub strides: HashMap<usize, usize>,
     /// Buffers that are needed.
     pub buffers: HashSet<usize>,
-    /// What was passed over.
+    /// Parts that were passed over.
     pub remarks: BTreeSet<String>,
 }
 

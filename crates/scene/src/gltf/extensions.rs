@@ -3,7 +3,7 @@
 
 use serde_json::Value;
 
-/// What becomes of an extension.
+/// Treatment of an extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// It is read.

@@ -351,7 +351,7 @@ impl<'a> Import<'a> {
         })
     }
 
-    /// What a primitive's accessors hold.
+    /// Contents of a primitive's accessors.
     fn arrays(&self, primitive: &gltf::Primitive<'_>, material: usize) -> Result<Arrays, String> {
         let named = |(index, why): (usize, String)| format!("accessor {index}: {why}");
         let material = &self.materials.all[material];

@@ -15,7 +15,7 @@ use glam::{Mat2, Vec2};
 use gltf::{material::AlphaMode, texture::WrappingMode};
 use std::{path::Path, sync::Arc};
 
-/// What to do where a mask or a texture cannot be had.
+/// The way out where a mask or a texture cannot be read.
 const WAY_OUT: &str = "mend it, or give --materials color (every surface is opaque) or \
                        --materials ignore; a scene file says `materials: Color` or `Ignore`";
 
@@ -73,7 +73,7 @@ pub(super) struct Reader<'a> {
     pub beside: &'a Beside,
     pub file: &'a Path,
     pub of: MaterialUse,
-    /// What could not be read of colours.
+    /// Colours that could not be read.
     pub colours_missing: Vec<String>,
     /// Number of materials that are blended over what is behind them.
     pub blended: usize,
@@ -83,7 +83,7 @@ impl Reader<'_> {
     /// Reads a material; `place` is what it is called in messages.
     ///
     /// # Errors
-    /// What is wrong with its mask.
+    /// The fault of its mask.
     pub fn read(&mut self, from: &gltf::Material<'_>, place: &str) -> Result<Read, String> {
         let pbr = from.pbr_metallic_roughness();
         let [red, green, blue, alpha] = pbr.base_color_factor();

@@ -4,7 +4,7 @@
 //! with the transforms of their nodes and instances, morph targets by their weights, skins in the
 //! pose of their joints' nodes; animations stand still. `alphaMode: MASK` is a mask, which the
 //! alpha of vertices is a part of; `BLEND` counts as opaque. Primitives without normals are flat.
-//! What is passed over stands in the report.
+//! Parts that are passed over stand in the report.
 
 mod accessor;
 mod beside;

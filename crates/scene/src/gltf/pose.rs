@@ -1,5 +1,5 @@
-//! What moves the vertices of a mesh before it is drawn: weights of morph targets, the joints of a
-//! skin in the pose of their nodes, and the transforms of instances.
+//! Poses, which move the vertices of a mesh before it is drawn: weights of morph targets, the
+//! joints of a skin in the pose of their nodes, and the transforms of instances.
 
 use super::{accessor, beside::Instances, buffers::Buffers, nodes::Nodes};
 use glam::{DMat3, DMat4, DQuat, DVec3, Vec3};
@@ -30,7 +30,7 @@ impl Vertices {
     /// Moves them by the morph targets of a primitive.
     ///
     /// # Errors
-    /// What is wrong with a target.
+    /// The fault of a target.
     pub fn morph(
         &mut self,
         primitive: &Primitive<'_>,
@@ -98,7 +98,7 @@ impl Vertices {
 /// Numbers of four joints for each vertex, and their weights.
 type JointSet = (Vec<[f32; 4]>, Vec<[f32; 4]>);
 
-/// What a linear map does to normals; nothing is left of those of a flattened one.
+/// The map of normals that belongs to a linear map; zero if that flattens.
 pub(super) fn of_normals(linear: DMat3) -> DMat3 {
     match linear.determinant() {
         0.0 => DMat3::ZERO,
@@ -140,7 +140,7 @@ fn blend(vertex: usize, sets: &[JointSet], joints: &[DMat4]) -> Result<DMat4, St
 /// The joints of a skin: where each stands, from where it was bound.
 ///
 /// # Errors
-/// What is wrong with the skin.
+/// The fault of the skin.
 pub(super) fn joints(
     skin: &Skin<'_>,
     nodes: &Nodes<'_>,
@@ -173,7 +173,7 @@ pub(super) fn joints(
 /// The transforms of a node's instances.
 ///
 /// # Errors
-/// What is wrong with them.
+/// Their fault.
 pub(super) fn instances(
     of: Instances,
     document: &Document,

@@ -62,8 +62,8 @@ fn used_accessors(root: &Value, beside: &Beside) -> HashSet<usize> {
     used
 }
 
-/// Bounds that nobody reads are there, unused accessors are plain, and those without a buffer view
-/// are zeros that the `gltf` crate accepts. Returns the buffer views in use.
+/// Bounds that no reader needs are there, unused accessors are plain, and those without a buffer
+/// view are zeros that the `gltf` crate accepts. Returns the buffer views in use.
 fn accessor_list(root: &mut Value, beside: &mut Beside, used: &HashSet<usize>) -> HashSet<usize> {
     let mut views = HashSet::new();
     let nothing = root

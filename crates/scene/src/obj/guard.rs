@@ -86,7 +86,7 @@ pub(super) struct Guard<'a> {
     total: Counts,
 }
 
-/// What is handed on of the file.
+/// The part of the file that is handed on.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Turn {
     Vertices,

@@ -31,25 +31,25 @@ const MTL_FILE: Limit = Limit {
 /// Opacity from which on a surface is there: OBJ files say none.
 const CUTOFF: f32 = 0.5;
 
-/// What to do where a mask cannot be had.
+/// The way out where a mask cannot be read.
 const WAY_OUT: &str = "put it there, or give --materials color (every surface is opaque) or \
                        --materials ignore; a scene file says `materials: Color` or `Ignore`";
 
-/// What to do where a line cannot be read.
+/// The way out where a line cannot be read.
 const MEND: &str = "mend the line, or give --materials color (every surface is opaque); a scene \
                     file says `materials: Color`";
 
-/// What was found of materials.
+/// Materials that were found.
 #[derive(Default)]
 pub(super) struct Found {
     /// By the numbers that [`Guard::materials`] has them; none where the file names no file of
     /// them.
     pub materials: Vec<Material>,
-    /// What becomes of the texture coordinates of each; none at all where they stay as they are.
+    /// Map of the texture coordinates of each; none at all where they stay as they are.
     pub uvs: Vec<UvTransform>,
-    /// What could not be read of colours.
+    /// Colours that could not be read.
     pub colours_missing: Vec<String>,
-    /// What was passed over.
+    /// Parts that were passed over.
     pub remarks: Vec<String>,
 }
 

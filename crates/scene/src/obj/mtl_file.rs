@@ -19,9 +19,9 @@ pub(super) struct MtlMaterial {
     pub dissolve: Option<f32>,
     /// Opacity from `Tr`, which counts where `d` says nothing.
     pub transparency: Option<f32>,
-    /// What follows `map_Kd`.
+    /// Words behind `map_Kd`.
     pub diffuse_map: Option<String>,
-    /// What follows `map_d`.
+    /// Words behind `map_d`.
     pub dissolve_map: Option<String>,
     /// A line on which it depends what is cut out, and which cannot be read.
     pub fault: Option<String>,

@@ -3,7 +3,7 @@
 use crate::texture::Wrap;
 use glam::Vec2;
 
-/// What becomes of texture coordinates, v up, before a texture is looked up.
+/// Map of texture coordinates, v up, before a texture is looked up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct UvTransform {
     pub scale: Vec2,
@@ -16,7 +16,7 @@ impl UvTransform {
         offset: Vec2::ZERO,
     };
 
-    /// Of coordinates with v down, as meshes have them.
+    /// The map of coordinates with v down, as meshes have them.
     pub fn apply(&self, uv: Vec2) -> Vec2 {
         if *self == Self::IDENTITY {
             return uv;
@@ -44,7 +44,7 @@ pub(super) struct TextureStatement {
     pub wrap: Wrap,
     pub uv: UvTransform,
     pub channel: Channel,
-    /// What is added to a texel's number (`-mm`), and by what it is multiplied.
+    /// Addend and factor of a texel's number (`-mm`).
     pub range: [f32; 2],
     /// Options that change what is cut out and are not followed.
     pub passed_over: Vec<&'static str>,

@@ -30,7 +30,7 @@ pub struct Set {
     viewport: [u32; 2],
     /// Method and map in words; none of the reference.
     label: Option<String>,
-    /// Of a camera path, the frame that it shows, counted from 0.
+    /// Frame of a camera path that it shows, counted from 0.
     frame: Option<usize>,
     shaded: Option<usize>,
     visibility: Option<usize>,
@@ -87,7 +87,7 @@ struct Wanted {
     run: usize,
     kind: Kind,
     name: String,
-    /// Of a camera path, the frame that it shows.
+    /// Frame of a camera path that it shows.
     frame: Option<usize>,
 }
 

@@ -28,6 +28,6 @@ fi
 if [ -z "$all" ]; then
     cargo test --workspace --locked "$@"
 else
-    # The others have steps of their own: ray queries need another adapter, `long_` takes longer still.
-    cargo test --workspace --locked "$@" -- --include-ignored --skip ray_query:: --skip long_
+    # The others have steps of their own: ray queries need another adapter, `ci_long_` takes longer still.
+    cargo test --workspace --locked "$@" -- --include-ignored --skip ray_query:: --skip ci_long_
 fi

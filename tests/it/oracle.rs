@@ -95,7 +95,7 @@ fn bench_has_the_dissertations_counts() {
 
 #[test]
 #[ignore = "larger viewports; `bash .ci/long` runs it"]
-fn long_bench_has_the_dissertations_counts_in_larger_viewports() {
+fn ci_long_bench_has_the_dissertations_counts_in_larger_viewports() {
     bench_counts([1024, 1024], 1);
     bench_counts([1920, 1080], 2);
 }

@@ -76,7 +76,7 @@ proptest! {
 
 #[test]
 #[ignore = "minutes; `bash .ci/long` runs it"]
-fn long_ten_million_are_sound_and_within_every_adapters_bindings() {
+fn ci_long_ten_million_are_sound_and_within_every_adapters_bindings() {
     let triangles = *TRIANGLES.end();
     for generator in generators(triangles) {
         let mesh = generator.build();

@@ -92,7 +92,7 @@ fn a_deformed_mesh_has_a_structure_of_its_own() {
     let gpu = open();
     let start = |provider: &mut SceneProvider| {
         let plan = plan("pipelines/rt.ron", provider, viewport, |request| {
-            request.features = gpu.device.features();
+            graphs::allow_ray_queries(request);
             let engine = ParamValue::Choice("ray_query".to_owned());
             request.params.insert("engine".to_owned(), engine);
         });

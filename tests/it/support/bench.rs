@@ -1,6 +1,6 @@
 //! A scene under a view, the oracle's word on it, and what runs presets on it.
 
-use super::graphs::{RAY_QUERY, open, plan, provider, run_on, values};
+use super::graphs::{allow_ray_queries, open, plan, provider, run_on, values};
 use skiagraph_gpu::device::Gpu;
 use skiagraph_graph::{Capture, ParamValue};
 use skiagraph_passes::SceneProvider;
@@ -61,7 +61,7 @@ impl<'a> Bench<'a> {
                     material: "primitive".into(),
                     after: None,
                 });
-                request.features = self.gpu.device.features() & RAY_QUERY;
+                allow_ray_queries(request);
                 request.params.extend(
                     params
                         .iter()

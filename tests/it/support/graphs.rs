@@ -133,7 +133,7 @@ pub fn plan_files(files: &[(&str, &str)], provider: &dyn Describe, viewport: [u3
     let graph = Graph::load("test.ron", &registry(), &layered(files))
         .unwrap_or_else(|error| panic!("{error}"));
     let mut request = PlanRequest::new(viewport, provider);
-    request.features = open().device.features() & RAY_QUERY;
+    allow_ray_queries(&mut request);
     graph
         .plan(&request)
         .unwrap_or_else(|error| panic!("{error}"))
@@ -224,6 +224,14 @@ pub fn run(plan: Plan, provider: &mut dyn Provider, read: &[&str]) -> FrameRepor
 
 /// What the tests of engines ask for beyond the baseline.
 pub const RAY_QUERY: wgpu::Features = wgpu::Features::EXPERIMENTAL_RAY_QUERY;
+
+/// Lets a plan use ray queries where the device has them.
+pub fn allow_ray_queries(request: &mut PlanRequest<'_>) {
+    let device = open().device;
+    request.features = device.features() & RAY_QUERY;
+    request.limits.max_acceleration_structures_per_shader_stage =
+        device.limits().max_acceleration_structures_per_shader_stage;
+}
 
 /// The device that all tests share, with ray queries where the adapter has them; a machine without
 /// an adapter fails the test with the way out.

@@ -305,9 +305,10 @@ impl Writer {
             .zip(open)
             .map(|(index, name)| format!("(name: \"output_{index}\", material: \"{name}\")"))
             .collect();
-        let params = match self.has_param {
-            true => "F32(name: \"strength\", default: 0.5)",
-            false => "",
+        let params = if self.has_param {
+            "F32(name: \"strength\", default: 0.5)"
+        } else {
+            ""
         };
         let text = format!(
             "(\n    format: 2,\n    params: [{params}],\n    \

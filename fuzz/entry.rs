@@ -115,7 +115,7 @@ fn said(errors: &Diagnostics) -> String {
 fn use_up(plan: &Plan) -> String {
     assert!(plan.memory_bytes() >= plan.saved_bytes());
     let _ = (plan.passes(), plan.culled(), plan.outputs(), plan.memory());
-    let _ = Drawing::of(plan).to_svg();
+    let _ = Drawing::from_plan(plan).to_svg();
     String::new()
 }
 

@@ -1,6 +1,6 @@
 // Stage to append each caster to the lists of the texels that it overlaps and in which some
-// receiver is not nearer to the light. `whole`: one thread per triangle, which leaves those over
-// many tiles to `parts`: one workgroup per part of a large one, whose threads take its tiles in
+// receiver is not nearer to the light. `bin_small`: one thread per triangle, which leaves those over
+// many tiles to `bin_large`: one workgroup per part of a large one, whose threads take its tiles in
 // turns. So no thread looks at more than 2,048 texels, however large a triangle is.
 
 #import "shared/camera.wgsl"
@@ -13,10 +13,10 @@ struct Params {
 }
 
 struct BinnedTexel {
-    farthest: atomic<u32>,
+    max_receiver_depth: atomic<u32>,
     length: atomic<u32>,
     head: atomic<u32>,
-    cover: atomic<u32>,
+    full_coverage_depth: atomic<u32>,
 }
 
 struct Large {
@@ -57,11 +57,11 @@ struct Binned {
     last: vec2<u32>,
     // How far the centre of a texel that the triangle overlaps may be beyond the lines of ab, bc
     // and ca, times their lengths.
-    reach: vec3<f32>,
+    edge_threshold: vec3<f32>,
     // What a texel is taken larger by on each side: SLACK, and more in fine grids and near a light.
-    slack: f32,
+    dilation: f32,
     // What the tracer may find it nearer to the light by, or farther from it, in depth.
-    room: f32,
+    depth_tolerance: f32,
 }
 
 struct Thread {
@@ -71,7 +71,7 @@ struct Thread {
 }
 
 @compute @workgroup_size(GROUP_SIZE)
-fn whole(thread: Thread) {
+fn bin_small(thread: Thread) {
     let primitive = (thread.group.y * thread.groups.x + thread.group.x) * GROUP_SIZE + thread.lane;
     if 3u * primitive >= arrayLength(&scene_indices) {
         return;
@@ -92,7 +92,7 @@ fn whole(thread: Thread) {
 }
 
 @compute @workgroup_size(GROUP_SIZE)
-fn parts(thread: Thread) {
+fn bin_large(thread: Thread) {
     let number = group_number(thread.group);
     if number >= min(atomicLoad(&large.count), arrayLength(&large.parts)) {
         return;
@@ -122,14 +122,14 @@ fn caster_of(primitive: u32) -> Binned {
     }
     let triangle = light_triangle(primitive);
     var plane = depth_plane(triangle);
-    let apart = apart();
-    let slack = max(SLACK, apart);
-    plane.margin *= slack / SLACK;
-    var room = TRACED * light.max_distance / light.extent.z;
+    let edge_tolerance = edge_tolerance();
+    let dilation = max(SLACK, edge_tolerance);
+    plane.margin *= dilation / SLACK;
+    var depth_tolerance = TRACED * light.max_distance / light.extent.z;
     if plane.margin >= 0.0 {
-        room += (apart + weights_error(triangle)) * steepest();
+        depth_tolerance += (edge_tolerance + weights_error(triangle)) * max_depth_slope();
     }
-    return caster_over(primitive, triangle, plane, slack, room);
+    return caster_over(primitive, triangle, plane, dilation, depth_tolerance);
 }
 
 // What the tracer's view of a triangle may differ from its corners by, in any direction, as a share
@@ -138,7 +138,7 @@ const TRACED: f32 = 16.0 * HALF_ULP;
 
 // How far a receiver may be beyond an edge, in texels in each direction, and the tracer not tell.
 // Of a directional light.
-fn apart() -> f32 {
+fn edge_tolerance() -> f32 {
     let placed = texel_error_of_summands(map_fit, light_clip_summands_of_scene()).x;
     let clip = light.max_distance / min(light.extent.x, light.extent.y);
     return placed + TRACED * map_fit.scale * clip;
@@ -156,7 +156,7 @@ fn weights_error(triangle: LightTriangle) -> f32 {
 
 // Depth that the way along the longest axis of the light's direction changes by in a texel's width:
 // by up to sqrt(2) times that, whatever the triangle's slope.
-fn steepest() -> f32 {
+fn max_depth_slope() -> f32 {
     let texels = vec2(length(map_fit.x.xy), length(map_fit.y.xy));
     let widest = max(light.extent.x, light.extent.y) / min(texels.x, texels.y);
     let narrowest = min(light.extent.x, light.extent.y) / max(texels.x, texels.y);
@@ -167,8 +167,8 @@ fn caster_over(
     primitive: u32,
     projected: LightTriangle,
     plane: DepthPlane,
-    slack: f32,
-    room: f32,
+    dilation: f32,
+    depth_tolerance: f32,
 ) -> Binned {
     var triangle = projected;
     if triangle.area < 0.0 {
@@ -177,18 +177,20 @@ fn caster_over(
     let a = triangle.a;
     let b = triangle.b;
     let c = triangle.c;
-    let low = floor(min(a.xy, min(b.xy, c.xy)) - slack);
-    let high = floor(max(a.xy, max(b.xy, c.xy)) + slack);
+    let low = floor(min(a.xy, min(b.xy, c.xy)) - dilation);
+    let high = floor(max(a.xy, max(b.xy, c.xy)) + dilation);
     let end = map_fit.size - 1.0;
     let is_beside = any(high < vec2(0.0)) || any(low > vec2(end));
     let first = select(vec2<u32>(max(low, vec2(0.0))), vec2(1u), is_beside);
     let last = select(vec2<u32>(min(high, vec2(end))), vec2(0u), is_beside);
-    let reach = vec3(
-        reach_of(b.xy - a.xy, slack),
-        reach_of(c.xy - b.xy, slack),
-        reach_of(a.xy - c.xy, slack),
+    let edge_threshold = vec3(
+        edge_threshold_of(b.xy - a.xy, dilation),
+        edge_threshold_of(c.xy - b.xy, dilation),
+        edge_threshold_of(a.xy - c.xy, dilation),
     );
-    return Binned(primitive, triangle, plane, first, last, reach, slack, room);
+    return Binned(
+        primitive, triangle, plane, first, last, edge_threshold, dilation, depth_tolerance,
+    );
 }
 
 // In a face of a spot or point light's map: where the corners are projected to, if all are before
@@ -202,22 +204,25 @@ fn caster_of_face(primitive: u32) -> Binned {
     let nearest = min(a.w, min(b.w, c.w));
     // What projection makes of rounding, and of what the tracer's view may differ by, seen from the
     // nearest corner.
-    let aside = max(farthest_aside(a), max(farthest_aside(b), farthest_aside(c)));
+    let projected_ratio = max(
+        max_projected_ratio(a),
+        max(max_projected_ratio(b), max_projected_ratio(c)),
+    );
     let spread = light_spread();
     let rounding = TRACED * light.max_distance * (1.0 + spread) / nearest
-        + CLIP_ROUNDING * (2.0 + 4.0 * spread) * (1.0 + aside) * (1.0 + aside);
-    let slack = SLACK + map_fit.scale * rounding;
-    let room = TRACED * light.max_distance / light.range;
-    if !(nearest > 0.0 && slack < 0.125 * map_fit.size) {
+        + CLIP_ROUNDING * (2.0 + 4.0 * spread) * (1.0 + projected_ratio) * (1.0 + projected_ratio);
+    let dilation = SLACK + map_fit.scale * rounding;
+    let depth_tolerance = TRACED * light.max_distance / light.range;
+    if !(nearest > 0.0 && dilation < 0.125 * map_fit.size) {
         let plane = DepthPlane(vec3(0.0), vec2(0.0), -1.0, least, greatest, 0.0);
-        return caster_of_whole_face(primitive, a, b, c, plane, room);
+        return caster_of_whole_face(primitive, a, b, c, plane, depth_tolerance);
     }
     let p = face_texel(a);
     let q = face_texel(b);
     let r = face_texel(c);
     let triangle = LightTriangle(p, q, r, cross_2d(q.xy - p.xy, r.xy - p.xy));
     let plane = DepthPlane(p, vec2(0.0), -1.0, least, greatest, 0.0);
-    return caster_over(primitive, triangle, plane, slack, room);
+    return caster_over(primitive, triangle, plane, dilation, depth_tolerance);
 }
 
 fn face_texel(seen: vec4<f32>) -> vec3<f32> {
@@ -225,7 +230,7 @@ fn face_texel(seen: vec4<f32>) -> vec3<f32> {
     return vec3(dot(map_fit.x.xyz, across), dot(map_fit.y.xyz, across), seen.z);
 }
 
-fn farthest_aside(seen: vec4<f32>) -> f32 {
+fn max_projected_ratio(seen: vec4<f32>) -> f32 {
     return max(abs(seen.x), abs(seen.y)) / seen.w;
 }
 
@@ -237,17 +242,17 @@ fn caster_of_whole_face(
     b: vec4<f32>,
     c: vec4<f32>,
     plane: DepthPlane,
-    room: f32,
+    depth_tolerance: f32,
 ) -> Binned {
     let beside = is_beside(a, b, c);
     let first = select(vec2(0u), vec2(1u), beside);
     let last = select(vec2(u32(map_fit.size) - 1u), vec2(0u), beside);
     let nowhere = LightTriangle(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
-    return Binned(primitive, nowhere, plane, first, last, vec3(1e30), SLACK, room);
+    return Binned(primitive, nowhere, plane, first, last, vec3(1e30), SLACK, depth_tolerance);
 }
 
-fn reach_of(edge: vec2<f32>, slack: f32) -> f32 {
-    return (0.5 + slack) * (abs(edge.x) + abs(edge.y));
+fn edge_threshold_of(edge: vec2<f32>, dilation: f32) -> f32 {
+    return (0.5 + dilation) * (abs(edge.x) + abs(edge.y));
 }
 
 // Columns and rows of tiles under its box.
@@ -308,20 +313,20 @@ fn bin(caster: Binned, first: u32, end: u32, step: u32) {
 fn is_listed(caster: Binned, texel: vec2<u32>) -> bool {
     let number = texel_number(binned_layer, texel);
     let centre = vec2<f32>(texel) + 0.5;
-    let inward = inward_of(caster.triangle, centre);
-    let farthest = atomicLoad(&texels[number].farthest);
-    let may_shade = depth_bits(least_depth(caster, centre)) <= farthest;
-    if !(all(inward >= -caster.reach) && may_shade) {
+    let inward = edge_functions(caster.triangle, centre);
+    let max_receiver_depth = atomicLoad(&texels[number].max_receiver_depth);
+    let may_shade = depth_bits(least_depth(caster, centre)) <= max_receiver_depth;
+    if !(all(inward >= -caster.edge_threshold) && may_shade) {
         return false;
     }
     // The texel, larger by 4 times the slack on every side, is inside of what covers it.
-    let enlarged = (1.0 + 6.0 * caster.slack) * caster.reach;
+    let enlarged = (1.0 + 6.0 * caster.dilation) * caster.edge_threshold;
     let covers = caster.plane.margin >= 0.0 && all(inward >= enlarged);
     if has_covers && covers {
         let depth = covered_depth(caster, centre);
-        atomicMax(&texels[number].cover, ~depth_bits(depth));
+        atomicMax(&texels[number].full_coverage_depth, ~depth_bits(depth));
         // Nobody behind it asks a list.
-        atomicMin(&texels[number].farthest, depth_bits(depth + cover_margin()));
+        atomicMin(&texels[number].max_receiver_depth, depth_bits(depth + cover_margin()));
     }
     // Nobody reads a list that is longer.
     return (atomicAdd(&texels[number].length, 1u) & ~LIST_LACKS) < params.longest_list;
@@ -334,7 +339,7 @@ fn covered_depth(caster: Binned, centre: vec2<f32>) -> f32 {
     let plane = caster.plane;
     let slope = abs(plane.slope);
     let farthest = plane_depth(plane, centre) + (0.5 + 4.0 * plane.margin) * (slope.x + slope.y);
-    let rounding = 4.0 * caster.room + farthest_receiver_error() / light.extent.z;
+    let rounding = 4.0 * caster.depth_tolerance + farthest_receiver_error() / light.extent.z;
     return saturate(clamp(farthest, plane.least, plane.greatest) + rounding);
 }
 
@@ -354,7 +359,7 @@ fn cover_margin() -> f32 {
 
 // In a texel.
 fn least_depth(caster: Binned, centre: vec2<f32>) -> f32 {
-    return max(depth_bound(caster.plane, centre, 0.5, NEAREST) - caster.room, 0.0);
+    return max(depth_bound(caster.plane, centre, 0.5, NEAREST) - caster.depth_tolerance, 0.0);
 }
 
 // A bit for each texel of the tile that is under the triangle's box and has a receiver in it; none
@@ -362,9 +367,9 @@ fn least_depth(caster: Binned, centre: vec2<f32>) -> f32 {
 fn texels_in(caster: Binned, tile: vec2<u32>) -> vec2<u32> {
     let marked = tiles[tile_number(binned_layer, tile)];
     let middle = (vec2<f32>(tile) + 0.5) * f32(TILE);
-    let depth = depth_bound(caster.plane, middle, 0.5 * f32(TILE), NEAREST) - caster.room;
+    let depth = depth_bound(caster.plane, middle, 0.5 * f32(TILE), NEAREST) - caster.depth_tolerance;
     let may_shade = depth_bits(depth) <= marked.x
-        && all(inward_of(caster.triangle, middle) >= -f32(TILE) * caster.reach);
+        && all(edge_functions(caster.triangle, middle) >= -f32(TILE) * caster.edge_threshold);
     let low = max(caster.first, tile * TILE) - tile * TILE;
     let high = min(caster.last - tile * TILE, vec2(TILE - 1u));
     let columns = (0xffu << low.x) & (0xffu >> (TILE - 1u - high.x));
@@ -379,7 +384,7 @@ fn bytes_of(bits: u32) -> u32 {
 }
 
 // Distances of a point from the lines of ab, bc and ca, times their lengths; inside is positive.
-fn inward_of(triangle: LightTriangle, point: vec2<f32>) -> vec3<f32> {
+fn edge_functions(triangle: LightTriangle, point: vec2<f32>) -> vec3<f32> {
     return vec3(
         cross_2d(triangle.b.xy - triangle.a.xy, point - triangle.a.xy),
         cross_2d(triangle.c.xy - triangle.b.xy, point - triangle.b.xy),
@@ -394,14 +399,14 @@ fn append(caster: Binned, texel: vec2<u32>, slot: u32, lines: Lines) {
         return;
     }
     let centre = vec2<f32>(texel) + 0.5;
-    let inward = inward_of(caster.triangle, centre);
-    let distances = inward * lines.per_length + lines.room;
+    let inward = edge_functions(caster.triangle, centre);
+    let distances = inward * lines.per_length + lines.dilation;
     let ab = Edge(lines.inward.x, distances.x);
     let bc = Edge(lines.inward.y, distances.y);
     let ca = Edge(lines.inward.z, distances.z);
     // The one that cuts the least area off the texel is left out: about the part of the edge that
     // is near it, times how far the texel reaches beyond.
-    let cut = (caster.reach - inward) * lines.per_near;
+    let cut = (caster.edge_threshold - inward) * lines.per_near;
     var one = ab;
     var other = ca;
     if cut.x <= min(cut.y, cut.z) {
@@ -421,7 +426,7 @@ struct Lines {
     // 1 / the longer component of each; 0 of one without length, which is no line.
     per_length: vec3<f32>,
     // Distances that lines are moved outward by.
-    room: vec3<f32>,
+    dilation: vec3<f32>,
     // 1 / the length of the part of each that is near a texel, about.
     per_near: vec3<f32>,
 }
@@ -433,9 +438,9 @@ fn lines_of(caster: Binned) -> Lines {
         triangle.c.xy - triangle.b.xy,
         triangle.a.xy - triangle.c.xy,
     );
-    var beyond = caster.slack + SLACK;
+    var beyond = caster.dilation + SLACK;
     if light_kind == LIGHT_DIRECTIONAL {
-        beyond = apart();
+        beyond = edge_tolerance();
     }
     var lines: Lines;
     for (var i = 0u; i < 3u; i++) {
@@ -445,8 +450,8 @@ fn lines_of(caster: Binned) -> Lines {
         let per_length = select(0.0, 1.0 / longest, is_line);
         lines.inward[i] = inward_bytes(vec2(-edges[i].y, edges[i].x) * per_length);
         lines.per_length[i] = per_length;
-        lines.room[i] = select(1.0, beyond * (size.x + size.y) * per_length, is_line);
+        lines.dilation[i] = select(1.0, beyond * (size.x + size.y) * per_length, is_line);
     }
-    lines.per_near = 1.0 / max(2.0 * caster.reach, vec3(1.0));
+    lines.per_near = 1.0 / max(2.0 * caster.edge_threshold, vec3(1.0));
     return lines;
 }

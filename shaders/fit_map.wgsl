@@ -29,7 +29,7 @@ fn over_receivers() {
 
 // The upright rectangle around the eye's frustum: as the dissertation fits its light.
 @compute @workgroup_size(1)
-fn over_eye() {
+fn over_camera() {
     let axes = upright();
     let around = around_frustum(axes, camera.near, fit_end(params.fit_distance));
     map_fits[0].fit = fit_over_rectangle(axes, around, f32(params.map_size), params.rounding);

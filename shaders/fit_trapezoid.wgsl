@@ -12,7 +12,7 @@ struct Params {
     // See shared/lay_map.wgsl.
     rounding: f32,
     // See shared/trapezoid.wgsl.
-    focus: f32,
+    warp: f32,
 }
 
 var<uniform> params: Params;
@@ -27,7 +27,7 @@ fn main() {
     for (var corner = 0u; corner < 8u; corner++) {
         corners[corner] = extent * light_clip(frustum_corner(corner, camera.near, end)).xy;
     }
-    let map = trapezoid_map(corners, params.focus);
+    let map = trapezoid_map(corners, params.warp);
     if !map.exists {
         let axes = upright();
         let around = around_frustum(axes, camera.near, end);

@@ -6,10 +6,10 @@
 #import "shared/receiver.wgsl"
 
 struct MarkedTexel {
-    farthest: atomic<u32>,
+    max_receiver_depth: atomic<u32>,
     length: u32,
     head: u32,
-    cover: u32,
+    full_coverage_depth: u32,
 }
 
 var<storage, read_write> texels: array<MarkedTexel>;
@@ -38,7 +38,7 @@ fn mark(pixel: vec2<u32>, summed: vec2<f32>) {
         return;
     }
     // Asked first: many receivers of one texel need not queue for it.
-    if atomicLoad(&texels[place.texel].farthest) < place.depth {
-        atomicMax(&texels[place.texel].farthest, place.depth);
+    if atomicLoad(&texels[place.texel].max_receiver_depth) < place.depth {
+        atomicMax(&texels[place.texel].max_receiver_depth, place.depth);
     }
 }

@@ -22,7 +22,7 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
         for (var column = 0u; column < TILE; column++) {
             let texel = tile * TILE + vec2(column, row);
             if all(texel < vec2(size)) {
-                let texel_depth = texels[texel_number(layer, texel)].farthest;
+                let texel_depth = texels[texel_number(layer, texel)].max_receiver_depth;
                 depth = max(depth, texel_depth);
                 taken_in_row |= select(0u, 1u << column, texel_depth != 0u);
             }

@@ -88,9 +88,10 @@ fn scene(rays: &Rays) -> Result<Scene<'static>, embree3::Error> {
 }
 
 fn context(is_coherent: bool) -> IntersectContext {
-    match is_coherent {
-        true => IntersectContext::coherent(),
-        false => IntersectContext::incoherent(),
+    if is_coherent {
+        IntersectContext::coherent()
+    } else {
+        IntersectContext::incoherent()
     }
 }
 

@@ -169,9 +169,10 @@ pub fn engine<'a>(gpu: &'a Gpu, rays: &'a Rays, name: &str, builds: &[&str]) -> 
     } else {
         ""
     };
-    let skip = match rays.skip.is_empty() {
-        true => "",
-        false => ", skip: \"bench.skip\"",
+    let skip = if rays.skip.is_empty() {
+        ""
+    } else {
+        ", skip: \"bench.skip\""
     };
     let document = Document(format!(
         r#"(

@@ -9,14 +9,14 @@
 struct Texel {
     // Of the receivers in it: bits of the depth of the farthest, see `Place`; 0 where nobody is.
     // Behind a cover none is looked for.
-    farthest: u32,
+    max_receiver_depth: u32,
     // Entries that its list should have; and LIST_LACKS if one had no room.
     length: u32,
     // Number of its first entry; LIST_END where there is none.
     head: u32,
     // Bits of a depth, inverted: whoever is farther from the light is in the shadow of a caster
     // that covers all of the texel. 0 where none does.
-    cover: u32,
+    full_coverage_depth: u32,
 }
 
 const LIST_LACKS: u32 = 0x80000000u;

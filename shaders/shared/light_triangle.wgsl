@@ -138,10 +138,10 @@ fn depth_rounding(triangle: LightTriangle) -> f32 {
         abs(triangle.a.xy - centre),
         max(abs(triangle.b.xy - centre), abs(triangle.c.xy - centre)),
     );
-    let aside = max(1.0, max(away.x, away.y) / map_fit.scale);
+    let projected_ratio = max(1.0, max(away.x, away.y) / map_fit.scale);
     let cosine = max(light.edge_cosine, 1e-3);
     let half_width = sqrt(max(1.0 - cosine * cosine, 0.0)) / cosine;
-    return 8.0 * CLIP_ROUNDING * (1.0 + 1.4142136 * aside * half_width);
+    return 8.0 * CLIP_ROUNDING * (1.0 + 1.4142136 * projected_ratio * half_width);
 }
 
 fn plane_depth(plane: DepthPlane, point: vec2<f32>) -> f32 {

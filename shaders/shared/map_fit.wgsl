@@ -85,8 +85,8 @@ fn spot_texel_error(fit: MapFit, position: vec3<f32>) -> f32 {
     let matrix = transpose(light.clip_from_relative);
     let across = max(dot(abs(matrix[0].xyz), way), dot(abs(matrix[1].xyz), way)) / seen.w;
     let along = dot(abs(matrix[3].xyz), way) / seen.w;
-    let aside = max(abs(seen.x), abs(seen.y)) / seen.w;
-    let clip = 1.5 * (across + aside * (along + 1.0)) + aside;
+    let projected_ratio = max(abs(seen.x), abs(seen.y)) / seen.w;
+    let clip = 1.5 * (across + projected_ratio * (along + 1.0)) + projected_ratio;
     return CLIP_ROUNDING * (fit.scale * clip + fit.reach);
 }
 

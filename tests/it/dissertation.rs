@@ -14,7 +14,7 @@ use std::{collections::BTreeMap, fs, sync::Arc};
 struct Figures(BTreeMap<[String; 5], f64>);
 
 impl Figures {
-    fn of(scene: &str) -> Self {
+    fn new(scene: &str) -> Self {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/data/dissertation.csv");
         let text = fs::read_to_string(path).unwrap();
         let rows = text.lines().filter_map(|line| {
@@ -83,7 +83,7 @@ fn uncertain(
 #[ignore = "a suite: `./test.sh --all` runs it"]
 fn sponzas_uncertain_pixels_are_the_dissertations() {
     let Some(scene) = sponza() else { return };
-    let figures = Figures::of("sponza");
+    let figures = Figures::new("sponza");
     let viewport = [512, 512];
     for (preset, points) in [("hybrid_pcf", 0.2), ("crsm", 0.2), ("crsma", 2.0)] {
         for map in [512, 1024, 2048, 4096] {
@@ -102,7 +102,7 @@ fn sponzas_uncertain_pixels_are_the_dissertations() {
 #[ignore = "a suite: `./test.sh --all` runs it"]
 fn benchs_uncertain_pixels_are_the_dissertations() {
     let Some(scene) = bench() else { return };
-    let figures = Figures::of("bench");
+    let figures = Figures::new("bench");
     let viewport = [1024, 1024];
     for view in scene.views.iter().map(|view| view.name.as_str()) {
         // Its camera is misprinted.
@@ -164,7 +164,7 @@ fn each_rule_leaves_more_or_less_to_rays() {
 #[ignore = "a suite: `./test.sh --all` runs it"]
 fn nsm_is_as_wrong_on_sponza_as_the_dissertations() {
     let Some(scene) = sponza() else { return };
-    let figures = Figures::of("sponza");
+    let figures = Figures::new("sponza");
     let viewport = [1024, 1024];
     let mut bench = Bench::new(&scene, viewport);
     for map in [512, 1024, 2048, 4096] {

@@ -64,7 +64,7 @@ fn map_of(scene: &Arc<Scene>, preset: &str, fit: &str, distance: f32) -> (MapFit
     });
     let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider).unwrap();
     let report = frame(&gpu, &mut executor, &captured);
-    let map = MapFit::of(&report, scene);
+    let map = MapFit::new(&report, scene);
     let positions = report
         .readbacks
         .iter()
@@ -87,7 +87,7 @@ fn bounds(places: impl IntoIterator<Item = DVec2>) -> (DVec2, DVec2) {
 fn a_map_over_the_eye_is_the_rectangle_around_its_frustum() {
     for (seed, far, distance) in [(1, 9.0, 0.0), (2, 30.0, 0.0), (3, 30.0, 6.0)] {
         let scene = scene(seed, far);
-        let (map, receivers) = map_of(&scene, "crsm", "eye", distance);
+        let (map, receivers) = map_of(&scene, "crsm", "camera", distance);
         let camera = scene.views[0].camera(VIEWPORT);
         let end = if distance > 0.0 { distance.into() } else { far };
         let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|(x, y)| {
@@ -142,8 +142,8 @@ fn what_is_proven_does_not_depend_on_where_the_map_lies() {
             let mut uncertain = Vec::new();
             for (fit, distance) in [
                 ("scene", 0.0),
-                ("eye", 0.0),
-                ("eye", 5.0),
+                ("camera", 0.0),
+                ("camera", 5.0),
                 ("receivers", 0.0),
                 ("pssm", 0.0),
                 ("pssm", 5.0),
@@ -153,7 +153,7 @@ fn what_is_proven_does_not_depend_on_where_the_map_lies() {
                     ("fit_distance", ParamValue::F32(distance)),
                     ("map_size", ParamValue::U32(64)),
                     ("splits", ParamValue::U32(3)),
-                    ("tighten", ParamValue::Bool(seed % 2 == 1)),
+                    ("fit_to_receivers", ParamValue::Bool(seed % 2 == 1)),
                 ];
                 let counts = bench.judge(preset, &params);
                 assert_eq!(
@@ -186,7 +186,7 @@ fn far_from_the_origin_texels_are_larger() {
     far_off.views[0].eye += by.as_dvec3();
     let far_off = Arc::new(far_off);
     let mut bench = Bench::new(&far_off, VIEWPORT);
-    for fit in ["scene", "eye", "receivers", "pssm"] {
+    for fit in ["scene", "camera", "receivers", "pssm"] {
         let params = [("fit", word(fit)), ("map_size", ParamValue::U32(8192))];
         let counts = bench.judge("crsm", &params);
         assert_eq!(

@@ -64,16 +64,16 @@ struct Bench {
     viewport: [u32; 2],
 }
 
-const FITS: [&str; 3] = ["scene", "eye", "receivers"];
+const FITS: [&str; 3] = ["scene", "camera", "receivers"];
 
 const CAPTURED: [&str; 5] = ["position", "primitive", "map_fit", "texels", "entries"];
 
 impl Bench {
     fn new(scene: &Arc<Scene>) -> Self {
-        Self::of(scene, VIEWPORT)
+        Self::from_scene(scene, VIEWPORT)
     }
 
-    fn of(scene: &Arc<Scene>, viewport: [u32; 2]) -> Self {
+    fn from_scene(scene: &Arc<Scene>, viewport: [u32; 2]) -> Self {
         Self {
             gpu: open(),
             provider: provider(scene, &scene.views[0], viewport),
@@ -164,7 +164,7 @@ fn lists_hold_each_caster_that_shades_a_receiver_and_no_stranger() {
             let mut bench = Bench::new(&scene);
             let mut executor = bench.executor(fit, &[("map_size", map_size)], &CAPTURED);
             let report = frame(&bench.gpu, &mut executor, &CAPTURED);
-            let fit = MapFit::of(&report, &scene);
+            let fit = MapFit::new(&report, &scene);
             assert_eq!(fit.size, map_size);
             let [pairs, texels, receivers] = check_lists(&scene, &fit, &report);
             (shading, covered) = (shading + pairs, covered + texels);
@@ -450,7 +450,7 @@ fn a_crowded_texel_is_exact_and_takes_no_more_room_than_others() {
 fn receivers_crowd_one_texel() {
     let casters = joined(floor(30.0, 0.0), &soup(40, 0.3, 5));
     let scene = scene(casters, DVec3::new(0.3, 1.2, 0.9), DVec3::NEG_Y);
-    let mut bench = Bench::of(&scene, [448, 448]);
+    let mut bench = Bench::from_scene(&scene, [448, 448]);
     let rays = bench.by_rays();
     let params = [("map_size", 9)];
     let mut executor = bench.executor("scene", &params, &["texels"]);
@@ -466,7 +466,7 @@ fn receivers_crowd_one_texel() {
 #[test]
 fn lists_are_exact_before_and_after_they_have_grown() {
     let scene = scene(crowd(0.8), DVec3::new(0.3, 1.2, 0.9), DVec3::NEG_Y);
-    let mut bench = Bench::of(&scene, [256, 192]);
+    let mut bench = Bench::from_scene(&scene, [256, 192]);
     let rays = bench.by_rays();
     let params = [("map_size", 362), ("longest_list", 2048)];
     let mut executor = bench.executor("scene", &params, &[]);
@@ -516,7 +516,7 @@ fn parts_without_room_leave_all_to_rays() {
     let sheets = mesh(corners.collect(), triangles.collect());
     let sheets = joined(floor(1.0, -0.5), &sheets);
     let scene = scene(sheets, DVec3::new(0.3, 0.2, 0.9), DVec3::NEG_Y);
-    let mut bench = Bench::of(&scene, [24, 24]);
+    let mut bench = Bench::from_scene(&scene, [24, 24]);
     let rays = bench.by_rays();
     let lists = bench.by_lists("scene", &[("map_size", 48), ("longest_list", 16)]);
     assert!(lists.visibility == rays);
@@ -529,7 +529,7 @@ fn parts_without_room_leave_all_to_rays() {
 fn a_triangle_over_a_large_grid_is_shared_out() {
     let sheet = joined(floor(3.0, -1.0), &soup(40, 4.0, 3));
     let scene = scene(sheet, DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.3, -1.0, 0.2));
-    let mut bench = Bench::of(&scene, [640, 448]);
+    let mut bench = Bench::from_scene(&scene, [640, 448]);
     let rays = bench.by_rays();
     // 648 texels along an edge: the grid is no finer for so many pixels.
     let lists = bench.by_lists("scene", &[("map_size", 8192)]);
@@ -541,7 +541,7 @@ fn a_triangle_over_a_large_grid_is_shared_out() {
 #[test]
 fn receivers_on_texel_corners_are_right() {
     let case = skiagraph_cases::case("receivers_on_texel_corners").unwrap();
-    let mut bench = Bench::of(&Arc::new(case.scene()), [128, 128]);
+    let mut bench = Bench::from_scene(&Arc::new(case.scene()), [128, 128]);
     let rays = bench.by_rays();
     for map_size in [128, 256] {
         let lists = bench.by_lists("scene", &[("map_size", map_size)]);
@@ -561,7 +561,7 @@ fn the_grid_is_laid_over_the_receivers() {
         let captured = ["map_fit", "position"];
         let mut executor = bench.executor("receivers", &[("map_size", 100)], &captured);
         let report = frame(&bench.gpu, &mut executor, &captured);
-        let fit = MapFit::of(&report, &scene);
+        let fit = MapFit::new(&report, &scene);
         let positions = report
             .readbacks
             .iter()
@@ -600,7 +600,7 @@ fn far_from_the_origin_the_grid_is_coarser() {
         let params = [("map_size", 2048)];
         let mut executor = bench.executor(fit, &params, &["map_fit"]);
         let report = frame(&bench.gpu, &mut executor, &["map_fit"]);
-        let size = MapFit::of(&report, &scene)
+        let size = MapFit::new(&report, &scene)
             .rows
             .map(|row| 2.0 * row.truncate().length());
         let is_coarse = |edge: &f64| (4.0..200.0).contains(edge);

@@ -83,7 +83,7 @@ fn same(found: DMat3, wanted: DMat3) {
 
 const TRAPEZOID: &str = r#"
 #import "shared/trapezoid.wgsl"
-struct Params { focus: f32 }
+struct Params { warp: f32 }
 var<uniform> params: Params;
 var<storage, read> test_corners: array<vec2<f32>>;
 var<storage, read_write> maps: array<array<f32, 10>>;
@@ -97,7 +97,7 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
     for (var corner = 0u; corner < 8u; corner++) {
         corners[corner] = test_corners[8u * thread.x + corner];
     }
-    let map = trapezoid_map(corners, params.focus);
+    let map = trapezoid_map(corners, params.warp);
     maps[thread.x] = array(
         map.x.x, map.x.y, map.x.z, map.y.x, map.y.y, map.y.z, map.w.x, map.w.y, map.w.z,
         select(0.0, 1.0, map.exists),
@@ -139,7 +139,7 @@ fn the_shaders_trapezoid_is_the_papers() {
             r#"(
                 format: 2,
                 materials: [Buffer(name: "maps", count: {FRUSTA})],
-                passes: [Compute(name: "map", dispatch: Over({FRUSTA}), set: {{"focus": {focus}}})],
+                passes: [Compute(name: "map", dispatch: Over({FRUSTA}), set: {{"warp": {focus}}})],
                 outputs: ["maps"],
             )"#
         );
@@ -210,12 +210,12 @@ fn split_maps_are_exact_where_one_map_is() {
         let scene = avenue(view);
         let mut bench = Bench::new(&scene, VIEWPORT);
         for preset in ["crsm", "crsma_full", "light_buffer"] {
-            for (splits, tighten) in [(2, false), (5, true)] {
+            for (splits, fit_to_receivers) in [(2, false), (5, true)] {
                 let params = [
                     ("fit", word("pssm")),
                     ("map_size", ParamValue::U32(256)),
                     ("splits", ParamValue::U32(splits)),
-                    ("tighten", ParamValue::Bool(tighten)),
+                    ("fit_to_receivers", ParamValue::Bool(fit_to_receivers)),
                 ];
                 let counts = bench.judge(preset, &params);
                 assert_eq!(wrong(&counts), 0, "{view} {preset} {splits}: {counts:?}");
@@ -287,7 +287,7 @@ fn against_the_light_a_trapezoid_gains_nothing() {
         let scene = avenue(view);
         let mut bench = Bench::new(&scene, VIEWPORT);
         let tsm = wrong(&bench.judge("tsm", &[]));
-        let eye = wrong(&bench.judge("nsm", &[("fit", word("eye"))]));
+        let eye = wrong(&bench.judge("nsm", &[("fit", word("camera"))]));
         println!("{view}: tsm {tsm}, nsm over the eye's frustum {eye}");
         tsm as f64 / eye as f64
     };

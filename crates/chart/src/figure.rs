@@ -84,7 +84,7 @@ impl Figure {
         let others = names.iter().copied().filter(|name| !is_listed(name));
         let mut all = self.looks.iter().map(String::as_str).chain(others);
         let place = all.position(|known| known == name);
-        place.map_or(Look::neutral(), Look::of)
+        place.map_or(Look::neutral(), Look::new)
     }
 
     /// The panels of a row that the axes of one of them are fitted to.

@@ -53,7 +53,7 @@ pub(crate) struct Look {
 
 impl Look {
     /// Of the series that stands at `index` in the legend.
-    pub fn of(index: usize) -> Self {
+    pub fn new(index: usize) -> Self {
         Self {
             colour: COLOURS[index % COLOURS.len()],
             shape: index % SHAPES.len(),
@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn no_two_of_the_first_forty_two_look_alike() {
-        let looks: Vec<Look> = (0..42).map(Look::of).collect();
+        let looks: Vec<Look> = (0..42).map(Look::new).collect();
         for (index, look) in looks.iter().enumerate() {
             assert!(!looks[..index].contains(look), "{index}");
         }

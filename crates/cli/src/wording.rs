@@ -85,9 +85,10 @@ pub fn command_line(arguments: impl Iterator<Item = OsString>) -> String {
     let quoted = |argument: OsString| {
         let text = argument.to_string_lossy().into_owned();
         let is_plain = |c: char| c.is_alphanumeric() || "-_=.,:/\\@+".contains(c);
-        match text.chars().all(is_plain) && !text.is_empty() {
-            true => text,
-            false => format!("'{}'", text.replace('\'', r"'\''")),
+        if text.chars().all(is_plain) && !text.is_empty() {
+            text
+        } else {
+            format!("'{}'", text.replace('\'', r"'\''"))
         }
     };
     let words = arguments.skip(1).map(quoted);

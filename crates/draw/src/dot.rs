@@ -25,9 +25,10 @@ fn render(drawing: &Drawing) -> Vec<String> {
     let touched: HashSet<&str> = touched.map(|access| &*access.material).collect();
     for material in &drawing.materials {
         if touched.contains(&*material.name) {
-            let cluster = match is_own(material, &materials) {
-                true => root.at(&material.name),
-                false => &mut root,
+            let cluster = if is_own(material, &materials) {
+                root.at(&material.name)
+            } else {
+                &mut root
             };
             cluster.nodes.push(material_node(material));
         }

@@ -14,7 +14,7 @@ use std::{
 
 impl Drawing {
     /// A plan as plain data, to be looked at: serialise it, or have it drawn.
-    pub fn of(plan: &Plan) -> Self {
+    pub fn from_plan(plan: &Plan) -> Self {
         let mut positions = vec![None; plan.all_passes().len()];
         for (position, pass) in plan.schedule().passes.iter().enumerate() {
             positions[pass.index()] = Some(position);

@@ -118,9 +118,10 @@ impl<'a> Chart<'a> {
         for column in &mut self.columns {
             let material = column.material;
             column.bar = material.lifetime.and_then(|[first, last]| {
-                let from = match material.origin.is_given() {
-                    true => self.top + 4.0,
-                    false => live.get(first)?.middle,
+                let from = if material.origin.is_given() {
+                    self.top + 4.0
+                } else {
+                    live.get(first)?.middle
                 };
                 let to = match self.outputs {
                     Some(outputs) if !material.outputs.is_empty() => outputs - 6.0,
@@ -134,10 +135,10 @@ impl<'a> Chart<'a> {
 }
 
 impl<'a> Row<'a> {
-    fn of(pass: &'a Pass) -> Self {
+    fn from_pass(pass: &'a Pass) -> Self {
         Self {
             pass,
-            name: Label::of(&pass.name),
+            name: Label::new(&pass.name),
             about: words::about(pass),
             reason: Vec::new(),
             band: Area::default(),
@@ -149,10 +150,10 @@ impl<'a> Row<'a> {
 }
 
 impl<'a> Column<'a> {
-    fn of(material: &'a Material) -> Self {
+    fn new(material: &'a Material) -> Self {
         Self {
             material,
-            name: Label::of(&material.name),
+            name: Label::new(&material.name),
             detail: cut(&words::detail(material), 2 * MOST),
             notes: 0.0,
             x: 0.0,
@@ -167,7 +168,7 @@ fn rows(drawing: &Drawing) -> (Vec<Row<'_>>, usize) {
     let mut passes: Vec<&Pass> = drawing.passes.iter().collect();
     passes.sort_by_key(|pass| pass.position.unwrap_or(usize::MAX));
     let live = passes.partition_point(|pass| pass.position.is_some());
-    (passes.into_iter().map(Row::of).collect(), live)
+    (passes.into_iter().map(Row::from_pass).collect(), live)
 }
 
 /// The materials that any pass touches: what is there before the frame, then by first use, those of
@@ -195,7 +196,7 @@ fn columns(drawing: &Drawing) -> Vec<Column<'_>> {
             first(material),
         )
     });
-    materials.into_iter().map(Column::of).collect()
+    materials.into_iter().map(Column::new).collect()
 }
 
 /// The edges between passes that run.

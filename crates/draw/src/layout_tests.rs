@@ -238,18 +238,21 @@ fn long_names_are_cut_where_it_hurts_least() {
         own: own.to_owned(),
     };
     let short = ["fill_rays.sample[3].", "trace_rays"];
-    assert_eq!(Label::of(&short.concat()), owned(short));
-    let long = Label::of("the_first_include.the_second_include.a_pass_of_twenty_4_signs");
+    assert_eq!(Label::new(&short.concat()), owned(short));
+    let long = Label::new("the_first_include.the_second_include.a_pass_of_twenty_4_signs");
     assert_eq!(long, owned(["the_fir…ude.", "a_pass_of_twenty_4_signs"]));
-    let longer = Label::of("eye.a_name_of_more_signs_than_any_picture_has_room_for");
+    let longer = Label::new("eye.a_name_of_more_signs_than_any_picture_has_room_for");
     assert_eq!(longer, owned(["eye.", "a_name_of_more_signs_…s_room_for"]));
-    assert_eq!(Label::of("camera.previous"), owned(["", "camera.previous"]));
     assert_eq!(
-        Label::of("left.map.previous"),
+        Label::new("camera.previous"),
+        owned(["", "camera.previous"])
+    );
+    assert_eq!(
+        Label::new("left.map.previous"),
         owned(["left.", "map.previous"])
     );
     assert_eq!(
-        Label::of("left.map@left.draw"),
+        Label::new("left.map@left.draw"),
         owned(["", "left.map@left.draw"])
     );
 }

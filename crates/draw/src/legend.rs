@@ -32,7 +32,7 @@ pub(crate) enum Tint {
 }
 
 impl Tint {
-    pub fn of(material: &Material) -> Self {
+    pub fn new(material: &Material) -> Self {
         match material.kind {
             _ if material.origin.is_given() => Self::Given,
             Kind::Texture => Self::Texture,
@@ -58,7 +58,7 @@ const LINE: f64 = 20.0;
 
 impl Item {
     /// The sign of a pass that reads and writes so.
-    fn of(reads: bool, writes: bool) -> Self {
+    fn new(reads: bool, writes: bool) -> Self {
         match (reads, writes) {
             (true, true) => Self::Both,
             (false, true) => Self::Write,
@@ -126,12 +126,12 @@ fn items(drawing: &Drawing) -> BTreeSet<Item> {
     }
     items.extend(
         uses.into_values()
-            .map(|(reads, writes)| Item::of(reads, writes)),
+            .map(|(reads, writes)| Item::new(reads, writes)),
     );
     let mut memories = HashSet::new();
     for material in &drawing.materials {
         if material.lifetime.is_some() {
-            items.insert(Item::Bar(Tint::of(material)));
+            items.insert(Item::Bar(Tint::new(material)));
         }
         if !material.outputs.is_empty() {
             items.insert(Item::Output);

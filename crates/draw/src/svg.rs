@@ -150,7 +150,7 @@ fn bar(canvas: &mut Canvas, column: &Column<'_>, chart: &Chart<'_>) {
         height: to - from + 14.0,
     };
     canvas.group("", &story(column, chart), |canvas| {
-        canvas.rect(&area, &tinted(Tint::of(material), 7.0));
+        canvas.rect(&area, &tinted(Tint::new(material), 7.0));
     });
     let Some(y) = chart.outputs.filter(|_| !material.outputs.is_empty()) else {
         return;
@@ -231,9 +231,10 @@ fn label(canvas: &mut Canvas, row: &Row<'_>, chart: &Chart<'_>) {
 fn edge(canvas: &mut Canvas, arc: &Arc<'_>, chart: &Chart<'_>) {
     let [from, to] = arc.rows.map(|row| chart.rows[row].middle);
     let [from, to] = [from + 3.0, to - 3.0];
-    let (width, opacity, size) = match arc.edge.implied {
-        true => (0.7, 0.55, 2.0),
-        false => (1.7, 0.95, 3.2),
+    let (width, opacity, size) = if arc.edge.implied {
+        (0.7, 0.55, 2.0)
+    } else {
+        (1.7, 0.95, 3.2)
     };
     let spine = chart.spine;
     // A cubic whose handles stand at 4/3 of the swing comes as far as the swing.

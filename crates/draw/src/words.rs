@@ -32,7 +32,7 @@ pub(crate) struct Label {
 }
 
 impl Label {
-    pub fn of(name: &str) -> Self {
+    pub fn new(name: &str) -> Self {
         let (before, own) = split(name);
         let own = cut(own, MOST - before.chars().count().min(MOST / 3));
         let before = cut(before, MOST - own.chars().count());
@@ -247,9 +247,10 @@ pub(crate) fn because(edge: &Edge) -> String {
         format!("{verb} ({})", reason.materials.join(", "))
     };
     let reasons: Vec<String> = edge.because.iter().map(reason).collect();
-    let implied = match edge.implied {
-        true => "; other edges imply it",
-        false => "",
+    let implied = if edge.implied {
+        "; other edges imply it"
+    } else {
+        ""
     };
     format!(
         "{} → {}: {}{implied}",

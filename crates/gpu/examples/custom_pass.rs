@@ -127,8 +127,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         "range of brightness: {:.2} before, {:.2} after",
         ranges[0], ranges[1]
     );
-    match ranges[0] < 0.2 && ranges[1] > 0.9 {
-        true => Ok(()),
-        false => Err("the picture was not equalised".into()),
+    if ranges[0] < 0.2 && ranges[1] > 0.9 {
+        Ok(())
+    } else {
+        Err("the picture was not equalised".into())
     }
 }

@@ -104,17 +104,19 @@ fn judge(host: &Host, letters: &wgpu::Buffer, width: u32) -> Result<(), Box<dyn 
     let shaded = letters.iter().filter(|letter| **letter == b'#').count() as f32 * pixel;
     let exact = BOX[0] * BOX[1] * (host.light[0].abs() + host.light[1].abs());
     println!("area in shadow: {shaded:.3}, exact: {exact:.3}");
-    match (shaded - exact).abs() < 0.05 * exact {
-        true => Ok(()),
-        false => Err("the shadow has the wrong size".into()),
+    if (shaded - exact).abs() < 0.05 * exact {
+        Ok(())
+    } else {
+        Err("the shadow has the wrong size".into())
     }
 }
 
 fn expect(what: &str, report: &FrameReport, skipped: &[&str]) -> Result<(), Box<dyn Error>> {
     println!("{what}; skipped: {:?}\n", report.skipped);
-    match report.skipped == skipped {
-        true => Ok(()),
-        false => Err(format!("{skipped:?} should have been skipped").into()),
+    if report.skipped == skipped {
+        Ok(())
+    } else {
+        Err(format!("{skipped:?} should have been skipped").into())
     }
 }
 

@@ -1,18 +1,18 @@
 //! [`Graph`]: a document with its shaders, ready to be planned.
 
 use crate::{
-    compose::reader::{Asked, Reader, label},
+    compose::reader::{IncludeSite, Reader, label},
     diagnostics::{
         diagnostic::{Diagnostic, Severity},
         list::Diagnostics,
-        reports::{Reported, Reports},
+        reports::{ErrorGuaranteed, Reports},
         suggest::suggestion,
     },
     document::{
         flat::flat,
         materials::{Material, TextureEntry},
         params::{Param, ParamFault, ParamValue},
-        raw::Broken,
+        raw::Invalid,
         typed::{Document, Entry, What},
     },
     errors::{compose::ComposeError, resource::SizeError},
@@ -38,7 +38,7 @@ pub struct Graph {
     pub(crate) document: Arc<Document>,
     pub(crate) shaders: Arc<Shaders>,
     pub(crate) pictures: Arc<Pictures>,
-    asked: Arc<Vec<Asked>>,
+    include_sites: Arc<Vec<IncludeSite>>,
     /// What the documents require.
     pub(crate) required: wgt::Features,
     /// What they ask for by `has`, or their passes can make use of.
@@ -48,7 +48,7 @@ pub struct Graph {
 
 /// The shaders of all documents.
 #[derive(Debug, Default)]
-pub(crate) struct Shaders(HashMap<ShaderKey, Result<Arc<Shader>, Reported>>);
+pub(crate) struct Shaders(HashMap<ShaderKey, Result<Arc<Shader>, ErrorGuaranteed>>);
 
 /// The path of the document whose `Choice` words a shader sees, the folder that it was first looked
 /// for in, its name.
@@ -66,17 +66,21 @@ impl Shaders {
         &self,
         document: &Document,
         name: &Located<String>,
-    ) -> Option<&Result<Arc<Shader>, Reported>> {
+    ) -> Option<&Result<Arc<Shader>, ErrorGuaranteed>> {
         self.0.get(&Self::key(document, name))
     }
 }
 
 /// The pictures of all documents, by the path of the document and their own.
 #[derive(Debug, Default)]
-pub(crate) struct Pictures(HashMap<(Arc<str>, String), Result<Picture, Reported>>);
+pub(crate) struct Pictures(HashMap<(Arc<str>, String), Result<Picture, ErrorGuaranteed>>);
 
 impl Pictures {
-    pub fn get(&self, document: &Document, file: &Located<String>) -> Result<Picture, Reported> {
+    pub fn get(
+        &self,
+        document: &Document,
+        file: &Located<String>,
+    ) -> Result<Picture, ErrorGuaranteed> {
         let key = (Arc::clone(&document.file.name), file.value.clone());
         self.0[&key].clone()
     }
@@ -134,9 +138,10 @@ impl Graph {
         sources: &dyn Sources,
     ) -> Result<Self, Diagnostics> {
         let (graph, errors) = Self::read(path, registry, sources)?;
-        match errors.is_empty() {
-            true => Ok(graph),
-            false => Err(graph.diagnostics(errors)),
+        if errors.is_empty() {
+            Ok(graph)
+        } else {
+            Err(graph.diagnostics(errors))
         }
     }
 
@@ -150,7 +155,7 @@ impl Graph {
         let registry = Registry::default();
         let mut reader = Reader::new(&registry, sources, &mut reports);
         let document = reader.flat(path);
-        let asked = std::mem::take(&mut reader.asked);
+        let asked = std::mem::take(&mut reader.include_sites);
         match document {
             Ok(document) if reports.errors() == 0 => Ok(flat(&document)),
             _ => {
@@ -163,7 +168,7 @@ impl Graph {
 
     /// What is wrong with the graph; in other documents with the place where they are asked for.
     pub(crate) fn diagnostics(&self, mut list: Vec<Diagnostic>) -> Diagnostics {
-        label(&mut list, self.path(), &self.asked);
+        label(&mut list, self.path(), &self.include_sites);
         Diagnostics::new(list)
     }
 
@@ -177,7 +182,7 @@ impl Graph {
         let mut reader = Reader::new(registry, sources, &mut reports);
         let root = reader.root(path);
         let included: Vec<Arc<Document>> = reader.documents().cloned().collect();
-        let asked = std::mem::take(&mut reader.asked);
+        let asked = std::mem::take(&mut reader.include_sites);
         let Ok(root) = root else {
             let mut list = reports.into_list();
             label(&mut list, path, &asked);
@@ -201,7 +206,7 @@ impl Graph {
             document: root,
             shaders: Arc::new(shaders),
             pictures: Arc::new(pictures),
-            asked: Arc::new(asked),
+            include_sites: Arc::new(asked),
             warnings: Vec::new(),
         };
         // With a shader missing nobody can say what it would have used.
@@ -296,7 +301,7 @@ impl Graph {
     fn unused(&self, reports: &mut Reports) {
         let document = &self.document;
         let is_own = |span: &Span| span.file.name == document.file.name;
-        let used = Used::of(document, &self.shaders);
+        let used = Used::new(document, &self.shaders);
         for material in &document.materials {
             let name = material.name();
             if is_own(&name.span) && !used.materials.contains(name.as_str()) {
@@ -325,7 +330,7 @@ struct Used {
 }
 
 impl Used {
-    fn of(document: &Document, shaders: &Shaders) -> Self {
+    fn new(document: &Document, shaders: &Shaders) -> Self {
         let mut used = Self::default();
         document.visit(&mut |leaf| match leaf {
             Leaf::Param(name) => drop(used.params.insert(name.to_owned())),
@@ -374,7 +379,7 @@ impl Used {
 
 /// Calls `each` with every entry, those in groups, too.
 pub(crate) fn each_entry<'e>(
-    entries: &'e [Result<Entry, Broken>],
+    entries: &'e [Result<Entry, Invalid>],
     each: &mut dyn FnMut(&'e Entry),
 ) {
     for entry in entries.iter().flatten() {
@@ -411,9 +416,9 @@ fn load_shaders(documents: &[&Document], sources: &dyn Sources, reports: &mut Re
     let mut files = ShaderFiles::new(sources);
     let mut shaders = HashMap::new();
     // A shader that several documents use is one, unless their words make two of it.
-    let mut parsed: HashMap<String, Result<Arc<Shader>, Reported>> = HashMap::new();
+    let mut parsed: HashMap<String, Result<Arc<Shader>, ErrorGuaranteed>> = HashMap::new();
     for document in documents {
-        let (constants, clashes) = ChoiceConstants::of(&document.params);
+        let (constants, clashes) = ChoiceConstants::new(&document.params);
         for clash in clashes {
             reports.report(clash);
         }
@@ -427,7 +432,7 @@ fn load_shaders(documents: &[&Document], sources: &dyn Sources, reports: &mut Re
                     continue;
                 }
                 let shader = match files.expand(name) {
-                    Err(error) => Err(reports.tell(error)),
+                    Err(error) => Err(reports.emit(error)),
                     Ok(mut source) => {
                         let declared = constants.append(&mut source);
                         let text = format!("{}\n{}", source.file.name, source.text);

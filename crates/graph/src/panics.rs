@@ -62,25 +62,25 @@ fn quieten() {
     }
     ONCE.call_once(|| {
         let before = panic::take_hook();
-        panic::set_hook(Box::new(move |told| {
-            if !hear(told) {
-                before(told);
+        panic::set_hook(Box::new(move |diagnostic| {
+            if !hear(diagnostic) {
+                before(diagnostic);
             }
         }));
     });
 }
 
 /// Keeps a panic of a thread that is inside of [`caught`]; false on others.
-fn hear(told: &PanicHookInfo<'_>) -> bool {
+fn hear(diagnostic: &PanicHookInfo<'_>) -> bool {
     HEARD.with_borrow_mut(|heard| {
         let Some(heard) = heard else {
             return false;
         };
-        let place = told.location().map_or_else(String::new, |place| {
+        let place = diagnostic.location().map_or_else(String::new, |place| {
             format!("{}:{}", from_its_crate(place.file()), place.line())
         });
         *heard = Some(Panicked {
-            message: words(told.payload()).to_owned(),
+            message: words(diagnostic.payload()).to_owned(),
             place,
         });
         true

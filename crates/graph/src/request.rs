@@ -105,7 +105,7 @@ pub(crate) struct Request {
 }
 
 impl Request {
-    pub fn of(request: &PlanRequest<'_>) -> Self {
+    pub fn new(request: &PlanRequest<'_>) -> Self {
         Self {
             viewport: request.viewport,
             imports: request.imports.clone(),

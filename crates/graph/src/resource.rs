@@ -120,9 +120,10 @@ impl Texture {
 
     /// Layers of a mip: slices of a 3D texture become fewer.
     pub fn mip_layers(&self, mip: u32) -> u32 {
-        match self.is_3d {
-            true => (self.layers >> mip).max(1),
-            false => self.layers,
+        if self.is_3d {
+            (self.layers >> mip).max(1)
+        } else {
+            self.layers
         }
     }
 

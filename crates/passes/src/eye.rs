@@ -23,7 +23,7 @@ const FARTHEST: f64 = 65536.0;
 /// plane or without.
 ///
 /// What is reconstructed from a depth buffer (`shared/from_depth.ron`) is right for any of them.
-/// Fits to the eye's frustum (`fit: eye`, `pssm`) are laid over a symmetric one that holds it; one
+/// Fits to the eye's frustum (`fit: camera`, `pssm`) are laid over a symmetric one that holds it; one
 /// without a far plane counts as ending at 65,536 times its near plane. `shared/gbuffer.ron` draws
 /// that symmetric frustum, too, in reversed depth whatever the host's is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -100,9 +100,10 @@ impl Eye {
     /// Itself, unless its camera was none.
     pub(crate) fn finite(&self) -> Result<&Self, Error> {
         let numbers: &[f32] = bytemuck::cast_slice(std::slice::from_ref(&self.camera));
-        match numbers.iter().all(|number| number.is_finite()) {
-            true => Ok(self),
-            false => Err(Error::Camera(self.camera)),
+        if numbers.iter().all(|number| number.is_finite()) {
+            Ok(self)
+        } else {
+            Err(Error::Camera(self.camera))
         }
     }
 }

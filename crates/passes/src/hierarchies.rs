@@ -48,9 +48,10 @@ impl Hierarchies {
         }
         let mut bvh = Bvh::build(mesh).merged(most);
         let words = Words {
-            nodes: match bvh.nodes.is_empty() {
-                true => vec![node_words(&EMPTY)],
-                false => bvh.nodes.iter().map(node_words).collect(),
+            nodes: if bvh.nodes.is_empty() {
+                vec![node_words(&EMPTY)]
+            } else {
+                bvh.nodes.iter().map(node_words).collect()
             },
             primitives: Some(primitives_of(&mut bvh, keep)),
             how: How::Made,
@@ -118,9 +119,10 @@ impl Hierarchies {
 
 /// A copy where the tree is kept.
 fn primitives_of(bvh: &mut Bvh, keep: bool) -> Vec<u32> {
-    match keep {
-        true => bvh.primitives.clone(),
-        false => std::mem::take(&mut bvh.primitives),
+    if keep {
+        bvh.primitives.clone()
+    } else {
+        std::mem::take(&mut bvh.primitives)
     }
 }
 

@@ -86,9 +86,10 @@ impl SceneProvider {
         self.set_mesh(parts.rest.clone());
         let (count, is_joined) = (parts.parts(), parts.is_joined());
         self.shape = Shape {
-            maps: match is_joined {
-                true => Vec::new(),
-                false => vec![DAffine3::IDENTITY; count],
+            maps: if is_joined {
+                Vec::new()
+            } else {
+                vec![DAffine3::IDENTITY; count]
             },
             mirrored: vec![false; count],
             parts: Some(parts),

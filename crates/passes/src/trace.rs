@@ -147,7 +147,7 @@ impl Trace {
     fn refuse(&self, pass: &mut Lowering<'_>) {
         let place = self.engine_place(pass);
         let what = "`LightSpace` traces only rays that go towards the light";
-        let mistake = Diagnostic::error(Code::Unasked, what)
+        let mistake = Diagnostic::error(Code::Unused, what)
             .at(place, "nothing says that those of this pass do")
             .help(
                 "say `direction: Light` if the direction of every ray is `light.to_light`, as \
@@ -158,7 +158,7 @@ impl Trace {
 
     fn refuse_light(&self, pass: &mut Lowering<'_>, kind: &str) {
         let what = format!("`LightSpace` traces no rays to a {kind} light");
-        let mistake = Diagnostic::error(Code::Unasked, what)
+        let mistake = Diagnostic::error(Code::Unused, what)
             .at(self.engine_place(pass), "its rays all have one direction")
             .help("take the engine `hierarchy`, or `ray_query` where there is one");
         pass.report(mistake);
@@ -212,9 +212,10 @@ impl PassKind for Trace {
             }
         }
         let is_masked = pass.provided_items(MASKS) > 0;
-        let mut trace = pass.program_of(match is_masked {
-            true => engine.masked_shader(),
-            false => engine.shader(),
+        let mut trace = pass.program_of(if is_masked {
+            engine.masked_shader()
+        } else {
+            engine.shader()
         });
         trace.compute = Some(pass.named(self.entry_point()));
         bind(pass, &mut trace, "count", (&self.count).into());

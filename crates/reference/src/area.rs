@@ -123,9 +123,10 @@ impl Emitter {
         let way = self.centre + self.across[0] * x + self.across[1] * y;
         Towards {
             direction: way.normalize(),
-            distance: match self.is_place {
-                true => way.length() * (1.0 - LIGHT_GAP),
-                false => f64::INFINITY,
+            distance: if self.is_place {
+                way.length() * (1.0 - LIGHT_GAP)
+            } else {
+                f64::INFINITY
             },
         }
     }
@@ -191,9 +192,10 @@ impl<'a> Oracle<'a> {
             }
             let emitter = Emitter::seen_from(&light, &receiver);
             let of = self.share(&emitter, &strata, &receiver, mode, [x, y], stack);
-            answer.class = match of[0] < 0.5 {
-                true => Class::Shadow,
-                false => Class::Lit,
+            answer.class = if of[0] < 0.5 {
+                Class::Shadow
+            } else {
+                Class::Lit
             };
             Ok((answer, of))
         })?;
@@ -204,7 +206,7 @@ impl<'a> Oracle<'a> {
             standard_errors: shares.iter().map(|[_, error]| *error as f32).collect(),
         };
         Ok((
-            Reference::of(
+            Reference::new(
                 camera.viewport,
                 &answers,
                 base_colors(self.mesh, camera, primitives),
@@ -230,9 +232,10 @@ impl<'a> Oracle<'a> {
             if caster.primitive != excluded {
                 casters.push(caster);
             }
-            match casters.len() > MOST_CASTERS {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
+            if casters.len() > MOST_CASTERS {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
             }
         });
         (casters.len() <= MOST_CASTERS).then_some(casters)

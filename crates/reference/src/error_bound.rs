@@ -54,9 +54,10 @@ impl Uncertainty {
 
     /// What f32 may move the end of a shadow ray by, along it: of one that ends at its light.
     pub(crate) fn end_error(&self, towards: &Towards) -> f64 {
-        match towards.distance.is_finite() {
-            true => END_ROUNDINGS * F32_ROUNDING * towards.distance + self.reach(),
-            false => 0.0,
+        if towards.distance.is_finite() {
+            END_ROUNDINGS * F32_ROUNDING * towards.distance + self.reach()
+        } else {
+            0.0
         }
     }
 
@@ -81,9 +82,10 @@ impl Uncertainty {
 /// Bound on the f32 displacement of a caster whose corners are within `distance` of the receiver,
 /// across a shadow ray along `towards`.
 pub(crate) fn caster_error(distance: f64, towards: &Towards) -> f64 {
-    let roundings = match towards.distance.is_finite() {
-        true => POSITIONAL_CASTER_ROUNDINGS,
-        false => CASTER_ROUNDINGS,
+    let roundings = if towards.distance.is_finite() {
+        POSITIONAL_CASTER_ROUNDINGS
+    } else {
+        CASTER_ROUNDINGS
     };
     roundings * F32_ROUNDING * distance
 }

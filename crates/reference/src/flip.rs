@@ -203,9 +203,10 @@ fn along(
 }
 
 fn linear(srgb: f64) -> f64 {
-    match srgb <= 0.04045 {
-        true => srgb / 12.92,
-        false => ((srgb + 0.055) / 1.055).powf(2.4),
+    if srgb <= 0.04045 {
+        srgb / 12.92
+    } else {
+        ((srgb + 0.055) / 1.055).powf(2.4)
     }
 }
 
@@ -231,9 +232,10 @@ fn hunt([y, cx, cz]: &Colour) -> Colour {
 fn hunt_lab(linear: Colour) -> Colour {
     let [x, y, z] = relative_xyz(linear).map(|value| {
         let delta: f64 = 6.0 / 29.0;
-        match value > delta.powi(3) {
-            true => value.cbrt(),
-            false => value / (3.0 * delta * delta) + 4.0 / 29.0,
+        if value > delta.powi(3) {
+            value.cbrt()
+        } else {
+            value / (3.0 * delta * delta) + 4.0 / 29.0
         }
     });
     let lightness = 116.0 * y - 16.0;
@@ -255,9 +257,10 @@ fn greatest_colour_difference() -> f64 {
 /// Most of the range for the differences that are frequent.
 fn beyond_knee(difference: f64, greatest: f64) -> f64 {
     let knee = KNEE_FROM * greatest;
-    let scaled = match difference < knee {
-        true => KNEE_TO * difference / knee,
-        false => KNEE_TO + (difference - knee) / (greatest - knee) * (1.0 - KNEE_TO),
+    let scaled = if difference < knee {
+        KNEE_TO * difference / knee
+    } else {
+        KNEE_TO + (difference - knee) / (greatest - knee) * (1.0 - KNEE_TO)
     };
     // Rounding may leave the greatest one a hair above.
     scaled.min(1.0)

@@ -31,7 +31,7 @@ pub(crate) struct Masked<'a> {
 
 impl<'a> Masked<'a> {
     /// Of a triangle that has one.
-    pub(crate) fn of(mesh: &'a Mesh, primitive: u32) -> Option<Self> {
+    pub(crate) fn new(mesh: &'a Mesh, primitive: u32) -> Option<Self> {
         let mask = mesh.surfaces.mask(primitive)?;
         let uvs = mesh.surfaces.corner_uvs(primitive).map(|uv| uv.as_dvec2());
         Some(Self { mask, uvs })

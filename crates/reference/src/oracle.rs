@@ -153,21 +153,23 @@ impl Answer {
         let could_leave = receiver.on_cone_edge && (!faces_away || could_turn);
         let beyond_cone = receiver.outside_cone && !receiver.on_cone_edge;
         Self {
-            class: match faces_away || receiver.outside_cone {
-                true => Class::FacingAway,
-                false => Class::Lit,
+            class: if faces_away || receiver.outside_cone {
+                Class::FacingAway
+            } else {
+                Class::Lit
             },
             indeterminate: !beyond_cone && (could_turn || could_leave),
-            n_dot_l: match receiver.outside_cone {
-                true => receiver.n_dot_l.min(0.0) as f32,
-                false => receiver.n_dot_l as f32,
+            n_dot_l: if receiver.outside_cone {
+                receiver.n_dot_l.min(0.0) as f32
+            } else {
+                receiver.n_dot_l as f32
             },
         }
     }
 }
 
 impl Reference {
-    pub(crate) fn of(viewport: [u32; 2], answers: &[Answer], base_colors: Vec<[f32; 3]>) -> Self {
+    pub(crate) fn new(viewport: [u32; 2], answers: &[Answer], base_colors: Vec<[f32; 3]>) -> Self {
         Self {
             viewport,
             base_colors,
@@ -251,7 +253,7 @@ impl<'a> Oracle<'a> {
             })
         })?;
         let base_colors = base_colors(self.mesh, camera, primitives);
-        Ok(Reference::of(viewport, &answers, base_colors))
+        Ok(Reference::new(viewport, &answers, base_colors))
     }
 
     /// Whether a light can be traced.
@@ -415,7 +417,7 @@ pub fn unshadowed(
         Ok(receiver.map_or(Answer::BACKGROUND, |receiver| Answer::facing(&receiver)))
     })?;
     let base_colors = base_colors(mesh, camera, primitives);
-    Ok(Reference::of(camera.viewport, &answers, base_colors))
+    Ok(Reference::new(camera.viewport, &answers, base_colors))
 }
 
 /// What the pixels of a G-buffer are made of; nothing where the mesh has no materials.

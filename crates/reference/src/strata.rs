@@ -76,9 +76,10 @@ pub(crate) fn disk([x, y]: [f64; 2]) -> [f64; 2] {
     if a == 0.0 && b == 0.0 {
         return [0.0; 2];
     }
-    let (radius, angle) = match a.abs() > b.abs() {
-        true => (a, FRAC_PI_4 * (b / a)),
-        false => (b, FRAC_PI_2 - FRAC_PI_4 * (a / b)),
+    let (radius, angle) = if a.abs() > b.abs() {
+        (a, FRAC_PI_4 * (b / a))
+    } else {
+        (b, FRAC_PI_2 - FRAC_PI_4 * (a / b))
     };
     [radius * angle.cos(), radius * angle.sin()]
 }

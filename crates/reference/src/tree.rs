@@ -109,7 +109,7 @@ impl<'a> Tree<'a> {
                 corners: mesh.triangles[primitive as usize]
                     .map(|index| mesh.positions[index as usize].to_array()),
                 open: open[primitive as usize],
-                masked: Masked::of(mesh, primitive),
+                masked: Masked::new(mesh, primitive),
                 double_sided: mesh.surfaces.is_double_sided(primitive),
             })
             .collect();

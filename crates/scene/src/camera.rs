@@ -210,9 +210,10 @@ impl Camera {
             0.0,
         ]);
         let camera = projection * rotation * DMat4::from_translation(-self.eye);
-        match self.jitter == DVec2::ZERO {
-            true => camera,
-            false => DMat4::from_translation(-self.jitter_clip().extend(0.0)) * camera,
+        if self.jitter == DVec2::ZERO {
+            camera
+        } else {
+            DMat4::from_translation(-self.jitter_clip().extend(0.0)) * camera
         }
     }
 }

@@ -83,9 +83,10 @@ impl<'a> Reader<'a> {
             let at = part[from..end].rfind(&name).map_or(end, |at| from + at);
             let name = &part[at..(at + name.len()).min(end.max(at))];
             from = end + value.len();
-            match seen.insert(name) {
-                true => once.push((name, value)),
-                false => self.wrong(name, format!("the field `{name}` is given twice")),
+            if seen.insert(name) {
+                once.push((name, value))
+            } else {
+                self.wrong(name, format!("the field `{name}` is given twice"))
             }
         }
         Some(once)

@@ -385,9 +385,10 @@ fn load_bare(path: &Path, setup: Option<&ObjSetup>) -> Result<(Scene, ImportRepo
         materials: setup.materials.into(),
         ..ObjOptions::default()
     };
-    let (mesh, report) = match has_extension(path, "obj") {
-        true => load_obj(path, &options)?,
-        false => load_gltf(path, setup.materials)?,
+    let (mesh, report) = if has_extension(path, "obj") {
+        load_obj(path, &options)?
+    } else {
+        load_gltf(path, setup.materials)?
     };
     let name = path
         .file_stem()

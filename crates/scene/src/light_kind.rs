@@ -186,11 +186,12 @@ impl LightKind {
 }
 
 fn check_radius(radius: f64) -> Result<(), String> {
-    match radius.is_finite() && radius >= 0.0 {
-        true => Ok(()),
-        false => Err(format!(
+    if radius.is_finite() && radius >= 0.0 {
+        Ok(())
+    } else {
+        Err(format!(
             "radius is {radius}, expected a length of at least 0"
-        )),
+        ))
     }
 }
 

@@ -129,8 +129,9 @@ impl Surfaces {
 /// A channel of sRGB as light.
 fn linear(channel: u8) -> f32 {
     let value = f32::from(channel) / 255.0;
-    match value <= 0.04045 {
-        true => value / 12.92,
-        false => ((value + 0.055) / 1.055).powf(2.4),
+    if value <= 0.04045 {
+        value / 12.92
+    } else {
+        ((value + 0.055) / 1.055).powf(2.4)
     }
 }

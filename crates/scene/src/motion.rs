@@ -116,9 +116,10 @@ impl PartMotion {
                     * DAffine3::from_quat(turn)
                     * DAffine3::from_translation(-*pivot);
                 // A part at rest is where it was to the last bit.
-                let map = match degrees == 0.0 {
-                    true => DAffine3::from_translation(shift),
-                    false => map,
+                let map = if degrees == 0.0 {
+                    DAffine3::from_translation(shift)
+                } else {
+                    map
                 };
                 Box::new(move |place| (map.transform_point3(place), map.matrix3))
             }

@@ -179,9 +179,10 @@ impl Movable {
     /// If there is not.
     pub fn check_count(&self, maps: usize) -> Result<(), MoveError> {
         let parts = self.parts.len();
-        match maps == parts {
-            true => Ok(()),
-            false => Err(MoveError::Count { parts, maps }),
+        if maps == parts {
+            Ok(())
+        } else {
+            Err(MoveError::Count { parts, maps })
         }
     }
 
@@ -232,9 +233,10 @@ impl Movable {
             let across = map(at_rest(position).as_dvec3()).1.inverse().transpose();
             let normal = across * self.rest.normals[normal as usize].as_dvec3();
             let normal = normal.normalize_or_zero().as_vec3();
-            match normal.is_finite() {
-                true => Ok(normal),
-                false => Err(MoveError::Singular { part }),
+            if normal.is_finite() {
+                Ok(normal)
+            } else {
+                Err(MoveError::Singular { part })
             }
         };
         let normals = normals.iter().map(normal).collect::<Result<_, _>>()?;
@@ -338,9 +340,10 @@ impl Part {
         let mut positions: Vec<u32> = Vec::new();
         let mut outside = HashSet::new();
         for (primitive, corners) in (0..).zip(&mesh.triangles) {
-            match inside.contains(&primitive) {
-                true => positions.extend(corners),
-                false => outside.extend(corners.iter().copied()),
+            if inside.contains(&primitive) {
+                positions.extend(corners)
+            } else {
+                outside.extend(corners.iter().copied())
             }
         }
         positions.sort_unstable();

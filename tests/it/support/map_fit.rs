@@ -17,7 +17,7 @@ pub struct MapFit {
 }
 
 impl MapFit {
-    pub fn of(report: &FrameReport, scene: &Scene) -> Self {
+    pub fn new(report: &FrameReport, scene: &Scene) -> Self {
         let words = values(report, "map_fit");
         let number = |at: usize| f64::from(f32::from_bits(words[at]));
         let row = |at: usize| DVec3::new(number(at), number(at + 1), number(at + 2));

@@ -141,7 +141,7 @@ impl From<ConcavePolygons> for Concave {
 #[cfg(feature = "window")]
 impl SceneArgs {
     /// A scene as its file says.
-    pub fn of(scene: &str) -> Self {
+    pub fn new(scene: &str) -> Self {
         Self {
             scene: scene.to_owned(),
             view: None,

@@ -99,9 +99,10 @@ pub enum LightArgument {
 
 /// A [`LightArgument`]: three numbers are a direction.
 pub fn light(text: &str) -> Result<LightArgument, String> {
-    match text.contains(',') || text.trim().parse::<f64>().is_ok() {
-        true => direction(text).map(LightArgument::Direction),
-        false => Ok(LightArgument::Name(text.to_owned())),
+    if text.contains(',') || text.trim().parse::<f64>().is_ok() {
+        direction(text).map(LightArgument::Direction)
+    } else {
+        Ok(LightArgument::Name(text.to_owned()))
     }
 }
 

@@ -64,9 +64,10 @@ fn check_once(args: &CheckArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         .iter()
         .map(|name| preset::locate(name, &sources))
         .collect();
-    let adapter = match gpu.adapter.is_some() || gpu.backend.is_some() {
-        true => Some(open(gpu, paths.iter().flatten(), &sources)?),
-        false => None,
+    let adapter = if gpu.adapter.is_some() || gpu.backend.is_some() {
+        Some(open(gpu, paths.iter().flatten(), &sources)?)
+    } else {
+        None
     };
     let mut found = Vec::new();
     for (argument, path) in args.graphs.iter().zip(paths) {
@@ -92,7 +93,7 @@ fn open<'a>(
 ) -> Result<Capabilities, CliError> {
     let graphs = paths.filter_map(|path| Graph::load(path, &registry(), sources).ok());
     let gpu = device::open(gpu, &graphs.collect::<Vec<_>>())?;
-    Ok(Capabilities::of(&gpu))
+    Ok(Capabilities::new(&gpu))
 }
 
 /// Why an argument cannot be used.
@@ -138,9 +139,10 @@ fn text(found: &[Found]) -> Result<(), CliError> {
 /// The kinds of light that a graph does not take, if it asks for a light.
 fn refused_lights(graph: &Graph, plan: &Plan) -> String {
     let [_, refused] = light_kinds::split(graph);
-    match plan.provided().contains(&LIGHT) && !refused.is_empty() {
-        true => format!("; takes no {} light", refused.join(" or ")),
-        false => String::new(),
+    if plan.provided().contains(&LIGHT) && !refused.is_empty() {
+        format!("; takes no {} light", refused.join(" or "))
+    } else {
+        String::new()
     }
 }
 

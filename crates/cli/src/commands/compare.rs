@@ -54,11 +54,12 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let viewports: Vec<[u32; 2]> = unique(&args.size).iter().map(|Size(size)| *size).collect();
     let scene = Arc::new(scene);
     let mut provider = SceneProvider::new(scene.clone());
-    let device = Capabilities::of(&gpu);
+    let device = Capabilities::new(&gpu);
     let is_layered = |method: &Method| contract::is_layered(method, &device, &provider);
-    let lights = match methods.iter().any(is_layered) {
-        true => every_light(&args.scene),
-        false => args.scene.clone(),
+    let lights = if methods.iter().any(is_layered) {
+        every_light(&args.scene)
+    } else {
+        args.scene.clone()
     };
     let subjects = subjects(args, &scene, views, &lights)?;
     if args.images == Images::All {
@@ -124,10 +125,10 @@ fn graphs(setup: &ComparisonSetup, provider: &SceneProvider) -> Vec<(String, Str
         return Vec::new();
     };
     let chart = |method: &Method| {
-        let capabilities = Capabilities::of(setup.gpu);
+        let capabilities = Capabilities::new(setup.gpu);
         let plan = method.at(viewport).plan(viewport, capabilities, provider);
         let title = format!("{}, viewport {}", method.name, size(viewport));
-        let svg = Drawing::of(&plan.ok()?).titled(title).to_svg();
+        let svg = Drawing::from_plan(&plan.ok()?).titled(title).to_svg();
         Some((graph_name(&method.name), svg))
     };
     setup.methods.iter().filter_map(chart).collect()
@@ -168,9 +169,10 @@ fn subjects(
     lights: &SceneArgs,
 ) -> Result<Vec<Subject>, CliError> {
     let Some(name) = &args.path else {
-        let views = match args.scene.light == lights.light {
-            true => views,
-            false => under_lights(scene, views, lights)?,
+        let views = if args.scene.light == lights.light {
+            views
+        } else {
+            under_lights(scene, views, lights)?
         };
         return Ok(views.into_iter().map(Subject::Still).collect());
     };
@@ -247,9 +249,10 @@ fn print_summary(args: &CompareArgs, results: &Results) -> Result<(), CliError> 
         Format::Table => {
             let texts: Vec<String> = summaries.iter().map(Summary::text).collect();
             print(&texts.join("\n"))?;
-            match args.passes {
-                true => print(&format!("\n{}\n", summary_table::passes(results))),
-                false => Ok(()),
+            if args.passes {
+                print(&format!("\n{}\n", summary_table::passes(results)))
+            } else {
+                Ok(())
             }
         }
         Format::Markdown => {

@@ -68,9 +68,10 @@ fn chosen(gpu: &Gpu) -> String {
         limits.max_compute_invocations_per_workgroup, limits.max_compute_workgroups_per_dimension
     );
     for (feature, use_of_it) in FEATURES {
-        let has = match features.contains(feature) {
-            true => "yes",
-            false => "no ",
+        let has = if features.contains(feature) {
+            "yes"
+        } else {
+            "no "
         };
         text += &format!("  {has} {use_of_it}\n");
     }
@@ -106,9 +107,10 @@ fn meshes() -> String {
         "\nMeshes are searched beside the scene file, then (${ASSETS_VARIABLE}, cache folder) in\n"
     );
     for folder in &library.assets {
-        let there = match folder.is_dir() {
-            true => "",
-            false => " (no such folder)",
+        let there = if folder.is_dir() {
+            ""
+        } else {
+            " (no such folder)"
         };
         text += &format!("  {}{there}\n", folder.display());
     }

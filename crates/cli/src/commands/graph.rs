@@ -22,7 +22,7 @@ pub fn graph(args: &GraphArgs) -> Result<(), CliError> {
     request.outputs = (!args.outputs.is_empty()).then(|| args.outputs.clone());
     let plan = preset.plan(&request)?;
     let title = format!("{}, viewport {}", preset.name, args.method.size);
-    let text = text(&Drawing::of(&plan).titled(title), format(args))?;
+    let text = text(&Drawing::from_plan(&plan).titled(title), format(args))?;
     match &args.out {
         Some(file) => write_whole(file, text.as_bytes()),
         None => print(&text),

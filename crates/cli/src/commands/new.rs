@@ -84,9 +84,12 @@ fn variant(name: &str, from: &str) -> Result<String, CliError> {
 /// A param at its default, as a comment.
 fn line_of(param: &Param) -> String {
     let value = param.default.as_ref().map(|value| value.text());
-    let value = value.map_or("…".to_owned(), |text| match is_literal(text) {
-        true => text.to_owned(),
-        false => format!("\"{text}\""),
+    let value = value.map_or("…".to_owned(), |text| {
+        if is_literal(text) {
+            text.to_owned()
+        } else {
+            format!("\"{text}\"")
+        }
     });
     let about = match param.description.as_str() {
         "" => String::new(),

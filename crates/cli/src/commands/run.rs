@@ -33,9 +33,10 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     }
     let name = |save: &Save| capture(save).name();
     let is_sequence = args.frames.is_some() || args.path.is_some();
-    let files: Vec<Save> = match is_sequence {
-        true => saves.iter().map(|save| of_frame(save, 0)).collect(),
-        false => saves.clone(),
+    let files: Vec<Save> = if is_sequence {
+        saves.iter().map(|save| of_frame(save, 0)).collect()
+    } else {
+        saves.clone()
     };
     let files = files
         .iter()
@@ -43,7 +44,7 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     check_writable(&files.collect::<Vec<_>>())?;
     let gpu = device::open(gpu, [&preset.graph])?;
     let SceneSelection { scene, mut views } = SceneSelection::load(&args.scene)?;
-    let shots = Shots::of(args, &scene, &views)?;
+    let shots = Shots::new(args, &scene, &views)?;
     if let Some(first) = shots.as_ref().and_then(Shots::first) {
         views = vec![first.clone()];
     }
@@ -55,7 +56,7 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let mut idle = IdleParams::default();
     for view in &views {
         provider.set_view(view, method.size.0);
-        let mut request = Capabilities::of(&gpu).request(method.size.0, &provider);
+        let mut request = Capabilities::new(&gpu).request(method.size.0, &provider);
         request.params = params.clone();
         request.captures = captures(&preset.graph.outputs(), saves);
         let plan = preset.plan(&request)?;
@@ -63,7 +64,7 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         check_encodings(&plan, saves)?;
         let readings: Vec<Decoding> = saves
             .iter()
-            .map(|save| Decoding::of(&plan, &name(save), ClipPlanes::of(view)))
+            .map(|save| Decoding::new(&plan, &name(save), ClipPlanes::new(view)))
             .collect();
         print(&format!(
             "{} on {}, view {}, {}\n{}",

@@ -41,7 +41,7 @@ impl Shots {
     ///
     /// # Errors
     /// No such path, or one that has fewer frames.
-    pub fn of(args: &RunArgs, scene: &Scene, views: &[View]) -> Result<Option<Self>, CliError> {
+    pub fn new(args: &RunArgs, scene: &Scene, views: &[View]) -> Result<Option<Self>, CliError> {
         let subject = match (&args.path, args.frames, views) {
             (None, None, _) if args.jitter.is_some() => {
                 return Err(CliError::Usage("--jitter needs --frames or --path".into()));
@@ -133,9 +133,9 @@ impl Shots {
                 shapes.show(index, provider)?;
             }
             let readings = saves.iter();
-            let planes = ClipPlanes::of(&shot.view);
+            let planes = ClipPlanes::new(&shot.view);
             let plan = executor.plan();
-            let readings = readings.map(|save| Decoding::of(plan, &capture(save).name(), planes));
+            let readings = readings.map(|save| Decoding::new(plan, &capture(save).name(), planes));
             let readings: Vec<Decoding> = readings.collect();
             let contents = self
                 .frame(gpu, &mut executor, provider, (index, saves))

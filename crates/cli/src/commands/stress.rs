@@ -167,7 +167,7 @@ fn method_run<'a>(
     provider: &SceneProvider,
 ) -> Result<MethodRun<'a>, CliError> {
     let method = method.at(args.size.0).settled(gpu.device.features());
-    let plan = method.plan(args.size.0, Capabilities::of(gpu), provider);
+    let plan = method.plan(args.size.0, Capabilities::new(gpu), provider);
     Ok(MethodRun {
         unavailable: plan.err().map(|faults| reasons(&faults)),
         ..MethodRun::new(method, &args.exact)?

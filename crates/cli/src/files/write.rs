@@ -28,9 +28,10 @@ pub fn check_writable(files: &[(String, &Path)]) -> Result<(), CliError> {
             )));
         }
         let folder = folder_of(file);
-        let why = match folder.is_dir() {
-            true => file.is_dir().then(|| "it is a folder".to_owned()),
-            false => Some(format!("there is no folder {}", folder.display())),
+        let why = if folder.is_dir() {
+            file.is_dir().then(|| "it is a folder".to_owned())
+        } else {
+            Some(format!("there is no folder {}", folder.display()))
         };
         if let Some(why) = why {
             let file = file.display();

@@ -248,7 +248,7 @@ impl Judgement {
     ///
     /// # Errors
     /// Outputs of another size than the reference, or with values that are none.
-    pub fn of(outputs: &Outputs, right: &RightAnswer) -> Result<Self, skiagraph_reference::Error> {
+    pub fn new(outputs: &Outputs, right: &RightAnswer) -> Result<Self, skiagraph_reference::Error> {
         let reference = &right.reference;
         let counts = Statistics::judged(&outputs.visibility, &outputs.status, reference)?;
         let graded = (outputs.shares.is_some() || right.area.is_some())
@@ -280,7 +280,7 @@ pub fn judged(
         CliError::Contract(format!("`{name}` breaks the contract of outputs: {reason}"))
     };
     let outputs = outputs.map_err(broken)?;
-    let judgement = Judgement::of(&outputs, right).map_err(|error| broken(error.to_string()))?;
+    let judgement = Judgement::new(&outputs, right).map_err(|error| broken(error.to_string()))?;
     Ok((outputs, judgement))
 }
 

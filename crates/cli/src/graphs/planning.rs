@@ -30,7 +30,7 @@ pub struct Capabilities {
 
 impl Capabilities {
     /// Of the opened device.
-    pub fn of(gpu: &Gpu) -> Self {
+    pub fn new(gpu: &Gpu) -> Self {
         Self {
             limits: gpu.device.limits(),
             features: gpu.device.features(),
@@ -157,9 +157,10 @@ pub fn stand_ins(graph: &Graph) -> Vec<LightKind> {
     let all = ALL.map(stand_in);
     let taken = all.iter().filter(|it| light_kinds::takes(graph, it.word()));
     let taken: Vec<LightKind> = taken.copied().collect();
-    match taken.is_empty() {
-        true => all.to_vec(),
-        false => taken,
+    if taken.is_empty() {
+        all.to_vec()
+    } else {
+        taken
     }
 }
 

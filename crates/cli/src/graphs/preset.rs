@@ -135,7 +135,7 @@ impl Preset {
     /// Its faults.
     pub fn plan(&self, request: &PlanRequest) -> Result<Plan, CliError> {
         let plan = self.graph.plan(request);
-        let plan = plan.map_err(|diagnostics| GraphFaults::of(&self.name, &diagnostics))?;
+        let plan = plan.map_err(|diagnostics| GraphFaults::new(&self.name, &diagnostics))?;
         warn(&self.graph, plan.warnings());
         Ok(plan)
     }

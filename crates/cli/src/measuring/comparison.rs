@@ -120,16 +120,17 @@ impl<'a> Comparison<'a> {
             others,
             dropped,
             commands,
-        } = match args.replace {
-            true => Earlier {
+        } = if args.replace {
+            Earlier {
                 // What cannot be read is overwritten as well.
                 dropped: match read_back::results(&args.out.join("results.json")) {
                     Ok(Some(earlier)) => earlier.runs,
                     _ => Vec::new(),
                 },
                 ..Earlier::default()
-            },
-            false => earlier(&args.out, &results, &planned, args.resume)?,
+            }
+        } else {
+            earlier(&args.out, &results, &planned, args.resume)?
         };
         let folder = ResultsFolder::new(&args.out, [dropped, others], commands);
         let mut comparison = Self {
@@ -285,7 +286,7 @@ impl<'a> Comparison<'a> {
         let RunState::Unavailable(run) = &self.states[place] else {
             return Ok(());
         };
-        let capabilities = Capabilities::of(self.setup.gpu);
+        let capabilities = Capabilities::new(self.setup.gpu);
         if let Err(diagnostics) = method.plan(viewport, capabilities, &self.provider) {
             let run = Run {
                 unavailable: Some(reasons(&diagnostics)),

@@ -219,7 +219,7 @@ mod tests {
         let gpu = device::open(&args, []).unwrap_or_else(|error| panic!("{error}"));
         let preset = preset::load_all(&["nsm".into()], &preset::sources()).unwrap();
         let mut provider = placeholder([16, 16], &preset[0].graph);
-        let request = Capabilities::of(&gpu).request([16, 16], &provider);
+        let request = Capabilities::new(&gpu).request([16, 16], &provider);
         let plan = preset[0].graph.plan(&request).unwrap();
         let mut executor = executor(&gpu, plan, &mut provider).unwrap();
         run(&gpu, &mut executor, &Frame::default()).unwrap();

@@ -188,7 +188,7 @@ impl HardCaseContext<'_> {
                         let certain = case.pixels.facing_light.saturating_sub(counts.uncertain);
                         let (culls, outside) = (variant.culls, &counts.outside_band);
                         cell.verdict =
-                            Verdict::of(guarantee, culls, case.casters, certain, outside);
+                            Verdict::new(guarantee, culls, case.casters, certain, outside);
                         cell.counts = Some(counts);
                         if let Some(folder) = self.pictures {
                             let place = PicturePlace {
@@ -252,7 +252,7 @@ impl HardCaseContext<'_> {
         right: &RightAnswer,
     ) -> Result<(Outputs, Judgement, Counts), CliError> {
         let preset = method.preset;
-        let plan = method.plan(self.viewport, Capabilities::of(self.gpu), provider);
+        let plan = method.plan(self.viewport, Capabilities::new(self.gpu), provider);
         let plan = plan.map_err(|faults| CliError::Input(reasons(&faults)))?;
         let names = preset.judged();
         let (reference, light) = (&right.reference, provider.light_number());
@@ -302,9 +302,12 @@ fn right_in_band(visibility: &[u32], reference: &Reference) -> Vec<u32> {
     let answers = reference.classes.iter().zip(&reference.indeterminate);
     let pixels = visibility.iter().zip(answers);
     pixels
-        .map(|(&shown, (&class, &in_band))| match in_band {
-            true => u32::from(class == Class::Lit),
-            false => shown,
+        .map(|(&shown, (&class, &in_band))| {
+            if in_band {
+                u32::from(class == Class::Lit)
+            } else {
+                shown
+            }
         })
         .collect()
 }

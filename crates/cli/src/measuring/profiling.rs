@@ -31,15 +31,16 @@ pub fn profile(
     let (preset, viewport) = (method.preset, method.viewport);
     let mut provider = SceneProvider::new(scene.clone());
     provider.set_view(view, viewport);
-    let mut request = Capabilities::of(gpu).request(viewport, &provider);
+    let mut request = Capabilities::new(gpu).request(viewport, &provider);
     request.params = method.params.clone();
     let plan = preset.plan(&request)?;
 
     let conditions = Conditions {
         program: PROGRAM.into(),
-        build: match cfg!(debug_assertions) {
-            true => "debug".into(),
-            false => "release".into(),
+        build: if cfg!(debug_assertions) {
+            "debug".into()
+        } else {
+            "release".into()
         },
         date: date::utc(SystemTime::now()),
         adapter: device::describe(gpu, device::timestamp_trust(gpu)),
@@ -70,7 +71,7 @@ pub fn profile(
         .map_err(failed)?;
     step.end();
 
-    match Profile::new(conditions, &passes, &Samples::of(&timed), memory) {
+    match Profile::new(conditions, &passes, &Samples::new(&timed), memory) {
         Some(profile) => Ok((profile, timed)),
         None => Err(CliError::Interrupted {
             kept: "no frame was timed".into(),

@@ -38,7 +38,7 @@ impl PrimaryVisibility {
     pub fn load(sources: &dyn Sources) -> Result<Self, CliError> {
         let recorded = RecordedSources::new(sources);
         let graph = Graph::load(GBUFFER, &registry(), &recorded)
-            .map_err(|diagnostics| GraphFaults::of(GBUFFER, &diagnostics))?;
+            .map_err(|diagnostics| GraphFaults::new(GBUFFER, &diagnostics))?;
         Ok(Self {
             graph,
             fingerprint: recorded.fingerprint(),
@@ -55,11 +55,11 @@ impl PrimaryVisibility {
         viewport: [u32; 2],
         provider: &dyn Provider,
     ) -> Result<Plan, CliError> {
-        let mut request = Capabilities::of(gpu).request(viewport, provider);
+        let mut request = Capabilities::new(gpu).request(viewport, provider);
         request.outputs = Some(vec!["primitive".to_owned()]);
         self.graph
             .plan(&request)
-            .map_err(|diagnostics| GraphFaults::of(GBUFFER, &diagnostics))
+            .map_err(|diagnostics| GraphFaults::new(GBUFFER, &diagnostics))
     }
 
     /// The primitive that each pixel shows.

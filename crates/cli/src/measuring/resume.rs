@@ -87,9 +87,10 @@ pub fn earlier(
             if others.len() == 1 { "stays" } else { "stay" }
         ));
     }
-    let commands = match others.is_empty() && !resumes {
-        true => Vec::new(),
-        false => earlier.commands,
+    let commands = if others.is_empty() && !resumes {
+        Vec::new()
+    } else {
+        earlier.commands
     };
     if !resumes {
         return Ok(Earlier {

@@ -79,7 +79,7 @@ impl MeasureContext<'_> {
         run: impl FnOnce(&Method, Plan, &mut SceneProvider, &Step) -> Attempt,
     ) -> Result<Run, CliError> {
         let viewport = self.judge.right.reference.viewport;
-        let plan = match method.plan(viewport, Capabilities::of(self.gpu), provider) {
+        let plan = match method.plan(viewport, Capabilities::new(self.gpu), provider) {
             Ok(plan) => plan,
             // The graph itself is sound: that was checked before anything ran.
             Err(diagnostics) => return Ok(self.unavailable(method, reasons(&diagnostics))),
@@ -301,7 +301,7 @@ impl MeasureContext<'_> {
             pixels: counts.pixels,
             band: counts.band,
             wrong_surface: Some(self.wrong_surfaces),
-            area: area.map(|area| AreaReference::of(area, reference)),
+            area: area.map(|area| AreaReference::new(area, reference)),
             measured: None,
             unavailable: None,
             published: Vec::new(),

@@ -200,12 +200,13 @@ fn look_at_all(scene: &mut Scene, args: &SceneArgs) {
 /// # Errors
 /// One is given.
 pub fn check_path(args: &SceneArgs, path: &str) -> Result<(), CliError> {
-    match has_own_view(args) {
-        false => Ok(()),
-        true => Err(CliError::Usage(format!(
+    if has_own_view(args) {
+        Err(CliError::Usage(format!(
             "--path {path} brings its camera and its light: leave out --eye, --look, --up, --fov, \
              --near, --far and --light x,y,z"
-        ))),
+        )))
+    } else {
+        Ok(())
     }
 }
 
@@ -302,9 +303,10 @@ fn lit_by(scene: &Scene, views: Vec<View>, name: &str) -> Result<Vec<View>, CliE
             )));
         }
         lit.extend(chosen.into_iter().map(|light| View {
-            name: match several {
-                true => format!("{}@{}", view.name, light.name),
-                false => view.name.clone(),
+            name: if several {
+                format!("{}@{}", view.name, light.name)
+            } else {
+                view.name.clone()
             },
             light: Some(light.clone()),
             ..view.clone()

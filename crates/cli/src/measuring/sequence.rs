@@ -235,9 +235,10 @@ impl MeasureContext<'_> {
             wrong: counts.wrong,
             certain_wrong_blockers: account.blockers,
             facing_mismatch: counts.facing_mismatch,
-            answer: match account.shares {
-                true => Answer::Graded,
-                false => Answer::Hard,
+            answer: if account.shares {
+                Answer::Graded
+            } else {
+                Answer::Hard
             },
             graded: (!account.graded.is_empty()).then(|| Graded::together(account.graded)),
             passes: times.passes,

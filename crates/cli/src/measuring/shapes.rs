@@ -15,7 +15,7 @@ impl Shapes {
     /// # Errors
     /// A part that the mesh has not, that is welded to others, or that f32 cannot hold where it is
     /// moved to.
-    pub fn of(path: &CameraPath, mesh: &Mesh, frames: usize) -> Result<Option<Self>, CliError> {
+    pub fn new(path: &CameraPath, mesh: &Mesh, frames: usize) -> Result<Option<Self>, CliError> {
         let Some(movable) = path.movable(mesh).map_err(CliError::Input)? else {
             return Ok(None);
         };

@@ -80,7 +80,7 @@ impl Subject {
     pub fn shapes(&self, scene: &Scene, frames: usize) -> Result<Option<Shapes>, CliError> {
         match self {
             Self::Still(_) => Ok(None),
-            Self::Path(path) => Shapes::of(path, &scene.mesh, frames),
+            Self::Path(path) => Shapes::new(path, &scene.mesh, frames),
         }
     }
 

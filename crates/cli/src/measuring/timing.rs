@@ -99,16 +99,16 @@ pub fn times(
 
 /// The times of some frames in short; `None` of none.
 pub fn of(timed: Vec<TimedFrame>) -> Option<Times> {
-    let samples = Samples::of(&timed);
+    let samples = Samples::new(&timed);
     let pass = |PassSamples { name, gpu, cpu }| Pass {
         name,
         gpu_ms: Spread::of_all(&gpu),
-        cpu_ms: Spread::of(&cpu).expect("a pass is named by its first sample"),
+        cpu_ms: Spread::new(&cpu).expect("a pass is named by its first sample"),
     };
     Some(Times {
         frame: FrameTimes {
             gpu_ms: Spread::of_all(&samples.gpu),
-            wall_ms: Spread::of(&samples.wall)?,
+            wall_ms: Spread::new(&samples.wall)?,
         },
         passes: samples.passes.into_iter().map(pass).collect(),
         skipped: timed.into_iter().next()?.skipped,

@@ -31,7 +31,7 @@ pub struct ClipPlanes {
 
 impl ClipPlanes {
     /// Of a view.
-    pub fn of(view: &View) -> Self {
+    pub fn new(view: &View) -> Self {
         let View { near, far, .. } = *view;
         Self { near, far }
     }
@@ -188,9 +188,10 @@ fn range(values: impl Iterator<Item = f32>) -> (f32, f32) {
 }
 
 fn span((low, high): (f32, f32)) -> String {
-    match low <= high {
-        true => format!("{low} … {high}"),
-        false => "without a finite value".into(),
+    if low <= high {
+        format!("{low} … {high}")
+    } else {
+        "without a finite value".into()
     }
 }
 

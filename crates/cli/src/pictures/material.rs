@@ -18,7 +18,7 @@ impl Picture {
     ///
     /// # Errors
     /// Why it has no picture.
-    pub fn of(name: &str, content: &Content, planes: Option<ClipPlanes>) -> Result<Self, String> {
+    pub fn new(name: &str, content: &Content, planes: Option<ClipPlanes>) -> Result<Self, String> {
         let Content::Texture { format, parts, .. } = content else {
             return Err("is a buffer and has no picture; save it as .csv or .bin".into());
         };
@@ -44,10 +44,13 @@ impl Picture {
                 channels,
             ),
             (.., Some(values)) if aspects && is_whole(values.len()) => depths(&values, planes),
-            (.., Some(values)) if is_whole(values.len()) => match is_unorm(*format) {
-                true => fractions(&values, channels),
-                false => floats(&values, channels),
-            },
+            (.., Some(values)) if is_whole(values.len()) => {
+                if is_unorm(*format) {
+                    fractions(&values, channels)
+                } else {
+                    floats(&values, channels)
+                }
+            }
             _ => {
                 return Err(format!(
                     "has the format {format:?}, of which no picture can be made; save it as .bin"
@@ -124,7 +127,7 @@ mod tests {
 
     #[test]
     fn status_has_a_colour_per_value_and_strangers_show() {
-        let picture = Picture::of(
+        let picture = Picture::new(
             "status",
             &texture(F::R8Uint, [3, 2], vec![0, 1, 2, 3, 4, 9]),
             None,
@@ -145,7 +148,7 @@ mod tests {
     #[test]
     fn visibility_is_black_and_white() {
         let picture =
-            Picture::of("visibility", &texture(F::R8Uint, [2, 1], vec![0, 1]), None).unwrap();
+            Picture::new("visibility", &texture(F::R8Uint, [2, 1], vec![0, 1]), None).unwrap();
         assert_eq!(picture.image.rgb, [0, 0, 0, 255, 255, 255]);
         assert_eq!(picture.legend, "black 0 (1), white 1 (1)");
     }
@@ -166,7 +169,7 @@ mod tests {
     fn values_fill_their_range_and_odd_ones_are_marked_and_counted() {
         let values = [0.5, 0.75, 1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
         let bytes = float_bytes(&values);
-        let picture = Picture::of("height", &texture(F::R32Float, [6, 1], bytes), None).unwrap();
+        let picture = Picture::new("height", &texture(F::R32Float, [6, 1], bytes), None).unwrap();
         let texels: Vec<_> = picture.image.rgb.chunks(3).collect();
         assert_eq!(
             texels,
@@ -197,7 +200,7 @@ mod tests {
         let grey = |planes, empty| {
             let bytes = float_bytes(&[&written[..], &[empty]].concat());
             let content = texture(F::Depth32Float, [4, 1], bytes);
-            let Picture { image, legend } = Picture::of("depth", &content, planes).unwrap();
+            let Picture { image, legend } = Picture::new("depth", &content, planes).unwrap();
             assert_eq!(image.rgb[9..], EMPTY);
             ([image.rgb[0], image.rgb[3], image.rgb[6]], legend)
         };
@@ -232,7 +235,7 @@ mod tests {
             parts: vec![[2, 1], [2, 1], [1, 1], [1, 1]],
             bytes: vec![0, 51, 102, 153, 204, 255],
         };
-        let Picture { image, legend } = Picture::of("x", &content, None).unwrap();
+        let Picture { image, legend } = Picture::new("x", &content, None).unwrap();
         assert_eq!(image.size, [2, 4]);
         let grey = |value| [value; 3];
         let rows = [
@@ -266,7 +269,7 @@ mod tests {
                 [0, 0, 0, 255, 255, 255],
             ),
         ] {
-            let picture = Picture::of("x", &texture(format, [2, 1], bytes), None).unwrap();
+            let picture = Picture::new("x", &texture(format, [2, 1], bytes), None).unwrap();
             assert_eq!(picture.image.rgb, rgb, "{format:?}: {}", picture.legend);
         }
     }
@@ -274,7 +277,7 @@ mod tests {
     #[test]
     fn constant_and_huge_ranges_do_not_overflow() {
         for values in [[3.0, 3.0], [f32::MIN, f32::MAX], [f32::NAN, f32::NAN]] {
-            Picture::of(
+            Picture::new(
                 "x",
                 &texture(F::R32Float, [2, 1], float_bytes(&values)),
                 None,
@@ -287,7 +290,7 @@ mod tests {
     fn positions_become_colours() {
         let bytes = float_bytes(&[0.0, 10.0, -1.0, 1.0, 4.0, 20.0, 1.0, 1.0]);
         let picture =
-            Picture::of("position", &texture(F::Rgba32Float, [2, 1], bytes), None).unwrap();
+            Picture::new("position", &texture(F::Rgba32Float, [2, 1], bytes), None).unwrap();
         assert_eq!(picture.image.rgb, [0, 0, 0, 255, 255, 255]);
         assert_eq!(
             picture.legend,
@@ -302,7 +305,7 @@ mod tests {
             texture(F::Rgb10a2Unorm, [1, 1], vec![0; 4]),
         ] {
             assert!(
-                Picture::of("x", &content, None)
+                Picture::new("x", &content, None)
                     .err()
                     .unwrap()
                     .contains(".bin")

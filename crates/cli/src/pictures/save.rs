@@ -68,7 +68,7 @@ pub struct Decoding {
 
 impl Decoding {
     /// Of what this plan writes into the output or capture, seen between these planes.
-    pub fn of(plan: &Plan, name: &str, planes: ClipPlanes) -> Self {
+    pub fn new(plan: &Plan, name: &str, planes: ClipPlanes) -> Self {
         let behind = plan.provided_behind(name);
         // A pass that also knows the light may well draw from there.
         let is_camera = behind.contains(CAMERA) && !behind.contains(LIGHT);
@@ -112,7 +112,7 @@ pub fn write(save: &Save, content: &Content, reading: &Decoding) -> Result<Strin
     let part = reading.part_text(content);
     let said = match save.encoding {
         Encoding::Png => {
-            let picture = Picture::of(&save.material, content, reading.planes);
+            let picture = Picture::new(&save.material, content, reading.planes);
             let Picture { image, legend } = picture.map_err(|reason| {
                 let name = &save.material;
                 CliError::Input(format!("--save {name}: `{name}` {reason}"))

@@ -98,7 +98,7 @@ const RESOLUTION_MS: f64 = 1e-6;
 
 impl Ratio {
     /// Of an old and a new series.
-    pub fn of(old: &Series, new: &Series) -> Self {
+    pub fn new(old: &Series, new: &Series) -> Self {
         let ratio = |new: f64, old: f64| new.max(RESOLUTION_MS) / old.max(RESOLUTION_MS);
         let [old_q1, old_q3] = old.quartiles();
         let [new_q1, new_q3] = new.quartiles();
@@ -121,7 +121,7 @@ impl Ratio {
 
     /// The same, where both are there.
     pub fn of_both(old: Option<&Series>, new: Option<&Series>) -> Option<Self> {
-        Some(Self::of(old?, new?))
+        Some(Self::new(old?, new?))
     }
 }
 
@@ -133,7 +133,7 @@ mod tests {
     #[test]
     fn only_middle_halves_that_do_not_overlap_are_a_difference() {
         let old = series(&[1.0, 2.0, 3.0, 4.0, 5.0]); // quartiles 2 and 4
-        let verdict = |samples: &[f64]| Ratio::of(&old, &series(samples)).verdict;
+        let verdict = |samples: &[f64]| Ratio::new(&old, &series(samples)).verdict;
         assert_eq!(verdict(&[1.0, 2.0, 3.0, 4.0, 5.0]), Verdict::Same);
         assert_eq!(verdict(&[0.1, 0.5, 1.0, 1.5, 9.0]), Verdict::Faster); // up to 1.5
         assert_eq!(verdict(&[0.1, 0.5, 1.0, 2.0, 9.0]), Verdict::Same); // they touch
@@ -143,7 +143,7 @@ mod tests {
 
     #[test]
     fn a_ratio_is_that_of_the_medians_with_the_quartiles_extremes() {
-        let ratio = Ratio::of(
+        let ratio = Ratio::new(
             &series(&[1.0, 2.0, 4.0, 5.0, 8.0]),
             &series(&[2.0, 4.0, 8.0, 10.0, 16.0]),
         );
@@ -154,9 +154,9 @@ mod tests {
     #[test]
     fn times_of_zero_still_have_a_ratio() {
         let (zero, one) = (series(&[0.0; 5]), series(&[1.0; 5]));
-        assert_eq!(Ratio::of(&zero, &zero).ratio, 1.0);
-        assert_eq!(Ratio::of(&zero, &zero).verdict, Verdict::Same);
-        for ratio in [Ratio::of(&zero, &one), Ratio::of(&one, &zero)] {
+        assert_eq!(Ratio::new(&zero, &zero).ratio, 1.0);
+        assert_eq!(Ratio::new(&zero, &zero).verdict, Verdict::Same);
+        for ratio in [Ratio::new(&zero, &one), Ratio::new(&one, &zero)] {
             assert!(ratio.ratio.is_finite() && ratio.low.is_finite() && ratio.high.is_finite());
         }
     }

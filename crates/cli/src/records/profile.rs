@@ -176,8 +176,8 @@ impl Profile {
         let gpu = |times: &[Option<Duration>]| Series::of_all(times).filter(|_| is_trusted);
         let frame = FrameProfile {
             gpu_ms: gpu(&samples.gpu),
-            cpu_ms: Series::of(&samples.cpu)?,
-            wall_ms: Series::of(&samples.wall)?,
+            cpu_ms: Series::from_times(&samples.cpu)?,
+            wall_ms: Series::from_times(&samples.wall)?,
         };
         let pass = |pass: &PassSamples| {
             let gpu_ms = gpu(&pass.gpu);
@@ -187,7 +187,7 @@ impl Profile {
                 kind: kind.map_or_else(String::new, |kind| kind.kind.clone()),
                 share: share(gpu_ms.as_ref(), frame.gpu_ms.as_ref()),
                 gpu_ms,
-                cpu_ms: Series::of(&pass.cpu)?,
+                cpu_ms: Series::from_times(&pass.cpu)?,
             })
         };
         Some(Self {
@@ -214,7 +214,7 @@ impl Profile {
             Some(PassRatio {
                 name: pass.name.clone(),
                 gpu: Ratio::of_both(before.gpu_ms.as_ref(), pass.gpu_ms.as_ref()),
-                cpu: Ratio::of(&before.cpu_ms, &pass.cpu_ms),
+                cpu: Ratio::new(&before.cpu_ms, &pass.cpu_ms),
             })
         });
         let (before, frame) = (&old.frame, &self.frame);
@@ -225,8 +225,8 @@ impl Profile {
             passes: passes.collect(),
             frame: FrameRatio {
                 gpu: Ratio::of_both(before.gpu_ms.as_ref(), frame.gpu_ms.as_ref()),
-                cpu: Ratio::of(&before.cpu_ms, &frame.cpu_ms),
-                wall: Ratio::of(&before.wall_ms, &frame.wall_ms),
+                cpu: Ratio::new(&before.cpu_ms, &frame.cpu_ms),
+                wall: Ratio::new(&before.wall_ms, &frame.wall_ms),
             },
             only_old: missing(old, self),
             only_new: missing(self, old),

@@ -82,7 +82,7 @@ pub struct OpenParts {
 
 impl OpenParts {
     /// Of a mesh.
-    pub fn of(mesh: &skiagraph_scene::Mesh) -> Self {
+    pub fn new(mesh: &skiagraph_scene::Mesh) -> Self {
         let parts = skiagraph_scene::Parts::new(mesh);
         let open = |part: &&u32| parts.open[**part as usize];
         Self {
@@ -98,7 +98,7 @@ impl From<&skiagraph_scene::Scene> for Scene {
         Self {
             name: scene.name.clone(),
             triangles: scene.mesh.triangles.len() as u64,
-            parts: Some(OpenParts::of(&scene.mesh)),
+            parts: Some(OpenParts::new(&scene.mesh)),
         }
     }
 }
@@ -270,7 +270,7 @@ pub struct AreaReference {
 
 impl AreaReference {
     /// Of the oracle's answer.
-    pub fn of(area: &AreaVisibility, reference: &Reference) -> Self {
+    pub fn new(area: &AreaVisibility, reference: &Reference) -> Self {
         let [standard_error_rms, standard_error_worst] = area.standard_error(reference);
         let partial = area
             .shares

@@ -40,7 +40,7 @@ pub struct PassSamples {
 
 impl Samples {
     /// Of some frames.
-    pub fn of(frames: &[TimedFrame]) -> Self {
+    pub fn new(frames: &[TimedFrame]) -> Self {
         let mut samples = Self::default();
         for TimedFrame { timing, wall, .. } in frames {
             samples.wall.push(*wall);

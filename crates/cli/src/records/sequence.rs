@@ -100,9 +100,12 @@ impl Sequence {
     /// index: the one that columns name and that pictures are of.
     pub fn worst(&self) -> Option<(usize, &SequenceFrame)> {
         let frames = self.frames.iter().enumerate();
-        frames.reduce(|worst, other| match other.1.error() > worst.1.error() {
-            true => other,
-            false => worst,
+        frames.reduce(|worst, other| {
+            if other.1.error() > worst.1.error() {
+                other
+            } else {
+                worst
+            }
         })
     }
 
@@ -136,10 +139,11 @@ impl Sequence {
 }
 
 fn slowest(frames: impl Iterator<Item = FrameCost>) -> Option<(usize, FrameCost)> {
-    frames
-        .enumerate()
-        .reduce(|worst, other| match other.1.ms() > worst.1.ms() {
-            true => other,
-            false => worst,
-        })
+    frames.enumerate().reduce(|worst, other| {
+        if other.1.ms() > worst.1.ms() {
+            other
+        } else {
+            worst
+        }
+    })
 }

@@ -26,7 +26,7 @@ pub struct FrameTimes {
 
 impl Spread {
     /// Of some samples; `None` if there are none.
-    pub fn of(samples: &[Duration]) -> Option<Self> {
+    pub fn new(samples: &[Duration]) -> Option<Self> {
         Self::of_ms(samples.iter().map(|sample| sample.as_secs_f64() * 1e3))
     }
 
@@ -45,7 +45,7 @@ impl Spread {
 
     /// Of samples of which any may be missing; `None` if one is.
     pub fn of_all(samples: &[Option<Duration>]) -> Option<Self> {
-        Self::of(&all(samples)?)
+        Self::new(&all(samples)?)
     }
 }
 
@@ -82,7 +82,7 @@ impl Series {
     }
 
     /// Of some samples; `None` if there are none.
-    pub fn of(times: &[Duration]) -> Option<Self> {
+    pub fn from_times(times: &[Duration]) -> Option<Self> {
         // From whole nanoseconds, so that a sample has no more than six digits behind the point.
         let ms = times.iter().map(|time| time.as_nanos() as f64 / 1e6);
         Self::new(ms.collect())
@@ -90,7 +90,7 @@ impl Series {
 
     /// Of samples of which any may be missing; `None` if one is.
     pub fn of_all(times: &[Option<Duration>]) -> Option<Self> {
-        Self::of(&all(times)?)
+        Self::from_times(&all(times)?)
     }
 
     /// First and third quartile, linear between the samples beside them.
@@ -117,7 +117,7 @@ pub(crate) mod tests {
     #[test]
     fn spreads_are_order_statistics() {
         let ms = |list: &[u64]| {
-            Spread::of(
+            Spread::new(
                 &list
                     .iter()
                     .map(|&ms| Duration::from_millis(ms))

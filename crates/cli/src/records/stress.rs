@@ -179,7 +179,7 @@ impl OutsideBand {
 impl Verdict {
     /// Of a cell that ran. `culls`: not all faces cast shadows, so that nothing is guaranteed of
     /// open casters; `certain`: pixels called so.
-    pub fn of(
+    pub fn new(
         guarantee: Option<Guarantee>,
         culls: bool,
         casters: Casters,
@@ -438,14 +438,14 @@ pub(crate) mod tests {
             (only_certain, false, Casters::Open, certain, Fail),
             (only_certain, true, Casters::Open, certain, Open),
         ] {
-            let found = Verdict::of(guarantee, culls, casters, 7, &outside);
+            let found = Verdict::new(guarantee, culls, casters, 7, &outside);
             assert_eq!(
                 found, verdict,
                 "{guarantee:?} {culls} {casters:?} {outside:?}"
             );
         }
         for (guarantee, verdict) in [(exact, Pass), (only_certain, Unjudged)] {
-            let found = Verdict::of(guarantee, true, Casters::Closed, 0, &right);
+            let found = Verdict::new(guarantee, true, Casters::Closed, 0, &right);
             assert_eq!(found, verdict, "nothing is certain, {guarantee:?}");
         }
     }

@@ -333,7 +333,7 @@ pub struct Column {
 }
 
 impl Column {
-    fn of((name, head, quantity): Entry) -> Option<Self> {
+    fn new((name, head, quantity): Entry) -> Option<Self> {
         let mut figures = CSV.iter().chain(IN_TABLES);
         let (_, source) = figures.find(|(known, _)| *known == name)?;
         Some(Self {
@@ -383,7 +383,7 @@ impl Column {
 /// The columns of results.csv.
 pub fn csv() -> Vec<Column> {
     let entries = CSV.iter().map(|(name, _)| (*name, *name, ""));
-    entries.filter_map(Column::of).collect()
+    entries.filter_map(Column::new).collect()
 }
 
 /// The columns of the terminal's table for some runs, of hard answers to hard light or of any
@@ -396,7 +396,7 @@ pub fn terminal(is_hard: bool, runs: &[&Run]) -> Vec<Column> {
     };
     let entries: &[Entry] = if is_hard { &TERMINAL } else { &GRADED };
     let entries = entries.iter().filter(shown).copied();
-    entries.filter_map(Column::of).collect()
+    entries.filter_map(Column::new).collect()
 }
 
 /// Whether any run is of a camera path.
@@ -422,7 +422,7 @@ pub fn document(
     let (front, back) = entries.split_at(rays.map_or(entries.len(), |rays| rays + 1));
     [front, back].map(|part| {
         let entries = part.iter().copied().filter(shown);
-        entries.filter_map(Column::of).collect()
+        entries.filter_map(Column::new).collect()
     })
 }
 

@@ -81,12 +81,13 @@ fn ranks(runs: &[Run]) -> Option<String> {
     if listed.is_empty() {
         return None;
     }
-    let doubt = match in_doubt.is_empty() {
-        true => String::new(),
-        false => format!(
+    let doubt = if in_doubt.is_empty() {
+        String::new()
+    } else {
+        format!(
             "; the reference's own error is more than a tenth of that of {}",
             in_doubt.join(", ")
-        ),
+        )
     };
     Some(format!("by RMSE: {}{doubt}", listed.join(", ")))
 }

@@ -75,9 +75,10 @@ impl<'s> Page<'s> {
         fields.sort_by_key(|(name, _)| !must(name));
         self.text += "\n| field | value | |\n|---|---|---|\n";
         for (name, schema) in fields {
-            let name = match must(name) {
-                true => format!("**`{name}`**"),
-                false => format!("`{name}`"),
+            let name = if must(name) {
+                format!("**`{name}`**")
+            } else {
+                format!("`{name}`")
             };
             let value = self.value(schema);
             let what = schema["description"].as_str().unwrap_or_default();
@@ -152,9 +153,10 @@ impl<'s> Page<'s> {
         let what = what.map_or_else(String::new, |what| format!(": {what}"));
         // A list begins after an empty line.
         let is_in_list = |last: &str| last.starts_with("- ") || last.starts_with("  ");
-        let gap = match self.text.lines().last().is_some_and(is_in_list) {
-            true => "",
-            false => "\n",
+        let gap = if self.text.lines().last().is_some_and(is_in_list) {
+            ""
+        } else {
+            "\n"
         };
         self.text += &format!("{gap}- {}\n", wrapped(&format!("{value}{what}"), "  "));
     }

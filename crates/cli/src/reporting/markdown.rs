@@ -30,16 +30,14 @@ pub fn header(
         .iter()
         .map(|(step, head)| format!("*{head}* is the step `{step}`"))
         .collect();
-    let mut lines = vec![
+    let mut lines =
+        vec![
         format!("adapter: {}", results.adapter),
         format!("date: {date} (UTC)"),
         format!(
             "times: on the GPU, medians of {} after {} to warm up; {}; *frame* is from the first \
              pass's begin to the last one's end",
-            match are_paths {
-                true => "a path's frames".to_owned(),
-                false => frames(results.frames),
-            },
+            if are_paths { "a path's frames".to_owned() } else { frames(results.frames) },
             results.warmup,
             heads.join(", ")
         ),
@@ -282,9 +280,10 @@ fn unavailable(runs: &[Run]) -> Vec<String> {
         }
     }
     let text = |(preset, reason, maps): (&str, &str, Vec<String>)| {
-        let maps = match maps.is_empty() {
-            true => String::new(),
-            false => format!(", map {},", maps.join(", ")),
+        let maps = if maps.is_empty() {
+            String::new()
+        } else {
+            format!(", map {},", maps.join(", "))
         };
         format!("{preset}{maps} is unavailable: {reason}")
     };

@@ -73,9 +73,10 @@ fn maps(runs: &[&Run]) -> Option<String> {
         .iter()
         .filter_map(|run| Some(run.map_size?.to_string()))
         .collect();
-    Some(match maps.is_empty() {
-        true => preset.clone(),
-        false => format!("{preset} {}", maps.join(" / ")),
+    Some(if maps.is_empty() {
+        preset.clone()
+    } else {
+        format!("{preset} {}", maps.join(" / "))
     })
 }
 

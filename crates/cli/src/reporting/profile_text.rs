@@ -149,14 +149,16 @@ fn conditions(profile: &Profile) -> String {
     let params: Vec<String> = params
         .map(|(name, value)| format!("{name} = {value}"))
         .collect();
-    let params = match params.is_empty() {
-        true => "none".to_owned(),
-        false => params.join(", "),
+    let params = if params.is_empty() {
+        "none".to_owned()
+    } else {
+        params.join(", ")
     };
     let timed = profile.timed() as u32;
-    let stopped = match timed < *asked {
-        true => format!(", stopped before the {asked} asked for"),
-        false => String::new(),
+    let stopped = if timed < *asked {
+        format!(", stopped before the {asked} asked for")
+    } else {
+        String::new()
     };
     let trust = match &adapter.gpu_unavailable {
         None => "trusted: they agree with wall time".to_owned(),

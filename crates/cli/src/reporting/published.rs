@@ -70,7 +70,7 @@ fn parse(label: &str, file: &SourceFile) -> (Vec<Row>, Vec<Diagnostic>) {
         let Ok(record) = record else { continue };
         let line = Line { file, record };
         let Some(columns) = &columns else {
-            match Columns::of(&line) {
+            match Columns::new(&line) {
                 Ok(found) => columns = Some(found),
                 Err(faults) => return (Vec::new(), faults),
             }

@@ -109,9 +109,12 @@ const FAMILIES: [Family; 9] = [
         y: "% of rt's",
         note: "Above 100: faster than tracing every pixel, by whole frames. Without nsm.",
         groups: Groups::Maps,
-        bars: |cell| match is_nsm(cell) {
-            true => Vec::new(),
-            false => of_tracer(cell, ["fps"; 2], Measured::fps, Measured::fps),
+        bars: |cell| {
+            if is_nsm(cell) {
+                Vec::new()
+            } else {
+                of_tracer(cell, ["fps"; 2], Measured::fps, Measured::fps)
+            }
         },
     },
 ];
@@ -160,9 +163,10 @@ pub fn draw(
         let figure = Figure {
             title: title.into(),
             notes,
-            looks: match panels.iter().flat_map(|panel| &panel.series).any(is_method) {
-                true => methods.clone(),
-                false => Vec::new(),
+            looks: if panels.iter().flat_map(|panel| &panel.series).any(is_method) {
+                methods.clone()
+            } else {
+                Vec::new()
             },
             panels,
             columns: 2,

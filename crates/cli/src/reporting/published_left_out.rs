@@ -25,9 +25,10 @@ pub fn views_left_out(
     }
     let groups = groups.plural();
     let why = format!("no two {groups} of which there are figures on both sides");
-    Some(match lacking.len() == all.len() {
-        true => format!("not drawn: {chart}: {why}"),
-        false => format!("not in {chart}: {}: {why}", lacking.join(", ")),
+    Some(if lacking.len() == all.len() {
+        format!("not drawn: {chart}: {why}")
+    } else {
+        format!("not in {chart}: {}: {why}", lacking.join(", "))
     })
 }
 
@@ -51,9 +52,10 @@ pub fn without_counterpart<'a>(
             own.any(|cell| cell.run.preset == *name)
         };
         // Of several presets, one is enough.
-        let known = match row.named.iter().any(is_ours) {
-            true => is_ours(&row.preset),
-            false => row.named.first() == Some(&row.preset),
+        let known = if row.named.iter().any(is_ours) {
+            is_ours(&row.preset)
+        } else {
+            row.named.first() == Some(&row.preset)
         };
         if !preset.is_empty() && known {
             of_scene(&mut theirs, scene).add(view, viewport, map, preset);

@@ -216,7 +216,7 @@ impl Columns {
     ///
     /// # Errors
     /// Columns that nobody knows or that are missing.
-    pub fn of(line: &Line) -> Result<Self, Vec<Diagnostic>> {
+    pub fn new(line: &Line) -> Result<Self, Vec<Diagnostic>> {
         let names: Vec<&str> = line.record.iter().map(str::trim).collect();
         let mut faults = Vec::new();
         for (index, name) in names.iter().enumerate() {
@@ -235,9 +235,10 @@ impl Columns {
                 0
             })
         });
-        match faults.is_empty() {
-            true => Ok(Self(columns)),
-            false => Err(faults),
+        if faults.is_empty() {
+            Ok(Self(columns))
+        } else {
+            Err(faults)
         }
     }
 

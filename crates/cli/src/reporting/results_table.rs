@@ -48,9 +48,10 @@ fn heading(results: &Results, run: &Run, runs: &[Run]) -> String {
         area,
         ..
     } = run;
-    let what = match are_paths(runs) {
-        true => format!("path {view}, counts of all its frames together"),
-        false => format!("view {view}"),
+    let what = if are_paths(runs) {
+        format!("path {view}, counts of all its frames together")
+    } else {
+        format!("view {view}")
     };
     let title = format!("{} · {what} · {}", results.scene, size(*viewport));
     let mut lines = vec![

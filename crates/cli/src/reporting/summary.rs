@@ -182,9 +182,10 @@ fn kept(of: &Measured) -> &FrameTimes {
 }
 
 fn median(times: &FrameTimes, by_wall: bool) -> Option<f64> {
-    match by_wall {
-        true => Some(times.wall_ms.median),
-        false => times.gpu_ms.map(|gpu| gpu.median),
+    if by_wall {
+        Some(times.wall_ms.median)
+    } else {
+        times.gpu_ms.map(|gpu| gpu.median)
     }
 }
 

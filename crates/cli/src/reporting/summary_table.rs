@@ -174,9 +174,10 @@ impl<'a> Summary<'a> {
         let are_paths = are_paths(self.runs.iter().copied());
         let by_wall = by_wall(&group.rows);
         let mut heads = vec!["method"];
-        heads.extend(match group.is_hard {
-            true => &["wrong outside band", "%", "in band"][..],
-            false => &["RMSE"][..],
+        heads.extend(if group.is_hard {
+            &["wrong outside band", "%", "in band"][..]
+        } else {
+            &["RMSE"][..]
         });
         if are_paths {
             heads.extend(["worst frame", "shimmer"]);
@@ -197,18 +198,22 @@ impl<'a> Summary<'a> {
                 return cells;
             }
             let wrong = row.wrong();
-            match group.is_hard {
-                true => cells.extend([
+            if group.is_hard {
+                cells.extend([
                     thousands(wrong.outside_band),
                     percent(wrong.outside_band, wrong.facing_light),
                     thousands(wrong.in_band),
-                ]),
-                false => cells.push(or_dash(row.rmse(), |rmse| format!("{rmse:.5}"))),
+                ])
+            } else {
+                cells.push(or_dash(row.rmse(), |rmse| format!("{rmse:.5}")))
             }
             if are_paths {
-                cells.push(or_dash(row.worst_frame(), |frame| match group.is_hard {
-                    true => percent(frame.wrong, frame.facing_light),
-                    false => format!("{:.5}", frame.error()),
+                cells.push(or_dash(row.worst_frame(), |frame| {
+                    if group.is_hard {
+                        percent(frame.wrong, frame.facing_light)
+                    } else {
+                        format!("{:.5}", frame.error())
+                    }
                 }));
                 let shimmer = row.shimmer();
                 cells.push(or_dash(shimmer, |part| percent(part.count, part.of)));
@@ -353,9 +358,10 @@ impl<'a> Summary<'a> {
 impl Group<'_> {
     /// What is judged against what.
     pub fn title(&self) -> &'static str {
-        match self.is_hard {
-            true => "Hard answers against the hard reference",
-            false => "Graded answers against the hard reference",
+        if self.is_hard {
+            "Hard answers against the hard reference"
+        } else {
+            "Graded answers against the hard reference"
         }
     }
 

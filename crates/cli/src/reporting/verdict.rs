@@ -167,16 +167,17 @@ fn none_exact(all: &[Contender]) -> Vec<String> {
         return Vec::new();
     };
     let of = |of: &Contender| format!("`{}` ({}, {} ms)", of.label, of.error(), ms(of.frame));
-    vec![match least.index == fastest.index {
-        true => format!(
+    vec![if least.index == fastest.index {
+        format!(
             "None is exact here; the least wrong and the fastest is {}.",
             of(least)
-        ),
-        false => format!(
+        )
+    } else {
+        format!(
             "None is exact here; the least wrong is {}, the fastest {}.",
             of(least),
             of(fastest)
-        ),
+        )
     }]
 }
 
@@ -190,13 +191,14 @@ fn graded(all: &[Contender], rows: &[Row]) -> Verdict {
         return Verdict::default();
     };
     let of = |of: &Contender| format!("`{}` ({}, {} ms)", of.label, of.error(), ms(of.frame));
-    let mut text = match least.index == fastest.index {
-        true => format!("The least error and the fastest: {}", of(least)),
-        false => format!(
+    let mut text = if least.index == fastest.index {
+        format!("The least error and the fastest: {}", of(least))
+    } else {
+        format!(
             "The least error: {}; the fastest: {}",
             of(least),
             of(fastest)
-        ),
+        )
     };
     let own = rows
         .iter()

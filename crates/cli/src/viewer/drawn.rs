@@ -127,7 +127,7 @@ fn lit(shot: &Shot, method: &MethodShot, show: &Show) -> Result<Drawn, String> {
     Ok(Drawn {
         image: Some(image.map_err(|error| error.to_string())?),
         legend,
-        texels: numbers.and_then(|part| Texels::of(part, None)),
+        texels: numbers.and_then(|part| Texels::new(part, None)),
         ..Drawn::default()
     })
 }
@@ -143,7 +143,7 @@ fn difference(shot: &Shot, method: &MethodShot, answer: &Answer) -> Result<Drawn
         .collect();
     let outputs = Outputs::of_light(contents, shot.light_number, &right.reference)?;
     let wrong = |error: skiagraph_reference::Error| error.to_string();
-    let judgement = Judgement::of(&outputs, right).map_err(wrong)?;
+    let judgement = Judgement::new(&outputs, right).map_err(wrong)?;
     let reference = &right.reference;
     let image = match judgement.graded {
         Some(_) => Image::difference(&outputs.shown(), &right.shares(), reference),
@@ -232,7 +232,7 @@ fn material(method: &MethodShot, name: &str, reading: &Reading) -> Drawn {
     }
     let parts = content.split();
     let part = &parts[reading.part.min(parts.len() - 1)];
-    let texels = Texels::of(part, decoding.planes);
+    let texels = Texels::new(part, decoding.planes);
     let channel = |wanted: usize| {
         let last = texels.as_ref().map_or(0, |texels| texels.channels() - 1);
         wanted.min(last)
@@ -241,7 +241,7 @@ fn material(method: &MethodShot, name: &str, reading: &Reading) -> Drawn {
         .as_ref()
         .map(|texels| texels.histogram(channel(reading.channel)));
     let material = name.split('@').next().unwrap_or(name);
-    let picture = Picture::of(material, part, decoding.planes);
+    let picture = Picture::new(material, part, decoding.planes);
     let (mut image, mut legend) = match picture {
         Ok(picture) => (
             Some(picture.image),
@@ -273,12 +273,13 @@ fn table(text: &str) -> Drawn {
     let lines = text.lines().count().saturating_sub(1);
     let shown: Vec<&str> = text.lines().take(MOST_LINES + 1).collect();
     Drawn {
-        legend: match lines > MOST_LINES {
-            true => format!(
+        legend: if lines > MOST_LINES {
+            format!(
                 "the first {MOST_LINES} of {} items",
                 thousands(lines as u64)
-            ),
-            false => format!("{} items", thousands(lines as u64)),
+            )
+        } else {
+            format!("{} items", thousands(lines as u64))
         },
         table: Some(shown.join("\n")),
         ..Drawn::default()

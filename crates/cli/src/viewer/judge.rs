@@ -35,7 +35,7 @@ pub struct Question {
 
 impl Question {
     /// About a frame.
-    pub fn of(shot: &Shot) -> Self {
+    pub fn new(shot: &Shot) -> Self {
         Self {
             scene: shot.scene.clone(),
             camera: shot.camera,
@@ -91,7 +91,7 @@ impl Judge {
             return;
         }
         self.forget();
-        let question = Question::of(shot);
+        let question = Question::new(shot);
         // The thread ends before this only by a panic, which has been printed.
         let _ = self.questions.send(question.clone());
         self.last = Some(question);

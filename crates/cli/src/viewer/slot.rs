@@ -128,7 +128,7 @@ impl Slot {
                 Ok(shot) => self.last = shot,
                 Err(error) => {
                     if let Some(planned) = self.planned.clone() {
-                        self.refuse(planned, Refusal::of(error))?;
+                        self.refuse(planned, Refusal::new(error))?;
                     }
                     self.forget_device();
                 }
@@ -146,10 +146,7 @@ impl Slot {
     fn refuse(&mut self, planned: PlannedFor, refusal: Refusal) -> Result<(), Lost> {
         self.refused = Some(planned);
         self.error = Some(refusal.text);
-        match refusal.is_fatal {
-            true => Err(Lost),
-            false => Ok(()),
-        }
+        if refusal.is_fatal { Err(Lost) } else { Ok(()) }
     }
 
     /// Brings the executor to what is wanted.
@@ -171,22 +168,22 @@ impl Slot {
         if let (Some(executor), Some(planned)) = (&mut self.executor, &self.planned)
             && planned.only_sets_params(next)
         {
-            executor.refresh(provider).map_err(Refusal::of)?;
+            executor.refresh(provider).map_err(Refusal::new)?;
             for (name, value) in &next.wanted.params {
                 let set = executor.set_param(name, value.clone(), provider);
-                set.map_err(Refusal::of)?;
+                set.map_err(Refusal::new)?;
             }
         } else {
-            let plan = plan(preset, next, Capabilities::of(gpu), provider)?;
+            let plan = plan(preset, next, Capabilities::new(gpu), provider)?;
             match &mut self.executor {
                 Some(executor) => {
                     executor
                         .replace_graph(plan, provider)
-                        .map_err(Refusal::of)?;
+                        .map_err(Refusal::new)?;
                 }
                 None => {
                     let made = frame::executor(gpu, plan, provider);
-                    self.executor = Some(made.map_err(Refusal::of)?);
+                    self.executor = Some(made.map_err(Refusal::new)?);
                 }
             }
         }
@@ -244,7 +241,7 @@ struct Refusal {
 }
 
 impl Refusal {
-    fn of(error: ExecuteError) -> Self {
+    fn new(error: ExecuteError) -> Self {
         Self {
             text: match &error {
                 ExecuteError::Plan(found) => found.render(false),
@@ -323,7 +320,7 @@ fn shot(
         Some((name.clone(), plan.param(name)?.clone()))
     });
     let readings = plan.outputs().into_iter().map(|output| {
-        let reading = Decoding::of(plan, &output.name, planes);
+        let reading = Decoding::new(plan, &output.name, planes);
         (output.name, reading)
     });
     MethodShot {

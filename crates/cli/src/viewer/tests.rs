@@ -29,7 +29,7 @@ struct Desk {
 fn arguments(methods: &[&str]) -> ViewArgs {
     ViewArgs {
         methods: methods.iter().map(|&it| it.to_owned()).collect(),
-        scene: SceneArgs::of("park"),
+        scene: SceneArgs::new("park"),
         size: Size([96, 64]),
         map_size: Some(128),
         params: Vec::new(),
@@ -130,7 +130,7 @@ fn a_param_moved_changes_the_picture_and_defaults_bring_it_back() {
 #[test]
 fn a_lamp_is_moved_and_its_cone_narrowed() {
     let mut arguments = arguments(&["rt"]);
-    arguments.scene = SceneArgs::of(concat!(
+    arguments.scene = SceneArgs::new(concat!(
         env!("CARGO_MANIFEST_DIR"),
         "/../../scenes/lamps.ron"
     ));

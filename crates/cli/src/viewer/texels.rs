@@ -39,7 +39,7 @@ pub struct Histogram {
 
 impl Texels {
     /// Of one part of a texture; `None` of a buffer, or a format that is not read as numbers.
-    pub fn of(part: &Content, planes: Option<ClipPlanes>) -> Option<Self> {
+    pub fn new(part: &Content, planes: Option<ClipPlanes>) -> Option<Self> {
         let Content::Texture { format, parts, .. } = part else {
             return None;
         };
@@ -181,7 +181,7 @@ mod tests {
     #[test]
     fn a_histogram_counts_every_value_once() {
         let values = [0.0, 0.5, 1.0, 1.0, f32::NAN, f32::INFINITY];
-        let texels = Texels::of(&floats(F::R32Float, [3, 2], &values), None).unwrap();
+        let texels = Texels::new(&floats(F::R32Float, [3, 2], &values), None).unwrap();
         let histogram = texels.histogram(0);
         assert_eq!((histogram.finite, histogram.others), (4, 2));
         assert_eq!(histogram.range, [0.0, 1.0]);
@@ -195,7 +195,7 @@ mod tests {
     #[test]
     fn channels_are_read_and_counted_by_themselves() {
         let values = [1.0, -2.0, 3.0, 5.0];
-        let texels = Texels::of(&floats(F::Rg32Float, [2, 1], &values), None).unwrap();
+        let texels = Texels::new(&floats(F::Rg32Float, [2, 1], &values), None).unwrap();
         assert_eq!(texels.text([1, 0]).as_deref(), Some("3, 5"));
         assert_eq!(texels.text([2, 0]), None);
         assert_eq!(texels.histogram(1).range, [-2.0, 5.0]);
@@ -209,7 +209,7 @@ mod tests {
         };
         let depth = |z: f32| (11.0 - z) / (z * 10.0);
         let content = floats(F::Depth32Float, [3, 1], &[depth(2.0), depth(4.0), 0.0]);
-        let texels = Texels::of(&content, Some(planes)).unwrap();
+        let texels = Texels::new(&content, Some(planes)).unwrap();
         let histogram = texels.histogram(0);
         assert_eq!(histogram.finite, 2);
         assert!((histogram.range[1] - 4.0).abs() < 1e-4, "{histogram:?}");
@@ -220,10 +220,10 @@ mod tests {
     #[test]
     fn equal_and_missing_values_divide_by_nothing() {
         let same = floats(F::R32Float, [2, 1], &[3.0, 3.0]);
-        let histogram = Texels::of(&same, None).unwrap().histogram(0);
+        let histogram = Texels::new(&same, None).unwrap().histogram(0);
         assert_eq!(histogram.bins[0], 2);
         let none = floats(F::R32Float, [1, 1], &[f32::NAN]);
-        assert_eq!(Texels::of(&none, None).unwrap().histogram(0).finite, 0);
-        assert!(Texels::of(&Content::Buffer(vec![0; 4]), None).is_none());
+        assert_eq!(Texels::new(&none, None).unwrap().histogram(0).finite, 0);
+        assert!(Texels::new(&Content::Buffer(vec![0; 4]), None).is_none());
     }
 }

@@ -133,9 +133,10 @@ impl Worker {
         if self.failed_scene.as_ref() == Some(&wanted.scene) {
             return false;
         }
-        let args = match self.scene_args.scene == wanted.scene {
-            true => self.scene_args.clone(),
-            false => SceneArgs::of(&wanted.scene),
+        let args = if self.scene_args.scene == wanted.scene {
+            self.scene_args.clone()
+        } else {
+            SceneArgs::new(&wanted.scene)
         };
         match SceneSelection::load(&args) {
             Ok(SceneSelection { scene, views }) => {
@@ -186,9 +187,10 @@ impl Worker {
         let useful = graphs.fold(wgpu::Features::empty(), |all, it| all | it.features());
         let experimental = wgpu::Features::all_experimental_mask();
         let missing = (useful & self.gpu.adapter.features()) - self.gpu.device.features();
-        match (missing - experimental).is_empty() {
-            true => Ok(()),
-            false => self.reopen(),
+        if (missing - experimental).is_empty() {
+            Ok(())
+        } else {
+            self.reopen()
         }
     }
 
@@ -224,7 +226,7 @@ impl Worker {
             timing: self.timing,
             all_passes: wanted.all_passes,
             seconds: self.began.elapsed().as_secs_f32(),
-            planes: ClipPlanes::of(&view),
+            planes: ClipPlanes::new(&view),
         };
         let mut methods = Vec::new();
         for (slot, method) in self.slots.iter_mut().zip(&wanted.methods) {

@@ -715,10 +715,10 @@ fn params_without_effect_are_told_once() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("lamps.ron"), LAMPS).unwrap();
     let told = |rest: &str| {
-        let line = format!("{rest} --scene lamps.ron --size 16x16 --set fit=eye");
+        let line = format!("{rest} --scene lamps.ron --size 16x16 --set fit=camera");
         let output = skiagraph(folder.path(), &line);
         let log = String::from_utf8_lossy(&output.stderr).into_owned();
-        log.matches("fit=eye has no effect on nsm under a spot light")
+        log.matches("fit=camera has no effect on nsm under a spot light")
             .count()
     };
     let compare = "compare nsm rt --frames 1 --warmup 0 --images none --out out";

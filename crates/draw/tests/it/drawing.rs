@@ -10,7 +10,7 @@ use skiagraph_graph::{Capture, PlanRequest};
 fn drawing(files: &Files, outputs: Option<&[&str]>) -> Drawing {
     let mut request = PlanRequest::new([64, 32], &Triangle);
     request.outputs = outputs.map(|names| names.iter().map(|name| (*name).to_owned()).collect());
-    Drawing::of(&right(right(load(files)).plan(&request))).titled("graph.ron")
+    Drawing::from_plan(&right(right(load(files)).plan(&request))).titled("graph.ron")
 }
 
 fn generated(passes: usize) -> Drawing {
@@ -84,7 +84,7 @@ fn a_capture_is_seen_too() {
         material: "shown".to_owned(),
         after: Some("show".to_owned()),
     }];
-    let drawing = Drawing::of(&right(right(load(&small())).plan(&request)));
+    let drawing = Drawing::from_plan(&right(right(load(&small())).plan(&request)));
     assert!(drawing.passes.iter().all(|pass| pass.culled.is_none()));
     let copy = drawing.passes.iter().find(|pass| pass.kind == "Capture");
     let copied = drawing

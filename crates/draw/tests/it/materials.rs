@@ -101,7 +101,7 @@ fn drawing() -> Drawing {
         material: "fog.mip[1]".to_owned(),
         after: Some("sample[1].fill".to_owned()),
     }];
-    Drawing::of(&right(right(load(&files)).plan(&request)))
+    Drawing::from_plan(&right(right(load(&files)).plan(&request)))
 }
 
 /// The hover titles of a chart.
@@ -242,7 +242,7 @@ fn clusters_follow_groups_and_includes() {
         material: "sample[1].eye.image".to_owned(),
         after: Some("sample[1].eye.draw".to_owned()),
     }];
-    let drawing = Drawing::of(&right(right(load(&files)).plan(&request)));
+    let drawing = Drawing::from_plan(&right(right(load(&files)).plan(&request)));
     let dot = drawing.to_dot();
     let mut clusters: Vec<&str> = Vec::new();
     let mut nodes = BTreeSet::new();

@@ -4,7 +4,7 @@
 //! are not compared, that would cost more than most passes: every write and every word of the host
 //! that something has changed is a new number, and a pass remembers the numbers that it has seen.
 
-use super::pass::{GpuPass, Seen};
+use super::pass::{GpuPass, InputVersions};
 use crate::memory::physical::{PingPong, Versions};
 use skiagraph_graph::{Origin, Plan, ResourceId, When};
 use std::collections::BTreeMap;
@@ -30,7 +30,7 @@ pub(super) type HostCopy = (ResourceId, ResourceId);
 
 impl Contents {
     /// Contents of a plan of which nothing is known.
-    pub fn of(plan: &Plan, clock: u64) -> Self {
+    pub fn new(plan: &Plan, clock: u64) -> Self {
         let mut contents = Self {
             versions: vec![0; plan.resources().len()],
             clock,
@@ -98,19 +98,19 @@ impl Contents {
 
     fn has_reason(&self, plan: &Plan, pass: &GpuPass, at: usize, runs: &[bool]) -> bool {
         let conditions = &plan.schedule().conditions;
-        match (conditions.when[at], &pass.seen.versions) {
+        match (conditions.when[at], &pass.input_versions.versions) {
             (When::Always, _) => true,
             (When::Never | When::Follows, _) => false,
             (_, None) => true,
             (When::Once, Some(_)) => false,
             (When::OnChange, Some(seen)) => {
-                let inputs = pass.seen.inputs.iter().zip(seen);
+                let inputs = pass.input_versions.inputs.iter().zip(seen);
                 let mut changed = inputs.map(|(id, seen)| {
                     let now = self.versions[counted(plan, *id).unwrap_or(*id).index()];
                     let writer = conditions.writers[id.index()];
                     now != *seen || writer.is_some_and(|group| runs[group])
                 });
-                pass.seen.stale || changed.any(|changed| changed)
+                pass.input_versions.stale || changed.any(|changed| changed)
             }
         }
     }
@@ -148,11 +148,11 @@ impl Contents {
             if !(runs[at] && remembers) {
                 continue;
             }
-            let Seen {
+            let InputVersions {
                 inputs,
                 versions,
                 stale,
-            } = &mut pass.seen;
+            } = &mut pass.input_versions;
             let seen = versions.get_or_insert_default();
             seen.clear();
             // Of what two allocations take turns in, the pass saw what the frame began with.

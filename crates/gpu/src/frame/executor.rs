@@ -2,15 +2,15 @@
 
 use super::{
     fetch::Fetch,
-    flight::{Flight, Flights, names},
+    in_flight::{FrameInFlight, FramesInFlight, names},
     report::{Frame, FrameReport},
-    state::{State, Turn},
+    state::{FrameDecision, State},
     uniform::FrameUniform,
 };
 use crate::{
     device::partial,
     error::{ExecuteError, poll, wait, with_table},
-    memory::{memory::Maker, physical::PingPong},
+    memory::{memory::ResourceFactory, physical::PingPong},
     pipelines::pipelines::Pipelines,
     presence::Presence,
     provider::Provider,
@@ -39,10 +39,10 @@ pub struct Executor {
     pub(super) state: State,
     /// Whose turn it was in the frame that was encoded last.
     pub(super) ping_pong: PingPong,
-    turn: Turn,
+    decision: FrameDecision,
     /// Frames that were encoded.
     frames: u32,
-    pub(super) flights: Flights,
+    pub(super) frames_in_flight: FramesInFlight,
     /// The passes that the frame that was encoded last did not run.
     skipped: Vec<Arc<str>>,
 }
@@ -64,12 +64,12 @@ impl Executor {
         let presence = Presence::new(device)?;
         check_backend(device, &plan)?;
         let mut pipelines = Pipelines::default();
-        let mut maker = Maker {
+        let mut factory = ResourceFactory {
             device,
             queue,
             provider,
         };
-        let state = State::new(plan, &mut pipelines, &mut maker)?;
+        let state = State::new(plan, &mut pipelines, &mut factory)?;
         let mut executor = Self {
             device: device.clone(),
             presence,
@@ -77,9 +77,9 @@ impl Executor {
             pipelines,
             ping_pong: state.ping_pong(true),
             state,
-            turn: Turn::default(),
+            decision: FrameDecision::default(),
             frames: 0,
-            flights: Flights::default(),
+            frames_in_flight: FramesInFlight::default(),
             skipped: Vec::new(),
         };
         executor.state.bind_what_can_be(device)?;
@@ -107,53 +107,57 @@ impl Executor {
     ) -> Result<u32, ExecuteError> {
         self.presence.check()?;
         self.grow_by_itself()?;
-        self.state.decide(frame.all, &mut self.turn);
-        let Turn { runs, ping_pong } = &self.turn;
+        self.state.decide(frame.all, &mut self.decision);
+        let FrameDecision { runs, ping_pong } = &self.decision;
         self.state.bind(runs, ping_pong, &self.device)?;
-        let mut flight = self.flights.begin();
-        if let Err(error) = self.prepare(&mut flight, frame) {
-            self.flights.put_aside(flight);
+        let mut frame_in_flight = self.frames_in_flight.begin();
+        if let Err(error) = self.prepare(&mut frame_in_flight, frame) {
+            self.frames_in_flight.recycle(frame_in_flight);
             return Err(with_table(error, self.plan()));
         }
         // From here on nothing can fail.
-        self.record(&mut flight, encoder);
-        let index = flight.index;
-        self.skipped.clone_from(&flight.skipped);
-        self.flights.enter(flight, encoder);
-        std::mem::swap(&mut self.ping_pong, &mut self.turn.ping_pong);
+        self.record(&mut frame_in_flight, encoder);
+        let index = frame_in_flight.index;
+        self.skipped.clone_from(&frame_in_flight.skipped);
+        self.frames_in_flight.submit(frame_in_flight, encoder);
+        std::mem::swap(&mut self.ping_pong, &mut self.decision.ping_pong);
         self.frames = self.frames.wrapping_add(1);
         Ok(index)
     }
 
     /// Gets ready what a frame needs besides the passes' own.
-    fn prepare(&mut self, flight: &mut Flight, frame: &Frame<'_>) -> Result<(), ExecuteError> {
+    fn prepare(
+        &mut self,
+        frame_in_flight: &mut FrameInFlight,
+        frame: &Frame<'_>,
+    ) -> Result<(), ExecuteError> {
         let (state, device) = (&self.state, &self.device);
-        flight.index = self.frames;
+        frame_in_flight.index = self.frames;
         if state.uniform.is_some() {
             let values = (self.frames, frame.seconds);
-            FrameUniform::write(&mut flight.uniform, values, device)?;
+            FrameUniform::write(&mut frame_in_flight.uniform, values, device)?;
         }
         for name in frame.read {
-            let source = (&state.plan, &state.memory, &self.turn.ping_pong);
-            let staging = &mut self.flights.staging;
+            let source = (&state.plan, &state.memory, &self.decision.ping_pong);
+            let staging = &mut self.frames_in_flight.staging;
             let fetch = Fetch::new(name, &state.readables, source, staging, device)?;
-            flight.fetches.push(fetch);
+            frame_in_flight.fetches.push(fetch);
         }
-        if frame.timing && flight.timer.is_none() {
-            flight.timer = Some(Timer::new(device, &self.queue)?);
+        if frame.timing && frame_in_flight.timer.is_none() {
+            frame_in_flight.timer = Some(Timer::new(device, &self.queue)?);
         }
-        flight.is_timed = frame.timing;
+        frame_in_flight.is_timed = frame.timing;
         if frame.statistics {
-            flight.counters = Counters::new(&state.plan, device)?;
+            frame_in_flight.counters = Counters::new(&state.plan, device)?;
         }
         Ok(())
     }
 
     /// Encodes a frame that everything is ready for.
-    fn record(&mut self, flight: &mut Flight, encoder: &mut wgpu::CommandEncoder) {
+    fn record(&mut self, frame_in_flight: &mut FrameInFlight, encoder: &mut wgpu::CommandEncoder) {
         let state = &mut self.state;
-        let Turn { runs, ping_pong } = &self.turn;
-        if let (Some(id), Some(copy)) = (state.uniform, &mut flight.uniform)
+        let FrameDecision { runs, ping_pong } = &self.decision;
+        if let (Some(id), Some(copy)) = (state.uniform, &mut frame_in_flight.uniform)
             && let Ok(uniform) = state.memory.buffer(id, ping_pong)
         {
             copy.copy(uniform, encoder);
@@ -161,16 +165,23 @@ impl Executor {
         let memory = &state.memory;
         let mut copy_host = |copy| State::copy_host(memory, copy, encoder);
         state.contents.first_copies(&mut copy_host);
-        state.encode(&self.turn, flight, encoder);
-        if let Some(timer) = flight.timer.as_mut().filter(|_| flight.is_timed) {
+        state.encode(&self.decision, frame_in_flight, encoder);
+        if let Some(timer) = frame_in_flight
+            .timer
+            .as_mut()
+            .filter(|_| frame_in_flight.is_timed)
+        {
             timer.resolve(encoder);
         }
-        if let Some(counters) = &flight.counters {
+        if let Some(counters) = &frame_in_flight.counters {
             counters.resolve(encoder);
         }
-        flight.fetches.iter().for_each(|fetch| fetch.copy(encoder));
-        for watch in &mut state.watches {
-            watch.copy(&state.plan, &state.memory, ping_pong, encoder);
+        frame_in_flight
+            .fetches
+            .iter()
+            .for_each(|fetch| fetch.copy(encoder));
+        for readback in &mut state.growth_readbacks {
+            readback.copy(&state.plan, &state.memory, ping_pong, encoder);
         }
         let (plan, passes) = (&state.plan, &mut state.passes);
         state.contents.ran(plan, passes, runs, ping_pong);
@@ -191,13 +202,13 @@ impl Executor {
             return Ok(None);
         }
         poll(&self.device, wgpu::PollType::Poll)?;
-        self.flights.report(&self.device, &self.presence)
+        self.frames_in_flight.report(&self.device, &self.presence)
     }
 
     /// How many frames have asked for times or contents that were not handed out yet. A host that
     /// asks in every frame must ask [`poll`](Self::poll), too, or they become ever more.
     pub fn under_way(&self) -> usize {
-        self.flights.asked()
+        self.frames_in_flight.asked()
     }
 
     /// Waits until all that was submitted is done, and hands out what [`poll`](Self::poll) would.
@@ -234,7 +245,7 @@ impl Executor {
         self.presence.check()?;
         let waited = Instant::now();
         loop {
-            if let Some(report) = self.flights.report(&self.device, &self.presence)? {
+            if let Some(report) = self.frames_in_flight.report(&self.device, &self.presence)? {
                 return Ok(report);
             }
             if self.under_way() == 0 {
@@ -254,8 +265,8 @@ impl Executor {
             std::thread::sleep(Duration::from_micros(50));
         }
         // The profiler never gives up a frame whose timestamps cannot be mapped.
-        self.flights.give_up_times();
-        let report = self.flights.report(&self.device, &self.presence)?;
+        self.frames_in_flight.give_up_times();
+        let report = self.frames_in_flight.report(&self.device, &self.presence)?;
         report.ok_or(ExecuteError::NotSubmitted)
     }
 
@@ -280,9 +291,10 @@ pub(super) fn check_backend(device: &wgpu::Device, plan: &Plan) -> Result<(), Ex
 
 /// Names for a message.
 pub(super) fn list(names: &[&str]) -> String {
-    match names.is_empty() {
-        true => "none".to_owned(),
-        false => names.join(", "),
+    if names.is_empty() {
+        "none".to_owned()
+    } else {
+        names.join(", ")
     }
 }
 

@@ -1,6 +1,6 @@
 //! Buffers that grow: after a frame the counter says how many items it would have needed.
 
-use super::{executor::Executor, replan::ReplanReport, watch::Watch};
+use super::{executor::Executor, growth_readback::GrowthReadback, replan::ReplanReport};
 use crate::{
     error::{ExecuteError, poll},
     provider::{Provider, ProviderError},
@@ -27,7 +27,12 @@ impl Executor {
         &mut self,
         provider: &mut dyn Provider,
     ) -> Result<Option<ReplanReport>, ExecuteError> {
-        if !self.state.watches.iter().any(Watch::is_asked) {
+        if !self
+            .state
+            .growth_readbacks
+            .iter()
+            .any(GrowthReadback::is_asked)
+        {
             return Ok(None);
         }
         poll(&self.device, wgpu::PollType::Poll)?;
@@ -57,10 +62,10 @@ impl Executor {
 
     /// The plan with room for all that frames which are done have asked for; `None` if they had it.
     fn larger(&mut self) -> Option<Result<Plan, ExecuteError>> {
-        let watches = self.state.watches.iter_mut();
-        let wanted = watches.filter_map(|watch| {
-            let wanted = watch.wanted()?;
-            Some((watch.name.clone(), wanted))
+        let growth_readbacks = self.state.growth_readbacks.iter_mut();
+        let wanted = growth_readbacks.filter_map(|readback| {
+            let wanted = readback.wanted()?;
+            Some((readback.name.clone(), wanted))
         });
         let wanted: Vec<(String, u64)> = wanted.collect();
         if wanted.is_empty() {
@@ -85,7 +90,7 @@ impl Executor {
                 | ExecuteError::Resource { .. }
                 | ExecuteError::Gpu { .. },
             ) => {
-                self.state.watches.clear();
+                self.state.growth_readbacks.clear();
                 Ok(None)
             }
             report => report.map(Some),

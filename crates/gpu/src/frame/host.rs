@@ -5,7 +5,7 @@ use crate::{
     error::ExecuteError,
     memory::{
         import::differs,
-        memory::{Maker, Memory},
+        memory::{Memory, ResourceFactory},
         physical::Physical,
     },
     provider::Provider,
@@ -123,20 +123,21 @@ impl Executor {
             }
             self.presence.check()?;
             let before = state.memory.host(id).cloned();
-            let mut maker = Maker {
+            let mut factory = ResourceFactory {
                 device: &self.device,
                 queue: &self.queue,
                 provider: &mut *provider,
             };
-            state.memory.refresh(id, &state.plan, None, &mut maker)?;
+            state.memory.refresh(id, &state.plan, None, &mut factory)?;
             state.contents.touch(id);
             let now = state.memory.host(id);
             if now == before.as_ref() {
                 continue;
             }
-            match Memory::is_alike(now, before.as_ref()) {
-                true => state.rebind(id),
-                false => state.unbind(id),
+            if Memory::is_alike(now, before.as_ref()) {
+                state.rebind(id)
+            } else {
+                state.unbind(id)
             }
         }
         Ok(())

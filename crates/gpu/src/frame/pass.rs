@@ -30,12 +30,12 @@ pub(super) struct GpuPass {
     /// The states for which the device has taken it as it is but for the content of buffers.
     tried: Vec<Vec<Versions>>,
     /// What decides whether it runs again.
-    pub seen: Seen,
+    pub input_versions: InputVersions,
 }
 
 /// What a pass reads, and the versions of it when the pass ran last.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Seen {
+pub(super) struct InputVersions {
     pub inputs: Vec<ResourceId>,
     /// `None` if it has not run, or what it made is lost.
     pub versions: Option<Vec<u64>>,
@@ -86,7 +86,7 @@ impl GpuPass {
             ping_pong: two_versions(plan, pass),
             variants: Vec::new(),
             tried: Vec::new(),
-            seen: Seen {
+            input_versions: InputVersions {
                 inputs: inputs(plan, at),
                 versions: None,
                 stale: false,
@@ -189,7 +189,7 @@ impl GpuPass {
     pub fn set_params(&mut self, params: Vec<Option<wgpu::Buffer>>) {
         self.params = params;
         self.rebind();
-        self.seen.stale = true;
+        self.input_versions.stale = true;
     }
 }
 
@@ -212,7 +212,7 @@ fn inputs(plan: &Plan, at: usize) -> Vec<ResourceId> {
     let group = Some(conditions.group[at]);
     let accesses = plan.pass(plan.schedule().passes[at]).accesses.iter();
     let mut inputs: Vec<ResourceId> = accesses
-        .filter(|access| access.reads || !access.covers)
+        .filter(|access| access.reads || !access.fully_overwrites)
         .map(|access| access.resource)
         .filter(|id| conditions.writers[id.index()] != group)
         .collect();

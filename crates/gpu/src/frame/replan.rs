@@ -12,14 +12,14 @@ use super::{
     contents::Contents,
     executor::{Executor, check_backend},
     fetch::Readable,
-    pass::{GpuPass, Seen},
+    growth_readback::GrowthReadback,
+    pass::{GpuPass, InputVersions},
     poison::Poison,
     state::{State, frame_uniform},
-    watch::Watch,
 };
 use crate::{
     error::{ExecuteError, with_table},
-    memory::memory::{Maker, Memory},
+    memory::memory::{Memory, ResourceFactory},
     pipelines::pipelines::{Pipelines, same_pipeline},
     provider::Provider,
 };
@@ -117,7 +117,7 @@ impl Executor {
     ) -> Result<ReplanReport, ExecuteError> {
         self.presence.check()?;
         check_backend(&self.device, &plan)?;
-        let mut maker = Maker {
+        let mut factory = ResourceFactory {
             device: &self.device,
             queue: &self.queue,
             provider,
@@ -125,24 +125,24 @@ impl Executor {
         let memory = Memory::new(
             &plan,
             Some((&self.state.plan, &self.state.memory)),
-            &mut maker,
+            &mut factory,
         );
         let memory = memory.map_err(|error| with_table(error, &plan))?;
-        let kept = Kept::new(&self.state, &plan, &memory);
-        let made = kept.passes(&mut self.pipelines, &self.device);
+        let reused = Reused::new(&self.state, &plan, &memory);
+        let made = reused.passes(&mut self.pipelines, &self.device);
         let passes = made.map_err(|error| with_table(error, &plan))?;
         let mut report = ReplanReport {
-            pipelines: kept.made_pipelines(),
-            resources: kept.made_resources(),
+            pipelines: reused.made_pipelines(),
+            resources: reused.made_resources(),
             ..ReplanReport::default()
         };
-        let contents = kept.contents();
-        let bound: Vec<Option<usize>> = (0..passes.len()).map(|at| kept.bound(at)).collect();
-        let positions = kept.positions;
+        let contents = reused.contents();
+        let bound: Vec<Option<usize>> = (0..passes.len()).map(|at| reused.bound(at)).collect();
+        let positions = reused.positions;
         let poison = Poison::new(&plan, &memory, &self.device);
-        let watches = Watch::all(&plan, &self.device);
+        let growth_readbacks = GrowthReadback::all(&plan, &self.device);
         let mut state = State {
-            watches: watches.map_err(|error| with_table(error, &plan))?,
+            growth_readbacks: growth_readbacks.map_err(|error| with_table(error, &plan))?,
             poison: poison.map_err(|error| with_table(error, &plan))?,
             readables: Readable::all(&plan),
             uniform: frame_uniform(&plan),
@@ -167,9 +167,12 @@ impl Executor {
             return Err(error);
         }
         let mut before = std::mem::replace(&mut self.state, state);
-        Watch::take_over(&mut self.state.watches, std::mem::take(&mut before.watches));
+        GrowthReadback::take_over(
+            &mut self.state.growth_readbacks,
+            std::mem::take(&mut before.growth_readbacks),
+        );
         self.ping_pong = self.state.ping_pong(false);
-        self.flights.staging.clear();
+        self.frames_in_flight.staging.clear();
         report.uploads = self.note_params(&before.plan, &positions);
         Ok(report)
     }
@@ -185,7 +188,7 @@ impl Executor {
             };
             let old = before.pass(before.schedule().passes[position]);
             if !has_same_params(old, pass) {
-                made.seen.stale = true;
+                made.input_versions.stale = true;
                 uploads.push(pass.name.value.clone());
             }
         }
@@ -208,7 +211,7 @@ fn has_same_params(old: &LinkedPass, new: &LinkedPass) -> bool {
 }
 
 /// What of an executor's state a new plan keeps.
-struct Kept<'a> {
+struct Reused<'a> {
     old: &'a State,
     plan: &'a Plan,
     memory: &'a Memory,
@@ -219,7 +222,7 @@ struct Kept<'a> {
     same: BTreeMap<ResourceId, ResourceId>,
 }
 
-impl<'a> Kept<'a> {
+impl<'a> Reused<'a> {
     fn new(old: &'a State, plan: &'a Plan, memory: &'a Memory) -> Self {
         let positions: HashMap<&str, usize> = old
             .plan
@@ -279,10 +282,12 @@ impl<'a> Kept<'a> {
         let make = |(at, group): (usize, &usize)| {
             let mut pass = GpuPass::new(self.plan, at, self.before(at), pipelines, device)?;
             if let Some((_, old)) = self.before(at).filter(|_| groups[*group]) {
-                pass.seen.versions = self.seen(&pass.seen.inputs, &old.seen);
+                pass.input_versions.versions =
+                    self.seen(&pass.input_versions.inputs, &old.input_versions);
             }
             let bound = self.bound(at);
-            pass.seen.stale = bound.is_none_or(|before| self.old.passes[before].seen.stale);
+            pass.input_versions.stale =
+                bound.is_none_or(|before| self.old.passes[before].input_versions.stale);
             Ok(pass)
         };
         let groups = &self.plan.schedule().conditions.group;
@@ -310,7 +315,7 @@ impl<'a> Kept<'a> {
     }
 
     fn contents(&self) -> Contents {
-        let mut contents = Contents::of(self.plan, self.old.contents.clock());
+        let mut contents = Contents::new(self.plan, self.old.contents.clock());
         let has_changed = |id: ResourceId, former: ResourceId| {
             self.memory.version(id) != self.old.memory.version(former)
         };
@@ -348,15 +353,15 @@ impl<'a> Kept<'a> {
         };
         let now = &self.plan.schedule().conditions.group;
         let before = &self.old.plan.schedule().conditions.group;
-        let mut kept = vec![true; now.len()];
+        let mut reused = vec![true; now.len()];
         // Of each group: which one it was.
         let mut former: Vec<Option<usize>> = vec![None; now.len()];
         let mut is_there = vec![false; before.len()];
         for (at, &group) in now.iter().enumerate() {
-            kept[group] &= self.with_its_memory(at).is_some_and(is_kept);
+            reused[group] &= self.with_its_memory(at).is_some_and(is_kept);
             if let Some(position) = self.positions[at] {
                 let was = before[position];
-                kept[group] &= *former[group].get_or_insert(was) == was;
+                reused[group] &= *former[group].get_or_insert(was) == was;
                 is_there[position] = true;
             }
         }
@@ -366,10 +371,10 @@ impl<'a> Kept<'a> {
         for (position, pass) in self.old.plan.live().enumerate() {
             gone[before[position]] |= !is_there[position] && !pass.is_capture();
         }
-        for (kept, former) in kept.iter_mut().zip(former) {
-            *kept &= former.is_none_or(|group| !gone[group]);
+        for (reused, former) in reused.iter_mut().zip(former) {
+            *reused &= former.is_none_or(|group| !gone[group]);
         }
-        kept
+        reused
     }
 
     /// The position before of a pass that needs no binding: word for word what it was, on the very
@@ -386,7 +391,7 @@ impl<'a> Kept<'a> {
     }
 
     /// What a pass saw of its inputs when it ran last.
-    fn seen(&self, inputs: &[ResourceId], old: &Seen) -> Option<Vec<u64>> {
+    fn seen(&self, inputs: &[ResourceId], old: &InputVersions) -> Option<Vec<u64>> {
         let seen = old.inputs.iter().zip(old.versions.as_ref()?);
         let seen: BTreeMap<ResourceId, u64> = seen.map(|(id, seen)| (*id, *seen)).collect();
         let of = |id: &ResourceId| seen.get(self.same.get(id)?).copied();

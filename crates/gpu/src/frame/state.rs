@@ -4,15 +4,15 @@ use super::{
     contents::{Contents, HostCopy},
     encode::{Meters, encode_all},
     fetch::Readable,
-    flight::Flight,
+    growth_readback::GrowthReadback,
+    in_flight::FrameInFlight,
     pass::GpuPass,
     poison::Poison,
-    watch::Watch,
 };
 use crate::{
     error::{ExecuteError, with_table},
     memory::{
-        memory::{Maker, Memory},
+        memory::{Memory, ResourceFactory},
         physical::PingPong,
     },
     pipelines::pipelines::Pipelines,
@@ -30,7 +30,7 @@ pub(super) struct State {
     pub contents: Contents,
     pub poison: Option<Poison>,
     /// Buffers that may grow.
-    pub watches: Vec<Watch>,
+    pub growth_readbacks: Vec<GrowthReadback>,
     /// What can be read back.
     pub readables: Vec<Arc<Readable>>,
     /// The uniform `frame`, if a live pass reads it.
@@ -39,7 +39,7 @@ pub(super) struct State {
 
 /// What a frame does: made anew for each, in the same memory.
 #[derive(Default)]
-pub(super) struct Turn {
+pub(super) struct FrameDecision {
     /// Of each pass of the schedule.
     pub runs: Vec<bool>,
     pub ping_pong: PingPong,
@@ -49,20 +49,20 @@ impl State {
     pub fn new(
         plan: Plan,
         pipelines: &mut Pipelines,
-        maker: &mut Maker<'_>,
+        factory: &mut ResourceFactory<'_>,
     ) -> Result<Self, ExecuteError> {
         let refused = |error| with_table(error, &plan);
-        let memory = Memory::new(&plan, None, maker).map_err(refused)?;
+        let memory = Memory::new(&plan, None, factory).map_err(refused)?;
         let passes = (0..plan.schedule().passes.len())
-            .map(|at| GpuPass::new(&plan, at, None, pipelines, maker.device))
+            .map(|at| GpuPass::new(&plan, at, None, pipelines, factory.device))
             .collect::<Result<Vec<_>, _>>()
             .map_err(refused)?;
         Ok(Self {
-            poison: Poison::new(&plan, &memory, maker.device).map_err(refused)?,
-            watches: Watch::all(&plan, maker.device).map_err(refused)?,
+            poison: Poison::new(&plan, &memory, factory.device).map_err(refused)?,
+            growth_readbacks: GrowthReadback::all(&plan, factory.device).map_err(refused)?,
             readables: Readable::all(&plan),
             uniform: frame_uniform(&plan),
-            contents: Contents::of(&plan, 0),
+            contents: Contents::new(&plan, 0),
             memory,
             passes,
             plan,
@@ -71,10 +71,10 @@ impl State {
 
     /// Whose turn it is in a frame in which every pass runs, or none.
     pub fn ping_pong(&self, runs: bool) -> PingPong {
-        let mut turn = PingPong::new();
+        let mut decision = PingPong::new();
         let runs = vec![runs; self.passes.len()];
-        self.contents.ping_pong(&self.plan, &runs, &mut turn);
-        turn
+        self.contents.ping_pong(&self.plan, &runs, &mut decision);
+        decision
     }
 
     /// The resource of a name that a live pass uses.
@@ -129,7 +129,7 @@ impl State {
     }
 
     /// Decides which passes run in the next frame, and whose turn it is then.
-    pub fn decide(&mut self, all: bool, Turn { runs, ping_pong }: &mut Turn) {
+    pub fn decide(&mut self, all: bool, FrameDecision { runs, ping_pong }: &mut FrameDecision) {
         // Its content is another one in every frame.
         if let Some(uniform) = self.uniform {
             self.contents.touch(uniform);
@@ -139,19 +139,27 @@ impl State {
     }
 
     /// Encodes the passes that run; the others are `skipped`. Of a timed flight it takes the times.
-    pub fn encode(&self, turn: &Turn, flight: &mut Flight, encoder: &mut wgpu::CommandEncoder) {
-        let timer = flight.timer.as_ref().filter(|_| flight.is_timed);
-        let counters = &mut flight.counters;
+    pub fn encode(
+        &self,
+        decision: &FrameDecision,
+        frame_in_flight: &mut FrameInFlight,
+        encoder: &mut wgpu::CommandEncoder,
+    ) {
+        let timer = frame_in_flight
+            .timer
+            .as_ref()
+            .filter(|_| frame_in_flight.is_timed);
+        let counters = &mut frame_in_flight.counters;
         for (at, pass) in self.passes.iter().enumerate() {
-            if !turn.runs[at] {
-                flight.skipped.push(pass.name.clone());
+            if !decision.runs[at] {
+                frame_in_flight.skipped.push(pass.name.clone());
                 continue;
             }
             let start = timer.map(|_| Instant::now());
             if let Some(poison) = &self.poison {
-                poison.fill(at, &turn.ping_pong, encoder);
+                poison.fill(at, &decision.ping_pong, encoder);
             }
-            let steps = pass.steps(&turn.ping_pong).unwrap_or_default();
+            let steps = pass.steps(&decision.ping_pong).unwrap_or_default();
             let first = counters.as_ref().map_or(0, Counters::used);
             let meters = Meters {
                 timer,
@@ -162,7 +170,9 @@ impl State {
                 counters.pass(pass.name.clone(), first);
             }
             if let Some(start) = start {
-                flight.cpu.push((pass.name.clone(), start.elapsed()));
+                frame_in_flight
+                    .cpu
+                    .push((pass.name.clone(), start.elapsed()));
             }
         }
     }

@@ -80,9 +80,10 @@ fn make(
                 size: extent(texture, 0, texture.layers),
                 mip_level_count: texture.mips,
                 sample_count: texture.samples,
-                dimension: match texture.is_3d {
-                    true => wgpu::TextureDimension::D3,
-                    false => wgpu::TextureDimension::D2,
+                dimension: if texture.is_3d {
+                    wgpu::TextureDimension::D3
+                } else {
+                    wgpu::TextureDimension::D2
                 },
                 format: texture.format,
                 usage: textures,

@@ -22,9 +22,10 @@ pub(crate) fn differs(physical: &Physical, described: &Import) -> Option<String>
                 usage,
             },
         ) => {
-            let dimension = match is_3d {
-                true => wgpu::TextureDimension::D3,
-                false => wgpu::TextureDimension::D2,
+            let dimension = if is_3d {
+                wgpu::TextureDimension::D3
+            } else {
+                wgpu::TextureDimension::D2
             };
             vec![
                 unless("its format", format, texture.format()),

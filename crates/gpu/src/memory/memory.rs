@@ -34,7 +34,7 @@ pub(crate) struct Memory {
 }
 
 /// Who makes memory.
-pub(crate) struct Maker<'a> {
+pub(crate) struct ResourceFactory<'a> {
     pub device: &'a wgpu::Device,
     pub queue: &'a wgpu::Queue,
     pub provider: &'a mut dyn Provider,
@@ -46,7 +46,7 @@ impl Memory {
     pub fn new(
         plan: &Plan,
         old: Option<(&Plan, &Memory)>,
-        maker: &mut Maker<'_>,
+        factory: &mut ResourceFactory<'_>,
     ) -> Result<Self, ExecuteError> {
         let mut memory = Self {
             of: plan.schedule().aliases.of.clone(),
@@ -62,11 +62,12 @@ impl Memory {
         }
         for allocation in &plan.schedule().aliases.list {
             let aliases = &allocation.aliases;
-            let made = GpuAllocation::new(plan, aliases, &mut known, maker.device, maker.queue)?;
+            let made =
+                GpuAllocation::new(plan, aliases, &mut known, factory.device, factory.queue)?;
             memory.allocations.push(made);
         }
         for &id in plan.schedule().lifetimes.keys() {
-            memory.enter(plan, id, old, maker)?;
+            memory.enter(plan, id, old, factory)?;
         }
         let used = |name: &String| {
             let mut live = plan.schedule().lifetimes.keys();
@@ -86,7 +87,7 @@ impl Memory {
         plan: &Plan,
         id: ResourceId,
         old: Option<(&Plan, &Memory)>,
-        maker: &mut Maker<'_>,
+        factory: &mut ResourceFactory<'_>,
     ) -> Result<(), ExecuteError> {
         let resource = plan.resource(id);
         match (&resource.kind, resource.origin) {
@@ -98,17 +99,23 @@ impl Memory {
                     Err(_) => provided.items.unwrap_or(1).max(1) * provided.stride,
                 };
                 let usage = provided.binding.usages();
-                self.own_buffer(id, &resource.name, (size, usage), old, maker.device)?;
+                self.own_buffer(id, &resource.name, (size, usage), old, factory.device)?;
             }
             (_, Origin::Previous(base)) => {
                 self.bases.insert(id, base);
             }
             (ResourceKind::Provided(_) | ResourceKind::AccelerationStructure, _) => {
-                self.refresh(id, plan, old, maker)?;
+                self.refresh(id, plan, old, factory)?;
             }
             (ResourceKind::Frame, _) => {
                 let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_SRC;
-                self.own_buffer(id, &resource.name, (FRAME_BYTES, usage), old, maker.device)?;
+                self.own_buffer(
+                    id,
+                    &resource.name,
+                    (FRAME_BYTES, usage),
+                    old,
+                    factory.device,
+                )?;
             }
             (_, Origin::Host) => {
                 if let Some(import) = old.and_then(|old| kept_import(plan, &resource.name, old)) {
@@ -116,7 +123,7 @@ impl Memory {
                 }
             }
             (ResourceKind::Sampler(entry), _) => {
-                let made = sampler(maker.device, &resource.name, entry);
+                let made = sampler(factory.device, &resource.name, entry);
                 self.samplers.insert(id, made);
             }
             _ => {}
@@ -253,10 +260,10 @@ impl Memory {
         id: ResourceId,
         plan: &Plan,
         old: Option<(&Plan, &Memory)>,
-        maker: &mut Maker<'_>,
+        factory: &mut ResourceFactory<'_>,
     ) -> Result<(), ExecuteError> {
         let resource = plan.resource(id);
-        let (provider, device) = (&mut *maker.provider, maker.device);
+        let (provider, device) = (&mut *factory.provider, factory.device);
         let version = provider.version(&resource.name);
         if let Some((plan, memory)) = old
             && let Some((known, physical)) = memory.host_by_name(plan, &resource.name)
@@ -288,10 +295,10 @@ impl Memory {
         }
         let built = scoped(device, &resource.name, || match resource.kind {
             ResourceKind::AccelerationStructure => provider
-                .build_acceleration_structure(&resource.name, device, maker.queue)
+                .build_acceleration_structure(&resource.name, device, factory.queue)
                 .map(Physical::AccelerationStructure),
             _ => provider
-                .build(&resource.name, device, maker.queue)
+                .build(&resource.name, device, factory.queue)
                 .map(Physical::Buffer),
         })?;
         let refused = |why: String| ExecuteError::Provider {

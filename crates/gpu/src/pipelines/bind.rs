@@ -114,9 +114,10 @@ impl Binder<'_> {
             &self.plan.resource(target.id).kind,
             ResourceKind::Texture(texture) if texture.is_3d
         );
-        let dimension = match is_3d {
-            true => wgpu::TextureViewDimension::D3,
-            false => wgpu::TextureViewDimension::D2,
+        let dimension = if is_3d {
+            wgpu::TextureViewDimension::D3
+        } else {
+            wgpu::TextureViewDimension::D2
         };
         // An attachment has all aspects of its texture.
         let mut whole = target.clone();
@@ -147,9 +148,10 @@ impl Binder<'_> {
             texture: self.memory.texture(target.id, self.ping_pong)?.clone(),
             part: target.part.clone(),
             mips: mips.collect(),
-            views: match is_cleared {
-                true => self.single_views(target)?,
-                false => Vec::new(),
+            views: if is_cleared {
+                self.single_views(target)?
+            } else {
+                Vec::new()
             },
         })
     }

@@ -10,9 +10,10 @@ fn a_full_screen_pass_writes_every_pixel_once() {
     let blendable = wgpu::TextureFormat::R32Float
         .guaranteed_format_features(GPU.device.features())
         .flags;
-    let blend = match blendable.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE) {
-        true => ", blend: Additive",
-        false => "",
+    let blend = if blendable.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE) {
+        ", blend: Additive"
+    } else {
+        ""
     };
     let files = Files::graph(&format!(
         r#"
@@ -139,10 +140,10 @@ fn a_depth_only_pass_runs_the_fragment_stage_without_colours() {
     return position.y / 64.0;
 }",
     );
-    let expected = pixels(SIZE, |x, y| match x < 3 {
-        true => (y as f32 + 0.5) / 64.0,
-        false => 1.0,
-    });
+    let expected = pixels(
+        SIZE,
+        |x, y| if x < 3 { (y as f32 + 0.5) / 64.0 } else { 1.0 },
+    );
     assert_eq!(f32s(&run(&files, &["depth"])[0]), expected);
 }
 

@@ -4,13 +4,13 @@ use super::unique;
 use crate::{
     diagnostics::{
         diagnostic::{Diagnostic, Label},
-        reports::{Reported, Reports},
+        reports::{ErrorGuaranteed, Reports},
         suggest::likeness,
     },
     document::{
         extend::extend,
         params::Param,
-        raw::{self, Broken, RawDocument},
+        raw::{self, Invalid, RawDocument},
         read,
         typed::{Document, Entry, Include, What},
     },
@@ -30,7 +30,7 @@ const DEEPEST: usize = 64;
 
 /// Where a document is asked for: by an include or by `extends`.
 #[derive(Clone, Debug)]
-pub(crate) struct Asked {
+pub(crate) struct IncludeSite {
     /// The path of the document.
     pub path: String,
     pub span: Span,
@@ -43,11 +43,11 @@ pub(crate) struct Reader<'a> {
     sources: &'a dyn Sources,
     pub reports: &'a mut Reports,
     /// By path.
-    read: HashMap<String, Result<Arc<Document>, Reported>>,
+    read: HashMap<String, Result<Arc<Document>, ErrorGuaranteed>>,
     /// The documents that are being read, outermost first, with the include that asks for each.
     open: Vec<(String, Option<Span>)>,
     /// Every place where a document is asked for.
-    pub asked: Vec<Asked>,
+    pub include_sites: Vec<IncludeSite>,
 }
 
 impl<'a> Reader<'a> {
@@ -58,7 +58,7 @@ impl<'a> Reader<'a> {
             reports,
             read: HashMap::new(),
             open: Vec::new(),
-            asked: Vec::new(),
+            include_sites: Vec::new(),
         }
     }
 
@@ -68,18 +68,18 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads the document at `path` with all that it includes.
-    pub fn root(&mut self, path: &str) -> Result<Document, Reported> {
+    pub fn root(&mut self, path: &str) -> Result<Document, ErrorGuaranteed> {
         let file = self.file(path)?;
         self.document(file, None)
     }
 
     /// Reads the document at `path` with all that it extends.
-    pub fn flat(&mut self, path: &str) -> Result<RawDocument, Reported> {
+    pub fn flat(&mut self, path: &str) -> Result<RawDocument, ErrorGuaranteed> {
         let file = self.file(path)?;
         self.raw(file, &mut Vec::new())
     }
 
-    fn file(&mut self, path: &str) -> Result<SourceFile, Reported> {
+    fn file(&mut self, path: &str) -> Result<SourceFile, ErrorGuaranteed> {
         let text = match sources::read(self.sources, path) {
             Ok(Some(text)) => text,
             Ok(None) => {
@@ -103,7 +103,11 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads a document, which is asked for at `by`.
-    fn document(&mut self, file: SourceFile, by: Option<Span>) -> Result<Document, Reported> {
+    fn document(
+        &mut self,
+        file: SourceFile,
+        by: Option<Span>,
+    ) -> Result<Document, ErrorGuaranteed> {
         self.open.push((file.name.to_string(), by));
         let raw = self.raw(file, &mut Vec::new());
         let document = raw.map(|raw| {
@@ -119,13 +123,17 @@ impl<'a> Reader<'a> {
 
     /// The sections of a document with those of the documents that it extends; `chain` are the ones
     /// that extend it.
-    fn raw(&mut self, file: SourceFile, chain: &mut Vec<String>) -> Result<RawDocument, Reported> {
+    fn raw(
+        &mut self,
+        file: SourceFile,
+        chain: &mut Vec<String>,
+    ) -> Result<RawDocument, ErrorGuaranteed> {
         let mut own = raw::split(file, self.reports)?;
         let Some(node) = own.extends.take() else {
             return Ok(own);
         };
         let name: Result<String, Diagnostic> = node.parse();
-        let name = name.map_err(|error| self.reports.tell(error))?;
+        let name = name.map_err(|error| self.reports.emit(error))?;
         let name = Located::new(name, node.span.clone());
         let base = self.find(&name)?;
         let path = base.name.to_string();
@@ -139,7 +147,7 @@ impl<'a> Reader<'a> {
         if chain.len() > DEEPEST {
             return Err(self.reports.report(ComposeError::TooDeep(name, DEEPEST)));
         }
-        self.asked.push(Asked {
+        self.include_sites.push(IncludeSite {
             path,
             span: name.span,
             is_extended: true,
@@ -150,7 +158,7 @@ impl<'a> Reader<'a> {
 
     /// Reads what the entries of the innermost open document include. Returns the depth of includes
     /// below it.
-    fn attach(&mut self, entries: &mut [Result<Entry, Broken>]) -> usize {
+    fn attach(&mut self, entries: &mut [Result<Entry, Invalid>]) -> usize {
         let mut depth = 0;
         for entry in entries.iter_mut().flatten() {
             let below = match &mut entry.what {
@@ -168,7 +176,7 @@ impl<'a> Reader<'a> {
         depth
     }
 
-    fn include(&mut self, include: &Include) -> Result<Arc<Document>, Reported> {
+    fn include(&mut self, include: &Include) -> Result<Arc<Document>, ErrorGuaranteed> {
         let file = self.find(&include.graph)?;
         let path = file.name.to_string();
         let span = include.graph.span.clone();
@@ -179,7 +187,7 @@ impl<'a> Reader<'a> {
             };
             return Err(self.reports.report(error));
         }
-        self.asked.push(Asked {
+        self.include_sites.push(IncludeSite {
             path: path.clone(),
             span: span.clone(),
             is_extended: false,
@@ -192,7 +200,7 @@ impl<'a> Reader<'a> {
             // Without its params nothing of the document has a size.
             let document = self
                 .document(file, Some(span))
-                .and_then(|document| document.broken_params.map_or(Ok(Arc::new(document)), Err));
+                .and_then(|document| document.invalid_params.map_or(Ok(Arc::new(document)), Err));
             self.read.insert(path.clone(), document);
         }
         let document = self.read[&path].clone()?;
@@ -204,7 +212,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The file of a document, beside the one in which its name is written or in `pipelines/`.
-    fn find(&mut self, graph: &Located<String>) -> Result<SourceFile, Reported> {
+    fn find(&mut self, graph: &Located<String>) -> Result<SourceFile, ErrorGuaranteed> {
         if escapes(graph) {
             return Err(self.reports.report(ComposeError::Outside(graph.clone())));
         }
@@ -283,7 +291,7 @@ impl<'a> Reader<'a> {
                     name: Located::new(param.name.value, span),
                     first: known.name.span.clone(),
                 };
-                document.broken_params = Some(self.reports.report(error));
+                document.invalid_params = Some(self.reports.report(error));
                 continue;
             }
             document.params.push(param);
@@ -299,7 +307,7 @@ impl<'a> Reader<'a> {
                         document: document.file.name.to_string(),
                         known: known.collect(),
                     };
-                    if document.broken_params.is_none() {
+                    if document.invalid_params.is_none() {
                         self.reports.report(error);
                     }
                 }
@@ -309,7 +317,10 @@ impl<'a> Reader<'a> {
 }
 
 /// Calls `each` with every include, those in groups, too.
-fn collect<'e>(entries: &'e [Result<Entry, Broken>], each: &mut dyn FnMut(&'e Entry, &'e Include)) {
+fn collect<'e>(
+    entries: &'e [Result<Entry, Invalid>],
+    each: &mut dyn FnMut(&'e Entry, &'e Include),
+) {
     for entry in entries.iter().flatten() {
         match &entry.what {
             What::Include(include) => each(entry, include),
@@ -320,7 +331,7 @@ fn collect<'e>(entries: &'e [Result<Entry, Broken>], each: &mut dyn FnMut(&'e En
 }
 
 /// Says for mistakes in other documents where these are asked for.
-pub(crate) fn label(diagnostics: &mut [Diagnostic], root: &str, asked: &[Asked]) {
+pub(crate) fn label(diagnostics: &mut [Diagnostic], root: &str, include_sites: &[IncludeSite]) {
     /// More includes of one document say nothing new.
     const SHOWN: usize = 4;
     for diagnostic in diagnostics {
@@ -333,22 +344,23 @@ pub(crate) fn label(diagnostics: &mut [Diagnostic], root: &str, asked: &[Asked])
         // A document may be included by one that is included itself.
         while let Some(label) = diagnostic.labels.get(at) {
             let file = label.span.file.name.clone();
-            let asking = asked
+            let asking = include_sites
                 .iter()
-                .filter(|asked| *asked.path == *file)
+                .filter(|include_sites| *include_sites.path == *file)
                 .take(SHOWN);
-            for asked in asking {
+            for include_sites in asking {
                 if diagnostic
                     .labels
                     .iter()
-                    .all(|label| label.span != asked.span)
+                    .all(|label| label.span != include_sites.span)
                 {
-                    let text = match asked.is_extended {
-                        true => "extended here",
-                        false => "included here",
+                    let text = if include_sites.is_extended {
+                        "extended here"
+                    } else {
+                        "included here"
                     };
                     diagnostic.labels.push(Label {
-                        span: asked.span.clone(),
+                        span: include_sites.span.clone(),
                         text: text.to_owned(),
                     });
                 }

@@ -4,7 +4,7 @@
 use crate::{
     diagnostics::reports::Reports,
     document::{
-        raw::Broken,
+        raw::Invalid,
         typed::{Document, Entry, What},
     },
     errors::compose::ComposeError,
@@ -37,7 +37,7 @@ pub(super) fn check(document: &Document, reports: &mut Reports) {
 }
 
 fn check_entries(
-    entries: &[Result<Entry, Broken>],
+    entries: &[Result<Entry, Invalid>],
     materials: &mut Names,
     passes: &mut Names,
     prefix: &str,
@@ -65,9 +65,10 @@ fn check_entries(
                 if entry.repeat.is_some() || !is_first {
                     continue;
                 }
-                let namespace = match include.is_named {
-                    true => format!("{name}."),
-                    false => String::new(),
+                let namespace = if include.is_named {
+                    format!("{name}.")
+                } else {
+                    String::new()
                 };
                 let Some(document) = include.document() else {
                     continue;

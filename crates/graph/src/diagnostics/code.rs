@@ -79,9 +79,6 @@ codes! {
     Input = "input",
         "Give the included document what it asks for, by name or by `bind`; the host imports what \
          the root document asks for.";
-    /// A `bind` or `set` of what the shader or the included document does not ask for.
-    Unasked = "unasked",
-        "Check the spelling, or take it out.";
     /// An edit of an extended document that has no place there.
     Edit = "edit",
         "Name an entry of the extended document; `skiagraph show FILE --flat` prints what it has.";
@@ -161,9 +158,10 @@ codes! {
     Light = "light",
         "Run it under a light of a kind that it takes; if its passes know others, say so in \
          `lights`.";
-    /// A material or param that nothing uses.
+    /// A material or param that nothing uses, or a `bind` or `set` that neither the shader nor the
+    /// included document asks for.
     Unused = "unused",
-        "Remove it, or check the names of what should use it.";
+        "Check the spelling, or take it out.";
     /// A document without outputs, or an output asked for that is not declared.
     Output = "output",
         "Declare the output, or name one that there is.";

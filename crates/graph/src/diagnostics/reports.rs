@@ -14,26 +14,26 @@ const ENOUGH: usize = 1000;
 const HINTED: usize = 50;
 
 /// A mistake of one phase: typed where it is found, put into words in `errors/`.
-pub(crate) trait Mistake: Display {
+pub(crate) trait IntoDiagnostic: Display {
     /// Its kind.
     fn code(&self) -> Code;
 
     /// Adds places and the way out to what is told of it.
-    fn explain(self, told: Diagnostic) -> Diagnostic;
+    fn explain(self, diagnostic: Diagnostic) -> Diagnostic;
 
     /// The whole of what is told.
-    fn diagnostic(self) -> Diagnostic
+    fn into_diagnostic(self) -> Diagnostic
     where
         Self: Sized,
     {
-        let told = Diagnostic::error(self.code(), self.to_string());
-        self.explain(told)
+        let diagnostic = Diagnostic::error(self.code(), self.to_string());
+        self.explain(diagnostic)
     }
 }
 
 /// The proof that something is wrong and was reported: who has one need not report it again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Reported(());
+pub(crate) struct ErrorGuaranteed(());
 
 /// The mistakes found so far.
 #[derive(Debug, Default)]
@@ -49,26 +49,26 @@ pub(crate) struct Reports {
 }
 
 impl Reports {
-    pub fn report(&mut self, mistake: impl Mistake) -> Reported {
-        self.tell(mistake.diagnostic())
+    pub fn report(&mut self, mistake: impl IntoDiagnostic) -> ErrorGuaranteed {
+        self.emit(mistake.into_diagnostic())
     }
 
     /// A mistake that was put into words before.
-    pub fn tell(&mut self, diagnostic: Diagnostic) -> Reported {
+    pub fn emit(&mut self, diagnostic: Diagnostic) -> ErrorGuaranteed {
         self.errors += usize::from(diagnostic.severity == Severity::Error);
         self.list.push(diagnostic);
-        Reported(())
+        ErrorGuaranteed(())
     }
 
-    pub fn warn(&mut self, mistake: impl Mistake) {
-        self.tell(Diagnostic {
+    pub fn warn(&mut self, mistake: impl IntoDiagnostic) {
+        self.emit(Diagnostic {
             severity: Severity::Warning,
-            ..mistake.diagnostic()
+            ..mistake.into_diagnostic()
         });
     }
 
     /// Something that this adapter cannot do, and another one might.
-    pub fn beyond(&mut self, mistake: impl Mistake) -> Result<(), Reported> {
+    pub fn unsupported(&mut self, mistake: impl IntoDiagnostic) -> Result<(), ErrorGuaranteed> {
         if self.any_adapter {
             self.warn(mistake);
             return Ok(());
@@ -78,9 +78,10 @@ impl Reports {
 
     /// The names that a misspelt one is compared with; none once there are too many mistakes.
     pub fn known<S: Into<String>>(&self, names: impl IntoIterator<Item = S>) -> Vec<String> {
-        match self.list.len() < HINTED {
-            true => names.into_iter().map(Into::into).collect(),
-            false => Vec::new(),
+        if self.list.len() < HINTED {
+            names.into_iter().map(Into::into).collect()
+        } else {
+            Vec::new()
         }
     }
 

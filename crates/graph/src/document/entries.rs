@@ -2,14 +2,14 @@
 
 use super::{
     fields::Mentions,
-    raw::{Broken, RawEntry, RawMap, stem},
+    raw::{Invalid, RawEntry, RawMap, stem},
     ron::{Field, Node, from_fields, from_some_fields},
     typed::{Entry, Include, Pass, Run, What},
 };
 use crate::{
     diagnostics::{
         diagnostic::Diagnostic,
-        reports::{Mistake, Reports},
+        reports::{IntoDiagnostic, Reports},
     },
     errors::document::DocumentError,
     kinds::{
@@ -30,17 +30,17 @@ const COMPOSITION: [&str; 2] = ["Include", "Group"];
 
 /// Reads the entries of a section, whatever is wrong with some of them.
 pub(super) fn read(
-    raw: Vec<Result<RawEntry, Broken>>,
+    raw: Vec<Result<RawEntry, Invalid>>,
     registry: &Registry,
     reports: &mut Reports,
-) -> Vec<Result<Entry, Broken>> {
-    let read = |raw: Result<RawEntry, Broken>| {
+) -> Vec<Result<Entry, Invalid>> {
+    let read = |raw: Result<RawEntry, Invalid>| {
         let raw = raw?;
         let is_include = *raw.tag == "Include";
         let entry = entry(raw, registry, reports);
-        entry.map_err(|error| Broken {
+        entry.map_err(|error| Invalid {
             is_include,
-            reported: reports.tell(error),
+            reported: reports.emit(error),
         })
     };
     raw.into_iter().map(read).collect()
@@ -108,13 +108,13 @@ fn entry(
             .chain(COMPOSITION)
             .map(str::to_owned)
             .collect();
-        return Err(DocumentError::UnknownKind(raw.tag, known).diagnostic());
+        return Err(DocumentError::UnknownKind(raw.tag, known).into_diagnostic());
     }
     if let Some(passes) = raw.passes.take_if(|_| *raw.tag != "Group") {
         drop(passes);
         let name = Located::new("passes".to_owned(), raw.tag.span);
         let known = OF_PASS.map(str::to_owned).to_vec();
-        return Err(DocumentError::UnknownField(name, known).diagnostic());
+        return Err(DocumentError::UnknownField(name, known).into_diagnostic());
     }
     let (header, own): (Vec<Field>, Vec<Field>) = raw
         .fields
@@ -130,24 +130,24 @@ fn entry(
         "Group" => {
             let entries = raw.passes.ok_or_else(|| {
                 let missing = "passes".to_owned();
-                DocumentError::MissingField(raw.tag.span.clone(), missing).diagnostic()
+                DocumentError::MissingField(raw.tag.span.clone(), missing).into_diagnostic()
             })?;
             if let Some(field) = own.first() {
                 let known = OF_GROUP.map(str::to_owned).to_vec();
                 let error = DocumentError::UnknownField(field.name.clone(), known);
-                return Err(error.diagnostic());
+                return Err(error.into_diagnostic());
             }
-            let name = header.name.ok_or_else(|| unnamed().diagnostic())?;
+            let name = header.name.ok_or_else(|| unnamed().into_diagnostic())?;
             (name, What::Group(read(entries, registry, reports)))
         }
         _ => {
-            let name = header.name.ok_or_else(|| unnamed().diagnostic())?;
+            let name = header.name.ok_or_else(|| unnamed().into_diagnostic())?;
             let pass = pass(&raw.tag, &name, own, registry)?;
             (name, What::Pass(pass))
         }
     };
     if is_composed && RESERVED.contains(&name.as_str()) {
-        return Err(DocumentError::Reserved(name).diagnostic());
+        return Err(DocumentError::Reserved(name).into_diagnostic());
     }
     Ok(Entry {
         name,
@@ -179,7 +179,7 @@ fn pass(
     let common: PassFields = from_fields(&common, &tag.span)?;
     let kind = registry
         .get(tag)
-        .ok_or_else(|| DocumentError::UnknownKind(tag.clone(), Vec::new()).diagnostic())?;
+        .ok_or_else(|| DocumentError::UnknownKind(tag.clone(), Vec::new()).into_diagnostic())?;
     Mentions::take();
     let body = (kind.parse)(&own, &tag.span)?;
     let mut mentions = Mentions::take();
@@ -218,7 +218,7 @@ fn include(
             let span = fields.graph.span.clone();
             let name = Name::new(stem);
             let name = name.map_err(|_| DocumentError::Unnamed(span.clone(), stem.to_owned()));
-            Located::new(name.map_err(Mistake::diagnostic)?, span)
+            Located::new(name.map_err(IntoDiagnostic::into_diagnostic)?, span)
         }
     };
     let include = Include {

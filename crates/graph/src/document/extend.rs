@@ -1,13 +1,13 @@
 //! `extends`: a document is another one with edits, as if the result had been written out.
 
 use super::{
-    raw::{Broken, RawDocument, RawEntry, RawItem},
+    raw::{Invalid, RawDocument, RawEntry, RawItem},
     ron::Field,
 };
 use crate::{diagnostics::reports::Reports, errors::edit::EditError, source::span::Located};
 use std::collections::HashMap;
 
-type Entries = Vec<Result<RawEntry, Broken>>;
+type Entries = Vec<Result<RawEntry, Invalid>>;
 
 /// Where an entry that is no edit comes to stand.
 pub(crate) const PLACES: [&str; 3] = ["before", "after", "instead"];
@@ -23,9 +23,10 @@ pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports)
         inputs: merge(base.inputs, own.inputs),
         materials: merge(base.materials, own.materials),
         passes: base.passes,
-        outputs: match own.outputs.is_empty() {
-            true => base.outputs,
-            false => own.outputs,
+        outputs: if own.outputs.is_empty() {
+            base.outputs
+        } else {
+            own.outputs
         },
         set: base.set,
         // What a method takes and promises holds of it as it is written, not of what others make
@@ -33,7 +34,7 @@ pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports)
         lights: own.lights,
         proven_on: own.proven_on,
         claims: own.claims,
-        broken_params: base.broken_params.or(own.broken_params),
+        invalid_params: base.invalid_params.or(own.invalid_params),
         incomplete: base.incomplete.or(own.incomplete),
     };
     for (name, value) in own.set {
@@ -194,7 +195,7 @@ fn find<'e>(
     let mut names = path.split('.').peekable();
     let mut walked: Vec<&str> = Vec::new();
     while let Some(name) = names.next() {
-        let named = |entry: &Result<RawEntry, Broken>| {
+        let named = |entry: &Result<RawEntry, Invalid>| {
             entry
                 .as_ref()
                 .is_ok_and(|entry| entry.name().as_deref() == Some(name))
@@ -241,7 +242,7 @@ pub(crate) fn no_edits(entries: &mut Entries, reports: &mut Reports) {
         if let Some(mistake) = mistake {
             let is_include = *entry.tag == "Include";
             let reported = reports.report(mistake);
-            *slot = Err(Broken {
+            *slot = Err(Invalid {
                 is_include,
                 reported,
             });

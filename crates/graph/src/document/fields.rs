@@ -42,9 +42,10 @@ impl<'de> Deserialize<'de> for Name {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let (text, span) = raw(deserializer)?;
         // The words of a `Choice` have no quotes.
-        let name = match text.starts_with('"') {
-            true => read::<String, D::Error>(text)?,
-            false => text.to_owned(),
+        let name = if text.starts_with('"') {
+            read::<String, D::Error>(text)?
+        } else {
+            text.to_owned()
         };
         Name::new(&name).map_err(|fault| refuse(DocumentError::Name(span, name, fault)))
     }
@@ -126,9 +127,10 @@ pub enum Chosen<T> {
 impl<'de, T: DeserializeOwned> Deserialize<'de> for Chosen<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let (text, _) = raw(deserializer)?;
-        match text.starts_with('"') {
-            true => read(text).map(Self::Expr),
-            false => read(text).map(Self::Word),
+        if text.starts_with('"') {
+            read(text).map(Self::Expr)
+        } else {
+            read(text).map(Self::Word)
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A document with all that it extends written out, each line with its origin.
 
 use super::{
-    raw::{Broken, RawDocument, RawEntry, RawItem, RawMap},
+    raw::{Invalid, RawDocument, RawEntry, RawItem, RawMap},
     ron::{Field, Node},
 };
 use crate::source::span::Span;
@@ -90,7 +90,7 @@ impl Flat {
         self.line(depth, "},", &[]);
     }
 
-    fn entries(&mut self, depth: usize, entries: &[Result<RawEntry, Broken>]) {
+    fn entries(&mut self, depth: usize, entries: &[Result<RawEntry, Invalid>]) {
         for entry in entries.iter().flatten() {
             self.entry(depth, entry);
         }

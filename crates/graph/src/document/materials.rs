@@ -177,9 +177,10 @@ impl<'de> Deserialize<'de> for Data {
         let mut data = Vec::new();
         for item in items {
             let mut numbers = Vec::new();
-            match item.text().starts_with('(') {
-                true => flatten(&item, &mut numbers).ok_or_else(wrong)?,
-                false => numbers.push(read(item.text())?),
+            if item.text().starts_with('(') {
+                flatten(&item, &mut numbers).ok_or_else(wrong)?
+            } else {
+                numbers.push(read(item.text())?)
             }
             data.push(numbers);
         }
@@ -190,9 +191,10 @@ impl<'de> Deserialize<'de> for Data {
 /// The numbers of a tuple, those of tuples in it in their places.
 fn flatten(tuple: &Node, numbers: &mut Vec<f64>) -> Option<()> {
     for part in tuple.list().ok()? {
-        match part.text().starts_with('(') {
-            true => flatten(&part, numbers)?,
-            false => numbers.push(part.text().replace('_', "").parse().ok()?),
+        if part.text().starts_with('(') {
+            flatten(&part, numbers)?
+        } else {
+            numbers.push(part.text().replace('_', "").parse().ok()?)
         }
     }
     Some(())

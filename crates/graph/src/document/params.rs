@@ -2,7 +2,7 @@
 
 use super::ron::{Field, from_fields};
 use crate::{
-    diagnostics::{diagnostic::Diagnostic, reports::Mistake, suggest::likeness},
+    diagnostics::{diagnostic::Diagnostic, reports::IntoDiagnostic, suggest::likeness},
     errors::document::DocumentError,
     language::{
         name::Name,
@@ -160,7 +160,7 @@ impl Param {
             "Vec3" => ParamType::Vec3,
             "Vec4" => ParamType::Vec4,
             "Choice" => ParamType::Choice(fields.words.iter().map(|w| w.value.clone()).collect()),
-            _ => return Err(DocumentError::UnknownParamType(tag.clone()).diagnostic()),
+            _ => return Err(DocumentError::UnknownParamType(tag.clone()).into_diagnostic()),
         };
         let mut different = HashSet::new();
         let repeats = !fields
@@ -169,11 +169,12 @@ impl Param {
             .all(|word| different.insert(&word.value));
         let is_choice = matches!(ty, ParamType::Choice(_));
         if is_choice == fields.words.is_empty() || repeats {
-            let why = match is_choice {
-                true => "a Choice has `words`, one at least, and each only once",
-                false => "only a Choice has `words`",
+            let why = if is_choice {
+                "a Choice has `words`, one at least, and each only once"
+            } else {
+                "only a Choice has `words`"
             };
-            return Err(wrong(why).diagnostic());
+            return Err(wrong(why).into_diagnostic());
         }
         let taken = fields
             .words
@@ -181,16 +182,16 @@ impl Param {
             .any(|word| fields.refused.contains_key(word.as_str()));
         if taken || !is_choice && !fields.refused.is_empty() {
             let why = "`refused` has words that a Choice has not, each with the reason";
-            return Err(wrong(why).diagnostic());
+            return Err(wrong(why).into_diagnostic());
         }
         if let (Some(min), Some(max)) = (fields.min, fields.max)
             && min.partial_cmp(&max).is_none_or(std::cmp::Ordering::is_gt)
         {
-            return Err(wrong(&format!("no value can lie in {min}..{max}")).diagnostic());
+            return Err(wrong(&format!("no value can lie in {min}..{max}")).into_diagnostic());
         }
         if *fields.name.value == *"index" {
             let why = "`index` is that of a repetition, and no param";
-            return Err(wrong(why).diagnostic());
+            return Err(wrong(why).into_diagnostic());
         }
         Ok(Self {
             name: Located::new(fields.name.value.to_string(), fields.name.span),
@@ -312,9 +313,10 @@ impl Param {
             let number = || {
                 let number: f64 = text.parse().ok()?;
                 let is_whole = number.fract() == 0.0 && number.abs() < 9e15;
-                Some(match is_whole && self.ty != ParamType::F32 {
-                    true => Scalar::Whole(number as i64),
-                    false => Scalar::Number(number),
+                Some(if is_whole && self.ty != ParamType::F32 {
+                    Scalar::Whole(number as i64)
+                } else {
+                    Scalar::Number(number)
                 })
             };
             whole.or_else(number).ok_or_else(wrong)
@@ -393,9 +395,10 @@ impl Param {
             }
             let below = self.min.is_some_and(|min| number < stored(min));
             if below || self.max.is_some_and(|max| number > stored(max)) {
-                let shown = match whole {
-                    true => number.to_string(),
-                    false => (number as f32).to_string(),
+                let shown = if whole {
+                    number.to_string()
+                } else {
+                    (number as f32).to_string()
                 };
                 return Err(ParamFault::Value(match (self.min, self.max) {
                     (Some(min), Some(max)) => format!("must lie in {min}..{max}, not {shown}"),

@@ -3,7 +3,7 @@
 
 use super::ron::{Field, Node};
 use crate::{
-    diagnostics::reports::{Mistake, Reported, Reports},
+    diagnostics::reports::{ErrorGuaranteed, IntoDiagnostic, Reports},
     errors::document::DocumentError,
     source::span::{Located, SourceFile, Span},
 };
@@ -29,16 +29,16 @@ pub(crate) struct RawDocument {
     pub params: Vec<RawItem>,
     pub inputs: Vec<RawItem>,
     pub materials: Vec<RawItem>,
-    pub passes: Vec<Result<RawEntry, Broken>>,
+    pub passes: Vec<Result<RawEntry, Invalid>>,
     pub outputs: Vec<Node>,
     pub set: RawMap,
     pub lights: Vec<Node>,
     pub proven_on: Vec<Node>,
     pub claims: RawMap,
     /// A param could not be read: nothing of the document has a size then.
-    pub broken_params: Option<Reported>,
+    pub invalid_params: Option<ErrorGuaranteed>,
     /// A list or an item of it could not be read, and nobody knows which names it would have given.
-    pub incomplete: Option<Reported>,
+    pub incomplete: Option<ErrorGuaranteed>,
 }
 
 /// `Kind(name: …, …)`, a param, an input or a material.
@@ -56,15 +56,15 @@ pub(crate) struct RawEntry {
     pub bind: RawMap,
     pub set: RawMap,
     /// The entries of a group.
-    pub passes: Option<Vec<Result<RawEntry, Broken>>>,
+    pub passes: Option<Vec<Result<RawEntry, Invalid>>>,
 }
 
 /// An entry that could not be read, which was reported: what it would have written is not known,
 /// nor, of an include, what it would have brought.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Broken {
+pub(crate) struct Invalid {
     pub is_include: bool,
-    pub reported: Reported,
+    pub reported: ErrorGuaranteed,
 }
 
 /// The text of a field `name` in quotes.
@@ -137,12 +137,15 @@ pub(crate) const SECTIONS: [(&str, &str); 13] = [
 ];
 
 /// Splits a document into its sections. What is wrong with some of them is reported.
-pub(crate) fn split(file: SourceFile, reports: &mut Reports) -> Result<RawDocument, Reported> {
+pub(crate) fn split(
+    file: SourceFile,
+    reports: &mut Reports,
+) -> Result<RawDocument, ErrorGuaranteed> {
     if !file.text.contains('(') {
         return Err(reports.report(DocumentError::NoDocument(file)));
     }
     let fields = Node::root(&file).fields();
-    let fields = fields.map_err(|error| reports.tell(error))?;
+    let fields = fields.map_err(|error| reports.emit(error))?;
     let mut sections = Sections {
         nodes: sections(fields, reports),
         incomplete: None,
@@ -169,11 +172,11 @@ pub(crate) fn split(file: SourceFile, reports: &mut Reports) -> Result<RawDocume
         proven_on: sections.list("proven_on"),
         claims: sections.map("claims"),
         passes: entries(passes, sections.reports),
-        broken_params: None,
+        invalid_params: None,
         incomplete: sections.incomplete,
         file,
     };
-    (document.params, document.broken_params) = params;
+    (document.params, document.invalid_params) = params;
     Ok(document)
 }
 
@@ -196,12 +199,12 @@ fn sections(fields: Vec<Field>, reports: &mut Reports) -> HashMap<String, Node> 
 
 struct Sections<'r> {
     nodes: HashMap<String, Node>,
-    incomplete: Option<Reported>,
+    incomplete: Option<ErrorGuaranteed>,
     reports: &'r mut Reports,
 }
 
 impl Sections<'_> {
-    fn format(&mut self, file: &SourceFile) -> Result<(), Reported> {
+    fn format(&mut self, file: &SourceFile) -> Result<(), ErrorGuaranteed> {
         let Some(node) = self.nodes.get("format") else {
             let begin = file.span(0..1.min(file.text.len()));
             self.reports.report(DocumentError::NoFormat(begin));
@@ -215,7 +218,7 @@ impl Sections<'_> {
                 Err(self.reports.report(DocumentError::Format(place, other)))
             }
             Err(error) => {
-                self.reports.tell(error);
+                self.reports.emit(error);
                 Ok(())
             }
         }
@@ -236,13 +239,13 @@ impl Sections<'_> {
     }
 
     /// The items of a section, and the proof if some could not be read.
-    fn items(&mut self, section: &'static str) -> (Vec<RawItem>, Option<Reported>) {
+    fn items(&mut self, section: &'static str) -> (Vec<RawItem>, Option<ErrorGuaranteed>) {
         let (mut items, mut broken) = (Vec::new(), None);
         for node in self.list(section) {
             match item(&node, section) {
                 Ok(item) => items.push(item),
                 Err(error) => {
-                    broken = Some(self.reports.tell(error));
+                    broken = Some(self.reports.emit(error));
                     self.incomplete = broken;
                 }
             }
@@ -276,13 +279,13 @@ fn item(node: &Node, section: &'static str) -> Result<RawItem, crate::diagnostic
         span: node.span.clone(),
         section,
     };
-    let (tag, body) = node.variant().ok_or_else(|| untagged().diagnostic())?;
+    let (tag, body) = node.variant().ok_or_else(|| untagged().into_diagnostic())?;
     let fields = body.fields()?;
     Ok(RawItem { tag, fields })
 }
 
-fn list(node: &Node, reports: &mut Reports) -> Result<Vec<Node>, Reported> {
-    let nodes = node.list().map_err(|error| reports.tell(error))?;
+fn list(node: &Node, reports: &mut Reports) -> Result<Vec<Node>, ErrorGuaranteed> {
+    let nodes = node.list().map_err(|error| reports.emit(error))?;
     if let Some(first) = nodes.get(MOST_ENTRIES) {
         let span = first.span.clone();
         let count = nodes.len();
@@ -297,7 +300,7 @@ fn list(node: &Node, reports: &mut Reports) -> Result<Vec<Node>, Reported> {
 }
 
 fn map(node: &Node, reports: &mut Reports) -> RawMap {
-    let entries = node.map().map_err(|error| reports.tell(error));
+    let entries = node.map().map_err(|error| reports.emit(error));
     let entries = entries.unwrap_or_default();
     if let Some((first, _)) = entries.get(MOST_ENTRIES) {
         let span = first.span.clone();
@@ -313,24 +316,25 @@ fn map(node: &Node, reports: &mut Reports) -> RawMap {
     let mut seen = HashSet::new();
     let mut once = Vec::new();
     for (key, value) in entries {
-        match seen.insert(key.value.clone()) {
-            true => once.push((key, value)),
-            false => drop(reports.report(DocumentError::KeyTwice(key))),
+        if seen.insert(key.value.clone()) {
+            once.push((key, value));
+        } else {
+            reports.report(DocumentError::KeyTwice(key));
         }
     }
     once
 }
 
-fn entries(nodes: Vec<Node>, reports: &mut Reports) -> Vec<Result<RawEntry, Broken>> {
+fn entries(nodes: Vec<Node>, reports: &mut Reports) -> Vec<Result<RawEntry, Invalid>> {
     nodes.iter().map(|node| entry(node, reports)).collect()
 }
 
-fn entry(node: &Node, reports: &mut Reports) -> Result<RawEntry, Broken> {
+fn entry(node: &Node, reports: &mut Reports) -> Result<RawEntry, Invalid> {
     let item = item(node, "passes").map_err(|error| {
         let tag = node.variant().map(|(tag, _)| tag.value);
-        Broken {
+        Invalid {
             is_include: tag.is_some_and(|tag| tag == "Include"),
-            reported: reports.tell(error),
+            reported: reports.emit(error),
         }
     })?;
     let mut entry = RawEntry {
@@ -352,7 +356,7 @@ fn entry(node: &Node, reports: &mut Reports) -> Result<RawEntry, Broken> {
             "passes" => {
                 let nodes = list(&field.node, reports);
                 let unread = |reported| {
-                    vec![Err(Broken {
+                    vec![Err(Invalid {
                         is_include: true,
                         reported,
                     })]

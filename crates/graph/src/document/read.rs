@@ -12,7 +12,7 @@ use super::{
 use crate::{
     diagnostics::{
         diagnostic::Diagnostic,
-        reports::{Mistake, Reported, Reports},
+        reports::{ErrorGuaranteed, IntoDiagnostic, Reports},
     },
     errors::{document::DocumentError, language::SyntaxFault},
     kinds::registry::Registry,
@@ -37,7 +37,7 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
         proven_on: Vec::new(),
         claims: Vec::new(),
         broken_materials: Vec::new(),
-        broken_params: raw.broken_params,
+        invalid_params: raw.invalid_params,
         broken_outputs: None,
         incomplete: raw.incomplete,
         include_depth: 0,
@@ -54,7 +54,7 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
     for item in &raw.params {
         match Param::read(&item.tag, &item.fields) {
             Ok(param) => document.params.push(param),
-            Err(error) => document.broken_params = Some(reports.tell(error)),
+            Err(error) => document.invalid_params = Some(reports.emit(error)),
         }
     }
     document.declared = document.params.len();
@@ -62,14 +62,14 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
         let input = input(item).and_then(|input| free(input.name.clone(), input));
         match input {
             Ok(input) => document.inputs.push(input),
-            Err(error) => document.lacks(item.name(), reports.tell(error)),
+            Err(error) => document.lacks(item.name(), reports.emit(error)),
         }
     }
     for item in &raw.materials {
         let material = material(item).and_then(|read| free(read.name().clone(), read));
         match material {
             Ok(material) => document.materials.push(material),
-            Err(error) => document.lacks(item.name(), reports.tell(error)),
+            Err(error) => document.lacks(item.name(), reports.emit(error)),
         }
     }
     let mut passes = raw.passes;
@@ -78,7 +78,7 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
     for node in &raw.outputs {
         match node.parse() {
             Ok(output) => document.outputs.push(output),
-            Err(error) => document.broken_outputs = Some(reports.tell(error)),
+            Err(error) => document.broken_outputs = Some(reports.emit(error)),
         }
     }
     for (name, node) in raw.set {
@@ -104,7 +104,7 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
 
 impl Document {
     /// Notes what cannot be read, by its name if that can.
-    fn lacks(&mut self, name: Option<Located<String>>, reported: Reported) {
+    fn lacks(&mut self, name: Option<Located<String>>, reported: ErrorGuaranteed) {
         match name {
             Some(name) => self.broken_materials.push((name.value, reported)),
             None => self.incomplete = Some(reported),
@@ -115,15 +115,16 @@ impl Document {
 fn keep<T>(result: Result<T, Diagnostic>, reports: &mut Reports, keep: impl FnOnce(T)) {
     match result {
         Ok(value) => keep(value),
-        Err(error) => drop(reports.tell(error)),
+        Err(error) => drop(reports.emit(error)),
     }
 }
 
 /// A material whose name is free to be one.
 fn free<T>(name: Located<Name>, of: T) -> Result<T, Diagnostic> {
-    match RESERVED.contains(&name.as_str()) {
-        true => Err(DocumentError::Reserved(name).diagnostic()),
-        false => Ok(of),
+    if RESERVED.contains(&name.as_str()) {
+        Err(DocumentError::Reserved(name).into_diagnostic())
+    } else {
+        Ok(of)
     }
 }
 
@@ -131,7 +132,7 @@ fn feature(node: &Node) -> Result<(Located<String>, wgt::Features), Diagnostic> 
     let name = Located::new(node.parse::<String>()?, node.span.clone());
     match wgt::Features::from_name(&name) {
         Some(flag) => Ok((name, flag)),
-        None => Err(SyntaxFault::Feature(name).diagnostic()),
+        None => Err(SyntaxFault::Feature(name).into_diagnostic()),
     }
 }
 
@@ -141,7 +142,7 @@ fn material(item: &RawItem) -> Result<Material, Diagnostic> {
         "Texture" => from_fields(fields, &tag.span).map(Material::Texture),
         "Buffer" => from_fields(fields, &tag.span).map(Material::Buffer),
         "Sampler" => from_fields(fields, &tag.span).map(Material::Sampler),
-        _ => Err(DocumentError::UnknownMaterial(tag.clone()).diagnostic()),
+        _ => Err(DocumentError::UnknownMaterial(tag.clone()).into_diagnostic()),
     }
 }
 
@@ -150,10 +151,10 @@ fn input(item: &RawItem) -> Result<Input, Diagnostic> {
     match tag.as_str() {
         "Texture" => {
             let texture: TextureInput = from_fields(fields, &tag.span)?;
-            Input::try_from(texture).map_err(Mistake::diagnostic)
+            Input::try_from(texture).map_err(IntoDiagnostic::into_diagnostic)
         }
         "Buffer" => from_fields::<BufferInput>(fields, &tag.span).map(Input::from),
         "Sampler" => from_fields::<SamplerInput>(fields, &tag.span).map(Input::from),
-        _ => Err(DocumentError::UnknownMaterial(tag.clone()).diagnostic()),
+        _ => Err(DocumentError::UnknownMaterial(tag.clone()).into_diagnostic()),
     }
 }

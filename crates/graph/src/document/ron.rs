@@ -6,7 +6,7 @@
 //! the byte offset.
 
 use crate::{
-    diagnostics::{diagnostic::Diagnostic, reports::Mistake},
+    diagnostics::{diagnostic::Diagnostic, reports::IntoDiagnostic},
     errors::document::DocumentError,
     panics::{Panicked, caught},
     source::span::{Located, SourceFile, Span},
@@ -29,21 +29,21 @@ struct Reading {
 }
 
 /// Remembers a failure, unless one further inside is remembered already.
-fn fail(told: impl FnOnce(&SourceFile) -> Option<Diagnostic>) {
+fn fail(diagnostic: impl FnOnce(&SourceFile) -> Option<Diagnostic>) {
     READING.with_borrow_mut(|reading| {
         if let Some(reading) = reading
             && reading.failed.is_none()
         {
-            reading.failed = told(&reading.file);
+            reading.failed = diagnostic(&reading.file);
         }
     });
 }
 
 /// An error of serde's that is told as this mistake.
-pub(crate) fn refuse<E: serde::de::Error>(mistake: impl Mistake) -> E {
-    let told = mistake.diagnostic();
-    let message = told.message.clone();
-    fail(|_| Some(told));
+pub(crate) fn refuse<E: serde::de::Error>(mistake: impl IntoDiagnostic) -> E {
+    let diagnostic = mistake.into_diagnostic();
+    let message = diagnostic.message.clone();
+    fail(|_| Some(diagnostic));
     E::custom(message)
 }
 
@@ -218,7 +218,9 @@ impl Node {
 
     /// A panic of ron's as a diagnostic at the piece that it read.
     fn without_panic<T>(&self, result: Result<T, Panicked>) -> Result<T, Diagnostic> {
-        result.map_err(|panicked| DocumentError::Panicked(self.span.clone(), panicked).diagnostic())
+        result.map_err(|panicked| {
+            DocumentError::Panicked(self.span.clone(), panicked).into_diagnostic()
+        })
     }
 
     /// The entries of a list, `[…]`, or of a tuple, `(…)`.
@@ -441,7 +443,7 @@ pub fn from_some_fields<T: DeserializeOwned>(
                                 let known = expected.iter().chain(self.more);
                                 let known = known.map(|&name| name.to_owned()).collect();
                                 let name = Located::new(field.name.value.clone(), place);
-                                DocumentError::UnknownField(name, known).diagnostic()
+                                DocumentError::UnknownField(name, known).into_diagnostic()
                             }
                             error => explain(error, place),
                         })
@@ -480,7 +482,7 @@ pub fn from_some_fields<T: DeserializeOwned>(
         .find(|field| !seen.insert(field.name.as_str()))
     {
         let place = field.name.span.clone();
-        return Err(DocumentError::FieldTwice(place, field.name.value.clone()).diagnostic());
+        return Err(DocumentError::FieldTwice(place, field.name.value.clone()).into_diagnostic());
     }
     let node = Node {
         span: whole.clone(),
@@ -523,7 +525,7 @@ fn explain(error: &ron::Error, span: Span) -> Diagnostic {
         R::ExceededRecursionLimit => DocumentError::Nested(span),
         other => DocumentError::Syntax(span, lower_first(&other.to_string())),
     }
-    .diagnostic()
+    .into_diagnostic()
 }
 
 fn lower_first(text: &str) -> String {
@@ -554,10 +556,13 @@ mod tests {
         let node = || Node {
             span: SourceFile::new("graph.ron", "(a: 1)").span(4..5),
         };
-        let told = node().parse::<Panics>().expect_err("it panics");
-        assert_eq!(told.code, Code::LibraryPanic);
-        assert!(told.message.contains("no value today"), "{told:?}");
-        assert_eq!(told.labels[0].span.range, 4..5);
+        let diagnostic = node().parse::<Panics>().expect_err("it panics");
+        assert_eq!(diagnostic.code, Code::LibraryPanic);
+        assert!(
+            diagnostic.message.contains("no value today"),
+            "{diagnostic:?}"
+        );
+        assert_eq!(diagnostic.labels[0].span.range, 4..5);
         // What is read next is read as ever.
         assert_eq!(node().parse::<u32>().ok(), Some(1));
     }

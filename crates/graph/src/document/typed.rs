@@ -4,11 +4,11 @@ use super::{
     fields::{Mentions, short_or_long},
     materials::{Input, Material},
     params::Param,
-    raw::Broken,
+    raw::Invalid,
     ron::{raw, read},
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::reports::ErrorGuaranteed,
     kinds::kind::PassKind,
     language::{
         name::Name,
@@ -33,7 +33,7 @@ pub(crate) struct Document {
     pub defaults: Vec<(Located<String>, Expr)>,
     pub inputs: Vec<Input>,
     pub materials: Vec<Material>,
-    pub entries: Vec<Result<Entry, Broken>>,
+    pub entries: Vec<Result<Entry, Invalid>>,
     pub outputs: Vec<Output>,
     /// The kinds of light that it takes.
     pub lights: Vec<Located<Name>>,
@@ -41,13 +41,13 @@ pub(crate) struct Document {
     pub proven_on: Vec<Located<Name>>,
     pub claims: Vec<(Located<String>, ClaimEntry)>,
     /// Names of materials and inputs that could not be read.
-    pub broken_materials: Vec<(String, Reported)>,
+    pub broken_materials: Vec<(String, ErrorGuaranteed)>,
     /// A param could not be read: nothing of the document has a size then.
-    pub broken_params: Option<Reported>,
+    pub invalid_params: Option<ErrorGuaranteed>,
     /// Something could not be read, and nobody knows which names it would have given.
-    pub incomplete: Option<Reported>,
+    pub incomplete: Option<ErrorGuaranteed>,
     /// An output could not be read: nobody knows what it would have been called.
-    pub broken_outputs: Option<Reported>,
+    pub broken_outputs: Option<ErrorGuaranteed>,
     /// How many includes there are one within the other below this document.
     pub include_depth: usize,
 }
@@ -117,7 +117,7 @@ pub(crate) struct OutputFields {
 impl<'de> Deserialize<'de> for Output {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let named = |name: Located<Name>, material: Option<Reference>, condition| Self {
-            material: material.unwrap_or_else(|| Reference::of(name.clone())),
+            material: material.unwrap_or_else(|| Reference::new(name.clone())),
             name,
             condition,
         };
@@ -151,7 +151,7 @@ pub(crate) struct Entry {
 pub(crate) enum What {
     Pass(Pass),
     Include(Include),
-    Group(Vec<Result<Entry, Broken>>),
+    Group(Vec<Result<Entry, Invalid>>),
 }
 
 /// A pass: what every kind has, and the kind's own body.
@@ -179,7 +179,7 @@ pub(crate) struct Include {
     /// Params of the included document that are params here, too.
     pub expose: Vec<Located<String>>,
     /// Put here once it is read.
-    pub document: Option<Result<Arc<Document>, Reported>>,
+    pub document: Option<Result<Arc<Document>, ErrorGuaranteed>>,
 }
 
 impl Include {
@@ -237,7 +237,7 @@ impl Document {
     }
 }
 
-fn visit_entries<'a>(entries: &'a [Result<Entry, Broken>], each: &mut dyn FnMut(Leaf<'a>)) {
+fn visit_entries<'a>(entries: &'a [Result<Entry, Invalid>], each: &mut dyn FnMut(Leaf<'a>)) {
     for entry in entries.iter().flatten() {
         let exprs = [&entry.condition, &entry.repeat].into_iter().flatten();
         let exprs = exprs.chain(entry.set.iter().map(|(_, value)| value));

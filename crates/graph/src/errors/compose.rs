@@ -1,7 +1,7 @@
 //! Documents that cannot be found, or do not go together.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
     source::span::{Located, Span},
 };
 
@@ -25,10 +25,7 @@ pub(crate) enum ComposeError {
     },
     #[error("documents include or extend each other more than {1} deep")]
     TooDeep(Located<String>, usize),
-    #[error("{}", match name == known {
-        true => format!("two of the name `{name}`: every {what} needs its own"),
-        false => format!("`{name}` and `{known}` are one name in a shader"),
-    })]
+    #[error("{}", if name == known { format!("two of the name `{name}`: every {what} needs its own") } else { format!("`{name}` and `{known}` are one name in a shader") })]
     Clash {
         what: &'static str,
         name: String,
@@ -54,7 +51,7 @@ pub(crate) enum ComposeError {
     UnusedParam(Located<String>),
 }
 
-impl Mistake for ComposeError {
+impl IntoDiagnostic for ComposeError {
     fn code(&self) -> Code {
         match self {
             Self::Cycle { .. } => Code::IncludeCycle,
@@ -69,46 +66,48 @@ impl Mistake for ComposeError {
         }
     }
 
-    fn explain(self, told: Diagnostic) -> Diagnostic {
+    fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
-            Self::NoDocument(_, None) | Self::Unreadable(..) => told,
-            Self::NoDocument(_, Some(likeness)) => told.help(likeness),
-            Self::Outside(graph) => told.at(graph.span, "asked for here").help(
+            Self::NoDocument(_, None) | Self::Unreadable(..) => diagnostic,
+            Self::NoDocument(_, Some(likeness)) => diagnostic.help(likeness),
+            Self::Outside(graph) => diagnostic.at(graph.span, "asked for here").help(
                 "documents stand beside the one that asks for them, in a folder below it, or in \
                  pipelines/, and are named without folder signs like `..`",
             ),
             Self::NoInclude(graph, candidates, likeness) => {
                 let likeness = likeness.map_or(String::new(), |likeness| format!("; {likeness}"));
                 let looked = format!("looked for {}{likeness}", candidates.join(", "));
-                told.at(graph.span, "asked for here").help(looked)
+                diagnostic.at(graph.span, "asked for here").help(looked)
             }
-            Self::UnreadableInclude(path, why) => told.at(path.span, "asked for here").help(why),
+            Self::UnreadableInclude(path, why) => {
+                diagnostic.at(path.span, "asked for here").help(why)
+            }
             Self::Cycle { graph, open } => {
-                let mut told = told.at(graph.span, "includes it again");
+                let mut diagnostic = diagnostic.at(graph.span, "includes it again");
                 for (path, place) in open.iter().skip(1) {
                     if let Some(place) = place {
-                        told = told.at(place.clone(), format!("includes `{path}`"));
+                        diagnostic = diagnostic.at(place.clone(), format!("includes `{path}`"));
                     }
                 }
                 let path: Vec<&str> = open.iter().map(|(path, _)| path.as_str()).collect();
-                told.help(format!(
+                diagnostic.help(format!(
                     "the cycle is {} → {}: take one of these includes out",
                     path.join(" → "),
                     path.first().unwrap_or(&"")
                 ))
             }
-            Self::TooDeep(graph, _) => told.at(graph.span, "").help("use fewer levels"),
+            Self::TooDeep(graph, _) => diagnostic.at(graph.span, "").help("use fewer levels"),
             Self::Clash {
                 what,
                 name,
                 known,
                 span,
                 first,
-            } => clash(told, what, [name, known], [span, first]),
+            } => clash(diagnostic, what, [name, known], [span, first]),
             Self::NoParam { name, known, .. } => {
-                told.at(name.span.clone(), "").suggest(&name, known)
+                diagnostic.at(name.span.clone(), "").suggest(&name, known)
             }
-            Self::ExposedTwice { name, first } => told
+            Self::ExposedTwice { name, first } => diagnostic
                 .at(name.span.clone(), "exposed here")
                 .at(first, "and declared here")
                 .help(format!(
@@ -116,14 +115,14 @@ impl Mistake for ComposeError {
                      `set: {{\"{0}\": \"{0}\"}}`",
                     *name
                 )),
-            Self::ExposedDefault(name) => told
+            Self::ExposedDefault(name) => diagnostic
                 .at(name.span, "")
                 .help("declare a param here, and `set` it to that"),
-            Self::NoOutputs(span) => told.at(span, "").help("add `outputs: [\"…\"]`"),
-            Self::UnusedMaterial(name) => told
+            Self::NoOutputs(span) => diagnostic.at(span, "").help("add `outputs: [\"…\"]`"),
+            Self::UnusedMaterial(name) => diagnostic
                 .at(name.span, "")
                 .help("remove it, or check the names of the shader globals that should be it"),
-            Self::UnusedParam(name) => told.at(name.span, "").help(
+            Self::UnusedParam(name) => diagnostic.at(name.span, "").help(
                 "remove it, or check the names in `params` of the shaders and in expressions",
             ),
         }
@@ -131,20 +130,23 @@ impl Mistake for ComposeError {
 }
 
 fn clash(
-    told: Diagnostic,
+    diagnostic: Diagnostic,
     what: &str,
     [name, known]: [String; 2],
     [span, first]: [Span; 2],
 ) -> Diagnostic {
     if name != known {
-        return told
+        return diagnostic
             .at(span, format!("gives `{name}`"))
             .at(first, "declared here")
             .help("rename one of them");
     }
-    let told = told.at(span, "the second one").at(first, "the first one");
+    let diagnostic = diagnostic
+        .at(span, "the second one")
+        .at(first, "the first one");
     if what != "material" {
-        return told;
+        return diagnostic;
     }
-    told.help("an include can be given a name: `name: \"left\"` makes `left.x` of its output `x`")
+    diagnostic
+        .help("an include can be given a name: `name: \"left\"` makes `left.x` of its output `x`")
 }

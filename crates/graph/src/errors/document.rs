@@ -1,7 +1,7 @@
 //! Documents that cannot be read.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
     language::name::{Name, NameFault, RESERVED},
     panics::Panicked,
     source::span::{Located, SourceFile, Span},
@@ -102,7 +102,7 @@ fn kinds(section: &str) -> (&'static str, &'static [&'static str]) {
     }
 }
 
-impl Mistake for DocumentError {
+impl IntoDiagnostic for DocumentError {
     fn code(&self) -> Code {
         match self {
             Self::Format(..) => Code::FormatVersion,
@@ -121,50 +121,51 @@ impl Mistake for DocumentError {
         }
     }
 
-    fn explain(self, told: Diagnostic) -> Diagnostic {
+    fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
             Self::NoDocument(file) => {
                 let line = file.text.lines().next().map_or(0, str::len);
-                told.at(file.span(0..line), "")
+                diagnostic
+                    .at(file.span(0..line), "")
                     .help("begin with `(format: 2, …)`")
             }
-            Self::NoFormat(span) => told.at(span, "").help("begin with `format: 2,`"),
-            Self::Format(span, 1) => told.at(span, "").help(FORMAT_1),
-            Self::Format(span, _) => told
+            Self::NoFormat(span) => diagnostic.at(span, "").help("begin with `format: 2,`"),
+            Self::Format(span, 1) => diagnostic.at(span, "").help(FORMAT_1),
+            Self::Format(span, _) => diagnostic
                 .at(span, "")
                 .help("this version of Skiagraph reads `format: 2`"),
-            Self::Panicked(span, panicked) => told
+            Self::Panicked(span, panicked) => diagnostic
                 .at(span, "this brings it about")
                 .help(panicked.way_out()),
-            Self::Ends(span) => told
+            Self::Ends(span) => diagnostic
                 .at(span, "something is not closed")
                 .help("check that every bracket and quote is closed"),
-            Self::Nested(span) => told.at(span, "").help(
+            Self::Nested(span) => diagnostic.at(span, "").help(
                 "no document needs so many brackets in brackets: is one of them never closed?",
             ),
-            Self::UnknownField(name, known) => told
+            Self::UnknownField(name, known) => diagnostic
                 .at(name.span.clone(), "not a field of this")
                 .suggest(&name, known),
-            Self::UnknownWord(word, known) => told
+            Self::UnknownWord(word, known) => diagnostic
                 .at(
                     word.span.clone(),
                     "not one of the words that may stand here",
                 )
                 .suggest(&word, known),
-            Self::UnknownKind(tag, known) => told
+            Self::UnknownKind(tag, known) => diagnostic
                 .at(tag.span.clone(), "no pass kind of this name is registered")
                 .suggest(&tag, known),
-            Self::UnknownParamType(tag) => told
+            Self::UnknownParamType(tag) => diagnostic
                 .at(tag.span.clone(), "")
                 .suggest(&tag, kinds("params").1),
-            Self::UnknownMaterial(tag) => told
+            Self::UnknownMaterial(tag) => diagnostic
                 .at(tag.span.clone(), "")
                 .suggest(&tag, kinds("materials").1),
             Self::Untagged { span, section } => {
                 let (example, known) = kinds(section);
-                told.at(span, example).suggest("", known)
+                diagnostic.at(span, example).suggest("", known)
             }
-            other => other.explain_value(told),
+            other => other.explain_value(diagnostic),
         }
     }
 }
@@ -177,47 +178,49 @@ const FORMAT_1: &str = "this is format 2 (docs/authoring.md): a param is `U32(na
 
 impl DocumentError {
     /// Mistakes in a value.
-    fn explain_value(self, told: Diagnostic) -> Diagnostic {
+    fn explain_value(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
-            Self::Syntax(span, _) => told.at(span, "here"),
-            Self::MissingField(span, _) => told.at(span, "it must be given here"),
-            Self::FieldTwice(span, _) => told.at(span, "the second one"),
-            Self::KeyTwice(key) => told.at(key.span, "the second one"),
-            Self::Twice { span, first, .. } => {
-                told.at(span, "the second one").at(first, "the first one")
-            }
-            Self::TooMany { span, .. } => told.at(span, "this one is too many").help(
+            Self::Syntax(span, _) => diagnostic.at(span, "here"),
+            Self::MissingField(span, _) => diagnostic.at(span, "it must be given here"),
+            Self::FieldTwice(span, _) => diagnostic.at(span, "the second one"),
+            Self::KeyTwice(key) => diagnostic.at(key.span, "the second one"),
+            Self::Twice { span, first, .. } => diagnostic
+                .at(span, "the second one")
+                .at(first, "the first one"),
+            Self::TooMany { span, .. } => diagnostic.at(span, "this one is too many").help(
                 "let `repeat` say what is alike, or split the document and `Include` its parts",
             ),
-            Self::Name(span, ..) => told.at(span, ""),
-            Self::Reserved(name) => told.at(name.span, "").help(format!(
+            Self::Name(span, ..) => diagnostic.at(span, ""),
+            Self::Reserved(name) => diagnostic.at(name.span, "").help(format!(
                 "these words have a meaning of their own: {}",
                 RESERVED.join(", ")
             )),
-            Self::Unnamed(span, _) => told.at(span, "the include would be called so"),
-            Self::BareWord(span, _) => told.at(span, "").help(
+            Self::Unnamed(span, _) => diagnostic.at(span, "the include would be called so"),
+            Self::BareWord(span, _) => diagnostic.at(span, "").help(
                 "an expression stands in quotes, `\"viewport.size / 2\"`; a word of a Choice has \
                  small letters",
             ),
-            Self::NoString(span) => told.at(span, "for example `\"maps[2]\"`"),
-            Self::NoTuple(span) => told.at(span, "for example `(1, 0)`"),
-            Self::Load(span) => told
+            Self::NoString(span) => diagnostic.at(span, "for example `\"maps[2]\"`"),
+            Self::NoTuple(span) => diagnostic.at(span, "for example `(1, 0)`"),
+            Self::Load(span) => diagnostic
                 .at(span, "")
                 .help("write `Load`, `Clear(0)` or `Clear(r, g, b, a)`"),
-            Self::WriteMask(span) => told.at(span, "").help("write `rgb`, `true` or `false`"),
-            Self::Area(span) => told.at(span, ""),
-            Self::ClearInArea { clear, area } => told
+            Self::WriteMask(span) => diagnostic
+                .at(span, "")
+                .help("write `rgb`, `true` or `false`"),
+            Self::Area(span) => diagnostic.at(span, ""),
+            Self::ClearInArea { clear, area } => diagnostic
                 .at(clear, "this would clear the whole target")
                 .at(area, "and this is a part of it")
                 .help("leave `load` out here, and put a `Clear` above this pass"),
-            Self::Data(span) => told
+            Self::Data(span) => diagnostic
                 .at(span, "")
                 .help("write `[0.2, 0.6]` or `[(1, 0), (0, 1)]`"),
-            Self::InputFormat(span) => told
+            Self::InputFormat(span) => diagnostic
                 .at(span, "")
                 .help("leave `format` out where any will do"),
-            Self::Param { name, .. } => told.at(name.span, ""),
-            _ => told,
+            Self::Param { name, .. } => diagnostic.at(name.span, ""),
+            _ => diagnostic,
         }
     }
 }

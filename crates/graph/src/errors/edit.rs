@@ -1,7 +1,7 @@
 //! Edits of an extended document that cannot be made.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
     source::span::{Located, Span},
 };
 
@@ -36,7 +36,7 @@ pub(crate) enum EditError {
     Cycle(Span, Vec<String>),
 }
 
-impl Mistake for EditError {
+impl IntoDiagnostic for EditError {
     fn code(&self) -> Code {
         match self {
             Self::Cycle(..) => Code::IncludeCycle,
@@ -44,24 +44,28 @@ impl Mistake for EditError {
         }
     }
 
-    fn explain(self, told: Diagnostic) -> Diagnostic {
+    fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
         const PLACES: &str = "say `before`, `after` or `instead: \"entry\"`";
         match self {
-            Self::NoSuchEntry { path, name, known } => told.at(path.span, "").suggest(&name, known),
-            Self::Behind { path, entry } => told.at(path.span, "").help(format!(
+            Self::NoSuchEntry { path, name, known } => {
+                diagnostic.at(path.span, "").suggest(&name, known)
+            }
+            Self::Behind { path, entry } => diagnostic.at(path.span, "").help(format!(
                 "change the `graph` of `{entry}`; the new document may extend the old one"
             )),
-            Self::NoPlace(tag) | Self::TwoPlaces(tag) => told.at(tag.span, "").help(PLACES),
-            Self::NoPath(tag, field) => told.at(tag.span, format!("give it `{field}: \"entry\"`")),
-            Self::NoString(span) => told.at(span, "for example `\"group.pass\"`"),
-            Self::Field(name, _) => told.at(name.span, "not a field of this"),
-            Self::Passes(span) => told
+            Self::NoPlace(tag) | Self::TwoPlaces(tag) => diagnostic.at(tag.span, "").help(PLACES),
+            Self::NoPath(tag, field) => {
+                diagnostic.at(tag.span, format!("give it `{field}: \"entry\"`"))
+            }
+            Self::NoString(span) => diagnostic.at(span, "for example `\"group.pass\"`"),
+            Self::Field(name, _) => diagnostic.at(name.span, "not a field of this"),
+            Self::Passes(span) => diagnostic
                 .at(span, "")
                 .help("name them by their paths: `pass: \"group.pass\"`"),
-            Self::NotExtending(word) => told
+            Self::NotExtending(word) => diagnostic
                 .at(word.span, "")
                 .help("begin the document with `extends: \"other.ron\"`"),
-            Self::Cycle(span, files) => told
+            Self::Cycle(span, files) => diagnostic
                 .at(span, "extends it again")
                 .help(format!("the cycle is {}", files.join(" → "))),
         }

@@ -2,7 +2,7 @@
 
 use super::language::attributes;
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
     language::{
         name::Name,
         value::{Scalar, Value},
@@ -80,9 +80,10 @@ impl EvaluationError {
     pub fn param(name: &str, span: &Span, is_material: bool, known: Vec<String>) -> Self {
         Self::Unknown {
             span: span.clone(),
-            what: match is_material {
-                true => format!("`{name}` is a material: name an attribute of it, `{name}.size`"),
-                false => format!("no param is called `{name}`"),
+            what: if is_material {
+                format!("`{name}` is a material: name an attribute of it, `{name}.size`")
+            } else {
+                format!("no param is called `{name}`")
             },
             word: name.to_owned(),
             known: if is_material { Vec::new() } else { known },
@@ -90,7 +91,7 @@ impl EvaluationError {
     }
 }
 
-impl Mistake for EvaluationError {
+impl IntoDiagnostic for EvaluationError {
     fn code(&self) -> Code {
         match self {
             Self::Unknown { .. } => Code::UnknownParam,
@@ -99,69 +100,71 @@ impl Mistake for EvaluationError {
         }
     }
 
-    fn explain(self, told: Diagnostic) -> Diagnostic {
+    fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
             Self::Type {
                 span,
                 expected,
                 found,
             } => {
-                let told = told.at(span, format!("this is {found}"));
+                let diagnostic = diagnostic.at(span, format!("this is {found}"));
                 match (expected.contains("whole"), found) {
                     (true, Value::Scalar(Scalar::Number(number))) if number.abs() < 1e9 => {
-                        told.help("`floor(…)` and `ceil(…)` make a whole number of it")
+                        diagnostic.help("`floor(…)` and `ceil(…)` make a whole number of it")
                     }
-                    _ => told,
+                    _ => diagnostic,
                 }
             }
-            Self::Lengths { span, .. } => told
+            Self::Lengths { span, .. } => diagnostic
                 .at(span, "here")
                 .help("name parts of the longer one, as `x.width` and `x.height`"),
             Self::Negative(span, _)
             | Self::Large(span, _)
             | Self::DivisionByZero(span)
             | Self::Overflow(span)
-            | Self::NoSizes(span, _) => told.at(span, "here"),
-            Self::NoSuchWord { span, word, words } => told.at(span, "").suggest(&word, words),
+            | Self::NoSizes(span, _) => diagnostic.at(span, "here"),
+            Self::NoSuchWord { span, word, words } => diagnostic.at(span, "").suggest(&word, words),
             Self::Words {
                 span,
                 expected,
                 found,
-            } => told.at(span, format!("this is {found}")).help(format!(
-                "a Choice of these words may stand here, all of its words being among them: {}",
-                expected.join(", ")
-            )),
-            Self::NoAttribute { span, .. } => told
+            } => diagnostic
+                .at(span, format!("this is {found}"))
+                .help(format!(
+                    "a Choice of these words may stand here, all of its words being among them: {}",
+                    expected.join(", ")
+                )),
+            Self::NoAttribute { span, .. } => diagnostic
                 .at(span, "")
                 .help(format!("attributes are {}", attributes())),
-            Self::NoCount(name) => told
+            Self::NoCount(name) => diagnostic
                 .at(name.span, "it says no `count`")
                 .help("give the buffer one, and its shaders an array of any length"),
-            Self::Uncounted(name) => told
+            Self::Uncounted(name) => diagnostic
                 .at(name.span, "its items are counted when it is built")
                 .help("bind all of it, and let the shader ask for `arrayLength`"),
-            Self::Circular(name) => told
+            Self::Circular(name) => diagnostic
                 .at(name.span, "")
                 .help("give one of these materials a size of its own"),
-            Self::NoIndex(span, None) => told
+            Self::NoIndex(span, None) => diagnostic
                 .at(span, "`index` is that of a repetition")
                 .help("write a number, or `repeat: …`"),
-            Self::NoIndex(span, Some(name)) => told.at(
+            Self::NoIndex(span, Some(name)) => diagnostic.at(
                 span,
                 format!("no repeated entry around this is called `{name}`"),
             ),
-            Self::NoShader(span) => told
+            Self::NoShader(span) => diagnostic
                 .at(span, "names in capitals are constants of a pass's shader")
                 .help("use a param, which is written in small letters"),
             Self::NoConstant {
                 span, name, known, ..
-            } => told
+            } => diagnostic
                 .at(span, "")
                 .suggest(&name, known)
                 .help("a constant that a document asks for has a type: `const NAME: u32 = …;`"),
             Self::Unknown {
                 span, word, known, ..
-            } => told.at(span, "").suggest(&word, known),
+            } => diagnostic.at(span, "").suggest(&word, known),
         }
     }
 }

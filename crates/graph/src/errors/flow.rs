@@ -1,16 +1,13 @@
 //! Orders of passes that cannot be.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
     source::span::{Located, Span},
 };
 
 #[derive(Clone, Debug, thiserror::Error)]
 pub(crate) enum OrderError {
-    #[error("`{name}` cannot be read back: {}", match partly {
-        true => "something has written some of it, but not all",
-        false => "nothing has written it yet",
-    })]
+    #[error("`{name}` cannot be read back: {}", if *partly { "something has written some of it, but not all" } else { "nothing has written it yet" })]
     Capture {
         name: String,
         first: Option<String>,
@@ -72,7 +69,7 @@ fn verb(changes: bool, partly: bool) -> &'static str {
     }
 }
 
-impl Mistake for OrderError {
+impl IntoDiagnostic for OrderError {
     fn code(&self) -> Code {
         match self {
             Self::Capture { .. } => Code::Output,
@@ -82,9 +79,9 @@ impl Mistake for OrderError {
         }
     }
 
-    fn explain(self, told: Diagnostic) -> Diagnostic {
+    fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
-            Self::Capture { first, partly, .. } => told.help(match (first, partly) {
+            Self::Capture { first, partly, .. } => diagnostic.help(match (first, partly) {
                 (Some(first), true) => {
                     format!("name a mip or layer that is written by then; `{first}` writes others")
                 }
@@ -99,18 +96,21 @@ impl Mistake for OrderError {
                 changes,
                 ..
             } => {
-                let told = told.at(read, "read here").at(pass.span, "by this pass");
-                match changes {
-                    true => told.help(format!(
+                let diagnostic = diagnostic
+                    .at(read, "read here")
+                    .at(pass.span, "by this pass");
+                if changes {
+                    diagnostic.help(format!(
                         "put `Clear(name: \"clear\", target: \"{name}\")` above it: it starts \
                          from what was there before"
-                    )),
-                    false => told.help("let a pass above write it, or name another material"),
+                    ))
+                } else {
+                    diagnostic.help("let a pass above write it, or name another material")
                 }
             }
             Self::Cycle {
                 name, pass, writer, ..
-            } => told
+            } => diagnostic
                 .at(pass.span, format!("reads `{name}`"))
                 .at(
                     writer.span,
@@ -121,7 +121,7 @@ impl Mistake for OrderError {
                 ),
             Self::WrittenBelow {
                 pass, read, writer, ..
-            } => told
+            } => diagnostic
                 .at(read, "read here")
                 .at(pass.span, "by this pass")
                 .at(writer.span.clone(), "written only here, below")
@@ -129,18 +129,18 @@ impl Mistake for OrderError {
                     "move `{}` above `{}`: the file reads as a sequential program",
                     *writer, pass.value
                 )),
-            Self::NeverWritten { name, pass, read } => told
+            Self::NeverWritten { name, pass, read } => diagnostic
                 .at(read, "read here")
                 .at(pass.span, "by this pass")
                 .help(format!("let a pass write `{name}`")),
-            Self::NeverCounted { name, counter } => told.at(name.span, "").help(format!(
+            Self::NeverCounted { name, counter } => diagnostic.at(name.span, "").help(format!(
                 "let a pass count in `{counter}` the items that are needed"
             )),
             Self::RunConditions {
                 name,
                 passes: [a, b],
                 runs: [run_a, run_b],
-            } => told
+            } => diagnostic
                 .at(b.span, format!("`run: {run_b}`"))
                 .at(a.span, format!("`run: {run_a}`"))
                 .help(format!(

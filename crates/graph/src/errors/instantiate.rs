@@ -1,7 +1,7 @@
 //! What is wrong between documents: params, inputs, outputs, names.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
     document::params::{Param, ParamFault, ParamValue},
     source::span::{Located, Span},
 };
@@ -56,7 +56,7 @@ fn range(param: &Param) -> String {
     }
 }
 
-impl Mistake for ParamError {
+impl IntoDiagnostic for ParamError {
     fn code(&self) -> Code {
         match self {
             Self::Unknown(_) => Code::UnknownParam,
@@ -64,19 +64,19 @@ impl Mistake for ParamError {
         }
     }
 
-    fn explain(self, told: Diagnostic) -> Diagnostic {
+    fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
-            Self::Unknown(_) => told,
-            Self::Asked { name, .. } => told.at(name.span, "declared here"),
-            Self::Default { param, why } => told.at(param.span, why.to_string()),
+            Self::Unknown(_) => diagnostic,
+            Self::Asked { name, .. } => diagnostic.at(name.span, "declared here"),
+            Self::Default { param, why } => diagnostic.at(param.span, why.to_string()),
             Self::Set {
                 name,
                 declared,
                 why,
-            } => told
+            } => diagnostic
                 .at(name.span, why.to_string())
                 .at(declared, "declared here"),
-            Self::Misfit { name, outer, param } => told
+            Self::Misfit { name, outer, param } => diagnostic
                 .at(name.span, "given here")
                 .at(outer.name.span.clone(), range(&outer))
                 .at(param.name.span.clone(), range(&param))
@@ -89,7 +89,7 @@ impl Mistake for ParamError {
                 span,
                 declared,
                 ..
-            } => told
+            } => diagnostic
                 .at(span, "no param here is called so")
                 .at(declared, "it has no default")
                 .help(format!(
@@ -101,7 +101,7 @@ impl Mistake for ParamError {
 
 /// What does not pass between two documents.
 #[derive(Clone, Debug, thiserror::Error)]
-pub(crate) enum BorderError {
+pub(crate) enum InterfaceError {
     #[error("`{document}` asks for `{name}`, {kind}")]
     NoInput {
         document: String,
@@ -131,13 +131,13 @@ pub(crate) enum BorderError {
     #[error("the input `{}` is written, and is no output", **.0)]
     WrittenInput(Located<String>, Span),
     #[error("`{document}` has no input, output or param `{}`", **name)]
-    Unasked {
+    Unused {
         document: String,
         name: Located<String>,
         known: Vec<String>,
     },
     #[error("nothing in the group `{group}` asks for `{}`", **name)]
-    UnaskedInGroup {
+    UnusedInGroup {
         group: String,
         name: Located<String>,
     },
@@ -198,7 +198,7 @@ pub(crate) enum BorderError {
     },
 }
 
-impl Mistake for BorderError {
+impl IntoDiagnostic for InterfaceError {
     fn code(&self) -> Code {
         match self {
             Self::NoInput { .. }
@@ -206,7 +206,7 @@ impl Mistake for BorderError {
             | Self::WrongInput { .. }
             | Self::WrongImport { .. }
             | Self::WrittenInput(..) => Code::Input,
-            Self::Unasked { .. } | Self::UnaskedInGroup { .. } => Code::Unasked,
+            Self::Unused { .. } | Self::UnusedInGroup { .. } => Code::Unused,
             Self::UnwrittenOutput(_) | Self::BoundOutput { .. } => Code::Output,
             Self::Unknown { .. } | Self::Private { .. } => Code::UnknownResource,
             Self::Namespace(_)
@@ -219,7 +219,7 @@ impl Mistake for BorderError {
         }
     }
 
-    fn explain(self, told: Diagnostic) -> Diagnostic {
+    fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
             Self::NoInput {
                 name,
@@ -227,66 +227,68 @@ impl Mistake for BorderError {
                 declared,
                 known,
                 ..
-            } => told
+            } => diagnostic
                 .at(span, "nothing here is called so")
                 .at(declared, "asked for here")
                 .suggest(&name, known)
                 .help(format!("bind what is meant: `bind: {{\"{name}\": \"…\"}}`")),
-            Self::NoImport(name) => told
+            Self::NoImport(name) => diagnostic
                 .at(
                     name.span,
                     "an input of the root document is the host's import",
                 )
                 .help("include the document in one that has it, or let the host import it"),
-            Self::WrongInput { span, declared, .. } => {
-                told.at(span, "given here").at(declared, "asked for here")
-            }
-            Self::WrongImport { name, .. } => told.at(name.span, "asked for here"),
-            Self::WrittenInput(name, by) => told
+            Self::WrongInput { span, declared, .. } => diagnostic
+                .at(span, "given here")
+                .at(declared, "asked for here"),
+            Self::WrongImport { name, .. } => diagnostic.at(name.span, "asked for here"),
+            Self::WrittenInput(name, by) => diagnostic
                 .at(name.span, "an input")
                 .at(by, "written here")
                 .help("name it among the `outputs`, so that who includes it knows"),
-            Self::Unasked { name, known, .. } => {
-                told.at(name.span.clone(), "").suggest(&name, known)
+            Self::Unused { name, known, .. } => {
+                diagnostic.at(name.span.clone(), "").suggest(&name, known)
             }
-            Self::UnaskedInGroup { name, .. } => told
+            Self::UnusedInGroup { name, .. } => diagnostic
                 .at(name.span, "")
                 .help("one of its passes or includes must have this name free; check its spelling"),
-            Self::UnwrittenOutput(name) => told
+            Self::UnwrittenOutput(name) => diagnostic
                 .at(name.span, "")
                 .help("let a pass write it, or name another `material`"),
             Self::BoundOutput {
                 name,
                 why,
                 declared,
-            } => told.at(name.span, why).at(declared, "declared here"),
+            } => diagnostic.at(name.span, why).at(declared, "declared here"),
             Self::Unknown {
                 name,
                 document,
                 known,
             } => {
                 let label = format!("`{document}` declares no material or input of this name");
-                told.at(name.span.clone(), label).suggest(&name, known)
+                diagnostic
+                    .at(name.span.clone(), label)
+                    .suggest(&name, known)
             }
-            Self::Private { name, known, .. } => told
+            Self::Private { name, known, .. } => diagnostic
                 .at(name.span.clone(), "only its outputs are seen from here")
                 .suggest(&name, known),
-            Self::TooMany { at, .. } => told
+            Self::TooMany { at, .. } => diagnostic
                 .at(at, "counted up to here")
                 .help("repeat or include less"),
-            Self::Feature { feature, .. } => told
+            Self::Feature { feature, .. } => diagnostic
                 .at(feature.span, "the device does not have this feature")
                 .help("run it on an adapter that has the feature, or ask `has(…)` in an `if`"),
-            other => other.explain_part(told),
+            other => other.explain_part(diagnostic),
         }
     }
 }
 
-impl BorderError {
+impl InterfaceError {
     /// Parts and versions that there are not.
-    fn explain_part(self, told: Diagnostic) -> Diagnostic {
+    fn explain_part(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
-            Self::Namespace(name) => told.at(
+            Self::Namespace(name) => diagnostic.at(
                 name.span,
                 "name what it gives: `x.y`, or `x[0].y` where it is repeated",
             ),
@@ -296,20 +298,20 @@ impl BorderError {
                 declared,
                 ..
             } => {
-                let told = told.at(span, what);
+                let diagnostic = diagnostic.at(span, what);
                 match declared {
-                    Some(declared) => told.at(declared, "declared here"),
-                    None => told,
+                    Some(declared) => diagnostic.at(declared, "declared here"),
+                    None => diagnostic,
                 }
             }
-            Self::NoPart { span, what, .. } => told.at(span, what),
-            Self::NotOfMaterial { of, name } => told.at(name.span, "not a part of it").help(
+            Self::NoPart { span, what, .. } => diagnostic.at(span, what),
+            Self::NotOfMaterial { of, name } => diagnostic.at(name.span, "not a part of it").help(
                 format!("its parts are `{of}[0]`, `{of}.mip[0]`, `{of}.previous`"),
             ),
-            Self::NoPrevious { span, what, .. } => told
+            Self::NoPrevious { span, what, .. } => diagnostic
                 .at(span, format!("it is {what}"))
                 .help("textures and buffers that the graph writes have one; copy it into one"),
-            _ => told,
+            _ => diagnostic,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Mistakes in expressions and references.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
     language::{
         name::NameFault,
         syntax::{Attribute, Function},
@@ -48,7 +48,7 @@ fn text(span: &Span) -> &str {
     span.file.text.get(span.range.clone()).unwrap_or("")
 }
 
-impl Mistake for SyntaxFault {
+impl IntoDiagnostic for SyntaxFault {
     fn code(&self) -> Code {
         match self {
             Self::Name(..) => Code::Name,
@@ -57,35 +57,37 @@ impl Mistake for SyntaxFault {
         }
     }
 
-    fn explain(self, told: Diagnostic) -> Diagnostic {
+    fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
-            Self::Sign(span, _) | Self::Number(span) => told.at(span, "here"),
-            Self::TooLong(span, most) => told
+            Self::Sign(span, _) | Self::Number(span) => diagnostic.at(span, "here"),
+            Self::TooLong(span, most) => diagnostic
                 .at(span, "")
                 .help(format!("an expression has at most {most} words and signs")),
-            Self::Unexpected { span, .. } | Self::Arguments { span, .. } => told.at(span, "here"),
-            Self::Name(span, fault) => told.at(span, fault.to_string()),
+            Self::Unexpected { span, .. } | Self::Arguments { span, .. } => {
+                diagnostic.at(span, "here")
+            }
+            Self::Name(span, fault) => diagnostic.at(span, fault.to_string()),
             Self::Function(name) => {
                 let known = Function::ALL.iter().map(|(name, ..)| *name).chain(["has"]);
-                told.at(name.span.clone(), "").suggest(&name, known)
+                diagnostic.at(name.span.clone(), "").suggest(&name, known)
             }
             Self::Feature(name) => {
                 let known = wgt::Features::all();
                 let known = known.iter_names().map(|(name, _)| name);
-                told.at(name.span.clone(), "").suggest(&name, known)
+                diagnostic.at(name.span.clone(), "").suggest(&name, known)
             }
-            Self::Part(span, "number") => told
+            Self::Part(span, "number") => diagnostic
                 .at(span, "a part of a material is no number")
                 .help(format!("ask for an attribute of it: {}", attributes())),
             Self::Part(span, "attribute") => {
-                told.at(span, "an attribute, where a material is named")
+                diagnostic.at(span, "an attribute, where a material is named")
             }
-            Self::Part(span, "mip") => told.at(span, "a mip of what?"),
-            Self::Part(span, _) => told.at(
+            Self::Part(span, "mip") => diagnostic.at(span, "a mip of what?"),
+            Self::Part(span, _) => diagnostic.at(
                 span,
                 "`.previous` and `.mip[…]` end a reference, in this order",
             ),
-            Self::Escape(span) => told
+            Self::Escape(span) => diagnostic
                 .at(span, "`\\` here")
                 .help("write the signs themselves"),
         }

@@ -1,7 +1,7 @@
 //! Buffers whose size or layout does not fit.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
     source::span::{Located, Span},
 };
 
@@ -75,7 +75,7 @@ pub(crate) enum LayoutError {
     },
 }
 
-impl Mistake for LayoutError {
+impl IntoDiagnostic for LayoutError {
     fn code(&self) -> Code {
         match self {
             Self::NoCount { .. } | Self::TooLarge { .. } | Self::Copy { .. } => Code::Size,
@@ -85,51 +85,51 @@ impl Mistake for LayoutError {
         }
     }
 
-    fn explain(self, told: Diagnostic) -> Diagnostic {
-        let at = |told: Diagnostic, span: Option<Span>, text: &str| match span {
-            Some(span) => told.at(span, text),
-            None => told,
+    fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
+        let at = |diagnostic: Diagnostic, span: Option<Span>, text: &str| match span {
+            Some(span) => diagnostic.at(span, text),
+            None => diagnostic,
         };
         match self {
             Self::Disagreement {
                 layouts: [first, other],
                 spans: [at_first, at_other],
                 ..
-            } => told
+            } => diagnostic
                 .at(at_other, format!("here it is {other}"))
                 .at(at_first, format!("here it is {first}"))
                 .help("declare the item type once, in a shared module that both import"),
             Self::Provided { layout, span, .. } => {
-                told.at(span, format!("the shader sees {layout}"))
+                diagnostic.at(span, format!("the shader sees {layout}"))
             }
-            Self::Import { span, .. } => told.at(span, "needed here"),
+            Self::Import { span, .. } => diagnostic.at(span, "needed here"),
             Self::NoCount { span, declared, .. } => at(
-                told.at(span, "this shader sees an array of any length"),
+                diagnostic.at(span, "this shader sees an array of any length"),
                 declared,
                 "give it a `count`",
             ),
             Self::IgnoredCount { span, declared, .. } => {
-                at(told, declared, "leave `count` out here")
+                at(diagnostic, declared, "leave `count` out here")
                     .at(span, "this shader sees a fixed size")
             }
             Self::TooLarge { most, declared, .. } => {
-                at(told, declared, "").help(format!("its limit is {most} bytes"))
+                at(diagnostic, declared, "").help(format!("its limit is {most} bytes"))
             }
-            Self::Item { span, .. } => told
+            Self::Item { span, .. } => diagnostic
                 .at(span, "seen here")
                 .help("let another shader see the buffer as an array of such items"),
             Self::Alignment {
                 alignment, span, ..
-            } => told.at(span, "bound here").help(format!(
+            } => diagnostic.at(span, "bound here").help(format!(
                 "a multiple of {alignment} is needed, which `@size({alignment})` on a member of \
                  the item gives"
             )),
-            Self::Copy { from, to, bytes } => told
+            Self::Copy { from, to, bytes } => diagnostic
                 .at(from.span, format!("{} bytes", bytes[0]))
                 .at(to.span, format!("{} bytes", bytes[1]))
                 .help("give both the same `count`"),
             Self::Data { span, declared, .. } => {
-                at(told, declared, "").at(span, "this shader sees it")
+                at(diagnostic, declared, "").at(span, "this shader sees it")
             }
         }
     }

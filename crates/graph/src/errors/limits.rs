@@ -1,7 +1,7 @@
 //! Shaders that ask more of a device than it has, or than WGSL promises of any.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
     source::span::{Located, Span},
 };
 
@@ -97,7 +97,7 @@ pub(crate) enum LimitError {
     },
 }
 
-impl Mistake for LimitError {
+impl IntoDiagnostic for LimitError {
     fn code(&self) -> Code {
         match self {
             Self::NoVarying { .. } | Self::Attribute { .. } => Code::StageInterface,
@@ -105,30 +105,30 @@ impl Mistake for LimitError {
         }
     }
 
-    fn explain(self, told: Diagnostic) -> Diagnostic {
+    fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
             Self::Workgroup { excess, .. } => {
                 let most = excess.most;
-                largest(told, excess).help(format!(
+                largest(diagnostic, excess).help(format!(
                     "its limit is {most} bytes (max_compute_workgroup_storage_size); a buffer \
                      holds more"
                 ))
             }
             Self::Private { excess, .. } | Self::Function { excess, .. } => {
                 let most = excess.most;
-                largest(told, excess).help(format!(
+                largest(diagnostic, excess).help(format!(
                     "no adapter tells a limit; WGSL promises {most} bytes, and drivers put them on \
                      the stack of each thread: a storage buffer holds more"
                 ))
             }
             Self::Functions { excess, .. } => {
                 let most = excess.most;
-                largest(told, excess).help(format!(
+                largest(diagnostic, excess).help(format!(
                     "no adapter tells a limit; a graph takes {most} bytes, since drivers put all \
                      of them on the stack of each thread: a storage buffer holds more"
                 ))
             }
-            Self::Value { function, most, .. } => told.at(function.span, "").help(format!(
+            Self::Value { function, most, .. } => diagnostic.at(function.span, "").help(format!(
                 "no adapter tells a limit; a graph takes {most} bytes, since drivers put a value \
                  on the stack of each thread: index the variable or buffer itself"
             )),
@@ -137,23 +137,23 @@ impl Mistake for LimitError {
                 builtins,
                 most,
                 ..
-            } => told.at(entry.span, counted(builtins)).help(format!(
+            } => diagnostic.at(entry.span, counted(builtins)).help(format!(
                 "its limit is {most} (max_inter_stage_shader_variables); put several into one vec4"
             )),
-            Self::Location { entry, most, .. } => told
+            Self::Location { entry, most, .. } => diagnostic
                 .at(entry.span, "")
                 .help(format!("locations count from 0, and it has {most} of them")),
             Self::NoVarying { entry, vertex, .. } => {
-                let told = told.at(entry.span, "read here");
+                let diagnostic = diagnostic.at(entry.span, "read here");
                 match vertex {
-                    Some(vertex) => told.at(vertex, "the vertex shader"),
-                    None => told.help("the vertices of a Fullscreen pass hand nothing on"),
+                    Some(vertex) => diagnostic.at(vertex, "the vertex shader"),
+                    None => diagnostic.help("the vertices of a Fullscreen pass hand nothing on"),
                 }
             }
-            Self::Attribute { entry, .. } => told.at(entry.span, "").help(
+            Self::Attribute { entry, .. } => diagnostic.at(entry.span, "").help(
                 "a graph has no vertex buffers: read a storage buffer at @builtin(vertex_index)",
             ),
-            Self::BindingNumber { most, span, .. } => told.at(span, "").help(format!(
+            Self::BindingNumber { most, span, .. } => diagnostic.at(span, "").help(format!(
                 "its numbers end below {most} (max_bindings_per_bind_group); leave them out: the \
                  graph gives them"
             )),
@@ -161,9 +161,9 @@ impl Mistake for LimitError {
     }
 }
 
-fn largest(told: Diagnostic, excess: Excess) -> Diagnostic {
+fn largest(diagnostic: Diagnostic, excess: Excess) -> Diagnostic {
     let text = format!("`{}` takes {} bytes", *excess.largest, excess.of_largest);
-    told.at(excess.largest.span, text)
+    diagnostic.at(excess.largest.span, text)
 }
 
 fn counted(builtins: u32) -> String {

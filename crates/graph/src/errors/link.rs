@@ -1,7 +1,7 @@
 //! Passes whose shaders, attachments, copies or dispatches do not fit.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
     document::params::Param,
     shader::class::ScalarClass,
     source::span::{Located, Span},
@@ -35,13 +35,13 @@ pub(crate) enum LinkError {
     #[error("pass `{pass}` does not write `{}`", **name)]
     Overwrites { pass: String, name: Located<String> },
     #[error("`{shader}` has no param or constant `{}` to set", **name)]
-    UnaskedSet {
+    UnusedSet {
         shader: String,
         name: Located<String>,
         known: Vec<String>,
     },
     #[error("`{shader}` has no global `{}` to bind", **name)]
-    UnaskedBind {
+    UnusedBind {
         shader: String,
         name: Located<String>,
         known: Vec<String>,
@@ -396,7 +396,7 @@ impl LinkError {
                 Code::Feature
             }
             Self::Feedback { .. } => Code::FeedbackLoop,
-            Self::UnaskedSet { .. } | Self::UnaskedBind { .. } => Code::Unasked,
+            Self::UnusedSet { .. } | Self::UnusedBind { .. } => Code::Unused,
             Self::BindGroup { .. }
             | Self::TooManyBindings { .. }
             | Self::UniformLimit { .. }
@@ -431,29 +431,31 @@ impl LinkError {
     }
 }
 
-impl Mistake for LinkError {
+impl IntoDiagnostic for LinkError {
     fn code(&self) -> Code {
         self.kind()
     }
 
-    fn explain(self, told: Diagnostic) -> Diagnostic {
+    fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
-            Self::NoShader => told,
-            Self::ShaderNotLoaded(name) => told.at(
+            Self::NoShader => diagnostic,
+            Self::ShaderNotLoaded(name) => diagnostic.at(
                 name.span,
                 "a pass kind must not choose its shaders by values",
             ),
-            Self::WritesPrevious { of, span } => told.at(span, "written here").help(format!(
+            Self::WritesPrevious { of, span } => diagnostic.at(span, "written here").help(format!(
                 "write `{of}`: the next frame finds it as `{of}.previous`"
             )),
-            Self::WritesConstant { span, .. } => told
+            Self::WritesConstant { span, .. } => diagnostic
                 .at(span, "written here")
                 .help("write another material; a `Copy` above brings the content there"),
-            Self::WritesProvided { span, .. } => told.at(span, "declare it `var<storage, read>`"),
-            Self::VertexWrites { span, .. } => told
+            Self::WritesProvided { span, .. } => {
+                diagnostic.at(span, "declare it `var<storage, read>`")
+            }
+            Self::VertexWrites { span, .. } => diagnostic
                 .at(span, "")
                 .help("say `requires: [\"VERTEX_WRITABLE_STORAGE\"]`, or write it elsewhere"),
-            Self::RayQuery { pass, span } => told
+            Self::RayQuery { pass, span } => diagnostic
                 .at(pass.span, "")
                 .at(span, "needs the feature EXPERIMENTAL_RAY_QUERY")
                 .help(
@@ -465,15 +467,15 @@ impl Mistake for LinkError {
                 reads,
                 writer,
                 ..
-            } => told
+            } => diagnostic
                 .at(reader, if reads { "read here" } else { "written here" })
                 .at(writer, "written here")
                 .help("read a copy, or a part that this pass does not write"),
-            Self::Overwrites { name, .. } => told.at(name.span, "said to be overwritten"),
-            Self::UnaskedSet { name, known, .. } | Self::UnaskedBind { name, known, .. } => {
-                told.at(name.span.clone(), "").suggest(&name, known)
+            Self::Overwrites { name, .. } => diagnostic.at(name.span, "said to be overwritten"),
+            Self::UnusedSet { name, known, .. } | Self::UnusedBind { name, known, .. } => {
+                diagnostic.at(name.span.clone(), "").suggest(&name, known)
             }
-            Self::OverrideWithout(name) => told
+            Self::OverrideWithout(name) => diagnostic
                 .at(
                     name.span.clone(),
                     "no param that is a single number is called so",
@@ -483,12 +485,12 @@ impl Mistake for LinkError {
                      `override {0}: … = …;`",
                     *name
                 )),
-            Self::UnknownWord { constant, span, .. } => told.at(span, "").help(format!(
+            Self::UnknownWord { constant, span, .. } => diagnostic.at(span, "").help(format!(
                 "a word is one of a Choice param of that name, or a constant of the shader: \
                  `{constant}`"
             )),
-            Self::SetValue { found, span, .. } => told.at(span, format!("this is {found}")),
-            Self::WorkgroupOverride { at, pass } => told
+            Self::SetValue { found, span, .. } => diagnostic.at(span, format!("this is {found}")),
+            Self::WorkgroupOverride { at, pass } => diagnostic
                 .at(at, "")
                 .at(pass.span, "run by this pass")
                 .help("write the size as a number or `const`"),
@@ -498,36 +500,36 @@ impl Mistake for LinkError {
                 at,
                 pass,
                 ..
-            } => told
+            } => diagnostic
                 .at(at, "")
                 .at(pass.span, "run by this pass")
                 .help(format!(
                     "its limits are {}×{}×{} and {threads} invocations in all",
                     most[0], most[1], most[2]
                 )),
-            Self::Workgroups { most, pass, .. } => told
+            Self::Workgroups { most, pass, .. } => diagnostic
                 .at(pass.span, "dispatched by this pass")
                 .help(format!("its limit is {most} in each direction")),
-            other => other.explain_binding(told),
+            other => other.explain_binding(diagnostic),
         }
     }
 }
 
 impl LinkError {
-    fn explain_binding(self, told: Diagnostic) -> Diagnostic {
+    fn explain_binding(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
-            Self::BindGroup { most, span, .. } => told
+            Self::BindGroup { most, span, .. } => diagnostic
                 .at(
                     span,
                     format!("its groups are 0 to {}", most.saturating_sub(1)),
                 )
                 .help("leave the numbers out: the graph gives them"),
-            Self::TooManyBindings { pass, most, .. } => told.at(pass.span, "").help(format!(
+            Self::TooManyBindings { pass, most, .. } => diagnostic.at(pass.span, "").help(format!(
                 "the adapter's limit is {most} per shader stage: split the pass or pack what it \
                  binds"
             )),
-            Self::Unsupported { span, .. } => told.at(span, ""),
-            Self::ParamsUniform { what, size, span } => told
+            Self::Unsupported { span, .. } => diagnostic.at(span, ""),
+            Self::ParamsUniform { what, size, span } => diagnostic
                 .at(span, format!("{size} bytes"))
                 .help(match what.contains("large") {
                     true => "put what is large into a buffer",
@@ -541,7 +543,7 @@ impl LinkError {
                 span,
                 pass,
                 known,
-            } => told
+            } => diagnostic
                 .at(
                     span,
                     "no material, input or provided resource has this name",
@@ -558,21 +560,21 @@ impl LinkError {
                 declared,
                 ..
             } => {
-                let told = told.at(span, format!("the shader declares {needed}"));
+                let diagnostic = diagnostic.at(span, format!("the shader declares {needed}"));
                 match declared {
-                    Some(declared) => told.at(declared, found),
-                    None => told,
+                    Some(declared) => diagnostic.at(declared, found),
+                    None => diagnostic,
                 }
             }
             Self::UniformSize { span, .. } => {
-                told.at(span, "import its type from the module that declares it")
+                diagnostic.at(span, "import its type from the module that declares it")
             }
-            Self::UniformLimit { most, span, .. } => told
+            Self::UniformLimit { most, span, .. } => diagnostic
                 .at(span, "")
                 .help(format!("its limit is {most}: use a storage buffer")),
             Self::Alignment {
                 alignment, span, ..
-            } => told.at(span, "bound here").help(format!(
+            } => diagnostic.at(span, "bound here").help(format!(
                 "the device binds at multiples of {alignment} bytes"
             )),
             Self::Texture {
@@ -582,73 +584,76 @@ impl LinkError {
                 format,
                 ..
             } => {
-                let mut told = told.at(span, misfit.to_string());
+                let mut diagnostic = diagnostic.at(span, misfit.to_string());
                 if let Some(declared) = declared {
-                    told = told.at(declared, format!("{format:?}"));
+                    diagnostic = diagnostic.at(declared, format!("{format:?}"));
                 }
                 match misfit.help() {
-                    Some(help) => told.help(help),
-                    None => told,
+                    Some(help) => diagnostic.help(help),
+                    None => diagnostic,
                 }
             }
-            other => other.explain_member(told),
+            other => other.explain_member(diagnostic),
         }
     }
 
-    fn explain_member(self, told: Diagnostic) -> Diagnostic {
+    fn explain_member(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
             Self::UnknownMember {
                 member,
                 span,
                 known,
                 ty,
-            } => told.at(span, "").suggest(&member, known).help(match ty {
-                Some(ty) => format!(
-                    "declare it, `params: [{ty}(name: \"{member}\", default: …)]`, or `set` it"
-                ),
-                None => format!("`set` it: `set: {{\"{member}\": …}}`"),
-            }),
+            } => diagnostic
+                .at(span, "")
+                .suggest(&member, known)
+                .help(match ty {
+                    Some(ty) => format!(
+                        "declare it, `params: [{ty}(name: \"{member}\", default: …)]`, or `set` it"
+                    ),
+                    None => format!("`set` it: `set: {{\"{member}\": …}}`"),
+                }),
             Self::IndexMember(span) | Self::MemberIsNoVector { span, .. } => {
-                told.at(span, "in this uniform")
+                diagnostic.at(span, "in this uniform")
             }
-            Self::MemberType { param, span, .. } => told.at(span, "in this uniform").at(
+            Self::MemberType { param, span, .. } => diagnostic.at(span, "in this uniform").at(
                 param.name.span.clone(),
                 format!("declared {} here", param.ty),
             ),
-            other => other.explain_target(told),
+            other => other.explain_target(diagnostic),
         }
     }
 
-    fn explain_target(self, told: Diagnostic) -> Diagnostic {
+    fn explain_target(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
-            Self::NoArguments { name, found } => told.at(
+            Self::NoArguments { name, found } => diagnostic.at(
                 name.span,
                 format!("this is {found}, a buffer of the document is needed"),
             ),
-            Self::CopyFormat { from, to, formats } => told
+            Self::CopyFormat { from, to, formats } => diagnostic
                 .at(from.span, format!("{:?}", formats[0]))
                 .at(to.span, format!("{:?}", formats[1]))
                 .help("format, samples and dimension must be the same"),
-            Self::CopySize { from, to, extents } => told
+            Self::CopySize { from, to, extents } => diagnostic
                 .at(from.span, extent(extents[0]))
                 .at(to.span, extent(extents[1]))
                 .help("both must be equally large"),
             Self::CopyKinds { from, to, kinds } => {
-                told.at(from.span, kinds[0]).at(to.span, kinds[1])
+                diagnostic.at(from.span, kinds[0]).at(to.span, kinds[1])
             }
-            Self::ClearFormat { name, .. } => told
+            Self::ClearFormat { name, .. } => diagnostic
                 .at(name.span, "wgpu clears what can be drawn to")
                 .help("write it whole by a Compute pass instead"),
-            Self::ClearBufferValue(name) => told
+            Self::ClearBufferValue(name) => diagnostic
                 .at(name.span, "")
                 .help("leave `value` out, or write the buffer by a Compute pass"),
-            Self::ClearKind { name, found } => told.at(name.span, format!("this is {found}")),
+            Self::ClearKind { name, found } => diagnostic.at(name.span, format!("this is {found}")),
             Self::ClearValue {
                 name,
                 format,
                 expected,
                 ..
-            } => told.at(
+            } => diagnostic.at(
                 name.span,
                 format!("a texture of format {format:?}, which takes {expected}"),
             ),
@@ -656,32 +661,32 @@ impl LinkError {
                 pass,
                 field,
                 feature,
-            } => told.at(pass.span, format!("`{field}`")).help(format!(
+            } => diagnostic.at(pass.span, format!("`{field}`")).help(format!(
                 "list it in `requires: [\"{feature}\"]`, so that devices that have it are opened \
                  with it"
             )),
-            Self::TooManyTargets { pass, most, .. } => {
-                told.at(pass.span, "").help(format!("its limit is {most}"))
-            }
-            Self::BytesPerPixel { pass, most, .. } => told.at(pass.span, "").help(format!(
+            Self::TooManyTargets { pass, most, .. } => diagnostic
+                .at(pass.span, "")
+                .help(format!("its limit is {most}")),
+            Self::BytesPerPixel { pass, most, .. } => diagnostic.at(pass.span, "").help(format!(
                 "the adapter's limit is {most}: use smaller formats or two passes"
             )),
-            Self::NotDrawable { name, .. } => told
+            Self::NotDrawable { name, .. } => diagnostic
                 .at(name.span, "")
                 .help("use a colour format that can be drawn to, or `depth: \"…\"`"),
-            Self::NotBlendable { name, .. } => told.at(name.span, ""),
-            Self::Resolve { name, why } => told.at(name.span, why),
-            other => other.explain_attachment(told),
+            Self::NotBlendable { name, .. } => diagnostic.at(name.span, ""),
+            Self::Resolve { name, why } => diagnostic.at(name.span, why),
+            other => other.explain_attachment(diagnostic),
         }
     }
 
-    fn explain_attachment(self, told: Diagnostic) -> Diagnostic {
+    fn explain_attachment(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
             Self::NoFragmentOutput {
                 name,
                 location,
                 entry,
-            } => told
+            } => diagnostic
                 .at(name.span, format!("this target has location {location}"))
                 .at(entry, format!("no output @location({location}) here")),
             Self::FragmentOutput {
@@ -692,32 +697,32 @@ impl LinkError {
                 location,
                 entry,
                 ..
-            } => told
+            } => diagnostic
                 .at(name.span, format!("needs {needed} × {expected}"))
                 .at(entry, format!("writes {written} at @location({location})")),
-            Self::NoDepth { name, .. } => told
+            Self::NoDepth { name, .. } => diagnostic
                 .at(name.span, "")
                 .help("use Depth32Float, Depth24Plus, Depth16Unorm, or one of them with Stencil8"),
-            Self::NoStencil { name, .. } => told
+            Self::NoStencil { name, .. } => diagnostic
                 .at(name.span, "")
                 .help("use Depth24PlusStencil8, Depth32FloatStencil8 or Stencil8"),
             Self::NoTexture { name, found, .. } => {
-                told.at(name.span, format!("this is {found}, a texture is needed"))
+                diagnostic.at(name.span, format!("this is {found}, a texture is needed"))
             }
-            Self::SeveralLayers(name) => told
+            Self::SeveralLayers(name) => diagnostic
                 .at(name.span, "a pass draws to one mip of one layer")
                 .help(format!(
                     "name one: `{0}[0]`, `{0}.mip[0]`, `{0}[0].mip[0]`",
                     name.value
                 )),
-            Self::NoTargets(pass) => told.at(
+            Self::NoTargets(pass) => diagnostic.at(
                 pass.span,
                 "give it `color: […]`, `depth: …` or `stencil: (…)`",
             ),
-            Self::TwoDepthStencils(pass) => told
+            Self::TwoDepthStencils(pass) => diagnostic
                 .at(pass.span, "")
                 .help("a stencil is that of the depth: one texture with both"),
-            Self::TargetSizes { pass, names, sizes } => told.at(
+            Self::TargetSizes { pass, names, sizes } => diagnostic.at(
                 pass.span,
                 format!(
                     "`{}` has {}×{} texels, `{}` {}×{}",
@@ -728,21 +733,21 @@ impl LinkError {
                 pass,
                 names,
                 samples,
-            } => told.at(
+            } => diagnostic.at(
                 pass.span,
                 format!(
                     "`{}` has {}, `{}` {}",
                     names[0], samples[0], names[1], samples[1]
                 ),
             ),
-            Self::AreaOutside { pass, area, whole } => told.at(
+            Self::AreaOutside { pass, area, whole } => diagnostic.at(
                 pass.span,
                 format!(
                     "{}×{} texels at ({}, {}), of {}×{}",
                     area[2], area[3], area[0], area[1], whole[0], whole[1]
                 ),
             ),
-            _ => told,
+            _ => diagnostic,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What a plan is asked for and cannot give.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
     source::span::{Located, Span},
 };
 
@@ -79,7 +79,7 @@ pub(crate) enum OutputError {
     },
 }
 
-impl Mistake for OutputError {
+impl IntoDiagnostic for OutputError {
     fn code(&self) -> Code {
         match self {
             Self::UnwrittenOutput { .. } => Code::ReadBeforeWrite,
@@ -93,17 +93,18 @@ impl Mistake for OutputError {
         }
     }
 
-    fn explain(self, told: Diagnostic) -> Diagnostic {
+    fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
             Self::NoOutput { name, known, .. }
             | Self::NoMaterial { name, known, .. }
-            | Self::NoPass { name, known } => told.suggest(&name, known),
-            Self::Unsized(_) => {
-                told.help("its size is known only once it is built, and the copy is planned before")
+            | Self::NoPass { name, known } => diagnostic.suggest(&name, known),
+            Self::Unsized(_) => diagnostic
+                .help("its size is known only once it is built, and the copy is planned before"),
+            Self::Provided(name) => {
+                diagnostic.help(format!("name a pass that binds it: `{name}@PASS`"))
             }
-            Self::Provided(name) => told.help(format!("name a pass that binds it: `{name}@PASS`")),
-            Self::Sampler(_) | Self::Unwritten(_) | Self::Unreadable { .. } => told,
-            Self::UnwrittenOutput { material, .. } => told
+            Self::Sampler(_) | Self::Unwritten(_) | Self::Unreadable { .. } => diagnostic,
+            Self::UnwrittenOutput { material, .. } => diagnostic
                 .at(
                     material.span.clone(),
                     format!("`{}` is never written", *material),
@@ -111,27 +112,28 @@ impl Mistake for OutputError {
                 .help("let a pass write it, or name another `material`"),
             Self::UnreadableOutput { material, what, .. } => {
                 let is_of_samples = what.contains("samples");
-                told.at(material, what).help(match is_of_samples {
-                    true => "name a texture of one sample that a `resolve` is written to",
-                    false => "use Depth32Float or Depth16Unorm",
+                diagnostic.at(material, what).help(if is_of_samples {
+                    "name a texture of one sample that a `resolve` is written to"
+                } else {
+                    "use Depth32Float or Depth16Unorm"
                 })
             }
-            Self::Light { takes, place, .. } => told
+            Self::Light { takes, place, .. } => diagnostic
                 .at(place, "")
                 .help(format!("it takes: {}", takes.join(", "))),
-            Self::NotProven { backend, place, .. } => told.at(place, "").help(format!(
+            Self::NotProven { backend, place, .. } => diagnostic.at(place, "").help(format!(
                 "run it on another backend; a graph whose answers on this one are known to be \
                  right says `proven_on: [{backend}]`"
             )),
-            Self::NoViewport(span) => told.at(span, ""),
-            Self::UnsizedBuffer(name) => told
+            Self::NoViewport(span) => diagnostic.at(span, ""),
+            Self::UnsizedBuffer(name) => diagnostic
                 .at(name.span, "")
                 .help("let a pass bind it: the size of its items comes from the shader's type"),
             Self::ImportUsage {
                 name,
                 pass,
                 lacking,
-            } => told
+            } => diagnostic
                 .at(name.span, "used here")
                 .at(pass.span, "by this pass")
                 .help(format!("the host must make it with {lacking} besides")),
@@ -141,11 +143,11 @@ impl Mistake for OutputError {
                 place,
                 ..
             } => {
-                let told = match largest {
-                    Some(span) => told.at(span, "the largest of them"),
-                    None => told.at(place, ""),
+                let diagnostic = match largest {
+                    Some(span) => diagnostic.at(span, "the largest of them"),
+                    None => diagnostic.at(place, ""),
                 };
-                told.help(format!(
+                diagnostic.help(format!(
                     "make the largest ones smaller (a smaller viewport, the param that sizes \
                      them, fewer layers, a format with fewer bytes), or allow more memory\n{table}"
                 ))

@@ -1,7 +1,7 @@
 //! Sizes and contents that a material cannot have.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
     source::span::Located,
 };
 
@@ -74,7 +74,7 @@ pub(crate) enum SizeError {
     },
 }
 
-impl Mistake for SizeError {
+impl IntoDiagnostic for SizeError {
     fn code(&self) -> Code {
         match self {
             Self::NoPicture(..) | Self::Picture(..) => Code::MissingFile,
@@ -83,46 +83,47 @@ impl Mistake for SizeError {
         }
     }
 
-    fn explain(self, told: Diagnostic) -> Diagnostic {
+    fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
-            Self::Absurd { name } => told.at(name.span, ""),
+            Self::Absurd { name } => diagnostic.at(name.span, ""),
             Self::NoTexels { name, .. } | Self::NoItems(name) => {
-                told.at(name.span, "").help("give it one at least")
+                diagnostic.at(name.span, "").help("give it one at least")
             }
-            Self::Texels { name, most, .. } => told
+            Self::Texels { name, most, .. } => diagnostic
                 .at(name.span, "")
                 .help(format!("its limit is {most} in each direction")),
-            Self::Layers { name, most, .. } => {
-                told.at(name.span, "").help(format!("its limit is {most}"))
-            }
-            Self::Mips { name, full, .. } => told
+            Self::Layers { name, most, .. } => diagnostic
+                .at(name.span, "")
+                .help(format!("its limit is {most}")),
+            Self::Mips { name, full, .. } => diagnostic
                 .at(name.span, "")
                 .help(format!("it can have {full}: `mips: All`")),
             Self::Samples { name, known, .. } => {
                 let known: Vec<String> = known.iter().map(u32::to_string).collect();
-                told.at(name.span, "")
+                diagnostic
+                    .at(name.span, "")
                     .help(format!("it can have {}", known.join(", ")))
             }
-            Self::SamplesOfMany(name) => told.at(name.span, ""),
-            Self::LayersOf3d(name) => told.at(name.span, "").help("leave `layers` out"),
-            Self::FileHas(file, field) => {
-                told.at(file.span, "").help(format!("leave `{field}` out"))
-            }
-            Self::NoPicture(file, candidates) => told
+            Self::SamplesOfMany(name) => diagnostic.at(name.span, ""),
+            Self::LayersOf3d(name) => diagnostic.at(name.span, "").help("leave `layers` out"),
+            Self::FileHas(file, field) => diagnostic
+                .at(file.span, "")
+                .help(format!("leave `{field}` out")),
+            Self::NoPicture(file, candidates) => diagnostic
                 .at(file.span, "asked for here")
                 .help(format!("looked for {}", candidates.join(", "))),
-            Self::Picture(file, why) => told.at(file.span, "asked for here").help(why),
-            Self::PictureFormat(place) => told.at(place.span, "").help(
+            Self::Picture(file, why) => diagnostic.at(file.span, "asked for here").help(why),
+            Self::PictureFormat(place) => diagnostic.at(place.span, "").help(
                 "use R8Unorm, Rg8Unorm, Rgba8Unorm, Rgba8UnormSrgb, or a format of 16- or 32-bit \
                  floats",
             ),
-            Self::GrowWithoutCount(name) => told
+            Self::GrowWithoutCount(name) => diagnostic
                 .at(name.span, "")
                 .help("give it a `count` to begin with; `data` does not grow"),
-            Self::Counter { name, .. } => told
+            Self::Counter { name, .. } => diagnostic
                 .at(name.span, "")
                 .help("name a buffer whose first u32 a pass makes the number of items needed"),
-            Self::DataHas(name) => told.at(name.span, "").help("leave `count` out"),
+            Self::DataHas(name) => diagnostic.at(name.span, "").help("leave `count` out"),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Shaders that cannot be read, or are not valid.
 
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Mistake},
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
     panics::Panicked,
     source::span::{Located, Span},
 };
@@ -28,7 +28,7 @@ pub(crate) enum ImportError {
     TooDeep(Span),
 }
 
-impl Mistake for ImportError {
+impl IntoDiagnostic for ImportError {
     fn code(&self) -> Code {
         match self {
             Self::Unquoted(_) | Self::Leaves(_) | Self::TooDeep(_) => Code::Shader,
@@ -36,27 +36,27 @@ impl Mistake for ImportError {
         }
     }
 
-    fn explain(self, told: Diagnostic) -> Diagnostic {
+    fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
-            Self::Outside(name) => told.at(name.span, "asked for here").help(
+            Self::Outside(name) => diagnostic.at(name.span, "asked for here").help(
                 "shaders stand beside the document or in shaders/, and are named without folder \
                  signs like `..`",
             ),
-            Self::NoShader(name, candidates, likeness) => told
+            Self::NoShader(name, candidates, likeness) => diagnostic
                 .at(name.span, "asked for here")
                 .help(looked_for(&candidates, likeness)),
-            Self::Unreadable(name, why) => told.at(name.span, "asked for here").help(why),
-            Self::Unquoted(span) => told
+            Self::Unreadable(name, why) => diagnostic.at(name.span, "asked for here").help(why),
+            Self::Unquoted(span) => diagnostic
                 .at(span, "")
                 .help("write #import \"shared/camera.wgsl\"; only a `//` comment may follow"),
-            Self::Leaves(path) => told
+            Self::Leaves(path) => diagnostic
                 .at(path.span, "")
                 .help("imports name files in the importing file's folder or in shaders/"),
-            Self::NoFile(path, candidates, likeness) => told
+            Self::NoFile(path, candidates, likeness) => diagnostic
                 .at(path.span, "")
                 .help(looked_for(&candidates, likeness)),
-            Self::UnreadableFile(path, why) => told.at(path.span, "").help(why),
-            Self::TooDeep(span) => told.at(span, ""),
+            Self::UnreadableFile(path, why) => diagnostic.at(path.span, "").help(why),
+            Self::TooDeep(span) => diagnostic.at(span, ""),
         }
     }
 }
@@ -146,7 +146,7 @@ pub(crate) enum ShaderError {
     },
 }
 
-impl Mistake for ShaderError {
+impl IntoDiagnostic for ShaderError {
     fn code(&self) -> Code {
         match self {
             Self::Panicked { .. } => Code::LibraryPanic,
@@ -159,61 +159,65 @@ impl Mistake for ShaderError {
         }
     }
 
-    fn explain(self, told: Diagnostic) -> Diagnostic {
+    fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
-            Self::TooLong { at, .. } => told
+            Self::TooLong { at, .. } => diagnostic
                 .at(at, "")
                 .help("split it into several shaders; large tables belong into buffers"),
-            Self::TooDeep { at, most, .. } => told
+            Self::TooDeep { at, most, .. } => diagnostic
                 .at(at, format!("more than {most} operators up to here"))
                 .help(
                     "split it: give parts of it a name with `let`, turn the chain into a \
                      `switch` or a loop",
                 ),
-            Self::TooManyDeclarations { at, .. } => told
+            Self::TooManyDeclarations { at, .. } => diagnostic
                 .at(at, "counted up to here")
                 .help("split it into several shaders, or import less"),
             Self::Naga { places, notes, .. } => {
-                let told = places
+                let diagnostic = places
                     .into_iter()
-                    .fold(told, |told, (span, text)| told.at(span, text));
-                match notes.is_empty() {
-                    true => told,
-                    false => told.help(notes.join("\n")),
+                    .fold(diagnostic, |diagnostic, (span, text)| {
+                        diagnostic.at(span, text)
+                    });
+                if notes.is_empty() {
+                    diagnostic
+                } else {
+                    diagnostic.help(notes.join("\n"))
                 }
             }
-            Self::Panicked { at, panicked, .. } => {
-                told.at(at, "this brings it about").help(panicked.way_out())
-            }
-            Self::Immediate { at, .. } => told.at(at, "").help(
+            Self::Panicked { at, panicked, .. } => diagnostic
+                .at(at, "this brings it about")
+                .help(panicked.way_out()),
+            Self::Immediate { at, .. } => diagnostic.at(at, "").help(
                 "make it a member of the uniform `params`, which passes set by `set` and by params",
             ),
-            Self::NoLayout { at, .. } => told.at(at, ""),
+            Self::NoLayout { at, .. } => diagnostic.at(at, ""),
             Self::Collision { at, others, .. } => {
-                let told = others
+                let diagnostic = others
                     .into_iter()
-                    .fold(told.at(at, "this one"), |told, (span, name)| {
-                        told.at(span, format!("`{name}` has it too"))
+                    .fold(diagnostic.at(at, "this one"), |diagnostic, (span, name)| {
+                        diagnostic.at(span, format!("`{name}` has it too"))
                     });
-                told.help("leave the numbers out: the graph gives them")
+                diagnostic.help("leave the numbers out: the graph gives them")
             }
-            Self::Choice { at, declared, .. } => told
+            Self::Choice { at, declared, .. } => diagnostic
                 .at(at, "declared here")
                 .at(declared, "the words in their order")
                 .help("leave the constant out: the words of a Choice bring it"),
-            Self::TwoWords { first, second, .. } => told
+            Self::TwoWords { first, second, .. } => diagnostic
                 .at(second, "a word of this")
                 .at(first, "and one of this")
                 .help("rename one of the words or params: NAME_WORD is the constant of a word"),
             Self::NoSuchEntry { name, known, .. } => {
-                told.at(name.span.clone(), "").suggest(&name, known)
+                diagnostic.at(name.span.clone(), "").suggest(&name, known)
             }
-            Self::NoEntry { stage, at, .. } => told
+            Self::NoEntry { stage, at, .. } => diagnostic
                 .at(at, "this pass needs one")
                 .help(format!("write a function with the attribute @{stage}")),
             Self::SeveralEntries { at, known, .. } => {
                 let names: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
-                told.at(at, "it is not clear which one this pass runs")
+                diagnostic
+                    .at(at, "it is not clear which one this pass runs")
                     .help(format!("name one of {}", names.join(", ")))
             }
         }

@@ -3,7 +3,7 @@
 
 use super::{
     lifetimes::{Lifetime, Lifetimes},
-    work::Work,
+    view::GraphView,
 };
 use crate::{
     link::pass::{LinkedPass, PassId},
@@ -35,7 +35,7 @@ pub struct Aliases {
 /// left of another's content can then not be read. `kept` ones are needed beyond the frame and have
 /// memory of their own.
 pub(crate) fn aliases(
-    work: Work<'_>,
+    view: GraphView<'_>,
     sequence: &[PassId],
     lifetimes: &Lifetimes,
     kept: &BTreeSet<ResourceId>,
@@ -45,7 +45,7 @@ pub(crate) fn aliases(
     let mut starts: Vec<(usize, ResourceId)> = lifetimes
         .iter()
         .filter(|(id, _)| {
-            let resource = work.resource(**id);
+            let resource = view.resource(**id);
             matches!(resource.origin, Origin::Own | Origin::Constant)
                 && matches!(
                     resource.kind,
@@ -59,16 +59,16 @@ pub(crate) fn aliases(
     for (first, id) in starts {
         let lifetime = &lifetimes[&id];
         let shares =
-            !kept.contains(&id) && overwritten(work.pass(sequence[first]), work.resource(id), id);
+            !kept.contains(&id) && overwritten(view.pass(sequence[first]), view.resource(id), id);
         let free = shared.iter().copied().find(|&slot| {
             let slot: &Allocation = &found.list[slot];
             let other = slot.aliases[0];
             shares
                 && slot.until < first
                 && alike(
-                    work.resource(other),
+                    view.resource(other),
                     &lifetimes[&other],
-                    work.resource(id),
+                    view.resource(id),
                     lifetime,
                 )
         });
@@ -98,7 +98,7 @@ fn overwritten(pass: &LinkedPass, resource: &Resource, id: ResourceId) -> bool {
     };
     let covers_first = |uses: &mut dyn Iterator<Item = &crate::link::pass::Access>| {
         uses.next()
-            .is_some_and(|first| first.covers && !first.reads)
+            .is_some_and(|first| first.fully_overwrites && !first.reads)
     };
     let texture = match &resource.kind {
         ResourceKind::Texture(texture) => texture,
@@ -112,9 +112,10 @@ fn overwritten(pass: &LinkedPass, resource: &Resource, id: ResourceId) -> bool {
         wgt::TextureAspect::DepthOnly,
         wgt::TextureAspect::StencilOnly,
     ];
-    let aspects = match texture.format.is_combined_depth_stencil_format() {
-        true => &aspects[..],
-        false => &aspects[..1],
+    let aspects = if texture.format.is_combined_depth_stencil_format() {
+        &aspects[..]
+    } else {
+        &aspects[..1]
     };
     let covers = |mip: u32, layer: u32| {
         aspects.iter().all(|aspect| {

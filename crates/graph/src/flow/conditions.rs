@@ -1,6 +1,6 @@
 //! Which passes run or are skipped together, and what a skipped pass leaves behind.
 
-use super::work::Work;
+use super::view::GraphView;
 use crate::{
     diagnostics::reports::Reports,
     errors::flow::OrderError,
@@ -44,16 +44,20 @@ pub struct Conditions {
 /// Joins all writers of one resource, and with them whoever reads a version that is overwritten
 /// later in the frame: were the writers skipped, only the last version would be there. A group of
 /// several conditions is reported.
-pub(crate) fn conditions(work: Work<'_>, schedule: &[PassId], reports: &mut Reports) -> Conditions {
+pub(crate) fn conditions(
+    view: GraphView<'_>,
+    schedule: &[PassId],
+    reports: &mut Reports,
+) -> Conditions {
     let mut uses: BTreeMap<ResourceId, Vec<(usize, &Access)>> = BTreeMap::new();
     for (at, &pass) in schedule.iter().enumerate() {
-        for access in &work.pass(pass).accesses {
+        for access in &view.pass(pass).accesses {
             uses.entry(access.resource).or_default().push((at, access));
         }
     }
     let mut group: Vec<usize> = (0..schedule.len()).collect();
     for (id, uses) in &uses {
-        if matches!(work.resource(*id).origin, Origin::Previous(_)) {
+        if matches!(view.resource(*id).origin, Origin::Previous(_)) {
             continue;
         }
         let writers: Vec<_> = uses.iter().filter(|(_, access)| access.writes).collect();
@@ -69,15 +73,15 @@ pub(crate) fn conditions(work: Work<'_>, schedule: &[PassId], reports: &mut Repo
         };
         for (other, _) in joined {
             check(
-                [first, other].map(|at| work.pass(schedule[*at])),
-                &work.resource(*id).name,
+                [first, other].map(|at| view.pass(schedule[*at])),
+                &view.resource(*id).name,
                 reports,
             );
             join(&mut group, *first, *other);
         }
     }
     let group: Vec<usize> = (0..group.len()).map(|at| root(&group, at)).collect();
-    let mut writers = vec![None; work.resources.len()];
+    let mut writers = vec![None; view.resources.len()];
     for (id, uses) in &uses {
         let writer = uses.iter().find(|(_, access)| access.writes);
         writers[id.index()] = writer.map(|(at, _)| group[*at]);
@@ -86,18 +90,18 @@ pub(crate) fn conditions(work: Work<'_>, schedule: &[PassId], reports: &mut Repo
         .iter()
         .filter(|(_, uses)| {
             uses.iter()
-                .any(|(at, access)| access.writes && work.pass(schedule[*at]).run != Run::Always)
+                .any(|(at, access)| access.writes && view.pass(schedule[*at]).run != Run::Always)
         })
         .map(|(id, _)| *id)
         .collect();
     let mut leads = vec![false; schedule.len()];
     for (&group, &pass) in group.iter().zip(schedule) {
-        leads[group] |= !work.pass(pass).is_capture();
+        leads[group] |= !view.pass(pass).is_capture();
     }
-    let when = |(&group, &pass): (&usize, &PassId)| match &work.pass(pass).run {
-        _ if work.pass(pass).is_capture() && leads[group] => When::Follows,
+    let when = |(&group, &pass): (&usize, &PassId)| match &view.pass(pass).run {
+        _ if view.pass(pass).is_capture() && leads[group] => When::Follows,
         Run::Always => When::Always,
-        Run::When(_) if work.pass(pass).enabled => When::Always,
+        Run::When(_) if view.pass(pass).enabled => When::Always,
         Run::When(_) => When::Never,
         Run::Once => When::Once,
         Run::OnChange => When::OnChange,

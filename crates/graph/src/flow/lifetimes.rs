@@ -1,6 +1,6 @@
 //! What the live passes use each resource for; what none of them uses is never made.
 
-use super::work::Work;
+use super::view::GraphView;
 use crate::{
     link::pass::{PassId, Usage},
     resource::ResourceId,
@@ -24,10 +24,10 @@ pub struct Lifetime {
 }
 
 /// Only resources that a scheduled pass touches have a lifetime, and only those are made.
-pub(crate) fn lifetimes(work: Work<'_>, sequence: &[PassId]) -> Lifetimes {
+pub(crate) fn lifetimes(view: GraphView<'_>, sequence: &[PassId]) -> Lifetimes {
     let mut lifetimes = Lifetimes::new();
     for (at, &pass) in sequence.iter().enumerate() {
-        for access in &work.pass(pass).accesses {
+        for access in &view.pass(pass).accesses {
             let lifetime = lifetimes.entry(access.resource).or_insert(Lifetime {
                 textures: wgt::TextureUsages::empty(),
                 buffers: wgt::BufferUsages::empty(),

@@ -1,7 +1,7 @@
 //! Phase 5: what must come before what, which passes run, in which order, and which resources share
 //! memory. Each file is one step, in this order.
 
-pub(crate) mod work;
+pub(crate) mod view;
 
 pub(crate) mod order;
 

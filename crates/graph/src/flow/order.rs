@@ -1,7 +1,7 @@
 //! The file reads as a sequential program. Every access gets the version it means, and with it the
 //! edges.
 
-use super::work::{Subresources, Work};
+use super::view::{GraphView, Subresources};
 use crate::{
     diagnostics::reports::Reports,
     errors::flow::OrderError,
@@ -60,38 +60,41 @@ struct State {
 /// The order of all passes, from which follows which of them are live. Reads of what nobody wrote
 /// are reported for the passes of the valid prefix: below it a pass is missing that might have
 /// written it.
-pub(crate) fn order(work: Work<'_>, valid_prefix: usize, reports: &mut Reports) -> Order {
-    let (order, uninitialized) = walk(work, |_| true);
+pub(crate) fn order(view: GraphView<'_>, first_invalid: usize, reports: &mut Reports) -> Order {
+    let (order, uninitialized) = walk(view, |_| true);
     for (pass, access) in uninitialized
         .into_iter()
-        .filter(|(pass, _)| pass.0 < valid_prefix)
+        .filter(|(pass, _)| pass.0 < first_invalid)
     {
-        reports.report(explain(pass, access, work, &order));
+        reports.report(explain(pass, access, view, &order));
     }
     order
 }
 
 /// The order among the live passes alone. A chain of overwrites that led through a culled pass is
 /// closed here: first, culled, last would else leave nothing that keeps the first before the last.
-pub(crate) fn order_of_live(work: Work<'_>, live: &[bool]) -> Order {
-    walk(work, |pass| live[pass.0]).0
+pub(crate) fn order_of_live(view: GraphView<'_>, live: &[bool]) -> Order {
+    walk(view, |pass| live[pass.0]).0
 }
 
 /// What the passes that run depend on, and through which resources.
-pub(crate) fn dependences(work: Work<'_>, runs: impl Fn(PassId) -> bool) -> Dependences {
-    walk(work, runs).0.dependences
+pub(crate) fn dependences(view: GraphView<'_>, runs: impl Fn(PassId) -> bool) -> Dependences {
+    walk(view, runs).0.dependences
 }
 
 /// Runs through the file as a sequential program and notes what depends on what, and the reads of
 /// what nobody wrote.
-fn walk<'p>(work: Work<'p>, runs: impl Fn(PassId) -> bool) -> (Order, Vec<(PassId, &'p Access)>) {
-    let subresources = Subresources::new(work);
+fn walk<'p>(
+    view: GraphView<'p>,
+    runs: impl Fn(PassId) -> bool,
+) -> (Order, Vec<(PassId, &'p Access)>) {
+    let subresources = Subresources::new(view);
     let mut dependences = Dependences::new();
     let mut states: BTreeMap<(ResourceId, [u32; 3]), State> = BTreeMap::new();
     let mut uninitialized: Vec<(PassId, &Access)> = Vec::new();
-    for (index, pass) in work.ids().filter(|(index, _)| runs(*index)) {
+    for (index, pass) in view.ids().filter(|(index, _)| runs(*index)) {
         for access in &pass.accesses {
-            let resource = work.resource(access.resource);
+            let resource = view.resource(access.resource);
             let has_content =
                 resource.origin != Origin::Own || matches!(resource.kind, ResourceKind::Sampler(_));
             for part in subresources.of(access.resource, &access.part) {
@@ -105,7 +108,7 @@ fn walk<'p>(work: Work<'p>, runs: impl Fn(PassId) -> bool) -> (Order, Vec<(PassI
                 match state.writer {
                     Some(writer) if access.reads => edge(writer, Hazard::ReadAfterWrite),
                     // A write that does not cover keeps some of the old version, so it reads it.
-                    Some(writer) if access.writes && !access.covers => {
+                    Some(writer) if access.writes && !access.fully_overwrites => {
                         edge(writer, Hazard::ReadAfterWrite)
                     }
                     None if access.reads
@@ -134,8 +137,8 @@ fn walk<'p>(work: Work<'p>, runs: impl Fn(PassId) -> bool) -> (Order, Vec<(PassI
             }
         }
     }
-    let mut graph = DiGraph::with_capacity(work.passes.len(), dependences.len());
-    let nodes: Vec<NodeIndex> = work.passes.iter().map(|_| graph.add_node(())).collect();
+    let mut graph = DiGraph::with_capacity(view.passes.len(), dependences.len());
+    let nodes: Vec<NodeIndex> = view.passes.iter().map(|_| graph.add_node(())).collect();
     for &(from, to, hazard) in dependences.keys() {
         graph.add_edge(nodes[from.0], nodes[to.0], hazard);
     }
@@ -153,9 +156,9 @@ fn walk<'p>(work: Work<'p>, runs: impl Fn(PassId) -> bool) -> (Order, Vec<(PassI
 
 /// A read with nothing written above it: written never, written below, or written below by a pass
 /// that needs the reader.
-fn explain(reader: PassId, access: &Access, work: Work<'_>, order: &Order) -> OrderError {
-    let name = work.resource(access.resource).name.clone();
-    let pass = work.pass(reader);
+fn explain(reader: PassId, access: &Access, view: GraphView<'_>, order: &Order) -> OrderError {
+    let name = view.resource(access.resource).name.clone();
+    let pass = view.pass(reader);
     let writes = |pass: &LinkedPass| {
         pass.accesses.iter().any(|other| {
             other.writes && other.resource == access.resource && other.part.overlaps(&access.part)
@@ -168,12 +171,12 @@ fn explain(reader: PassId, access: &Access, work: Work<'_>, order: &Order) -> Or
             .accesses
             .iter()
             .any(|other| other.writes && other.resource == access.resource);
-    let below = work.ids().skip(reader.0 + 1).find(|(_, pass)| writes(pass));
+    let below = view.ids().skip(reader.0 + 1).find(|(_, pass)| writes(pass));
     if pass.is_capture() {
         return OrderError::Capture {
             name: pass.name.value.clone(),
             first: below.map(|(_, writer)| writer.name.value.clone()),
-            partly: work.passes[..reader.0].iter().any(writes),
+            partly: view.passes[..reader.0].iter().any(writes),
         };
     }
     let (read, pass_name) = (access.span.clone(), pass.name.clone());
@@ -183,7 +186,7 @@ fn explain(reader: PassId, access: &Access, work: Work<'_>, order: &Order) -> Or
             pass: pass_name,
             read,
             changes: itself,
-            partly: work.passes[..reader.0].iter().any(writes),
+            partly: view.passes[..reader.0].iter().any(writes),
         };
     };
     // Only what a pass needs makes it depend on another; an overwrite could be moved.
@@ -204,7 +207,7 @@ fn explain(reader: PassId, access: &Access, work: Work<'_>, order: &Order) -> Or
             writer: below.name.clone(),
             path: path
                 .iter()
-                .map(|node| work.passes[node.index()].name.value.clone())
+                .map(|node| view.passes[node.index()].name.value.clone())
                 .collect(),
         },
         None => OrderError::WrittenBelow {

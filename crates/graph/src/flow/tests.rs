@@ -4,7 +4,7 @@ use super::{
     cull,
     order::{Hazard, Order, order, order_of_live},
     schedule::sequence,
-    work::Work,
+    view::GraphView,
 };
 use crate::{
     diagnostics::{code::Code, diagnostic::Diagnostic, reports::Reports},
@@ -85,7 +85,7 @@ fn case(uses: &[Vec<Use>]) -> Case {
             part: part(mips, layers),
             reads: matches!(how, Read | Change),
             writes: *how != Read,
-            covers: *how == Write,
+            fully_overwrites: *how == Write,
             usage: Usage::None,
             span: span.clone(),
             step: 0,
@@ -103,11 +103,11 @@ fn case(uses: &[Vec<Use>]) -> Case {
     let passes: Vec<LinkedPass> = uses.iter().enumerate().map(pass).collect();
     let mut reports = Reports::default();
     let resources = resources();
-    let work = Work {
+    let view = GraphView {
         passes: &passes,
         resources: &resources,
     };
-    let order = order(work, passes.len(), &mut reports);
+    let order = order(view, passes.len(), &mut reports);
     Case {
         passes,
         resources,
@@ -130,11 +130,11 @@ impl Case {
             })
         });
         let live = cull::live(&self.order, roots, |_| None);
-        let work = Work {
+        let view = GraphView {
             passes: &self.passes,
             resources: &self.resources,
         };
-        let order = order_of_live(work, &live);
+        let order = order_of_live(view, &live);
         (live, order)
     }
 
@@ -467,7 +467,7 @@ fn interpret(passes: &[LinkedPass], sequence: &[usize]) -> (Seen, BTreeMap<Cell,
                     let cell = (access.resource.0, mip, layer);
                     let before = memory.get(&cell).copied();
                     // A partial write mixes its own with what is there, so it sees it.
-                    if (access.reads || !access.covers) && before != Some(pass) {
+                    if (access.reads || !access.fully_overwrites) && before != Some(pass) {
                         seen.insert((pass, cell), before);
                     }
                     if access.writes {

@@ -1,20 +1,20 @@
 //! Walks the entries of documents: conditions, repetitions, groups.
 
 use super::{
-    flat::{Border, Deciding, Flat, FlatPass, Inherited, Run},
-    frames::{FrameId, Instance, InstanceId, Meaning, Names, Place},
+    flat::{Flat, FlatPass, Inherited, Interface, PlanInputs, Run},
     params::Params,
+    scopes::{Instance, InstanceId, Names, Position, ScopeId, Symbol},
     state::Declared,
-    world::World,
+    symbols::SymbolTable,
 };
 use crate::{
-    diagnostics::reports::{Reported, Reports},
+    diagnostics::reports::{ErrorGuaranteed, Reports},
     document::{
         materials::{Input, InputKind},
-        raw::Broken,
+        raw::Invalid,
         typed::{Document, Entry, Run as RunEntry, What},
     },
-    errors::instantiate::BorderError,
+    errors::instantiate::InterfaceError,
     graph::Graph,
     language::{
         name::Name,
@@ -34,8 +34,8 @@ const MOST: usize = 16_384;
 
 /// What is around an entry.
 #[derive(Clone)]
-pub(super) struct Around<'a> {
-    pub frame: FrameId,
+pub(super) struct EntryContext<'a> {
+    pub scope: ScopeId,
     /// What names of passes begin with.
     pub prefix: String,
     run: Option<(Run, bool)>,
@@ -43,10 +43,10 @@ pub(super) struct Around<'a> {
     pub set: Vec<Inherited<'a, Expr>>,
 }
 
-impl<'a> Around<'a> {
-    fn new(frame: FrameId) -> Self {
+impl<'a> EntryContext<'a> {
+    fn new(scope: ScopeId) -> Self {
         Self {
-            frame,
+            scope,
             prefix: String::new(),
             run: None,
             bind: Vec::new(),
@@ -56,25 +56,25 @@ impl<'a> Around<'a> {
 
     /// What is around the entries of an included document: nothing that groups outside say of
     /// names, for these are not its own.
-    pub fn inside(&self, frame: FrameId) -> Self {
+    pub fn inside(&self, scope: ScopeId) -> Self {
         Self {
             prefix: self.prefix.clone(),
             run: self.run.clone(),
-            ..Self::new(frame)
+            ..Self::new(scope)
         }
     }
 }
 
 pub(super) struct Builder<'a, 'r> {
-    pub world: World<'a>,
+    pub symbols: SymbolTable<'a>,
     passes: Vec<FlatPass<'a>>,
-    first_broken: Option<usize>,
-    pub borders: Vec<Border>,
-    deciding: Deciding,
+    first_invalid: Option<usize>,
+    pub interfaces: Vec<Interface>,
+    plan_inputs: PlanInputs,
     /// What groups say, and whether something in them asks for it.
     said: Vec<(&'a Located<Name>, &'a Located<String>, bool)>,
     spent: usize,
-    full: Option<Reported>,
+    full: Option<ErrorGuaranteed>,
     pub reports: &'r mut Reports,
 }
 
@@ -86,18 +86,18 @@ pub(crate) fn flatten<'a>(
     reports: &mut Reports,
 ) -> Flat<'a> {
     let mut builder = Builder {
-        world: World::new(graph, request),
+        symbols: SymbolTable::new(graph, request),
         passes: Vec::new(),
-        first_broken: None,
-        borders: Vec::new(),
-        deciding: Deciding::default(),
+        first_invalid: None,
+        interfaces: Vec::new(),
+        plan_inputs: PlanInputs::default(),
         said: Vec::new(),
         spent: 0,
         full: None,
         reports,
     };
     let document = &graph.document;
-    let instance = builder.world.frames.add_instance(Instance {
+    let instance = builder.symbols.scopes.add_instance(Instance {
         document: Arc::clone(document),
         params: Arc::new(params),
         scene: BTreeMap::new(),
@@ -105,14 +105,14 @@ pub(crate) fn flatten<'a>(
         overrides: BTreeMap::new(),
         incomplete: None,
     });
-    let frame = builder
-        .world
-        .frames
-        .add_frame(instance, None, String::new(), None);
+    let scope = builder
+        .symbols
+        .scopes
+        .add_scope(instance, None, String::new(), None);
     builder.require(document);
-    builder.imports(document, frame);
-    builder.document(document, &Around::new(frame));
-    builder.root_border(document, instance, frame);
+    builder.imports(document, scope);
+    builder.document(document, &EntryContext::new(scope));
+    builder.root_interface(document, instance, scope);
     builder.finish()
 }
 
@@ -120,43 +120,43 @@ impl<'a> Builder<'a, '_> {
     /// The features that a document cannot do without.
     pub fn require(&mut self, document: &Document) {
         for (feature, flag) in &document.requires {
-            if !self.world.request.features.contains(*flag) {
-                let error = BorderError::Feature {
+            if !self.symbols.request.features.contains(*flag) {
+                let error = InterfaceError::Feature {
                     document: document.file.name.to_string(),
                     feature: feature.clone(),
                 };
                 // Whoever may not go on is told so by the report.
-                let _ = self.reports.beyond(error);
+                let _ = self.reports.unsupported(error);
             }
         }
     }
 
     /// The inputs of the root document are what the host imports.
-    fn imports(&mut self, document: &Document, frame: FrameId) {
+    fn imports(&mut self, document: &Document, scope: ScopeId) {
         for input in &document.inputs {
             let name = &input.name;
-            let meaning = match self.import(input) {
+            let symbol = match self.import(input) {
                 Ok(kind) => {
-                    let id = self.world.add(Resource {
+                    let id = self.symbols.add(Resource {
                         name: name.value.to_string(),
                         declared: Some(name.span.clone()),
                         kind,
                         origin: Origin::Host,
                     });
-                    Meaning::Target(self.world.whole(id))
+                    Symbol::Target(self.symbols.whole(id))
                 }
-                Err(error) => Meaning::Broken(self.reports.report(error)),
+                Err(error) => Symbol::Invalid(self.reports.report(error)),
             };
-            self.world.frames.declare(frame, &name.value, meaning);
+            self.symbols.scopes.declare(scope, &name.value, symbol);
         }
     }
 
-    fn import(&self, input: &Input) -> Result<ResourceKind, BorderError> {
+    fn import(&self, input: &Input) -> Result<ResourceKind, InterfaceError> {
         let name = Located::new(input.name.value.to_string(), input.name.span.clone());
-        let Some(import) = self.world.request.imports.get(&name.value) else {
-            return Err(BorderError::NoImport(name));
+        let Some(import) = self.symbols.request.imports.get(&name.value) else {
+            return Err(InterfaceError::NoImport(name));
         };
-        let wrong = |expected: &str, found: String| BorderError::WrongImport {
+        let wrong = |expected: &str, found: String| InterfaceError::WrongImport {
             name: name.clone(),
             expected: expected.to_owned(),
             found,
@@ -209,66 +209,70 @@ impl<'a> Builder<'a, '_> {
     }
 
     /// The materials and entries of a document.
-    pub fn document(&mut self, document: &'a Arc<Document>, around: &Around<'a>) {
-        let frame = around.frame;
+    pub fn document(&mut self, document: &'a Arc<Document>, context: &EntryContext<'a>) {
+        let scope = context.scope;
         for (name, reported) in &document.broken_materials {
             match Name::new(name) {
                 Ok(name) => {
-                    let meaning = Meaning::Broken(*reported);
-                    self.world.frames.declare(frame, &name, meaning);
+                    let symbol = Symbol::Invalid(*reported);
+                    self.symbols.scopes.declare(scope, &name, symbol);
                 }
-                Err(_) => self.incomplete(frame, *reported),
+                Err(_) => self.incomplete(scope, *reported),
             }
         }
         if let Some(reported) = document.incomplete {
-            self.incomplete(frame, reported);
+            self.incomplete(scope, reported);
             self.broken();
         }
         for (number, material) in document.materials.iter().enumerate() {
-            if self.world.resources.len() >= MOST {
+            if self.symbols.resources.len() >= MOST {
                 let name = material.name();
                 let at = Located::new(name.value.to_string(), name.span.clone());
                 return self.is_full(&at, "materials");
             }
             let name = material.name();
-            let instance = self.world.frames.instance_of(frame);
-            let meaning = match self.overridden(instance, material) {
-                Some(Ok(target)) => Meaning::Target(target),
-                Some(Err(reported)) => Meaning::Broken(reported),
+            let instance = self.symbols.scopes.instance_of(scope);
+            let symbol = match self.overridden(instance, material) {
+                Some(Ok(target)) => Symbol::Target(target),
+                Some(Err(reported)) => Symbol::Invalid(reported),
                 None => {
-                    let full = self.world.frames.full_name(instance, &name.value);
+                    let full = self.symbols.scopes.full_name(instance, &name.value);
                     let declared = Declared {
-                        frame,
+                        scope,
                         document: Arc::clone(document),
                         number,
                         span: name.span.clone(),
                     };
-                    let id = self.world.declare(full, declared);
-                    Meaning::Target(self.world.whole(id))
+                    let id = self.symbols.declare(full, declared);
+                    Symbol::Target(self.symbols.whole(id))
                 }
             };
-            self.world.frames.declare(frame, &name.value, meaning);
+            self.symbols.scopes.declare(scope, &name.value, symbol);
         }
-        self.entries(&document.entries, around);
+        self.entries(&document.entries, context);
     }
 
-    fn incomplete(&mut self, frame: FrameId, reported: Reported) {
-        let instance = self.world.frames.instance_of(frame);
-        self.world.frames.instance_mut(instance).incomplete = Some(reported);
+    fn incomplete(&mut self, scope: ScopeId, reported: ErrorGuaranteed) {
+        let instance = self.symbols.scopes.instance_of(scope);
+        self.symbols.scopes.instance_mut(instance).incomplete = Some(reported);
     }
 
-    pub(super) fn entries(&mut self, entries: &'a [Result<Entry, Broken>], around: &Around<'a>) {
+    pub(super) fn entries(
+        &mut self,
+        entries: &'a [Result<Entry, Invalid>],
+        context: &EntryContext<'a>,
+    ) {
         for entry in entries {
             match entry {
                 Ok(entry) => {
-                    if self.entry(entry, around).is_err() {
+                    if self.entry(entry, context).is_err() {
                         self.broken();
                     }
                 }
                 Err(broken) => {
                     self.broken();
                     if broken.is_include {
-                        self.incomplete(around.frame, broken.reported);
+                        self.incomplete(context.scope, broken.reported);
                     }
                 }
             }
@@ -277,37 +281,45 @@ impl<'a> Builder<'a, '_> {
 
     pub fn broken(&mut self) {
         let above = self.passes.len();
-        self.first_broken.get_or_insert(above);
+        self.first_invalid.get_or_insert(above);
     }
 
     /// Whether an entry or output is there.
-    pub fn is_there(&mut self, condition: Option<&Expr>, frame: FrameId) -> Result<bool, Reported> {
+    pub fn is_there(
+        &mut self,
+        condition: Option<&Expr>,
+        scope: ScopeId,
+    ) -> Result<bool, ErrorGuaranteed> {
         let Some(condition) = condition else {
             return Ok(true);
         };
-        let params = &self.world.frames.document(frame).params;
-        self.deciding.params.extend(params.roots(condition));
+        let params = &self.symbols.scopes.document(scope).params;
+        self.plan_inputs.params.extend(params.roots(condition));
         condition.visit(&mut |leaf| {
             if let Leaf::Has(feature) = leaf {
-                self.deciding.features |= feature;
+                self.plan_inputs.features |= feature;
             }
         });
-        let place = Place { frame, index: None };
-        condition.boolean(&mut self.world.at(place, None, self.reports))
+        let position = Position { scope, index: None };
+        condition.boolean(&mut self.symbols.at(position, None, self.reports))
     }
 
-    fn entry(&mut self, entry: &'a Entry, around: &Around<'a>) -> Result<(), Reported> {
+    fn entry(
+        &mut self,
+        entry: &'a Entry,
+        context: &EntryContext<'a>,
+    ) -> Result<(), ErrorGuaranteed> {
         if let Some(reported) = self.full {
             return Err(reported);
         }
-        let frame = around.frame;
-        if !self.is_there(entry.condition.as_ref(), frame)? {
+        let scope = context.scope;
+        if !self.is_there(entry.condition.as_ref(), scope)? {
             return Ok(());
         }
-        let place = Place { frame, index: None };
+        let position = Position { scope, index: None };
         let count = match &entry.repeat {
             None => 1,
-            Some(repeat) => repeat.count32(&mut self.world.at(place, None, self.reports))?,
+            Some(repeat) => repeat.count32(&mut self.symbols.at(position, None, self.reports))?,
         };
         self.spent = self.spent.saturating_add(count as usize);
         if self.spent > MOST {
@@ -318,12 +330,12 @@ impl<'a> Builder<'a, '_> {
             return Err(reported);
         }
         let Some(_) = entry.repeat else {
-            return self.instance(entry, None, around).map(drop);
+            return self.instance(entry, None, context).map(drop);
         };
         let mut given = Vec::new();
         let mut wrong = None;
         for index in 0..count {
-            match self.instance(entry, Some(index), around) {
+            match self.instance(entry, Some(index), context) {
                 Ok(names) => given.push(names),
                 // The others would be wrong in the same way.
                 Err(reported) => {
@@ -333,8 +345,10 @@ impl<'a> Builder<'a, '_> {
             }
         }
         if !matches!(entry.what, What::Pass(_)) {
-            let meaning = wrong.map_or(Meaning::Repeated(given), Meaning::Broken);
-            self.world.frames.declare(frame, &entry.name.value, meaning);
+            let symbol = wrong.map_or(Symbol::Repeated(given), Symbol::Invalid);
+            self.symbols
+                .scopes
+                .declare(scope, &entry.name.value, symbol);
         }
         wrong.map_or(Ok(()), Err)
     }
@@ -344,15 +358,15 @@ impl<'a> Builder<'a, '_> {
         &mut self,
         entry: &'a Entry,
         index: Option<u32>,
-        around: &Around<'a>,
-    ) -> Result<Names, Reported> {
+        context: &EntryContext<'a>,
+    ) -> Result<Names, ErrorGuaranteed> {
         let suffix = index.map_or(String::new(), |index| format!("[{index}]"));
-        let name = format!("{}{}{suffix}", around.prefix, entry.name.value);
-        let place = Place {
-            frame: around.frame,
+        let name = format!("{}{}{suffix}", context.prefix, entry.name.value);
+        let position = Position {
+            scope: context.scope,
             index,
         };
-        let run = self.run(entry, place, around)?;
+        let run = self.run(entry, position, context)?;
         match &entry.what {
             What::Pass(pass) => {
                 let (run, enabled) = run.unwrap_or((Run::Always, true));
@@ -360,14 +374,14 @@ impl<'a> Builder<'a, '_> {
                     name: Located::new(name, entry.name.span.clone()),
                     entry,
                     pass,
-                    place,
+                    position,
                     run,
                     enabled,
-                    bind: self.asked(&around.bind, |name| {
-                        self.asks_global(around.frame, entry, name)
+                    bind: self.asked(&context.bind, |name| {
+                        self.asks_global(context.scope, entry, name)
                     }),
-                    set: self.asked(&around.set, |name| {
-                        self.asks_param(around.frame, entry, name)
+                    set: self.asked(&context.set, |name| {
+                        self.asks_param(context.scope, entry, name)
                     }),
                 };
                 self.mark(&pass.bind, &pass.set);
@@ -375,38 +389,41 @@ impl<'a> Builder<'a, '_> {
                 Ok(Names::new())
             }
             What::Group(entries) => {
-                let frame = match index {
-                    None => around.frame,
+                let scope = match index {
+                    None => context.scope,
                     Some(index) => {
-                        let frames = &mut self.world.frames;
-                        let path =
-                            format!("{}{}[{index}].", frames.path(place.frame), entry.name.value);
-                        let instance = frames.instance_of(place.frame);
+                        let scopes = &mut self.symbols.scopes;
+                        let path = format!(
+                            "{}{}[{index}].",
+                            scopes.path(position.scope),
+                            entry.name.value
+                        );
+                        let instance = scopes.instance_of(position.scope);
                         let index = Some((entry.name.value.clone(), index));
-                        frames.add_frame(instance, Some(place.frame), path, index)
+                        scopes.add_scope(instance, Some(position.scope), path, index)
                     }
                 };
-                let place = Place { frame, index: None };
-                let inner = Around {
-                    frame,
+                let position = Position { scope, index: None };
+                let inner = EntryContext {
+                    scope,
                     prefix: format!("{name}."),
                     run,
-                    bind: self.say(&entry.bind, place, entry, &around.bind),
-                    set: self.say(&entry.set, place, entry, &around.set),
+                    bind: self.say(&entry.bind, position, entry, &context.bind),
+                    set: self.say(&entry.set, position, entry, &context.set),
                 };
                 self.entries(entries, &inner);
                 Ok(match index {
-                    Some(_) => self.world.frames.names(frame).clone(),
+                    Some(_) => self.symbols.scopes.names(scope).clone(),
                     None => Names::new(),
                 })
             }
             What::Include(include) => {
-                let around = Around {
+                let context = EntryContext {
                     prefix: format!("{name}."),
                     run,
-                    ..around.clone()
+                    ..context.clone()
                 };
-                self.include(entry, include, place, &around)
+                self.include(entry, include, position, &context)
             }
         }
     }
@@ -415,18 +432,18 @@ impl<'a> Builder<'a, '_> {
     fn run(
         &mut self,
         entry: &Entry,
-        place: Place,
-        around: &Around<'a>,
-    ) -> Result<Option<(Run, bool)>, Reported> {
+        position: Position,
+        context: &EntryContext<'a>,
+    ) -> Result<Option<(Run, bool)>, ErrorGuaranteed> {
         let condition = match &entry.run {
-            None => return Ok(around.run.clone()),
+            None => return Ok(context.run.clone()),
             Some(RunEntry::Always) => return Ok(Some((Run::Always, true))),
             Some(RunEntry::Once) => return Ok(Some((Run::Once, true))),
             Some(RunEntry::OnChange) => return Ok(Some((Run::OnChange, true))),
             Some(RunEntry::When(condition)) => condition,
         };
-        let enabled = condition.boolean(&mut self.world.at(place, None, self.reports))?;
-        let instance = self.world.frames.document(place.frame);
+        let enabled = condition.boolean(&mut self.symbols.at(position, None, self.reports))?;
+        let instance = self.symbols.scopes.document(position.scope);
         let params = Arc::clone(&instance.params);
         let outer = instance.outer.as_ref();
         let private = outer.map_or(String::new(), |outer| outer.private.clone());
@@ -441,7 +458,7 @@ impl<'a> Builder<'a, '_> {
                 None => name.to_owned(),
             },
             None => {
-                let value = leaf.value(&mut self.world.at(place, None, self.reports));
+                let value = leaf.value(&mut self.symbols.at(position, None, self.reports));
                 value.map_or_else(|_| leaf.text().to_owned(), |value| value.to_string())
             }
         });
@@ -452,7 +469,7 @@ impl<'a> Builder<'a, '_> {
     fn say<T>(
         &mut self,
         own: &'a [(Located<String>, T)],
-        place: Place,
+        position: Position,
         group: &'a Entry,
         outer: &[Inherited<'a, T>],
     ) -> Vec<Inherited<'a, T>> {
@@ -469,7 +486,7 @@ impl<'a> Builder<'a, '_> {
             said.push(Inherited {
                 name,
                 value,
-                place,
+                position,
                 number,
             });
         }
@@ -499,32 +516,32 @@ impl<'a> Builder<'a, '_> {
     }
 
     /// Whether a shader of a pass has such a global that the pass itself says nothing of.
-    fn asks_global(&self, frame: FrameId, entry: &Entry, name: &str) -> bool {
+    fn asks_global(&self, scope: ScopeId, entry: &Entry, name: &str) -> bool {
         let said = entry.bind.iter().any(|(own, _)| **own == *name);
         !said
-            && self.any_shader(frame, entry, |shader| {
+            && self.any_shader(scope, entry, |shader| {
                 shader.global_names().any(|n| n == name)
             })
     }
 
     /// The same of a param or override.
-    fn asks_param(&self, frame: FrameId, entry: &Entry, name: &str) -> bool {
+    fn asks_param(&self, scope: ScopeId, entry: &Entry, name: &str) -> bool {
         let said = entry.set.iter().any(|(own, _)| **own == *name);
-        !said && self.any_shader(frame, entry, |shader| shader.params().any(|n| n == name))
+        !said && self.any_shader(scope, entry, |shader| shader.params().any(|n| n == name))
     }
 
     fn any_shader(
         &self,
-        frame: FrameId,
+        scope: ScopeId,
         entry: &Entry,
         asks: impl Fn(&crate::shader::reflect::Shader) -> bool,
     ) -> bool {
         let What::Pass(pass) = &entry.what else {
             return false;
         };
-        let document = &self.world.frames.document(frame).document;
+        let document = &self.symbols.scopes.document(scope).document;
         let shaders = pass.shaders.iter();
-        let mut shaders = shaders.filter_map(|name| self.world.graph.shaders.get(document, name));
+        let mut shaders = shaders.filter_map(|name| self.symbols.graph.shaders.get(document, name));
         // One with a mistake may ask for anything.
         shaders.any(|shader| shader.as_ref().map_or(true, |shader| asks(shader)))
     }
@@ -533,7 +550,7 @@ impl<'a> Builder<'a, '_> {
     fn is_full(&mut self, name: &Located<String>, what: &'static str) {
         self.broken();
         if self.full.is_none() {
-            self.full = Some(self.reports.report(BorderError::TooMany {
+            self.full = Some(self.reports.report(InterfaceError::TooMany {
                 most: MOST,
                 what,
                 at: name.span.clone(),
@@ -545,44 +562,45 @@ impl<'a> Builder<'a, '_> {
     fn finish(mut self) -> Flat<'a> {
         let mut number = 0;
         // Finding one may add others.
-        while number < self.world.resources.len() {
-            let id = self.world.id(number);
+        while number < self.symbols.resources.len() {
+            let id = self.symbols.id(number);
             // Who names one that is broken is told so by what it gets instead.
-            let _ = self.world.settle(id, self.reports);
+            let _ = self.symbols.resolve_size(id, self.reports);
             number += 1;
         }
         for (group, name, is_asked) in std::mem::take(&mut self.said) {
-            if !is_asked && self.first_broken.is_none() {
-                self.reports.report(BorderError::UnaskedInGroup {
+            if !is_asked && self.first_invalid.is_none() {
+                self.reports.report(InterfaceError::UnusedInGroup {
                     group: group.value.to_string(),
                     name: name.clone(),
                 });
             }
         }
         Flat {
-            world: self.world,
+            symbols: self.symbols,
             passes: self.passes,
-            first_broken: self.first_broken,
-            borders: self.borders,
-            deciding: self.deciding,
+            first_invalid: self.first_invalid,
+            interfaces: self.interfaces,
+            plan_inputs: self.plan_inputs,
         }
     }
 
     /// What the root document gives and takes.
-    fn root_border(&mut self, document: &Document, instance: InstanceId, frame: FrameId) {
+    fn root_interface(&mut self, document: &Document, instance: InstanceId, scope: ScopeId) {
         let mut read_only = Vec::new();
         for input in &document.inputs {
             let is_output = document
                 .outputs
                 .iter()
                 .any(|output| output.material.path() == *input.name.as_str());
-            if let (false, Some(Meaning::Target(target))) =
-                (is_output, self.world.frames.find(frame, &input.name.value))
-            {
+            if let (false, Some(Symbol::Target(target))) = (
+                is_output,
+                self.symbols.scopes.find(scope, &input.name.value),
+            ) {
                 read_only.push((input.name.clone(), target.clone()));
             }
         }
-        self.borders.push(Border {
+        self.interfaces.push(Interface {
             instance,
             outputs: Vec::new(),
             read_only,

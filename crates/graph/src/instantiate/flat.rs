@@ -1,8 +1,8 @@
 //! What the tree of entries becomes: one list of passes.
 
 use super::{
-    frames::{InstanceId, Place},
-    world::World,
+    scopes::{InstanceId, Position},
+    symbols::SymbolTable,
 };
 use crate::{
     document::typed::{Entry, Pass},
@@ -39,12 +39,12 @@ impl std::fmt::Display for Run {
 
 /// A graph with nothing nested any more.
 pub(crate) struct Flat<'a> {
-    pub world: World<'a>,
+    pub symbols: SymbolTable<'a>,
     pub passes: Vec<FlatPass<'a>>,
     /// How many passes stand above the first entry with a mistake that was reported.
-    pub first_broken: Option<usize>,
-    pub borders: Vec<Border>,
-    pub deciding: Deciding,
+    pub first_invalid: Option<usize>,
+    pub interfaces: Vec<Interface>,
+    pub plan_inputs: PlanInputs,
 }
 
 /// A pass with its place in the graph.
@@ -52,7 +52,7 @@ pub(crate) struct FlatPass<'a> {
     pub name: Located<String>,
     pub entry: &'a Entry,
     pub pass: &'a Pass,
-    pub place: Place,
+    pub position: Position,
     pub run: Run,
     /// The value of the expression in [`Run::When`]; true without one.
     pub enabled: bool,
@@ -66,7 +66,7 @@ pub(crate) struct FlatPass<'a> {
 pub(crate) struct Inherited<'a, T> {
     pub name: &'a Located<String>,
     pub value: &'a T,
-    pub place: Place,
+    pub position: Position,
     /// Its number in `Builder::said`.
     pub(super) number: usize,
 }
@@ -80,7 +80,7 @@ impl<T> Clone for Inherited<'_, T> {
 impl<T> Copy for Inherited<'_, T> {}
 
 /// What a document gives and takes, to be held against what its passes do.
-pub(crate) struct Border {
+pub(crate) struct Interface {
     pub instance: InstanceId,
     pub outputs: Vec<(Located<Name>, Target)>,
     /// Inputs that are no outputs.
@@ -89,7 +89,7 @@ pub(crate) struct Border {
 
 /// What decides which entries are there.
 #[derive(Debug, Default)]
-pub(crate) struct Deciding {
+pub(crate) struct PlanInputs {
     pub params: BTreeSet<String>,
     pub features: wgt::Features,
 }

@@ -2,18 +2,18 @@
 //! outputs come back.
 
 use super::{
-    build::{Around, Builder},
-    flat::Border,
-    frames::{Instance, InstanceId, Meaning, Names, Outer, Place},
+    build::{Builder, EntryContext},
+    flat::Interface,
     params::{Given, Params},
+    scopes::{Instance, InstanceId, Names, Outer, Position, Symbol},
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::reports::ErrorGuaranteed,
     document::{
         materials::{Input, InputKind, Material},
         typed::{Document, Entry, Include, Output},
     },
-    errors::instantiate::BorderError,
+    errors::instantiate::InterfaceError,
     language::{
         name::Name,
         syntax::{Expr, Reference},
@@ -25,12 +25,12 @@ use crate::{
 use std::{collections::BTreeMap, sync::Arc};
 
 /// A material here that an output is written into, with the place that says so.
-type Bound = (Located<String>, Result<Target, Reported>);
+type Bound = (Located<String>, Result<Target, ErrorGuaranteed>);
 
 /// What an include says of names of its document, its own words first.
-struct Said<'e> {
-    bind: Vec<(&'e Located<String>, &'e Reference, Place)>,
-    set: Vec<(&'e Located<String>, &'e Expr, Place)>,
+struct Overrides<'e> {
+    bind: Vec<(&'e Located<String>, &'e Reference, Position)>,
+    set: Vec<(&'e Located<String>, &'e Expr, Position)>,
 }
 
 impl<'a> Builder<'a, '_> {
@@ -40,34 +40,34 @@ impl<'a> Builder<'a, '_> {
         &mut self,
         entry: &'a Entry,
         include: &'a Include,
-        place: Place,
-        around: &Around<'a>,
-    ) -> Result<Names, Reported> {
+        position: Position,
+        context: &EntryContext<'a>,
+    ) -> Result<Names, ErrorGuaranteed> {
         let document = match &include.document {
             Some(Ok(document)) => document,
             Some(Err(reported)) => {
-                let instance = self.world.frames.instance_of(place.frame);
-                self.world.frames.instance_mut(instance).incomplete = Some(*reported);
+                let instance = self.symbols.scopes.instance_of(position.scope);
+                self.symbols.scopes.instance_mut(instance).incomplete = Some(*reported);
                 return Err(*reported);
             }
             None => return Ok(Names::new()),
         };
         self.require(document);
-        let said = self.said(entry, document, place, around);
-        let has_namespace = include.is_named || place.index.is_some();
+        let said = self.said(entry, document, position, context);
+        let has_namespace = include.is_named || position.index.is_some();
         let outer = Outer {
-            frame: place.frame,
+            scope: position.scope,
             namespace: has_namespace.then(|| {
-                let suffix = place
+                let suffix = position
                     .index
                     .map_or(String::new(), |index| format!("[{index}]"));
                 format!("{}{suffix}.", entry.name.value)
             }),
-            private: around.prefix.clone(),
+            private: context.prefix.clone(),
         };
-        let params = self.params(entry, include, document, &said, place);
-        let (scene, overrides) = self.outside(entry, document, &said, place, has_namespace);
-        let instance = self.world.frames.add_instance(Instance {
+        let params = self.params(entry, include, document, &said, position);
+        let (scene, overrides) = self.outside(entry, document, &said, position, has_namespace);
+        let instance = self.symbols.scopes.add_instance(Instance {
             document: Arc::clone(document),
             params: Arc::new(params),
             scene,
@@ -75,13 +75,13 @@ impl<'a> Builder<'a, '_> {
             overrides,
             incomplete: None,
         });
-        let frame = self
-            .world
-            .frames
-            .add_frame(instance, None, String::new(), None);
+        let scope = self
+            .symbols
+            .scopes
+            .add_scope(instance, None, String::new(), None);
         let mut read_only = Vec::new();
         for input in &document.inputs {
-            let target = self.input(input, document, include, &said, place);
+            let target = self.input(input, document, include, &said, position);
             if let Ok(target) = &target {
                 let is_output = document
                     .outputs
@@ -91,18 +91,20 @@ impl<'a> Builder<'a, '_> {
                     read_only.push((input.name.clone(), target.clone()));
                 }
             }
-            let meaning = target.map_or_else(Meaning::Broken, Meaning::Target);
-            self.world.frames.declare(frame, &input.name.value, meaning);
+            let symbol = target.map_or_else(Symbol::Invalid, Symbol::Target);
+            self.symbols
+                .scopes
+                .declare(scope, &input.name.value, symbol);
         }
-        let inner = around.inside(frame);
+        let inner = context.inside(scope);
         self.document(document, &inner);
-        let (names, outputs) = self.outputs(document, &said, Place { frame, index: None });
-        self.borders.push(Border {
+        let (names, outputs) = self.outputs(document, &said, Position { scope, index: None });
+        self.interfaces.push(Interface {
             instance,
             outputs,
             read_only,
         });
-        self.give(entry, document, &names, (place, has_namespace))?;
+        self.give(entry, document, &names, (position, has_namespace))?;
         Ok(names)
     }
 
@@ -112,23 +114,23 @@ impl<'a> Builder<'a, '_> {
         entry: &Entry,
         document: &Document,
         names: &Names,
-        (place, has_namespace): (Place, bool),
-    ) -> Result<(), Reported> {
-        let frames = &mut self.world.frames;
+        (position, has_namespace): (Position, bool),
+    ) -> Result<(), ErrorGuaranteed> {
+        let scopes = &mut self.symbols.scopes;
         let name = &entry.name.value;
         if let Some(reported) = document.broken_outputs {
-            let around = frames.instance_of(place.frame);
-            frames.instance_mut(around).incomplete = Some(reported);
+            let context = scopes.instance_of(position.scope);
+            scopes.instance_mut(context).incomplete = Some(reported);
             if has_namespace {
-                frames.declare(place.frame, name, Meaning::Broken(reported));
+                scopes.declare(position.scope, name, Symbol::Invalid(reported));
             }
             return Err(reported);
         }
-        if has_namespace && place.index.is_none() {
-            frames.declare(place.frame, name, Meaning::Namespace(names.clone()));
+        if has_namespace && position.index.is_none() {
+            scopes.declare(position.scope, name, Symbol::Namespace(names.clone()));
         } else if !has_namespace {
-            for (name, meaning) in names {
-                frames.declare(place.frame, name, meaning.clone());
+            for (name, symbol) in names {
+                scopes.declare(position.scope, name, symbol.clone());
             }
         }
         Ok(())
@@ -139,16 +141,16 @@ impl<'a> Builder<'a, '_> {
         &mut self,
         entry: &'e Entry,
         document: &Document,
-        place: Place,
-        around: &Around<'e>,
-    ) -> Said<'e>
+        position: Position,
+        context: &EntryContext<'e>,
+    ) -> Overrides<'e>
     where
         'a: 'e,
         'e: 'a,
     {
         let own = |name: &str| entry.bind.iter().any(|(own, _)| **own == *name);
-        let frame = place.frame;
-        let mut inherited = around.bind.clone();
+        let scope = position.scope;
+        let mut inherited = context.bind.clone();
         inherited.retain(|said| {
             let is_border = document
                 .inputs
@@ -158,11 +160,11 @@ impl<'a> Builder<'a, '_> {
                     .outputs
                     .iter()
                     .any(|output| output.name.as_str() == said.name.as_str());
-            let asks = is_border || self.world.find_scene(said.name, frame).is_some();
+            let asks = is_border || self.symbols.find_scene(said.name, scope).is_some();
             asks && !own(said.name)
         });
         let set_here = |name: &str| entry.set.iter().any(|(own, _)| **own == *name);
-        let mut set = around.set.clone();
+        let mut set = context.set.clone();
         set.retain(|said| {
             let asks = document
                 .params
@@ -171,18 +173,27 @@ impl<'a> Builder<'a, '_> {
             asks && !set_here(said.name)
         });
         self.mark(&inherited, &set);
-        let bind = entry.bind.iter().map(|(name, value)| (name, value, place));
-        let values = entry.set.iter().map(|(name, value)| (name, value, place));
-        Said {
+        let bind = entry
+            .bind
+            .iter()
+            .map(|(name, value)| (name, value, position));
+        let values = entry
+            .set
+            .iter()
+            .map(|(name, value)| (name, value, position));
+        Overrides {
             bind: bind
                 .chain(
                     inherited
                         .iter()
-                        .map(|said| (said.name, said.value, said.place)),
+                        .map(|said| (said.name, said.value, said.position)),
                 )
                 .collect(),
             set: values
-                .chain(set.iter().map(|said| (said.name, said.value, said.place)))
+                .chain(
+                    set.iter()
+                        .map(|said| (said.name, said.value, said.position)),
+                )
                 .collect(),
         }
     }
@@ -192,10 +203,11 @@ impl<'a> Builder<'a, '_> {
         entry: &Entry,
         include: &Include,
         document: &Document,
-        said: &Said<'_>,
-        place: Place,
+        said: &Overrides<'_>,
+        position: Position,
     ) -> Params {
-        let mut set: BTreeMap<String, (Located<Expr>, Result<Value, Reported>)> = BTreeMap::new();
+        let mut set: BTreeMap<String, (Located<Expr>, Result<Value, ErrorGuaranteed>)> =
+            BTreeMap::new();
         for (name, expr, at) in &said.set {
             if !document
                 .params
@@ -204,26 +216,27 @@ impl<'a> Builder<'a, '_> {
             {
                 let known = document.params.iter().map(|param| param.name.value.clone());
                 let known = self.reports.known(known);
-                self.reports.report(BorderError::Unasked {
+                self.reports.report(InterfaceError::Unused {
                     document: document.file.name.to_string(),
                     name: (*name).clone(),
                     known,
                 });
                 continue;
             }
-            let params = &self.world.frames.document(at.frame).params;
+            let params = &self.symbols.scopes.document(at.scope).params;
             let value = match params.forwarded(expr) {
                 Some(value) => value,
-                None => expr.value(&mut self.world.at(*at, None, self.reports)),
+                None => expr.value(&mut self.symbols.at(*at, None, self.reports)),
             };
             let expr = Located::new((*expr).clone(), expr.span.clone());
             set.insert(name.value.clone(), (expr, value));
         }
-        let outer = Arc::clone(&self.world.frames.document(place.frame).params);
+        let outer = Arc::clone(&self.symbols.scopes.document(position.scope).params);
         let exposed = include.expose.iter().map(|name| {
-            let own = match include.is_named {
-                true => format!("{}.{}", entry.name.value, **name),
-                false => name.value.clone(),
+            let own = if include.is_named {
+                format!("{}.{}", entry.name.value, **name)
+            } else {
+                name.value.clone()
             };
             (name.as_str(), own)
         });
@@ -231,7 +244,7 @@ impl<'a> Builder<'a, '_> {
             exposed: exposed.collect(),
             outer: &outer,
             span: &include.graph.span,
-            around: self.world.request.surroundings(),
+            context: self.symbols.request.surroundings(),
         };
         given.bind(document, &set, self.reports)
     }
@@ -242,11 +255,11 @@ impl<'a> Builder<'a, '_> {
         &mut self,
         entry: &Entry,
         document: &Document,
-        said: &Said<'_>,
-        place: Place,
+        said: &Overrides<'_>,
+        position: Position,
         has_namespace: bool,
     ) -> (
-        BTreeMap<String, Result<Target, Reported>>,
+        BTreeMap<String, Result<Target, ErrorGuaranteed>>,
         BTreeMap<String, Bound>,
     ) {
         let (mut scene, mut overrides) = (BTreeMap::new(), BTreeMap::new());
@@ -262,7 +275,7 @@ impl<'a> Builder<'a, '_> {
                 .outputs
                 .iter()
                 .find(|output| output.name.as_str() == name.as_str());
-            if output.is_none() && self.world.find_scene(name, place.frame).is_none() {
+            if output.is_none() && self.symbols.find_scene(name, position.scope).is_none() {
                 let known = document
                     .inputs
                     .iter()
@@ -272,14 +285,14 @@ impl<'a> Builder<'a, '_> {
                     .iter()
                     .map(|output| output.name.value.to_string());
                 let known = self.reports.known(known.chain(outputs));
-                self.reports.report(BorderError::Unasked {
+                self.reports.report(InterfaceError::Unused {
                     document: document.file.name.to_string(),
                     name: (*name).clone(),
                     known,
                 });
                 continue;
             }
-            let target = self.world.resolve(reference, *at, self.reports);
+            let target = self.symbols.resolve(reference, *at, self.reports);
             match output {
                 None => drop(scene.insert(name.value.clone(), target)),
                 Some(output) => {
@@ -288,7 +301,7 @@ impl<'a> Builder<'a, '_> {
                 }
             }
         }
-        for (output, bound) in self.passed_on(entry, document, place, has_namespace) {
+        for (output, bound) in self.passed_on(entry, document, position, has_namespace) {
             overrides.insert(output.material.path(), bound);
         }
         (scene, overrides)
@@ -300,11 +313,11 @@ impl<'a> Builder<'a, '_> {
         &self,
         entry: &Entry,
         document: &'d Document,
-        place: Place,
+        position: Position,
         has_namespace: bool,
     ) -> Vec<(&'d Output, Bound)> {
-        let around = self.world.frames.document(place.frame);
-        let known = |name: &Name| match (has_namespace, place.index) {
+        let context = self.symbols.scopes.document(position.scope);
+        let known = |name: &Name| match (has_namespace, position.index) {
             (false, _) => Some(name.to_string()),
             (true, None) => Some(format!("{}.{name}", entry.name.value)),
             (true, Some(_)) => None,
@@ -312,7 +325,7 @@ impl<'a> Builder<'a, '_> {
         let passed_on = document.outputs.iter().filter_map(|output| {
             let name = &output.name.value;
             let own = entry.bind.iter().any(|(bound, _)| **bound == **name);
-            let bound = around.overrides.get(&known(name)?).filter(|_| !own)?;
+            let bound = context.overrides.get(&known(name)?).filter(|_| !own)?;
             Some((output, bound.clone()))
         });
         passed_on.collect()
@@ -323,11 +336,11 @@ impl<'a> Builder<'a, '_> {
         &mut self,
         instance: InstanceId,
         material: &Material,
-    ) -> Option<Result<Target, Reported>> {
-        let overrides = &self.world.frames.instance(instance).overrides;
+    ) -> Option<Result<Target, ErrorGuaranteed>> {
+        let overrides = &self.symbols.scopes.instance(instance).overrides;
         let (name, target) = overrides.get(material.name().as_str())?.clone();
         Some(target.and_then(|target| {
-            let found = &self.world.get(target.id).kind;
+            let found = &self.symbols.get(target.id).kind;
             let fits = matches!(
                 (material, found),
                 (Material::Texture(_), ResourceKind::Texture(_))
@@ -336,7 +349,7 @@ impl<'a> Builder<'a, '_> {
             );
             match fits {
                 true => Ok(target),
-                false => Err(self.reports.report(BorderError::BoundOutput {
+                false => Err(self.reports.report(InterfaceError::BoundOutput {
                     name,
                     why: format!("this is {}", found.describe()),
                     declared: material.name().span.clone(),
@@ -350,9 +363,9 @@ impl<'a> Builder<'a, '_> {
         input: &Input,
         document: &Document,
         include: &Include,
-        said: &Said<'_>,
-        place: Place,
-    ) -> Result<Target, Reported> {
+        said: &Overrides<'_>,
+        position: Position,
+    ) -> Result<Target, ErrorGuaranteed> {
         let name = &input.name.value;
         let bound = said
             .bind
@@ -360,20 +373,20 @@ impl<'a> Builder<'a, '_> {
             .find(|(bound, ..)| bound.as_str() == name.as_str());
         let (target, span) = match bound {
             Some((_, reference, at)) => {
-                let target = self.world.resolve(reference, *at, self.reports)?;
+                let target = self.symbols.resolve(reference, *at, self.reports)?;
                 (target, reference.span.clone())
             }
             None => {
                 let span = include.graph.span.clone();
-                if self.world.frames.find(place.frame, name).is_none() {
-                    return Err(self.no_input(input, document, include, place));
+                if self.symbols.scopes.find(position.scope, name).is_none() {
+                    return Err(self.no_input(input, document, include, position));
                 }
-                let reference = Reference::of(Located::new(name.clone(), span.clone()));
-                let target = self.world.resolve(&reference, place, self.reports)?;
+                let reference = Reference::new(Located::new(name.clone(), span.clone()));
+                let target = self.symbols.resolve(&reference, position, self.reports)?;
                 (target, span)
             }
         };
-        let found = &self.world.get(target.id).kind;
+        let found = &self.symbols.get(target.id).kind;
         let fits = match (&input.kind, found) {
             (InputKind::Texture(None), ResourceKind::Texture(_)) => true,
             (InputKind::Texture(Some(format)), ResourceKind::Texture(texture)) => {
@@ -392,7 +405,7 @@ impl<'a> Builder<'a, '_> {
             ResourceKind::Texture(texture) => format!("a texture {:?}", texture.format),
             other => other.describe().to_owned(),
         };
-        Err(self.reports.report(BorderError::WrongInput {
+        Err(self.reports.report(InterfaceError::WrongInput {
             document: document.file.name.to_string(),
             name: name.to_string(),
             expected: input.kind.describe_with_format(),
@@ -407,13 +420,15 @@ impl<'a> Builder<'a, '_> {
         input: &Input,
         document: &Document,
         include: &Include,
-        place: Place,
-    ) -> Reported {
-        if let Some(reported) = self.world.frames.document(place.frame).incomplete {
+        position: Position,
+    ) -> ErrorGuaranteed {
+        if let Some(reported) = self.symbols.scopes.document(position.scope).incomplete {
             return reported;
         }
-        let known = self.reports.known(self.world.frames.known(place.frame));
-        self.reports.report(BorderError::NoInput {
+        let known = self
+            .reports
+            .known(self.symbols.scopes.known(position.scope));
+        self.reports.report(InterfaceError::NoInput {
             document: document.file.name.to_string(),
             name: input.name.value.to_string(),
             kind: input.kind.describe_with_format(),
@@ -428,21 +443,23 @@ impl<'a> Builder<'a, '_> {
     fn outputs(
         &mut self,
         document: &Document,
-        said: &Said<'_>,
-        place: Place,
+        said: &Overrides<'_>,
+        position: Position,
     ) -> (Names, Vec<(Located<Name>, Target)>) {
         let (mut names, mut outputs) = (Names::new(), Vec::new());
         for output in &document.outputs {
             let name = &output.name;
-            match self.is_there(output.condition.as_ref(), place.frame) {
+            match self.is_there(output.condition.as_ref(), position.scope) {
                 Ok(true) => {}
                 Ok(false) => continue,
                 Err(reported) => {
-                    names.insert(name.value.clone(), Meaning::Broken(reported));
+                    names.insert(name.value.clone(), Symbol::Invalid(reported));
                     continue;
                 }
             }
-            let target = self.world.resolve(&output.material, place, self.reports);
+            let target = self
+                .symbols
+                .resolve(&output.material, position, self.reports);
             if let Ok(target) = &target {
                 outputs.push((name.clone(), target.clone()));
             }
@@ -457,8 +474,8 @@ impl<'a> Builder<'a, '_> {
                 .iter()
                 .any(|(bound, ..)| bound.as_str() == name.as_str());
             if !is_input && !is_bound {
-                let meaning = target.map_or_else(Meaning::Broken, Meaning::Target);
-                names.insert(name.value.clone(), meaning);
+                let symbol = target.map_or_else(Symbol::Invalid, Symbol::Target);
+                names.insert(name.value.clone(), symbol);
             }
         }
         (names, outputs)

@@ -1,9 +1,9 @@
 //! Passes become steps: each kind says what its body is, with values of this plan.
 
 use super::{
-    flat::{Border, Deciding, Flat, FlatPass},
-    frames::InstanceId,
-    world::World,
+    flat::{Flat, FlatPass, Interface, PlanInputs},
+    scopes::InstanceId,
+    symbols::SymbolTable,
 };
 use crate::{
     diagnostics::reports::Reports,
@@ -30,44 +30,44 @@ pub(crate) struct LoweredPass<'a> {
 
 /// A graph of passes that are lowered.
 pub(crate) struct Lowered<'a> {
-    pub world: World<'a>,
+    pub symbols: SymbolTable<'a>,
     pub passes: Vec<LoweredPass<'a>>,
-    pub first_broken: Option<usize>,
-    pub borders: Vec<Border>,
-    pub deciding: Deciding,
+    pub first_invalid: Option<usize>,
+    pub interfaces: Vec<Interface>,
+    pub plan_inputs: PlanInputs,
 }
 
 /// Lowers every pass.
 pub(crate) fn lower<'a>(flat: Flat<'a>, reports: &mut Reports) -> Lowered<'a> {
-    let mut world = flat.world;
+    let mut symbols = flat.symbols;
     let passes = flat
         .passes
         .into_iter()
-        .map(|pass| lower_pass(pass, &mut world, reports));
+        .map(|pass| lower_pass(pass, &mut symbols, reports));
     let passes = passes.collect();
     Lowered {
-        world,
+        symbols,
         passes,
-        first_broken: flat.first_broken,
-        borders: flat.borders,
-        deciding: flat.deciding,
+        first_invalid: flat.first_invalid,
+        interfaces: flat.interfaces,
+        plan_inputs: flat.plan_inputs,
     }
 }
 
 fn lower_pass<'a>(
     flat: FlatPass<'a>,
-    world: &mut World<'a>,
+    symbols: &mut SymbolTable<'a>,
     reports: &mut Reports,
 ) -> LoweredPass<'a> {
     let (entry, pass) = (flat.entry, flat.pass);
     let before = reports.errors();
-    let document = &world.frames.document(flat.place.frame).document;
+    let document = &symbols.scopes.document(flat.position.scope).document;
     // Constants are those of the pass's own shader, or of the first that its kind brings.
     let shader = pass.shader.as_ref().or(pass.shaders.first());
     let shader = shader
-        .and_then(|name| world.graph.shaders.get(document, name))
+        .and_then(|name| symbols.graph.shaders.get(document, name))
         .cloned();
-    let mut environment = world.at(flat.place, shader, reports);
+    let mut environment = symbols.at(flat.position, shader, reports);
     let mut lowering = Lowering::new(
         &entry.name,
         pass.shader.as_ref(),
@@ -77,12 +77,12 @@ fn lower_pass<'a>(
     pass.body.lower(&mut lowering);
     let (steps, scratch, diagnostics) = (lowering.steps, lowering.scratch, lowering.diagnostics);
     for diagnostic in diagnostics {
-        reports.tell(diagnostic);
+        reports.emit(diagnostic);
     }
     let own = Located::new(entry.name.value.to_string(), entry.name.span.clone());
     // A slash stands in no name: nothing in a document can mean this buffer.
     let scratch = scratch.into_iter().map(|(name, bytes)| {
-        world.add(Resource {
+        symbols.add(Resource {
             name: format!("{}/{name}", flat.name.value),
             declared: None,
             kind: ResourceKind::Buffer(Buffer {
@@ -94,7 +94,7 @@ fn lower_pass<'a>(
     });
     LoweredPass {
         scratch: scratch.collect(),
-        instance: world.frames.instance_of(flat.place.frame),
+        instance: symbols.scopes.instance_of(flat.position.scope),
         steps,
         shader: pass.shader.clone().unwrap_or(own),
         is_broken: reports.errors() > before,

@@ -1,12 +1,12 @@
 //! Sizes of materials: found when somebody first asks for one, each once.
 
 use super::{
-    frames::{Meaning, Place},
+    scopes::{Position, Symbol},
     state::{Declared, State},
-    world::World,
+    symbols::SymbolTable,
 };
 use crate::{
-    diagnostics::reports::{Reported, Reports},
+    diagnostics::reports::{ErrorGuaranteed, Reports},
     document::materials::{
         BufferEntry, FormatEntry, GrowEntry, Material, Mips, SamplerEntry, TextureEntry,
     },
@@ -26,26 +26,30 @@ use std::{collections::BTreeSet, sync::Arc};
 /// Most sizes of which each is asked for while another is found.
 const NESTED: usize = 8;
 
-impl World<'_> {
+impl SymbolTable<'_> {
     /// Sees to it that the size of a resource is known. What it is made of comes first, so that no
     /// chain of sizes is as deep as the stack; only a material that stands in an expression, and is
     /// made of what the expression is of in turn, is found on the way.
-    pub fn settle(&mut self, id: ResourceId, reports: &mut Reports) -> Result<(), Reported> {
+    pub fn resolve_size(
+        &mut self,
+        id: ResourceId,
+        reports: &mut Reports,
+    ) -> Result<(), ErrorGuaranteed> {
         if matches!(self.states[id.index()], State::Declared(_)) {
             match self.evaluating.len() {
-                0 => self.settle_with_parts(id, reports),
+                0 => self.resolve_sizes_of_parts(id, reports),
                 1..NESTED => self.evaluate(id, reports),
                 _ => return Err(self.circular(id, reports)),
             }
         }
         match &self.states[id.index()] {
             State::Known => Ok(()),
-            State::Broken(reported) => Err(*reported),
+            State::Invalid(reported) => Err(*reported),
             State::Declared(_) | State::Resolving => Err(self.circular(id, reports)),
         }
     }
 
-    fn circular(&self, id: ResourceId, reports: &mut Reports) -> Reported {
+    fn circular(&self, id: ResourceId, reports: &mut Reports) -> ErrorGuaranteed {
         // The walk began with the one that is evaluated last: what the first asks for.
         let mut found = self.evaluating.iter().skip_while(|found| **found != id);
         let resource = self.get(found.nth(1).copied().unwrap_or(id));
@@ -57,7 +61,7 @@ impl World<'_> {
         )))
     }
 
-    fn settle_with_parts(&mut self, id: ResourceId, reports: &mut Reports) {
+    fn resolve_sizes_of_parts(&mut self, id: ResourceId, reports: &mut Reports) {
         let mut seen = BTreeSet::from([id]);
         let mut open = vec![(id, self.parts(id))];
         while let Some((last, parts)) = open.last_mut() {
@@ -85,15 +89,15 @@ impl World<'_> {
             };
             let mut names = of.segments.iter().map(|segment| &segment.name.value);
             let first = names.next();
-            let Some(first) = first.and_then(|name| self.frames.find(declared.frame, name)) else {
+            let Some(first) = first.and_then(|name| self.scopes.find(declared.scope, name)) else {
                 return;
             };
             let mut meanings = vec![first];
             for name in names {
                 meanings = meanings.iter().flat_map(|of| of.named(name)).collect();
             }
-            parts.extend(meanings.iter().filter_map(|meaning| match meaning {
-                Meaning::Target(target) => Some(target.id),
+            parts.extend(meanings.iter().filter_map(|symbol| match symbol {
+                Symbol::Target(target) => Some(target.id),
                 _ => None,
             }));
         });
@@ -123,7 +127,7 @@ impl World<'_> {
                 self.resources[id.index()].kind = kind;
                 State::Known
             }
-            Err(reported) => State::Broken(reported),
+            Err(reported) => State::Invalid(reported),
         };
     }
 
@@ -132,18 +136,18 @@ impl World<'_> {
         declared: &Declared,
         full_name: &str,
         reports: &mut Reports,
-    ) -> Result<ResourceKind, Reported> {
-        let place = Place {
-            frame: declared.frame,
+    ) -> Result<ResourceKind, ErrorGuaranteed> {
+        let position = Position {
+            scope: declared.scope,
             index: None,
         };
         match declared.material() {
             Material::Texture(entry) => {
-                let texture = self.texture(entry, declared, place, reports)?;
+                let texture = self.texture(entry, declared, position, reports)?;
                 self.check_texture(entry, &texture, reports)?;
                 Ok(ResourceKind::Texture(texture))
             }
-            Material::Buffer(entry) => self.buffer(entry, full_name, place, reports),
+            Material::Buffer(entry) => self.buffer(entry, full_name, position, reports),
             Material::Sampler(entry) => Ok(ResourceKind::Sampler(sampler(entry))),
         }
     }
@@ -152,12 +156,12 @@ impl World<'_> {
         &mut self,
         entry: &TextureEntry,
         declared: &Declared,
-        place: Place,
+        position: Position,
         reports: &mut Reports,
-    ) -> Result<Texture, Reported> {
+    ) -> Result<Texture, ErrorGuaranteed> {
         let format = match &entry.format {
             FormatEntry::Named(format) => *format,
-            FormatEntry::Expr(expr) => self.format(expr, place, reports)?,
+            FormatEntry::Expr(expr) => self.format(expr, position, reports)?,
         };
         let picture = match &entry.file {
             None => None,
@@ -165,11 +169,11 @@ impl World<'_> {
         };
         let edges = match (&entry.size, &picture) {
             (_, Some(picture)) => picture.size.map(u64::from).to_vec(),
-            (Some(size), None) => size.edges(&mut self.at(place, None, reports))?,
+            (Some(size), None) => size.edges(&mut self.at(position, None, reports))?,
             (None, None) => self.request.viewport.map(u64::from).to_vec(),
         };
         let mut one = |expr: &Option<Expr>| match expr {
-            Some(expr) => expr.count32(&mut self.at(place, None, reports)),
+            Some(expr) => expr.count32(&mut self.at(position, None, reports)),
             None => Ok(1),
         };
         let (layers, samples) = (one(&entry.layers)?, one(&entry.samples)?);
@@ -190,7 +194,7 @@ impl World<'_> {
                 let longest = size[0].max(size[1]).max(if is_3d { depth } else { 1 });
                 longest.max(1).ilog2() + 1
             }
-            Mips::Number(expr) => expr.count32(&mut self.at(place, None, reports))?,
+            Mips::Number(expr) => expr.count32(&mut self.at(position, None, reports))?,
         };
         if is_3d && layers != 1 {
             let name = Located::new(name.to_string(), entry.name.span.clone());
@@ -210,10 +214,10 @@ impl World<'_> {
     fn format(
         &mut self,
         expr: &Expr,
-        place: Place,
+        position: Position,
         reports: &mut Reports,
-    ) -> Result<wgt::TextureFormat, Reported> {
-        match expr.value(&mut self.at(place, None, reports))? {
+    ) -> Result<wgt::TextureFormat, ErrorGuaranteed> {
+        match expr.value(&mut self.at(position, None, reports))? {
             Value::Format(format) => Ok(format),
             found => Err(reports.report(EvaluationError::Type {
                 span: expr.span.clone(),
@@ -230,7 +234,7 @@ impl World<'_> {
         declared: &Declared,
         format: wgt::TextureFormat,
         reports: &mut Reports,
-    ) -> Result<Picture, Reported> {
+    ) -> Result<Picture, ErrorGuaranteed> {
         let picture = self.graph.pictures.get(&declared.document, file)?;
         let takes = [
             (entry.size.is_some(), "size"),
@@ -242,8 +246,8 @@ impl World<'_> {
             return Err(reports.report(SizeError::FileHas(file.clone(), field)));
         }
         if !crate::picture::can_hold(format) {
-            let place = Located::new(format!("{format:?}"), file.span.clone());
-            return Err(reports.report(SizeError::PictureFormat(place)));
+            let position = Located::new(format!("{format:?}"), file.span.clone());
+            return Err(reports.report(SizeError::PictureFormat(position)));
         }
         Ok(picture)
     }
@@ -252,9 +256,9 @@ impl World<'_> {
         &mut self,
         entry: &BufferEntry,
         full_name: &str,
-        place: Place,
+        position: Position,
         reports: &mut Reports,
-    ) -> Result<ResourceKind, Reported> {
+    ) -> Result<ResourceKind, ErrorGuaranteed> {
         let name = |span: &Span| Located::new(entry.name.value.to_string(), span.clone());
         let count = match (&entry.count, &entry.data) {
             (Some(count), Some(_)) => {
@@ -265,7 +269,7 @@ impl World<'_> {
             }
             (None, Some(data)) => Some(data.0.len() as u64),
             (None, None) => None,
-            (Some(expr), None) => match expr.count(&mut self.at(place, None, reports))? {
+            (Some(expr), None) => match expr.count(&mut self.at(position, None, reports))? {
                 // As for what a host provides: wgpu binds nothing of size zero.
                 0 if expr.is_taken() => Some(1),
                 0 => return Err(reports.report(SizeError::NoItems(name(&expr.span)))),
@@ -282,7 +286,7 @@ impl World<'_> {
             let Some(count) = buffer.count.filter(|_| entry.count.is_some()) else {
                 return Err(reports.report(SizeError::GrowWithoutCount(name(&entry.name.span))));
             };
-            let growth = self.growth(grow, place, reports)?;
+            let growth = self.growth(grow, position, reports)?;
             let grown = self.request.grown.get(full_name).copied().unwrap_or(0);
             buffer.count = Some(count.max(grown).min(growth.max));
             buffer.growth = Some(growth);
@@ -293,22 +297,23 @@ impl World<'_> {
     fn growth(
         &mut self,
         grow: &GrowEntry,
-        place: Place,
+        position: Position,
         reports: &mut Reports,
-    ) -> Result<Growth, Reported> {
-        let counter = self.resolve(&grow.counter, place, reports)?;
+    ) -> Result<Growth, ErrorGuaranteed> {
+        let counter = self.resolve(&grow.counter, position, reports)?;
         let resource = self.get(counter.id);
         let is_own = resource.origin == Origin::Own;
         if !(is_own && matches!(resource.kind, ResourceKind::Buffer(_))) {
-            let what = match is_own {
-                true => resource.kind.describe(),
-                false => "not made by this graph",
+            let what = if is_own {
+                resource.kind.describe()
+            } else {
+                "not made by this graph"
             };
             let text = grow.counter.text().to_owned();
             let name = Located::new(text, grow.counter.span.clone());
             return Err(reports.report(SizeError::Counter { name, what }));
         }
-        let max = match grow.max.count(&mut self.at(place, None, reports))? {
+        let max = match grow.max.count(&mut self.at(position, None, reports))? {
             0 if grow.max.is_taken() => 1,
             0 => {
                 let name = Located::new("max".to_owned(), grow.max.span.clone());
@@ -324,7 +329,7 @@ impl World<'_> {
         entry: &TextureEntry,
         texture: &Texture,
         reports: &mut Reports,
-    ) -> Result<(), Reported> {
+    ) -> Result<(), ErrorGuaranteed> {
         let limits = &self.request.limits;
         let Texture {
             size: [width, height],
@@ -344,23 +349,24 @@ impl World<'_> {
                 samples,
             }));
         }
-        let (most, third) = match texture.is_3d {
-            true => (
+        let (most, third) = if texture.is_3d {
+            (
                 limits.max_texture_dimension_3d,
                 limits.max_texture_dimension_3d,
-            ),
-            false => (
+            )
+        } else {
+            (
                 limits.max_texture_dimension_2d,
                 limits.max_texture_array_layers,
-            ),
+            )
         };
         if width > most || height > most {
             let size = [width, height];
             let name = name(sized);
-            reports.beyond(SizeError::Texels { name, size, most })?;
+            reports.unsupported(SizeError::Texels { name, size, most })?;
         }
         if layers > third {
-            reports.beyond(SizeError::Layers {
+            reports.unsupported(SizeError::Layers {
                 name: name(whole.clone()),
                 layers,
                 most: third,
@@ -388,7 +394,7 @@ impl World<'_> {
         name: Located<String>,
         texture: &Texture,
         reports: &mut Reports,
-    ) -> Result<(), Reported> {
+    ) -> Result<(), ErrorGuaranteed> {
         if texture.is_3d || texture.layers > 1 || texture.mips > 1 {
             return Err(reports.report(SizeError::SamplesOfMany(name)));
         }
@@ -401,7 +407,7 @@ impl World<'_> {
         let known: Vec<u32> = known.collect();
         match known.contains(&texture.samples) {
             true => Ok(()),
-            false => reports.beyond(SizeError::Samples {
+            false => reports.unsupported(SizeError::Samples {
                 name,
                 format,
                 samples: texture.samples,

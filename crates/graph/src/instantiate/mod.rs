@@ -5,13 +5,13 @@
 
 pub(crate) mod build;
 pub(crate) mod flat;
-pub(crate) mod frames;
 pub(crate) mod include;
 pub(crate) mod lower;
 pub(crate) mod materials;
 pub(crate) mod params;
-pub(crate) mod place;
+pub(crate) mod position;
+pub(crate) mod scopes;
 pub(crate) mod state;
-pub(crate) mod world;
+pub(crate) mod symbols;
 
 pub use flat::Run;

@@ -3,7 +3,7 @@
 use crate::{
     diagnostics::{
         list::Diagnostics,
-        reports::{Reported, Reports},
+        reports::{ErrorGuaranteed, Reports},
     },
     document::{
         params::{Param, ParamValue},
@@ -31,7 +31,7 @@ pub(crate) struct Params {
 #[derive(Clone, Debug)]
 pub(crate) struct BoundParam {
     pub param: Param,
-    pub value: Result<ParamValue, Reported>,
+    pub value: Result<ParamValue, ErrorGuaranteed>,
     /// The param of the root document whose value this is, unchanged.
     pub root: Option<String>,
     /// The params of the root document that it depends on.
@@ -39,7 +39,7 @@ pub(crate) struct BoundParam {
 }
 
 impl BoundParam {
-    fn in_expression(&self) -> Result<Value, Reported> {
+    fn in_expression(&self) -> Result<Value, ErrorGuaranteed> {
         let value = self.value.as_ref();
         value
             .map(|value| self.param.value(value))
@@ -55,10 +55,10 @@ impl Params {
     }
 
     /// The param that a shader spells so.
-    pub fn spelt(&self, identifier: &str) -> Option<&BoundParam> {
-        let spelt = |bound: &&BoundParam| wgsl_identifier(&bound.param.name) == identifier;
+    pub fn wgsl_name(&self, identifier: &str) -> Option<&BoundParam> {
+        let wgsl_name = |bound: &&BoundParam| wgsl_identifier(&bound.param.name) == identifier;
         self.bound(identifier)
-            .or_else(|| self.list.iter().find(spelt))
+            .or_else(|| self.list.iter().find(wgsl_name))
     }
 
     pub fn names(&self) -> impl Iterator<Item = &str> {
@@ -66,14 +66,18 @@ impl Params {
     }
 
     /// The value of a param in an expression, on which whatever is asked for then depends.
-    pub fn value(&self, name: &str, reports: &mut Reports) -> Option<Result<Value, Reported>> {
+    pub fn value(
+        &self,
+        name: &str,
+        reports: &mut Reports,
+    ) -> Option<Result<Value, ErrorGuaranteed>> {
         let bound = self.bound(name)?;
         reports.depend_on(bound.roots.iter());
         Some(bound.in_expression())
     }
 
     /// The value of a param that is handed on as it is: nothing depends on it yet.
-    pub fn forwarded(&self, expr: &Expr) -> Option<Result<Value, Reported>> {
+    pub fn forwarded(&self, expr: &Expr) -> Option<Result<Value, ErrorGuaranteed>> {
         Some(self.bound(expr.as_param()?)?.in_expression())
     }
 
@@ -106,20 +110,20 @@ pub(crate) struct Surroundings {
 /// Only params, the viewport and features have values: for defaults, and for claims.
 struct ParamsAlone<'a> {
     params: &'a Params,
-    around: Surroundings,
+    context: Surroundings,
     reports: &'a mut Reports,
 }
 
 impl Environment for ParamsAlone<'_> {
     fn viewport(&self) -> [u32; 2] {
-        self.around.viewport
+        self.context.viewport
     }
 
     fn has(&self, feature: wgt::Features) -> bool {
-        self.around.features.contains(feature)
+        self.context.features.contains(feature)
     }
 
-    fn param(&mut self, name: &str, span: &Span) -> Result<Value, Reported> {
+    fn param(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed> {
         match self.params.value(name, self.reports) {
             Some(value) => value,
             None => {
@@ -133,20 +137,25 @@ impl Environment for ParamsAlone<'_> {
         self.params.value(name, self.reports)?.ok()
     }
 
-    fn index(&mut self, of: Option<&Name>, span: &Span) -> Result<u32, Reported> {
+    fn index(&mut self, of: Option<&Name>, span: &Span) -> Result<u32, ErrorGuaranteed> {
         Err(self.report(EvaluationError::NoIndex(span.clone(), of.cloned())))
     }
 
-    fn attribute(&mut self, of: &Reference, _: Attribute, span: &Span) -> Result<Value, Reported> {
+    fn attribute(
+        &mut self,
+        of: &Reference,
+        _: Attribute,
+        span: &Span,
+    ) -> Result<Value, ErrorGuaranteed> {
         let name = of.text().to_owned();
         Err(self.report(EvaluationError::NoSizes(span.clone(), name)))
     }
 
-    fn constant(&mut self, _: &str, span: &Span) -> Result<Value, Reported> {
+    fn constant(&mut self, _: &str, span: &Span) -> Result<Value, ErrorGuaranteed> {
         Err(self.report(EvaluationError::NoShader(span.clone())))
     }
 
-    fn report(&mut self, error: EvaluationError) -> Reported {
+    fn report(&mut self, error: EvaluationError) -> ErrorGuaranteed {
         self.reports.report(error)
     }
 }
@@ -155,15 +164,15 @@ impl Environment for ParamsAlone<'_> {
 fn default(
     params: &Params,
     param: &Param,
-    around: Surroundings,
+    context: Surroundings,
     reports: &mut Reports,
-) -> Result<ParamValue, Reported> {
+) -> Result<ParamValue, ErrorGuaranteed> {
     let Some(default) = &param.default else {
         return Ok(param.stand_in());
     };
     let mut environment = ParamsAlone {
         params,
-        around,
+        context,
         reports,
     };
     let value = default.value(&mut environment)?;
@@ -185,7 +194,7 @@ fn in_order(document: &Document) -> impl Iterator<Item = &Param> {
 pub(crate) fn root(
     document: &Document,
     asked: &BTreeMap<String, ParamValue>,
-    around: Surroundings,
+    context: Surroundings,
     reports: &mut Reports,
 ) -> Params {
     let mut params = Params::default();
@@ -193,7 +202,7 @@ pub(crate) fn root(
         let name = &param.name.value;
         let value = match asked.get(name) {
             Some(value) => Ok(value.clone()),
-            None => default(&params, param, around, reports),
+            None => default(&params, param, context, reports),
         };
         params.list.push(BoundParam {
             param: param.clone(),
@@ -212,7 +221,7 @@ pub(crate) struct Given<'a> {
     pub outer: &'a Params,
     /// The include's own place.
     pub span: &'a Span,
-    pub around: Surroundings,
+    pub context: Surroundings,
 }
 
 impl Given<'_> {
@@ -221,7 +230,7 @@ impl Given<'_> {
     pub fn bind(
         &self,
         document: &Document,
-        set: &BTreeMap<String, (Located<Expr>, Result<Value, Reported>)>,
+        set: &BTreeMap<String, (Located<Expr>, Result<Value, ErrorGuaranteed>)>,
         reports: &mut Reports,
     ) -> Params {
         let mut params = Params::default();
@@ -239,7 +248,7 @@ impl Given<'_> {
         &self,
         param: &Param,
         expr: &Located<Expr>,
-        value: &Result<Value, Reported>,
+        value: &Result<Value, ErrorGuaranteed>,
         reports: &mut Reports,
     ) -> BoundParam {
         let source = expr
@@ -317,7 +326,7 @@ impl Given<'_> {
                 }));
             }
             None => {
-                bound.value = default(known, param, self.around, reports);
+                bound.value = default(known, param, self.context, reports);
                 let roots = param.default.as_ref().map(|default| known.roots(default));
                 bound.roots = roots.unwrap_or_default();
             }
@@ -339,8 +348,8 @@ impl Graph {
         features: wgt::Features,
     ) -> Result<BTreeMap<String, ParamValue>, Diagnostics> {
         let mut reports = Reports::default();
-        let around = Surroundings { viewport, features };
-        let params = self.checked_params(asked, around, &mut reports);
+        let context = Surroundings { viewport, features };
+        let params = self.checked_params(asked, context, &mut reports);
         match params {
             Ok(params) => Ok(params
                 .list
@@ -355,9 +364,9 @@ impl Graph {
     pub(crate) fn checked_params(
         &self,
         asked: &BTreeMap<String, ParamValue>,
-        around: Surroundings,
+        context: Surroundings,
         reports: &mut Reports,
-    ) -> Result<Params, Reported> {
+    ) -> Result<Params, ErrorGuaranteed> {
         let mut wrong = None;
         for (name, value) in asked {
             let mistake = match self.param(name) {
@@ -370,7 +379,7 @@ impl Graph {
             };
             wrong = mistake.map(|mistake| reports.report(mistake)).or(wrong);
         }
-        let params = root(&self.document, asked, around, reports);
+        let params = root(&self.document, asked, context, reports);
         let bad = params
             .list
             .iter()
@@ -391,12 +400,12 @@ impl Graph {
     ) -> Result<Vec<Claim>, Diagnostics> {
         let mut reports = Reports::default();
         let mut claims = Vec::new();
-        let around = Surroundings { viewport, features };
-        if let Ok(params) = self.checked_params(asked, around, &mut reports) {
+        let context = Surroundings { viewport, features };
+        if let Ok(params) = self.checked_params(asked, context, &mut reports) {
             for (name, claim) in &self.document.claims {
                 let mut environment = ParamsAlone {
                     params: &params,
-                    around,
+                    context,
                     reports: &mut reports,
                 };
                 let condition = claim.condition.as_ref();

@@ -1,8 +1,8 @@
 //! Materials on their way to a size.
 
-use super::frames::FrameId;
+use super::scopes::ScopeId;
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::reports::ErrorGuaranteed,
     document::{materials::Material, typed::Document},
     source::span::Span,
 };
@@ -16,13 +16,13 @@ pub(super) enum State {
     Declared(Declared),
     /// It is being found: who asks for it now is what it is made of.
     Resolving,
-    Broken(Reported),
+    Invalid(ErrorGuaranteed),
 }
 
 /// A material of an instance of a document.
 #[derive(Clone, Debug)]
 pub(super) struct Declared {
-    pub frame: FrameId,
+    pub scope: ScopeId,
     pub document: Arc<Document>,
     /// Its number among the document's materials.
     pub number: usize,

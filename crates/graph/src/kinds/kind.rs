@@ -2,7 +2,7 @@
 
 use super::step::{Names, Operand, Program, Scratch, Step, Threads};
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Reported},
+    diagnostics::{code::Code, diagnostic::Diagnostic, reports::ErrorGuaranteed},
     document::fields::Chosen,
     errors::evaluation::EvaluationError,
     language::{
@@ -140,7 +140,7 @@ impl<'a> Lowering<'a> {
     fn evaluate<T>(
         &mut self,
         fallback: T,
-        of: impl FnOnce(&mut dyn Environment) -> Result<T, Reported>,
+        of: impl FnOnce(&mut dyn Environment) -> Result<T, ErrorGuaranteed>,
     ) -> T {
         match &mut self.environment {
             Some(environment) => of(&mut **environment).unwrap_or(fallback),

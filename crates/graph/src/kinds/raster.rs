@@ -84,9 +84,10 @@ pub(super) enum CallWords {
 impl<'de> Deserialize<'de> for Call {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let (text, _) = raw(deserializer)?;
-        match text.starts_with(|c: char| c.is_alphabetic()) {
-            true => read(text).map(|CallWords::Indirect(buffer)| Self::Indirect(buffer)),
-            false => read(text).map(Self::Vertices),
+        if text.starts_with(|c: char| c.is_alphabetic()) {
+            read(text).map(|CallWords::Indirect(buffer)| Self::Indirect(buffer))
+        } else {
+            read(text).map(Self::Vertices)
         }
     }
 }

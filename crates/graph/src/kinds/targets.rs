@@ -5,7 +5,7 @@ use super::{
     step::{ColorTarget, DepthTarget, Names, StencilTarget},
 };
 use crate::{
-    diagnostics::reports::Mistake,
+    diagnostics::reports::IntoDiagnostic,
     document::{
         fields::{Compare, Load, short_or_long},
         ron::{raw, refuse},
@@ -342,7 +342,7 @@ fn clear(
                 clear: values[0].span.clone(),
                 area: area.span.clone(),
             };
-            pass.report(mistake.diagnostic());
+            pass.report(mistake.into_diagnostic());
             return None;
         }
     };
@@ -421,7 +421,7 @@ pub(super) fn area(entry: &Expr, pass: &mut Lowering<'_>) -> Option<[u32; 4]> {
     let edges: Option<Vec<u32>> = list.iter().map(edge).collect();
     let area = edges.and_then(|edges| <[u32; 4]>::try_from(edges).ok());
     if area.is_none() {
-        pass.report(DocumentError::Area(entry.span.clone()).diagnostic());
+        pass.report(DocumentError::Area(entry.span.clone()).into_diagnostic());
     }
     area
 }

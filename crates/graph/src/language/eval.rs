@@ -6,7 +6,7 @@ use super::{
     value::{Scalar, Value, Word},
 };
 use crate::{
-    diagnostics::reports::Reported, errors::evaluation::EvaluationError,
+    diagnostics::reports::ErrorGuaranteed, errors::evaluation::EvaluationError,
     provided_kind::ProvidedKind, source::span::Span,
 };
 
@@ -22,31 +22,31 @@ pub(crate) trait Environment {
         None
     }
 
-    fn param(&mut self, name: &str, span: &Span) -> Result<Value, Reported>;
+    fn param(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed>;
 
     /// A param of that name, where a word may stand as well.
     fn word_or_param(&mut self, name: &Name) -> Option<Value>;
 
-    fn index(&mut self, of: Option<&Name>, span: &Span) -> Result<u32, Reported>;
+    fn index(&mut self, of: Option<&Name>, span: &Span) -> Result<u32, ErrorGuaranteed>;
 
     fn attribute(
         &mut self,
         of: &Reference,
         attribute: Attribute,
         span: &Span,
-    ) -> Result<Value, Reported>;
+    ) -> Result<Value, ErrorGuaranteed>;
 
-    fn constant(&mut self, name: &str, span: &Span) -> Result<Value, Reported>;
+    fn constant(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed>;
 
     /// The kind of something that is provided, by its name.
     fn kind(&mut self, _of: &str) -> Option<ProvidedKind> {
         None
     }
 
-    fn report(&mut self, error: EvaluationError) -> Reported;
+    fn report(&mut self, error: EvaluationError) -> ErrorGuaranteed;
 }
 
-type Evaluated<T> = Result<T, Reported>;
+type Evaluated<T> = Result<T, ErrorGuaranteed>;
 
 impl Expr {
     /// The value of the expression.
@@ -77,9 +77,10 @@ impl Expr {
             ExprKind::Binary(operator, sides) => self.binary(*operator, sides, env),
             ExprKind::Ternary(of) => {
                 let [condition, yes, no] = &**of;
-                match condition.boolean(env)? {
-                    true => yes.value(env),
-                    false => no.value(env),
+                if condition.boolean(env)? {
+                    yes.value(env)
+                } else {
+                    no.value(env)
                 }
             }
             ExprKind::Call(function, arguments) => self.call(*function, arguments, env),
@@ -104,7 +105,12 @@ impl Expr {
         })
     }
 
-    fn wrong(&self, expected: &'static str, found: &Value, env: &mut dyn Environment) -> Reported {
+    fn wrong(
+        &self,
+        expected: &'static str,
+        found: &Value,
+        env: &mut dyn Environment,
+    ) -> ErrorGuaranteed {
         env.report(EvaluationError::Type {
             span: self.span.clone(),
             expected,

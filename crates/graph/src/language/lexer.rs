@@ -89,14 +89,15 @@ fn number(text: &str) -> Option<(Token<'static>, usize)> {
         return None;
     }
     let plain = text[..end].replace('_', "");
-    let token = match whole {
-        true => Token::Whole(plain.parse().ok()?),
-        false => Token::Number(
+    let token = if whole {
+        Token::Whole(plain.parse().ok()?)
+    } else {
+        Token::Number(
             plain
                 .parse()
                 .ok()
                 .filter(|number: &f64| number.is_finite())?,
-        ),
+        )
     };
     Some((token, end))
 }

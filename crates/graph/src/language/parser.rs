@@ -87,9 +87,10 @@ impl<'a> Parser<'a> {
     }
 
     fn expect(&mut self, sign: &'static str) -> Parsed<()> {
-        match self.take(sign) {
-            true => Ok(()),
-            false => Err(self.unexpected(&format!("`{sign}`"))),
+        if self.take(sign) {
+            Ok(())
+        } else {
+            Err(self.unexpected(&format!("`{sign}`")))
         }
     }
 
@@ -244,9 +245,10 @@ impl<'a> Parser<'a> {
                 return Err(self.unexpected("a name"));
             };
             let range = self.next();
-            let selection = match self.take("[") {
-                true => Some(self.selection()?),
-                false => None,
+            let selection = if self.take("[") {
+                Some(self.selection()?)
+            } else {
+                None
             };
             parts.push(Part {
                 word,
@@ -261,9 +263,10 @@ impl<'a> Parser<'a> {
 
     fn selection(&mut self) -> Parsed<Selection> {
         let first = self.expr()?;
-        let selection = match self.take("..") {
-            true => Selection::Range(Box::new([first, self.expr()?])),
-            false => Selection::One(Box::new(first)),
+        let selection = if self.take("..") {
+            Selection::Range(Box::new([first, self.expr()?]))
+        } else {
+            Selection::One(Box::new(first))
         };
         self.expect("]")?;
         Ok(selection)

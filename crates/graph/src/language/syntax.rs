@@ -183,7 +183,7 @@ impl Selection {
 
 impl Reference {
     /// A whole material, by its name.
-    pub(crate) fn of(name: Located<Name>) -> Self {
+    pub(crate) fn new(name: Located<Name>) -> Self {
         Self {
             span: name.span.clone(),
             segments: vec![Segment {

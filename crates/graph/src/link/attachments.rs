@@ -7,7 +7,7 @@ use super::{
     textures::scalar_of,
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::reports::ErrorGuaranteed,
     errors::link::LinkError,
     kinds::step::{ColorTarget, DepthTarget, Draw, DrawCall, Names, StencilTarget},
     language::syntax::Reference,
@@ -25,7 +25,7 @@ impl Linker<'_, '_> {
         &mut self,
         draw: &Draw<Names>,
         pass: &mut LinkedPass,
-    ) -> Result<Draw<Ids>, Reported> {
+    ) -> Result<Draw<Ids>, ErrorGuaranteed> {
         // Without colours, a fragment shader that yields none may still discard and set depths.
         let mut colourless = || {
             let shader = self.shader(&draw.program);
@@ -83,7 +83,7 @@ impl Linker<'_, '_> {
     }
 
     /// What of the rasteriser not every device has.
-    fn features(&mut self, draw: &Draw<Names>, pass: &LinkedPass) -> Result<(), Reported> {
+    fn features(&mut self, draw: &Draw<Names>, pass: &LinkedPass) -> Result<(), ErrorGuaranteed> {
         let asked = [
             (
                 draw.primitive.conservative,
@@ -99,8 +99,8 @@ impl Linker<'_, '_> {
             ),
         ];
         for (is_asked, field, feature, name) in asked {
-            if is_asked && !self.world.request.features.contains(feature) {
-                self.reports.beyond(LinkError::DrawFeature {
+            if is_asked && !self.symbols.request.features.contains(feature) {
+                self.reports.unsupported(LinkError::DrawFeature {
                     pass: pass.name.clone(),
                     field,
                     feature: name,
@@ -115,16 +115,16 @@ impl Linker<'_, '_> {
         draw: &Draw<Names>,
         program: Option<&LinkedProgram>,
         pass: &mut LinkedPass,
-    ) -> Result<Vec<ColorTarget<Ids>>, Reported> {
+    ) -> Result<Vec<ColorTarget<Ids>>, ErrorGuaranteed> {
         let outputs = program.and_then(|program| {
             let entry = *program.entries.last()?;
             let outputs = program.shader.fragment_outputs(entry);
             Some((outputs, program.shader.entry_span(entry)))
         });
-        let limits = self.world.request.limits.clone();
+        let limits = self.symbols.request.limits.clone();
         let most = limits.max_color_attachments;
         if draw.colors.len() > most as usize {
-            self.reports.beyond(LinkError::TooManyTargets {
+            self.reports.unsupported(LinkError::TooManyTargets {
                 pass: pass.name.clone(),
                 count: draw.colors.len(),
                 most,
@@ -156,7 +156,7 @@ impl Linker<'_, '_> {
         }
         let most = limits.max_color_attachment_bytes_per_sample;
         if bytes_per_sample > most {
-            self.reports.beyond(LinkError::BytesPerPixel {
+            self.reports.unsupported(LinkError::BytesPerPixel {
                 pass: pass.name.clone(),
                 bytes: bytes_per_sample,
                 most,
@@ -169,11 +169,11 @@ impl Linker<'_, '_> {
         &mut self,
         color: &ColorTarget<Names>,
         pass: &mut LinkedPass,
-    ) -> Result<ColorTarget<Ids>, Reported> {
+    ) -> Result<ColorTarget<Ids>, ErrorGuaranteed> {
         let name = located(&color.target);
         let target = self.attachment(&color.target, pass)?;
         let format = target.format;
-        let features = format.guaranteed_format_features(self.world.request.features);
+        let features = format.guaranteed_format_features(self.symbols.request.features);
         let drawable = features
             .allowed_usages
             .contains(TextureUsages::RENDER_ATTACHMENT);
@@ -213,12 +213,12 @@ impl Linker<'_, '_> {
         target: &Attachment,
         resolve: &Reference,
         pass: &mut LinkedPass,
-    ) -> Result<Attachment, Reported> {
+    ) -> Result<Attachment, ErrorGuaranteed> {
         let name = located(resolve);
         let resolved = self.attachment(resolve, pass)?;
         let features = target
             .format
-            .guaranteed_format_features(self.world.request.features);
+            .guaranteed_format_features(self.symbols.request.features);
         let why = if target.samples == 1 {
             Some("what is drawn to has one sample")
         } else if resolved.samples != 1 {
@@ -249,7 +249,7 @@ impl Linker<'_, '_> {
         format: TextureFormat,
         outputs: &[(u32, ScalarClass, u32)],
         entry: &Span,
-    ) -> Result<(), Reported> {
+    ) -> Result<(), ErrorGuaranteed> {
         let name = located(target);
         let Some((_, scalar, width)) = outputs.iter().find(|(at, ..)| *at == location) else {
             return Err(self.report(LinkError::NoFragmentOutput {
@@ -278,7 +278,7 @@ impl Linker<'_, '_> {
         &mut self,
         depth: &DepthTarget<Names>,
         pass: &mut LinkedPass,
-    ) -> Result<DepthTarget<Ids>, Reported> {
+    ) -> Result<DepthTarget<Ids>, ErrorGuaranteed> {
         let name = located(&depth.target);
         let target = self.attachment(&depth.target, pass)?;
         let format = target.format;
@@ -306,7 +306,7 @@ impl Linker<'_, '_> {
         &mut self,
         stencil: &StencilTarget<Names>,
         pass: &mut LinkedPass,
-    ) -> Result<StencilTarget<Ids>, Reported> {
+    ) -> Result<StencilTarget<Ids>, ErrorGuaranteed> {
         let name = located(&stencil.target);
         let target = self.attachment(&stencil.target, pass)?;
         let format = target.format;
@@ -341,7 +341,7 @@ impl Linker<'_, '_> {
         name: &Located<String>,
         format: TextureFormat,
         value: [f64; 4],
-    ) -> Result<(), Reported> {
+    ) -> Result<(), ErrorGuaranteed> {
         let mut channels = &value[..usize::from(format.components()).min(4)];
         let is_stencil = |v: &f64| v.fract() == 0.0 && (0.0..=255.0).contains(v);
         if format.is_combined_depth_stencil_format() && is_stencil(&value[1]) {
@@ -382,10 +382,10 @@ impl Linker<'_, '_> {
         &mut self,
         reference: &Reference,
         pass: &LinkedPass,
-    ) -> Result<Attachment, Reported> {
+    ) -> Result<Attachment, ErrorGuaranteed> {
         let target = self.resolve(reference)?;
         let name = located(reference);
-        let resource = self.world.get(target.id);
+        let resource = self.symbols.get(target.id);
         let ResourceKind::Texture(texture) = &resource.kind else {
             let found = resource.kind.describe();
             return Err(self.report(LinkError::NoTexture {
@@ -410,7 +410,7 @@ impl Linker<'_, '_> {
 
     /// All attachments of a draw have one size and number of samples; the area lies in them; depth
     /// and stencil are one texture.
-    fn alike(&mut self, draw: &Draw<Ids>, pass: &LinkedPass) -> Result<(), Reported> {
+    fn alike(&mut self, draw: &Draw<Ids>, pass: &LinkedPass) -> Result<(), ErrorGuaranteed> {
         let colors = draw.colors.iter().map(|color| &color.target);
         let resolved = draw
             .colors
@@ -427,11 +427,11 @@ impl Linker<'_, '_> {
         {
             return Err(self.report(LinkError::TwoDepthStencils(pass.name.clone())));
         }
-        let size = |attachment: &Attachment| match &self.world.get(attachment.target.id).kind {
+        let size = |attachment: &Attachment| match &self.symbols.get(attachment.target.id).kind {
             ResourceKind::Texture(texture) => texture.mip_size(attachment.target.part.mips.start),
             _ => [0, 0],
         };
-        let name = |attachment: &Attachment| self.world.get(attachment.target.id).name.clone();
+        let name = |attachment: &Attachment| self.symbols.get(attachment.target.id).name.clone();
         let whole = size(first);
         let differs = |other: &&Attachment| size(other) != whole;
         if let Some(other) = drawn.iter().copied().chain(resolved).find(differs) {
@@ -477,8 +477,9 @@ fn aspect_of(
     format: TextureFormat,
     aspect: TextureAspect,
 ) -> SubresourceRange {
-    match format.is_combined_depth_stencil_format() {
-        true => part.of_aspect(aspect),
-        false => part.clone(),
+    if format.is_combined_depth_stencil_format() {
+        part.of_aspect(aspect)
+    } else {
+        part.clone()
     }
 }

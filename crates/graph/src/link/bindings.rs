@@ -5,7 +5,7 @@ use super::{
     pass::{BindTarget, Block, LinkedBinding, LinkedPass, LinkedProgram, Usage},
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::reports::ErrorGuaranteed,
     document::materials::Filter,
     errors::link::LinkError,
     kinds::step::Program,
@@ -29,7 +29,7 @@ impl Linker<'_, '_> {
         program: &Program,
         linked: &LinkedProgram,
         pass: &mut LinkedPass,
-    ) -> Result<LinkedBinding, Reported> {
+    ) -> Result<LinkedBinding, ErrorGuaranteed> {
         let bound = program
             .bind
             .iter()
@@ -73,12 +73,12 @@ impl Linker<'_, '_> {
     }
 
     /// Vertex shaders write nothing on most devices.
-    fn stage_may_write(&mut self, global: &Global) -> Result<(), Reported> {
+    fn stage_may_write(&mut self, global: &Global) -> Result<(), ErrorGuaranteed> {
         let needed = wgt::Features::VERTEX_WRITABLE_STORAGE;
-        let has = self.world.request.features.contains(needed);
+        let has = self.symbols.request.features.contains(needed);
         match global.stages.contains(wgt::ShaderStages::VERTEX) && !has {
             false => Ok(()),
-            true => self.reports.beyond(LinkError::VertexWrites {
+            true => self.reports.unsupported(LinkError::VertexWrites {
                 global: global.name.clone(),
                 span: global.span.clone(),
             }),
@@ -86,11 +86,11 @@ impl Linker<'_, '_> {
     }
 
     /// Not every device queries rays.
-    fn ray_query(&mut self, global: &Global, pass: &LinkedPass) -> Result<(), Reported> {
+    fn ray_query(&mut self, global: &Global, pass: &LinkedPass) -> Result<(), ErrorGuaranteed> {
         let needed = wgt::Features::EXPERIMENTAL_RAY_QUERY;
-        match self.world.request.features.contains(needed) {
+        match self.symbols.request.features.contains(needed) {
             true => Ok(()),
-            false => self.reports.beyond(LinkError::RayQuery {
+            false => self.reports.unsupported(LinkError::RayQuery {
                 pass: pass.name.clone(),
                 span: global.span.clone(),
             }),
@@ -103,8 +103,8 @@ impl Linker<'_, '_> {
         global: &Global,
         size: u64,
         members: &[Member],
-    ) -> Result<Block, Reported> {
-        let most = self.world.request.limits.max_uniform_buffer_binding_size;
+    ) -> Result<Block, ErrorGuaranteed> {
+        let most = self.symbols.request.limits.max_uniform_buffer_binding_size;
         let what = if members.is_empty() {
             "is no struct"
         } else if size > most {
@@ -120,22 +120,24 @@ impl Linker<'_, '_> {
     }
 
     /// What a global stands for: what a group binds to it, else what is called so.
-    fn target(&mut self, global: &Global, pass: &LinkedPass) -> Result<Target, Reported> {
-        let mut said = self.scope.inherited_bind.iter();
+    fn target(&mut self, global: &Global, pass: &LinkedPass) -> Result<Target, ErrorGuaranteed> {
+        let mut said = self.pass.inherited_bind.iter();
         if let Some(&said) = said.find(|said| said.name.value == global.name) {
-            return self.world.resolve(said.value, said.place, self.reports);
+            return self
+                .symbols
+                .resolve(said.value, said.position, self.reports);
         }
-        let place = self.scope.place.unwrap_or_else(|| self.world.root());
+        let position = self.pass.position.unwrap_or_else(|| self.symbols.root());
         if let Some(found) = self
-            .world
-            .find_global(&global.name, place.frame, self.reports)
+            .symbols
+            .find_global(&global.name, position.scope, self.reports)
         {
             return found;
         }
-        if let Some(reported) = self.world.frames.document(place.frame).incomplete {
+        if let Some(reported) = self.symbols.scopes.document(position.scope).incomplete {
             return Err(reported);
         }
-        let known = self.world.known(place.frame);
+        let known = self.symbols.known(position.scope);
         let known = known.iter().map(|name| wgsl_identifier(name));
         let known = self.reports.known(known);
         Err(self.report(LinkError::UnknownGlobal {
@@ -152,8 +154,8 @@ impl Linker<'_, '_> {
         target: &mut Target,
         (linked, program): (&LinkedProgram, &Program),
         pass: &LinkedPass,
-    ) -> Result<Binding, Reported> {
-        let resource = self.world.get(target.id).clone();
+    ) -> Result<Binding, ErrorGuaranteed> {
+        let resource = self.symbols.get(target.id).clone();
         let needed = match (&global.class, &resource.kind) {
             (Class::Uniform { size, .. }, ResourceKind::Frame) => {
                 return self.uniform_buffer(global, target, *size, FRAME_BYTES);
@@ -164,7 +166,7 @@ impl Linker<'_, '_> {
                 return self.uniform_buffer(global, target, *size, provided.stride);
             }
             (Class::Uniform { size, .. }, ResourceKind::Buffer(_)) => {
-                let id = self.world.base(target.id);
+                let id = self.symbols.base(target.id);
                 self.layouts.see(id, &target.part, global);
                 return self.uniform_buffer(global, target, *size, u64::MAX);
             }
@@ -226,7 +228,7 @@ impl Linker<'_, '_> {
     }
 
     fn may_be_storage(&self, id: crate::resource::ResourceId) -> bool {
-        match &self.world.get(id).kind {
+        match &self.symbols.get(id).kind {
             ResourceKind::Provided(provided) => provided.binding != ProvidedBinding::Uniform,
             _ => true,
         }
@@ -239,18 +241,18 @@ impl Linker<'_, '_> {
         target: &Target,
         size: u64,
         have: u64,
-    ) -> Result<Binding, Reported> {
-        let most = self.world.request.limits.max_uniform_buffer_binding_size;
+    ) -> Result<Binding, ErrorGuaranteed> {
+        let most = self.symbols.request.limits.max_uniform_buffer_binding_size;
         if size > have {
             return Err(self.report(LinkError::UniformSize {
-                name: self.world.get(target.id).name.clone(),
+                name: self.symbols.get(target.id).name.clone(),
                 have,
                 size,
                 span: global.span.clone(),
             }));
         }
         if size > most {
-            self.reports.beyond(LinkError::UniformLimit {
+            self.reports.unsupported(LinkError::UniformLimit {
                 global: global.name.clone(),
                 size,
                 most,
@@ -267,12 +269,12 @@ impl Linker<'_, '_> {
 
     /// Items of a provided buffer begin where the device can bind; those of the document's own are
     /// looked at when their layout is known.
-    fn aligned(&mut self, global: &Global, target: &Target) -> Result<(), Reported> {
-        let ResourceKind::Provided(provided) = &self.world.get(target.id).kind else {
+    fn aligned(&mut self, global: &Global, target: &Target) -> Result<(), ErrorGuaranteed> {
+        let ResourceKind::Provided(provided) = &self.symbols.get(target.id).kind else {
             return Ok(());
         };
         let alignment = u64::from(
-            self.world
+            self.symbols
                 .request
                 .limits
                 .min_uniform_buffer_offset_alignment,
@@ -280,8 +282,8 @@ impl Linker<'_, '_> {
         if target.part == SubresourceRange::WHOLE || provided.stride % alignment == 0 {
             return Ok(());
         }
-        let (name, stride) = (self.world.get(target.id).name.clone(), provided.stride);
-        self.reports.beyond(LinkError::Alignment {
+        let (name, stride) = (self.symbols.get(target.id).name.clone(), provided.stride);
+        self.reports.unsupported(LinkError::Alignment {
             name,
             stride,
             alignment,
@@ -296,8 +298,8 @@ impl Linker<'_, '_> {
         target: &Target,
         least: u64,
         read_only: bool,
-    ) -> Result<Binding, Reported> {
-        let resource = self.world.get(target.id);
+    ) -> Result<Binding, ErrorGuaranteed> {
+        let resource = self.symbols.get(target.id);
         if matches!(resource.kind, ResourceKind::Provided(_)) && !read_only {
             let name = resource.name.clone();
             return Err(self.report(LinkError::WritesProvided {
@@ -306,7 +308,7 @@ impl Linker<'_, '_> {
             }));
         }
         self.aligned(global, target)?;
-        let id = self.world.base(target.id);
+        let id = self.symbols.base(target.id);
         self.layouts.see(id, &target.part, global);
         Ok((
             BindTarget::Buffer(target.clone()),

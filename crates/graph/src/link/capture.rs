@@ -1,12 +1,12 @@
 //! Copies of materials as they stand after a pass.
 
 use super::{
-    covered::{covers, within},
-    linker::{Linker, Scope},
+    covered::{fully_overwrites, within},
+    linker::{Linker, PassScope},
     pass::{CAPTURE, LinkedPass},
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::reports::ErrorGuaranteed,
     errors::plan::OutputError,
     instantiate::flat::Run,
     kinds::step::{Operand, Scratch, Step},
@@ -23,32 +23,32 @@ impl Linker<'_, '_> {
         &mut self,
         capture: &Capture,
         passes: &[LinkedPass],
-    ) -> Result<LinkedPass, Reported> {
-        let Some(target) = self.world.find_full(&capture.material, self.reports) else {
-            let known = self.reports.known(self.world.full_names());
+    ) -> Result<LinkedPass, ErrorGuaranteed> {
+        let Some(target) = self.symbols.find_full(&capture.material, self.reports) else {
+            let known = self.reports.known(self.symbols.full_names());
             return Err(self.reports.report(OutputError::NoMaterial {
-                graph: self.world.graph.path().to_owned(),
+                graph: self.symbols.graph.path().to_owned(),
                 name: capture.material.clone(),
                 known,
             }));
         };
         let mut target = target?;
-        if let Some(part) = written_part(self.world.get(target.id), &target, passes) {
+        if let Some(part) = written_part(self.symbols.get(target.id), &target, passes) {
             target.part = part;
         }
         let kind = self.copy_of(capture, &target)?;
-        let name = Located::new(capture.name(), self.world.graph.place());
-        let copy = self.world.add(Resource {
+        let name = Located::new(capture.name(), self.symbols.graph.place());
+        let copy = self.symbols.add(Resource {
             name: name.value.clone(),
             declared: None,
             kind,
             origin: Origin::Own,
         });
         // Both ends are known by number: neither is a name of a document.
-        let whole = self.world.whole(copy);
-        self.scope = Scope {
+        let whole = self.symbols.whole(copy);
+        self.pass = PassScope {
             captured: vec![target, whole],
-            ..Scope::default()
+            ..PassScope::default()
         };
         let steps = [Step::Copy {
             from: Operand::Scratch(Scratch(0)),
@@ -62,9 +62,13 @@ impl Linker<'_, '_> {
     }
 
     /// A texture or buffer that a part of a resource can be copied into.
-    fn copy_of(&mut self, capture: &Capture, target: &Target) -> Result<ResourceKind, Reported> {
+    fn copy_of(
+        &mut self,
+        capture: &Capture,
+        target: &Target,
+    ) -> Result<ResourceKind, ErrorGuaranteed> {
         let name = capture.material.clone();
-        Ok(match &self.world.get(target.id).kind {
+        Ok(match &self.symbols.get(target.id).kind {
             ResourceKind::Texture(texture) => {
                 let mut copy = texture.clone();
                 copy.size = texture.mip_size(target.part.mips.start);
@@ -129,6 +133,6 @@ fn written_part(
                     ..one.layers.end.max(other.layers.end),
                 ..one
             })?;
-        covers(&parts, &from_first_to_last, resource).then_some(from_first_to_last)
+        fully_overwrites(&parts, &from_first_to_last, resource).then_some(from_first_to_last)
     })
 }

@@ -14,7 +14,7 @@ pub(super) fn within(part: &SubresourceRange, of: &SubresourceRange) -> Option<S
 }
 
 /// Whether parts cover another one together.
-pub(super) fn covers(
+pub(super) fn fully_overwrites(
     parts: &[SubresourceRange],
     whole: &SubresourceRange,
     resource: &Resource,
@@ -31,9 +31,12 @@ pub(super) fn covers(
             ResourceKind::Texture(texture) => whole.layers.end.min(texture.mip_layers(mip)),
             _ => whole.layers.end,
         };
-        let reach = |reached: u32, layers: &Range<u32>| match layers.start <= reached {
-            true => reached.max(layers.end),
-            false => reached,
+        let reach = |reached: u32, layers: &Range<u32>| {
+            if layers.start <= reached {
+                reached.max(layers.end)
+            } else {
+                reached
+            }
         };
         layers.into_iter().fold(whole.layers.start, reach) >= end
     })
@@ -78,22 +81,22 @@ mod tests {
         let array = texture(false);
         let whole = part(0..2, 0..4);
         let rows = [part(0..2, 2..4), part(0..2, 0..1), part(0..1, 1..2)];
-        assert!(!covers(&rows, &whole, &array), "layer 1 of mip 1");
+        assert!(!fully_overwrites(&rows, &whole, &array), "layer 1 of mip 1");
         let rest = [&rows[..], &[part(1..2, 1..3)]].concat();
-        assert!(covers(&rest, &whole, &array));
-        assert!(!covers(&[], &whole, &array));
-        assert!(covers(&rows, &part(0..1, 0..4), &array));
+        assert!(fully_overwrites(&rest, &whole, &array));
+        assert!(!fully_overwrites(&[], &whole, &array));
+        assert!(fully_overwrites(&rows, &part(0..1, 0..4), &array));
     }
 
     #[test]
     fn slices_become_fewer_and_items_end_where_the_buffer_does() {
         let mips = [part(0..1, 0..4), part(1..2, 0..2), part(2..3, 0..1)];
-        assert!(covers(&mips, &part(0..3, 0..4), &texture(true)));
-        assert!(!covers(&mips, &part(0..3, 0..4), &texture(false)));
+        assert!(fully_overwrites(&mips, &part(0..3, 0..4), &texture(true)));
+        assert!(!fully_overwrites(&mips, &part(0..3, 0..4), &texture(false)));
         let buffer = resource(ResourceKind::Buffer(Buffer::default()));
         let items = [part(0..1, 0..2), part(0..1, 2..5)];
-        assert!(covers(&items, &part(0..1, 0..5), &buffer));
-        assert!(!covers(&items, &SubresourceRange::WHOLE, &buffer));
+        assert!(fully_overwrites(&items, &part(0..1, 0..5), &buffer));
+        assert!(!fully_overwrites(&items, &SubresourceRange::WHOLE, &buffer));
     }
 
     #[test]

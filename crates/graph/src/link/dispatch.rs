@@ -5,7 +5,7 @@ use super::{
     pass::{LinkedPass, LinkedProgram, Usage},
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::reports::ErrorGuaranteed,
     errors::link::LinkError,
     kinds::step::{Operand, Threads},
     resource::{ResourceKind, Target},
@@ -26,14 +26,14 @@ impl Linker<'_, '_> {
         operand: &Operand,
         bytes: u64,
         pass: &mut LinkedPass,
-    ) -> Result<Target, Reported> {
+    ) -> Result<Target, ErrorGuaranteed> {
         let (target, name) = self.operand(operand, &pass.name)?;
-        let resource = self.world.get(target.id);
+        let resource = self.symbols.get(target.id);
         if !matches!(resource.kind, ResourceKind::Buffer(_)) {
             let found = resource.kind.describe();
             return Err(self.report(LinkError::NoArguments { name, found }));
         }
-        let id = self.world.base(target.id);
+        let id = self.symbols.base(target.id);
         self.layouts.at_least(id, &target.part, bytes, &name.span);
         let usage = Usage::Buffer(wgt::BufferUsages::INDIRECT);
         pass.accesses
@@ -45,7 +45,7 @@ impl Linker<'_, '_> {
         &mut self,
         program: &LinkedProgram,
         pass: &Located<String>,
-    ) -> Result<[u32; 3], Reported> {
+    ) -> Result<[u32; 3], ErrorGuaranteed> {
         let entry = program.entries[0];
         let at = program.shader.entry_span(entry);
         let Some(size) = program.shader.workgroup_size(entry) else {
@@ -54,7 +54,7 @@ impl Linker<'_, '_> {
                 pass: pass.clone(),
             }));
         };
-        let limits = &self.world.request.limits;
+        let limits = &self.symbols.request.limits;
         let most = [
             limits.max_compute_workgroup_size_x,
             limits.max_compute_workgroup_size_y,
@@ -63,7 +63,7 @@ impl Linker<'_, '_> {
         let threads = limits.max_compute_invocations_per_workgroup;
         let total: u64 = size.iter().map(|&edge| u64::from(edge)).product();
         if total > u64::from(threads) || size.iter().zip(most).any(|(edge, most)| *edge > most) {
-            self.reports.beyond(LinkError::WorkgroupSize {
+            self.reports.unsupported(LinkError::WorkgroupSize {
                 size,
                 most,
                 threads,
@@ -80,9 +80,9 @@ impl Linker<'_, '_> {
         threads: &Threads,
         size: [u32; 3],
         pass: &Located<String>,
-    ) -> Result<[u32; 3], Reported> {
+    ) -> Result<[u32; 3], ErrorGuaranteed> {
         let most = self
-            .world
+            .symbols
             .request
             .limits
             .max_compute_workgroups_per_dimension;
@@ -96,7 +96,7 @@ impl Linker<'_, '_> {
         };
         let narrow = groups.map(|edge| u32::try_from(edge).unwrap_or(u32::MAX));
         if narrow.iter().any(|&edge| edge > most) {
-            self.reports.beyond(LinkError::Workgroups {
+            self.reports.unsupported(LinkError::Workgroups {
                 groups,
                 most,
                 pass: pass.clone(),

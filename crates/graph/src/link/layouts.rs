@@ -3,7 +3,7 @@
 use crate::{
     diagnostics::reports::Reports,
     errors::layout::LayoutError,
-    instantiate::world::World,
+    instantiate::symbols::SymbolTable,
     resource::{Buffer, FRAME_BYTES, Origin, ResourceId, ResourceKind, SubresourceRange},
     shader::{class::Class, items::Item, reflect::Global},
     source::span::{Located, Span},
@@ -83,12 +83,12 @@ impl Layouts {
     }
 
     /// Gives every buffer its size, or says why it has none.
-    pub fn finalize(self, world: &mut World<'_>, reports: &mut Reports) {
+    pub fn finalize(self, symbols: &mut SymbolTable<'_>, reports: &mut Reports) {
         let mut errors = Vec::new();
-        for index in 0..world.resources.len() {
-            let id = world.id(index);
+        for index in 0..symbols.resources.len() {
+            let id = symbols.id(index);
             let seen = self.seen.get(&id).map_or(&[][..], Vec::as_slice);
-            let resource = world.get(id);
+            let resource = symbols.get(id);
             if let Some(error) = disagreement(&resource.name, seen) {
                 errors.push(error);
                 continue;
@@ -109,9 +109,9 @@ impl Layouts {
                     errors.extend(self.imported(id, &name, buffer, seen));
                 }
                 (ResourceKind::Buffer(buffer), Origin::Own | Origin::Constant) => {
-                    match self.sized(id, buffer, seen, world) {
+                    match self.sized(id, buffer, seen, symbols) {
                         Ok(buffer) => {
-                            world.resources[index].kind = ResourceKind::Buffer(buffer);
+                            symbols.resources[index].kind = ResourceKind::Buffer(buffer);
                         }
                         Err(error) => errors.push(error),
                     }
@@ -119,17 +119,17 @@ impl Layouts {
                 _ => {}
             }
         }
-        errors.extend(self.equal_sizes(world));
+        errors.extend(self.equal_sizes(symbols));
         for error in errors {
             match error {
                 LayoutError::TooLarge { .. } | LayoutError::Alignment { .. } => {
                     // Whoever may not go on is told so by the report.
-                    let _ = reports.beyond(error);
+                    let _ = reports.unsupported(error);
                 }
                 error => drop(reports.report(error)),
             }
         }
-        world.size_previous();
+        symbols.size_previous();
     }
 
     /// What an import is too small for.
@@ -162,9 +162,9 @@ impl Layouts {
         id: ResourceId,
         buffer: &Buffer,
         seen: &[Seen],
-        world: &World<'_>,
+        symbols: &SymbolTable<'_>,
     ) -> Result<Buffer, LayoutError> {
-        let resource = world.get(id);
+        let resource = symbols.get(id);
         let mut sized = buffer.clone();
         let declared = || resource.declared.clone();
         let whole = || {
@@ -206,13 +206,13 @@ impl Layouts {
         } else if !is_own && let Some(count) = buffer.count {
             bytes = Some(bytes.unwrap_or(0).max(count * 4));
         }
-        self.items(&sized, seen, world, &resource.name)?;
+        self.items(&sized, seen, symbols, &resource.name)?;
         if let Some(data) = &buffer.data {
             let content = content(&resource.name, data, seen, declared())?;
             bytes = Some(content.len() as u64);
             sized.content = Some(content);
         }
-        let limits = &world.request.limits;
+        let limits = &symbols.request.limits;
         let most = limits
             .max_buffer_size
             .min(limits.max_storage_buffer_binding_size);
@@ -238,10 +238,10 @@ impl Layouts {
         &self,
         sized: &Buffer,
         seen: &[Seen],
-        world: &World<'_>,
+        symbols: &SymbolTable<'_>,
         name: &str,
     ) -> Result<(), LayoutError> {
-        let limits = &world.request.limits;
+        let limits = &symbols.request.limits;
         for view in seen {
             let Some(items) = view.part.items() else {
                 continue;
@@ -256,9 +256,10 @@ impl Layouts {
                     span: view.span.clone(),
                 });
             }
-            let alignment = u64::from(match view.uniform {
-                true => limits.min_uniform_buffer_offset_alignment,
-                false => limits.min_storage_buffer_offset_alignment,
+            let alignment = u64::from(if view.uniform {
+                limits.min_uniform_buffer_offset_alignment
+            } else {
+                limits.min_storage_buffer_offset_alignment
             });
             if !sized.stride.is_multiple_of(alignment) {
                 return Err(LayoutError::Alignment {
@@ -274,9 +275,9 @@ impl Layouts {
 
     /// A buffer that no shader sees has the size of what it is copied from or to; others must
     /// agree.
-    fn equal_sizes(&self, world: &mut World<'_>) -> Vec<LayoutError> {
-        fn bytes(world: &World<'_>, copied: &Copied) -> u64 {
-            let (bytes, stride) = match &world.get(copied.id).kind {
+    fn equal_sizes(&self, symbols: &mut SymbolTable<'_>) -> Vec<LayoutError> {
+        fn bytes(symbols: &SymbolTable<'_>, copied: &Copied) -> u64 {
+            let (bytes, stride) = match &symbols.get(copied.id).kind {
                 ResourceKind::Buffer(buffer) => (buffer.bytes, buffer.stride),
                 ResourceKind::Provided(provided) => {
                     let items = provided.items.unwrap_or(0);
@@ -292,9 +293,9 @@ impl Layouts {
         let mut sized = true;
         while std::mem::take(&mut sized) {
             for [a, b] in &self.same {
-                let sizes = [bytes(world, b), bytes(world, a)];
+                let sizes = [bytes(symbols, b), bytes(symbols, a)];
                 for (copied, size) in [a, b].into_iter().zip(sizes) {
-                    let resource = &mut world.resources[copied.id.index()];
+                    let resource = &mut symbols.resources[copied.id.index()];
                     if let ResourceKind::Buffer(buffer) = &mut resource.kind
                         && buffer.bytes == 0
                         && size > 0
@@ -306,13 +307,13 @@ impl Layouts {
                 }
             }
         }
-        let differs = |[a, b]: &&[Copied; 2]| bytes(world, a) != bytes(world, b);
+        let differs = |[a, b]: &&[Copied; 2]| bytes(symbols, a) != bytes(symbols, b);
         let different = self.same.iter().filter(differs);
         different
             .map(|[a, b]| LayoutError::Copy {
                 from: a.name.clone(),
                 to: b.name.clone(),
-                bytes: [bytes(world, a), bytes(world, b)],
+                bytes: [bytes(symbols, a), bytes(symbols, b)],
             })
             .collect()
     }

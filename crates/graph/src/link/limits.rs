@@ -3,7 +3,7 @@
 
 use super::{linker::Linker, pass::LinkedProgram};
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::reports::ErrorGuaranteed,
     errors::limits::{Entry, Excess, LimitError},
     kinds::step::{Draw, Names},
     shader::{
@@ -28,7 +28,7 @@ const MOST_OF_A_VALUE: u64 = 2048 * 16;
 
 impl Linker<'_, '_> {
     /// Checks the memory that each entry point of a program takes.
-    pub(super) fn footprints(&mut self, program: &LinkedProgram) -> Result<(), Reported> {
+    pub(super) fn footprints(&mut self, program: &LinkedProgram) -> Result<(), ErrorGuaranteed> {
         let mut wrong = None;
         for &index in &program.entries {
             let shader = &program.shader;
@@ -41,12 +41,16 @@ impl Linker<'_, '_> {
         wrong.map_or(Ok(()), Err)
     }
 
-    fn footprint(&mut self, entry: &Entry, of: &Footprint) -> Result<(), Reported> {
-        let most = self.world.request.limits.max_compute_workgroup_storage_size;
+    fn footprint(&mut self, entry: &Entry, of: &Footprint) -> Result<(), ErrorGuaranteed> {
+        let most = self
+            .symbols
+            .request
+            .limits
+            .max_compute_workgroup_storage_size;
         if let Some(excess) = beyond(&of.workgroup, u64::from(most), entry) {
             let entry = entry.clone();
             self.reports
-                .beyond(LimitError::Workgroup { entry, excess })?;
+                .unsupported(LimitError::Workgroup { entry, excess })?;
         }
         if let Some(excess) = beyond(&of.private, MOST_OF_ONE, entry) {
             let entry = entry.clone();
@@ -93,10 +97,10 @@ impl Linker<'_, '_> {
         &mut self,
         shader: &Shader,
         globals: &[Global],
-    ) -> Result<(), Reported> {
-        let most = self.world.request.limits.max_bindings_per_bind_group;
+    ) -> Result<(), ErrorGuaranteed> {
+        let most = self.symbols.request.limits.max_bindings_per_bind_group;
         for global in globals.iter().filter(|global| global.binding >= most) {
-            self.reports.beyond(LimitError::BindingNumber {
+            self.reports.unsupported(LimitError::BindingNumber {
                 file: shader.file().to_owned(),
                 global: global.name.clone(),
                 binding: global.binding,
@@ -112,7 +116,7 @@ impl Linker<'_, '_> {
         &mut self,
         program: &LinkedProgram,
         draw: &Draw<Names>,
-    ) -> Result<(), Reported> {
+    ) -> Result<(), ErrorGuaranteed> {
         let shader = &program.shader;
         let of = |stage: ShaderStage| {
             let at = program.stages.iter().position(|known| *known == stage)?;
@@ -128,7 +132,7 @@ impl Linker<'_, '_> {
         };
         let at = entry(shader, fragment);
         self.fragment(&at, shader, fragment)?;
-        let most = self.world.request.limits.max_color_attachments;
+        let most = self.symbols.request.limits.max_color_attachments;
         // Of too many targets it is told already.
         if draw.colors.len() <= most as usize {
             self.locations(&at, "writes", &shader.outputs(fragment), most)?;
@@ -154,7 +158,7 @@ impl Linker<'_, '_> {
         shader: &Shader,
         index: usize,
         points: bool,
-    ) -> Result<(), Reported> {
+    ) -> Result<(), ErrorGuaranteed> {
         if let Some(attribute) = shader.inputs(index).locations.first() {
             return Err(self.reports.report(LimitError::Attribute {
                 entry: at.clone(),
@@ -167,14 +171,19 @@ impl Linker<'_, '_> {
         self.varyings(at, "writes", &outputs, outputs.builtins + u32::from(points))
     }
 
-    fn fragment(&mut self, at: &Entry, shader: &Shader, index: usize) -> Result<(), Reported> {
+    fn fragment(
+        &mut self,
+        at: &Entry,
+        shader: &Shader,
+        index: usize,
+    ) -> Result<(), ErrorGuaranteed> {
         let inputs = shader.inputs(index);
         self.locations(at, "reads", &inputs, self.most_varyings())?;
         self.varyings(at, "reads", &inputs, inputs.builtins)
     }
 
     fn most_varyings(&self) -> u32 {
-        self.world.request.limits.max_inter_stage_shader_variables
+        self.symbols.request.limits.max_inter_stage_shader_variables
     }
 
     fn locations(
@@ -183,10 +192,10 @@ impl Linker<'_, '_> {
         verb: &'static str,
         of: &Varyings,
         most: u32,
-    ) -> Result<(), Reported> {
+    ) -> Result<(), ErrorGuaranteed> {
         let locations = of.locations.iter().map(|varying| varying.location);
         match locations.max() {
-            Some(location) if location >= most => self.reports.beyond(LimitError::Location {
+            Some(location) if location >= most => self.reports.unsupported(LimitError::Location {
                 entry: at.clone(),
                 verb,
                 location,
@@ -202,13 +211,13 @@ impl Linker<'_, '_> {
         verb: &'static str,
         of: &Varyings,
         builtins: u32,
-    ) -> Result<(), Reported> {
+    ) -> Result<(), ErrorGuaranteed> {
         let most = self.most_varyings();
         let number = of.locations.len() as u64 + u64::from(builtins);
         if number <= u64::from(most) {
             return Ok(());
         }
-        self.reports.beyond(LimitError::TooManyVaryings {
+        self.reports.unsupported(LimitError::TooManyVaryings {
             entry: at.clone(),
             verb,
             number,

@@ -5,13 +5,13 @@ use super::{
     pass::{Access, Ids, LinkedPass},
 };
 use crate::{
-    diagnostics::reports::{Reported, Reports},
+    diagnostics::reports::{ErrorGuaranteed, Reports},
     errors::link::LinkError,
     instantiate::{
-        flat::{Border, Deciding, Inherited, Run},
-        frames::{InstanceId, Place},
+        flat::{Inherited, Interface, PlanInputs, Run},
         lower::{Lowered, LoweredPass},
-        world::World,
+        scopes::{InstanceId, Position},
+        symbols::SymbolTable,
     },
     kinds::step::{Dispatch, Groups, Names, Operand, Program, Step},
     language::syntax::{Expr, Reference},
@@ -25,30 +25,30 @@ use std::{collections::BTreeSet, sync::Arc};
 
 /// All passes of a graph, linked with its resources.
 pub(crate) struct Linked<'a> {
-    pub world: World<'a>,
+    pub symbols: SymbolTable<'a>,
     pub passes: Vec<LinkedPass>,
     /// Of each pass: the instance of the document that it stands in; none of a capture.
     pub instances: Vec<Option<InstanceId>>,
     /// How many of the passes stand above the first mistake, if there is one: what is written below
     /// is not known.
-    pub valid_prefix: Option<usize>,
-    pub borders: Vec<Border>,
-    pub deciding: Deciding,
+    pub first_invalid: Option<usize>,
+    pub interfaces: Vec<Interface>,
+    pub plan_inputs: PlanInputs,
 }
 
 /// What passes are linked against.
 pub(super) struct Linker<'a, 'r> {
-    pub world: World<'a>,
+    pub symbols: SymbolTable<'a>,
     pub reports: &'r mut Reports,
     pub layouts: Layouts,
     /// What the names of the pass mean.
-    pub scope: Scope<'a>,
+    pub pass: PassScope<'a>,
 }
 
 /// The pass that is being linked, as far as its names are concerned.
 #[derive(Default)]
-pub(super) struct Scope<'a> {
-    pub place: Option<Place>,
+pub(super) struct PassScope<'a> {
+    pub position: Option<Position>,
     pub scratch: Vec<ResourceId>,
     pub set: &'a [(Located<String>, Expr)],
     pub inherited_bind: Vec<Inherited<'a, Reference>>,
@@ -63,24 +63,24 @@ pub(super) struct Scope<'a> {
 
 /// Links all passes with their captures.
 pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a> {
-    let request = lowered.world.request;
+    let request = lowered.symbols.request;
     let mut linker = Linker {
-        world: lowered.world,
+        symbols: lowered.symbols,
         reports,
         layouts: Layouts::default(),
-        scope: Scope::default(),
+        pass: PassScope::default(),
     };
     let (mut passes, mut instances) = (Vec::new(), Vec::new());
     // What a pass with a mistake writes is not known.
-    let mut valid_prefix: Option<usize> = None;
+    let mut first_invalid: Option<usize> = None;
     for (index, pass) in lowered.passes.into_iter().enumerate() {
         // For each mistake all names are searched for what was meant.
         if linker.reports.has_enough() {
-            valid_prefix.get_or_insert(passes.len());
+            first_invalid.get_or_insert(passes.len());
             break;
         }
-        if lowered.first_broken == Some(index) {
-            valid_prefix.get_or_insert(passes.len());
+        if lowered.first_invalid == Some(index) {
+            first_invalid.get_or_insert(passes.len());
         }
         let (name, instance, is_broken) = (pass.flat.name.clone(), pass.instance, pass.is_broken);
         match linker.pass(pass) {
@@ -88,7 +88,7 @@ pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a
                 passes.push(linked);
                 instances.push(Some(instance));
             }
-            _ => drop(valid_prefix.get_or_insert(passes.len())),
+            _ => drop(first_invalid.get_or_insert(passes.len())),
         }
         let after = |capture: &&Capture| capture.after.as_deref() == Some(name.as_str());
         let captures: BTreeSet<&Capture> = request.captures.iter().filter(after).collect();
@@ -100,26 +100,26 @@ pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a
             }
         }
     }
-    if lowered.first_broken.is_some() {
-        valid_prefix.get_or_insert(passes.len());
+    if lowered.first_invalid.is_some() {
+        first_invalid.get_or_insert(passes.len());
     }
     let layouts = std::mem::take(&mut linker.layouts);
-    layouts.finalize(&mut linker.world, linker.reports);
+    layouts.finalize(&mut linker.symbols, linker.reports);
     Linked {
-        world: linker.world,
+        symbols: linker.symbols,
         passes,
         instances,
-        valid_prefix,
-        borders: lowered.borders,
-        deciding: lowered.deciding,
+        first_invalid,
+        interfaces: lowered.interfaces,
+        plan_inputs: lowered.plan_inputs,
     }
 }
 
 impl<'a> Linker<'a, '_> {
-    fn pass(&mut self, pass: LoweredPass<'a>) -> Result<LinkedPass, Reported> {
+    fn pass(&mut self, pass: LoweredPass<'a>) -> Result<LinkedPass, ErrorGuaranteed> {
         let flat = pass.flat;
-        self.scope = Scope {
-            place: Some(flat.place),
+        self.pass = PassScope {
+            position: Some(flat.position),
             scratch: pass.scratch,
             set: &flat.entry.set,
             inherited_bind: flat.bind,
@@ -142,7 +142,7 @@ impl<'a> Linker<'a, '_> {
         name: Located<String>,
         kind: &'static str,
         steps: &[Step<Names>],
-    ) -> Result<LinkedPass, Reported> {
+    ) -> Result<LinkedPass, ErrorGuaranteed> {
         let mut pass = LinkedPass {
             name,
             kind,
@@ -167,7 +167,11 @@ impl<'a> Linker<'a, '_> {
         wrong.map_or(Ok(pass), Err)
     }
 
-    fn step(&mut self, step: &Step<Names>, pass: &mut LinkedPass) -> Result<Step<Ids>, Reported> {
+    fn step(
+        &mut self,
+        step: &Step<Names>,
+        pass: &mut LinkedPass,
+    ) -> Result<Step<Ids>, ErrorGuaranteed> {
         match step {
             Step::Draw(draw) => self.draw(draw, pass).map(Step::Draw),
             Step::Dispatch(dispatch) => {
@@ -187,14 +191,14 @@ impl<'a> Linker<'a, '_> {
         }
     }
 
-    pub fn report(&mut self, error: LinkError) -> Reported {
+    pub fn report(&mut self, error: LinkError) -> ErrorGuaranteed {
         self.reports.report(error)
     }
 
     /// What a reference of the pass's document names.
-    pub fn resolve(&mut self, reference: &Reference) -> Result<Target, Reported> {
-        let place = self.scope.place.unwrap_or_else(|| self.world.root());
-        self.world.resolve(reference, place, self.reports)
+    pub fn resolve(&mut self, reference: &Reference) -> Result<Target, ErrorGuaranteed> {
+        let position = self.pass.position.unwrap_or_else(|| self.symbols.root());
+        self.symbols.resolve(reference, position, self.reports)
     }
 
     /// What an operand of a step names, with its name and place for messages.
@@ -202,32 +206,35 @@ impl<'a> Linker<'a, '_> {
         &mut self,
         operand: &Operand,
         pass: &Located<String>,
-    ) -> Result<(Target, Located<String>), Reported> {
+    ) -> Result<(Target, Located<String>), ErrorGuaranteed> {
         match operand {
             Operand::Named(reference) => {
                 let target = self.resolve(reference)?;
                 let name = reference.text().to_owned();
                 Ok((target, Located::new(name, reference.span.clone())))
             }
-            Operand::Scratch(scratch) if !self.scope.captured.is_empty() => {
-                let target = self.scope.captured[scratch.0].clone();
-                let name = self.world.get(target.id).name.clone();
+            Operand::Scratch(scratch) if !self.pass.captured.is_empty() => {
+                let target = self.pass.captured[scratch.0].clone();
+                let name = self.symbols.get(target.id).name.clone();
                 Ok((target, Located::new(name, pass.span.clone())))
             }
             Operand::Scratch(scratch) => {
-                let id = self.scope.scratch[scratch.0];
-                let name = self.world.get(id).name.clone();
-                Ok((self.world.whole(id), Located::new(name, pass.span.clone())))
+                let id = self.pass.scratch[scratch.0];
+                let name = self.symbols.get(id).name.clone();
+                Ok((
+                    self.symbols.whole(id),
+                    Located::new(name, pass.span.clone()),
+                ))
             }
         }
     }
 
     /// Last frame's version of a resource is there to be read, and so is what the document holds.
-    pub fn writable(&mut self, id: ResourceId, span: &Span) -> Result<(), Reported> {
-        let name = self.world.get(id).name.clone();
-        match self.world.get(id).origin {
+    pub fn writable(&mut self, id: ResourceId, span: &Span) -> Result<(), ErrorGuaranteed> {
+        let name = self.symbols.get(id).name.clone();
+        match self.symbols.get(id).origin {
             Origin::Previous(base) => {
-                let of = self.world.get(base).name.clone();
+                let of = self.symbols.get(base).name.clone();
                 Err(self.report(LinkError::WritesPrevious {
                     of,
                     span: span.clone(),
@@ -242,7 +249,11 @@ impl<'a> Linker<'a, '_> {
     }
 
     /// A step that uses one part of a resource in two ways of which one writes: wgpu forbids it.
-    fn feedback(&mut self, pass: &Located<String>, accesses: &[Access]) -> Result<(), Reported> {
+    fn feedback(
+        &mut self,
+        pass: &Located<String>,
+        accesses: &[Access],
+    ) -> Result<(), ErrorGuaranteed> {
         let mut wrong = None;
         for (index, a) in accesses.iter().enumerate() {
             for b in &accesses[..index] {
@@ -258,7 +269,7 @@ impl<'a> Linker<'a, '_> {
                     };
                     wrong = Some(self.report(LinkError::Feedback {
                         pass: pass.value.clone(),
-                        name: self.world.get(a.resource).name.clone(),
+                        name: self.symbols.get(a.resource).name.clone(),
                         reader: reader.span.clone(),
                         reads: !reader.writes,
                         writer: writer.span.clone(),
@@ -270,12 +281,12 @@ impl<'a> Linker<'a, '_> {
     }
 
     /// The shader of a program; those that the document names were loaded with it.
-    pub fn shader(&mut self, program: &Program) -> Result<Arc<Shader>, Reported> {
-        let (Some(name), Some(place)) = (&program.shader, self.scope.place) else {
+    pub fn shader(&mut self, program: &Program) -> Result<Arc<Shader>, ErrorGuaranteed> {
+        let (Some(name), Some(position)) = (&program.shader, self.pass.position) else {
             return Err(self.report(LinkError::NoShader));
         };
-        let document = &self.world.frames.document(place.frame).document;
-        match self.world.graph.shaders.get(document, name) {
+        let document = &self.symbols.scopes.document(position.scope).document;
+        match self.symbols.graph.shaders.get(document, name) {
             Some(shader) => shader.clone(),
             // A kind names another one for other values.
             None => Err(self.report(LinkError::ShaderNotLoaded(name.clone()))),
@@ -283,15 +294,15 @@ impl<'a> Linker<'a, '_> {
     }
 
     /// Reports what the entry binds or sets and no shader of it asks for.
-    fn unasked(&mut self) -> Result<(), Reported> {
+    fn unasked(&mut self) -> Result<(), ErrorGuaranteed> {
         let mut wrong = None;
-        for (name, _) in self.scope.set {
-            if !self.scope.asked.contains(name.as_str()) {
-                let shader = self.scope.shader.as_ref();
-                wrong = Some(self.report(LinkError::UnaskedSet {
+        for (name, _) in self.pass.set {
+            if !self.pass.asked.contains(name.as_str()) {
+                let shader = self.pass.shader.as_ref();
+                wrong = Some(self.report(LinkError::UnusedSet {
                     shader: shader.map_or(String::new(), |shader| shader.value.clone()),
                     name: name.clone(),
-                    known: self.scope.asked.iter().cloned().collect(),
+                    known: self.pass.asked.iter().cloned().collect(),
                 }));
             }
         }
@@ -303,14 +314,14 @@ impl<'a> Linker<'a, '_> {
         &mut self,
         pass: &mut LinkedPass,
         references: &[Reference],
-    ) -> Result<(), Reported> {
+    ) -> Result<(), ErrorGuaranteed> {
         for reference in references {
             let target = self.resolve(reference)?;
             let mut is_written = false;
             for access in &mut pass.accesses {
                 if access.writes && access.resource == target.id && access.part == target.part {
                     is_written = true;
-                    access.covers = true;
+                    access.fully_overwrites = true;
                 }
             }
             if !is_written {
@@ -327,7 +338,7 @@ impl<'a> Linker<'a, '_> {
 /// An access that reads or writes a whole part.
 pub(super) fn access(
     target: &Target,
-    (reads, writes, covers): (bool, bool, bool),
+    (reads, writes, fully_overwrites): (bool, bool, bool),
     usage: super::pass::Usage,
     span: &Span,
 ) -> Access {
@@ -336,7 +347,7 @@ pub(super) fn access(
         part: target.part.clone(),
         reads,
         writes,
-        covers,
+        fully_overwrites,
         usage,
         span: span.clone(),
         step: 0,

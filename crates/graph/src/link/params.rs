@@ -2,7 +2,7 @@
 
 use super::{linker::Linker, pass::Block};
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::reports::ErrorGuaranteed,
     document::params::{Param, ParamType, ParamValue},
     errors::link::LinkError,
     kinds::step::Program,
@@ -69,27 +69,27 @@ fn param_of((class, width): (ScalarClass, u32)) -> Option<String> {
 impl<'a> Linker<'a, '_> {
     /// The value of what a shader asks for: what the entry sets, else the index of a repetition,
     /// else the param of that name.
-    fn asked(&mut self, name: &str) -> Option<Result<Asked<'a>, Reported>> {
-        self.scope.asked.insert(name.to_owned());
-        let place = self.scope.place?;
-        let own = self.scope.set.iter().find(|(set, _)| **set == *name);
-        let own = own.map(|(_, expr)| (expr, place));
+    fn asked(&mut self, name: &str) -> Option<Result<Asked<'a>, ErrorGuaranteed>> {
+        self.pass.asked.insert(name.to_owned());
+        let position = self.pass.position?;
+        let own = self.pass.set.iter().find(|(set, _)| **set == *name);
+        let own = own.map(|(_, expr)| (expr, position));
         let said = || {
-            let mut said = self.scope.inherited_set.iter();
+            let mut said = self.pass.inherited_set.iter();
             let said = said.find(|said| said.name.value == name)?;
-            Some((said.value, said.place))
+            Some((said.value, said.position))
         };
-        if let Some((expr, place)) = own.or_else(said) {
-            let value = expr.value(&mut self.world.at(place, None, self.reports));
+        if let Some((expr, position)) = own.or_else(said) {
+            let value = expr.value(&mut self.symbols.at(position, None, self.reports));
             return Some(value.map(|value| Asked::Set(value, expr)));
         }
         if name == "index"
-            && let Some(index) = self.world.frames.index(place, None)
+            && let Some(index) = self.symbols.scopes.index(position, None)
         {
             return Some(Ok(Asked::Index(index)));
         }
-        let params = &self.world.frames.document(place.frame).params;
-        let bound = params.spelt(name)?;
+        let params = &self.symbols.scopes.document(position.scope).params;
+        let bound = params.wgsl_name(name)?;
         Some(
             bound
                 .value
@@ -103,7 +103,7 @@ impl<'a> Linker<'a, '_> {
         &mut self,
         program: &Program,
         shader: &Shader,
-    ) -> Result<Vec<(String, f64)>, Reported> {
+    ) -> Result<Vec<(String, f64)>, ErrorGuaranteed> {
         let mut constants = Vec::new();
         for (name, key, has_default, span) in shader.overrides() {
             let given = program
@@ -135,19 +135,19 @@ impl<'a> Linker<'a, '_> {
 
     /// Notes that the plan depends on a param that a shader asks for.
     fn decides(&mut self, name: &str) {
-        let Some(place) = self.scope.place else {
+        let Some(position) = self.pass.position else {
             return;
         };
-        let params = &self.world.frames.document(place.frame).params;
-        if let Some(bound) = params.spelt(name) {
+        let params = &self.symbols.scopes.document(position.scope).params;
+        if let Some(bound) = params.wgsl_name(name) {
             self.reports.depend_on(bound.roots.iter());
         }
     }
 
     /// The kind of what is provided, under which the plan is made.
     fn kind(&mut self, name: &str) -> Option<f64> {
-        let frame = self.scope.place?.frame;
-        let kind = self.world.kind_spelt(name, frame)?;
+        let scope = self.pass.position?.scope;
+        let kind = self.symbols.kind_of_wgsl_name(name, scope)?;
         Some(f64::from(kind.number))
     }
 
@@ -158,8 +158,8 @@ impl<'a> Linker<'a, '_> {
         asked: &Asked<'_>,
         shader: &Shader,
         span: &Span,
-    ) -> Result<Option<f64>, Reported> {
-        let (value, found, place) = match asked {
+    ) -> Result<Option<f64>, ErrorGuaranteed> {
+        let (value, found, position) = match asked {
             Asked::Index(index) => return Ok(Some(f64::from(*index))),
             Asked::Param(param, value, _) => (param.value(value), value.to_string(), span),
             Asked::Set(value, expr) => (value.clone(), value.to_string(), &expr.span),
@@ -186,7 +186,7 @@ impl<'a> Linker<'a, '_> {
             name: name.to_owned(),
             expected,
             found,
-            span: place.clone(),
+            span: position.clone(),
         }))
     }
 
@@ -198,16 +198,18 @@ impl<'a> Linker<'a, '_> {
         value: &Value,
         expr: &Expr,
         shader: &Shader,
-    ) -> Result<u32, Reported> {
+    ) -> Result<u32, ErrorGuaranteed> {
         let Value::Word(word) = value else {
             return Err(self.wrong_value(name, "a word", value, expr));
         };
-        let place = self.scope.place.unwrap_or_else(|| self.world.root());
-        let params = &self.world.frames.document(place.frame).params;
-        let words = params.spelt(name).and_then(|bound| match &bound.param.ty {
-            ParamType::Choice(words) => Some(words),
-            _ => None,
-        });
+        let position = self.pass.position.unwrap_or_else(|| self.symbols.root());
+        let params = &self.symbols.scopes.document(position.scope).params;
+        let words = params
+            .wgsl_name(name)
+            .and_then(|bound| match &bound.param.ty {
+                ParamType::Choice(words) => Some(words),
+                _ => None,
+            });
         let among = words.and_then(|words| words.iter().position(|known| *known == word.word));
         if let Some(number) = among.and_then(|number| u32::try_from(number).ok()) {
             return Ok(number);
@@ -226,7 +228,13 @@ impl<'a> Linker<'a, '_> {
         }
     }
 
-    fn wrong_value(&mut self, name: &str, expected: &str, found: &Value, expr: &Expr) -> Reported {
+    fn wrong_value(
+        &mut self,
+        name: &str,
+        expected: &str,
+        found: &Value,
+        expr: &Expr,
+    ) -> ErrorGuaranteed {
         self.report(LinkError::SetValue {
             name: name.to_owned(),
             expected: expected.to_owned(),
@@ -241,7 +249,7 @@ impl<'a> Linker<'a, '_> {
         global: &Global,
         size: u64,
         members: &[Member],
-    ) -> Result<Block, Reported> {
+    ) -> Result<Block, ErrorGuaranteed> {
         let mut block = Block {
             // What does not fit into memory is no uniform; it was refused before.
             bytes: vec![0u8; usize::try_from(size).unwrap_or(0)],
@@ -266,10 +274,10 @@ impl<'a> Linker<'a, '_> {
         &mut self,
         global: &Global,
         member: &Member,
-    ) -> Result<(Vec<u32>, Option<String>), Reported> {
+    ) -> Result<(Vec<u32>, Option<String>), ErrorGuaranteed> {
         let Some(asked) = self.asked(&member.name).transpose()? else {
-            let place = self.scope.place.unwrap_or_else(|| self.world.root());
-            let params = &self.world.frames.document(place.frame).params;
+            let position = self.pass.position.unwrap_or_else(|| self.symbols.root());
+            let params = &self.symbols.scopes.document(position.scope).params;
             let known = self.reports.known(params.names());
             return Err(self.report(LinkError::UnknownMember {
                 member: member.name.clone(),
@@ -286,9 +294,10 @@ impl<'a> Linker<'a, '_> {
             Asked::Index(index) => {
                 let fits = matches!(member.vector, Some((ScalarClass::Uint, 1)));
                 let wrong = || LinkError::IndexMember(global.span.clone());
-                return match fits {
-                    true => Ok((vec![index], None)),
-                    false => Err(self.report(wrong())),
+                return if fits {
+                    Ok((vec![index], None))
+                } else {
+                    Err(self.report(wrong()))
                 };
             }
             Asked::Param(param, value, root) => (param, value, root),
@@ -314,7 +323,7 @@ impl<'a> Linker<'a, '_> {
         member: &Member,
         value: &Value,
         expr: &Expr,
-    ) -> Result<Vec<u32>, Reported> {
+    ) -> Result<Vec<u32>, ErrorGuaranteed> {
         let Some((class, width)) = member.vector else {
             return Err(self.report(LinkError::MemberIsNoVector {
                 member: member.name.clone(),
@@ -326,8 +335,8 @@ impl<'a> Linker<'a, '_> {
             Value::List(list) => list.clone(),
             Value::Bool(value) => vec![Scalar::Whole(i64::from(*value))],
             Value::Word(_) => {
-                let place = self.scope.shader.clone();
-                let shader = place.map(|name| Program {
+                let position = self.pass.shader.clone();
+                let shader = position.map(|name| Program {
                     shader: Some(name),
                     ..Program::default()
                 });

@@ -60,7 +60,7 @@ pub struct Access {
     /// Whether it is written.
     pub writes: bool,
     /// Everything in the part is overwritten.
-    pub covers: bool,
+    pub fully_overwrites: bool,
     /// What the resource must be made for.
     pub usage: Usage,
     /// Place in the document or the shader that causes it.

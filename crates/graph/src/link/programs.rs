@@ -5,7 +5,7 @@ use super::{
     pass::{LinkedBinding, LinkedPass, LinkedProgram},
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::reports::ErrorGuaranteed,
     errors::link::LinkError,
     kinds::step::Program,
     shader::reflect::{Global, Shader},
@@ -19,7 +19,7 @@ impl Linker<'_, '_> {
         stages: &[ShaderStage],
         depth_only: bool,
         pass: &mut LinkedPass,
-    ) -> Result<LinkedProgram, Reported> {
+    ) -> Result<LinkedProgram, ErrorGuaranteed> {
         let shader = self.shader(program)?;
         let wanted = program
             .shader
@@ -71,15 +71,15 @@ impl Linker<'_, '_> {
         program: &Program,
         shader: &Shader,
         globals: &[Global],
-    ) -> Result<(), Reported> {
+    ) -> Result<(), ErrorGuaranteed> {
         let mut wrong = None;
-        let own = self.scope.shader.clone();
+        let own = self.pass.shader.clone();
         let is_own = program.shader.as_ref().map(|s| &s.value) == own.as_ref().map(|s| &s.value);
         for (bound, _) in &program.bind {
             let exists = shader.global_names().any(|global| global == bound.as_str());
             if !exists && is_own {
                 let known = globals.iter().map(|global| global.name.clone());
-                wrong = Some(self.report(LinkError::UnaskedBind {
+                wrong = Some(self.report(LinkError::UnusedBind {
                     shader: shader.source.file.name.to_string(),
                     name: bound.clone(),
                     known: self.reports.known(known),
@@ -92,11 +92,11 @@ impl Linker<'_, '_> {
     /// Group numbers that the adapter does not have, be it of globals that nothing uses: a device
     /// refuses the whole module. (One number for two globals is found when the shader is
     /// validated.)
-    fn groups_exist(&mut self, shader: &Shader) -> Result<(), Reported> {
-        let most = self.world.request.limits.max_bind_groups;
+    fn groups_exist(&mut self, shader: &Shader) -> Result<(), ErrorGuaranteed> {
+        let most = self.symbols.request.limits.max_bind_groups;
         let groups = shader.groups();
         for (global, group, span) in groups.filter(|(_, group, _)| *group >= most) {
-            self.reports.beyond(LinkError::BindGroup {
+            self.reports.unsupported(LinkError::BindGroup {
                 global: global.to_owned(),
                 group,
                 most,
@@ -107,8 +107,12 @@ impl Linker<'_, '_> {
     }
 
     /// The numbers of bindings that wgpu limits per stage.
-    fn counts(&mut self, bindings: &[LinkedBinding], pass: &LinkedPass) -> Result<(), Reported> {
-        let limits = &self.world.request.limits;
+    fn counts(
+        &mut self,
+        bindings: &[LinkedBinding],
+        pass: &LinkedPass,
+    ) -> Result<(), ErrorGuaranteed> {
+        let limits = &self.symbols.request.limits;
         type IsOf = fn(&wgt::BindingType) -> bool;
         let kinds: [(&str, IsOf, u32); 7] = [
             (
@@ -168,7 +172,7 @@ impl Linker<'_, '_> {
             ];
             let number = stages.map(of_stage).into_iter().max().unwrap_or(0);
             if number > most as usize {
-                self.reports.beyond(LinkError::TooManyBindings {
+                self.reports.unsupported(LinkError::TooManyBindings {
                     pass: pass.name.clone(),
                     what,
                     number,

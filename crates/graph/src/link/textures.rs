@@ -2,7 +2,7 @@
 
 use super::{linker::Linker, pass::LinkedProgram};
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::reports::ErrorGuaranteed,
     document::materials::Filter,
     errors::link::{LinkError, TextureMisfit},
     kinds::step::{Operand, Program},
@@ -33,7 +33,7 @@ impl Linker<'_, '_> {
         class: &TextureClass,
         (texture, target): (&Texture, &Target),
         (linked, program): (&LinkedProgram, &Program),
-    ) -> Result<Bound, Reported> {
+    ) -> Result<Bound, ErrorGuaranteed> {
         let misfit = match class {
             TextureClass::Sampled { dimension, .. } | TextureClass::Storage { dimension, .. } => {
                 wrong_shape(*dimension, texture, target)
@@ -54,7 +54,7 @@ impl Linker<'_, '_> {
             ) => self.storage((format, *access, *dimension), texture, target),
         };
         bound.map_err(|misfit| {
-            let resource = self.world.get(target.id);
+            let resource = self.symbols.get(target.id);
             let error = LinkError::Texture {
                 name: resource.name.clone(),
                 format: texture.format,
@@ -84,7 +84,7 @@ impl Linker<'_, '_> {
             return Err(TextureMisfit::Samples(texture.samples));
         };
         let format = texture.format;
-        let features = format.guaranteed_format_features(self.world.request.features);
+        let features = format.guaranteed_format_features(self.symbols.request.features);
         // Of a texture with both, the shader's type says which is meant.
         let aspect = match (format.is_combined_depth_stencil_format(), scalar) {
             (false, _) => TextureAspect::All,
@@ -110,7 +110,7 @@ impl Linker<'_, '_> {
         let able = wgt::Features::FLOAT32_FILTERABLE;
         let with_feature = format.guaranteed_format_features(able).flags;
         let by_feature = with_feature.contains(TextureFormatFeatureFlags::FILTERABLE);
-        let asks = by_feature && self.world.graph.features().contains(able);
+        let asks = by_feature && self.symbols.graph.features().contains(able);
         if !(filterable || asks && self.reports.any_adapter)
             && let Some(sampler) = self.linear_sampler(global, linked, program)
         {
@@ -145,19 +145,19 @@ impl Linker<'_, '_> {
         let samplers = linked.shader.samplers_of(&linked.entries, global.handle);
         samplers.into_iter().find(|sampler| {
             let bound = program.bind.iter().find(|(name, _)| name.value == *sampler);
-            let place = self.scope.place.unwrap_or_else(|| self.world.root());
+            let position = self.pass.position.unwrap_or_else(|| self.symbols.root());
             let target = match bound {
                 Some((_, Operand::Named(reference))) => {
-                    self.world.resolve(reference, place, self.reports).ok()
+                    self.symbols.resolve(reference, position, self.reports).ok()
                 }
                 Some((_, Operand::Scratch(_))) => None,
                 None => self
-                    .world
-                    .find_global(sampler, place.frame, self.reports)
+                    .symbols
+                    .find_global(sampler, position.scope, self.reports)
                     .and_then(Result::ok),
             };
             target.is_some_and(|target| {
-                matches!(&self.world.get(target.id).kind, ResourceKind::Sampler(entry)
+                matches!(&self.symbols.get(target.id).kind, ResourceKind::Sampler(entry)
                     if entry.filter == Filter::Linear && entry.compare.is_none())
             })
         })
@@ -170,7 +170,7 @@ impl Linker<'_, '_> {
         target: &Target,
     ) -> Result<Bound, TextureMisfit> {
         let format = texture.format;
-        let features = format.guaranteed_format_features(self.world.request.features);
+        let features = format.guaranteed_format_features(self.symbols.request.features);
         // naga's storage formats bear wgpu's names.
         if declared != format!("{format:?}") {
             return Err(TextureMisfit::StorageFormat(declared.to_owned()));

@@ -5,7 +5,7 @@ use super::{
     pass::{Ids, LinkedPass, Usage},
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::reports::ErrorGuaranteed,
     errors::link::LinkError,
     kinds::step::{Operand, Step},
     resource::{ResourceKind, Target, Texture},
@@ -24,11 +24,11 @@ impl Linker<'_, '_> {
         from: &Operand,
         to: &Operand,
         pass: &mut LinkedPass,
-    ) -> Result<Step<Ids>, Reported> {
+    ) -> Result<Step<Ids>, ErrorGuaranteed> {
         let (source, from) = self.operand(from, &pass.name)?;
         let (target, to) = self.operand(to, &pass.name)?;
         self.writable(target.id, &to.span)?;
-        let kinds = [source.id, target.id].map(|id| self.world.get(id).kind.clone());
+        let kinds = [source.id, target.id].map(|id| self.symbols.get(id).kind.clone());
         let usages = match &kinds {
             [ResourceKind::Texture(a), ResourceKind::Texture(b)] => {
                 if a.format != b.format || a.samples != b.samples || a.is_3d != b.is_3d {
@@ -48,7 +48,7 @@ impl Linker<'_, '_> {
                 ResourceKind::Buffer(_) | ResourceKind::Provided(_) | ResourceKind::Frame,
                 ResourceKind::Buffer(_),
             ] => {
-                let sized = self.world.base(source.id);
+                let sized = self.symbols.base(source.id);
                 let source = (sized, &source.part, &from);
                 self.layouts.same(source, (target.id, &target.part, &to));
                 [wgt::BufferUsages::COPY_SRC, wgt::BufferUsages::COPY_DST].map(Usage::Buffer)
@@ -75,14 +75,14 @@ impl Linker<'_, '_> {
         operand: &Operand,
         value: [f64; 4],
         pass: &mut LinkedPass,
-    ) -> Result<Step<Ids>, Reported> {
+    ) -> Result<Step<Ids>, ErrorGuaranteed> {
         let (target, name) = self.operand(operand, &pass.name)?;
         self.writable(target.id, &name.span)?;
-        let usage = match &self.world.get(target.id).kind {
+        let usage = match &self.symbols.get(target.id).kind {
             ResourceKind::Texture(texture) => {
                 let format = texture.format;
                 let needed = wgt::TextureUsages::RENDER_ATTACHMENT;
-                let features = format.guaranteed_format_features(self.world.request.features);
+                let features = format.guaranteed_format_features(self.symbols.request.features);
                 if !features.allowed_usages.contains(needed) {
                     return Err(self.report(LinkError::ClearFormat { name, format }));
                 }

@@ -13,7 +13,7 @@ use crate::{
         params::{Param, ParamType, ParamValue},
     },
     graph::Graph,
-    instantiate::flat::Deciding,
+    instantiate::flat::PlanInputs,
     kinds::registry::Registry,
     provider::Import,
     request::PlanRequest,
@@ -53,16 +53,16 @@ impl Graph {
         }
         let request = &request;
         // Without its params nothing of the document has a size.
-        let outcome = match graph.document.broken_params {
+        let outcome = match graph.document.invalid_params {
             None => graph.plan_for_any(request),
             Some(_) => Outcome {
                 plan: None,
                 found: Vec::new(),
-                deciding: Deciding::default(),
+                plan_inputs: PlanInputs::default(),
             },
         };
         if outcome.plan.is_some() && errors.is_empty() {
-            errors.extend(graph.sweep(request, &outcome.deciding));
+            errors.extend(graph.sweep(request, &outcome.plan_inputs));
             if let Err(wrong) = graph.claims(&request.params, request.viewport, request.features) {
                 errors.extend(wrong.iter().cloned());
             }
@@ -134,9 +134,9 @@ impl Graph {
     }
 
     /// What is wrong for other values of what decides which entries are there, each changed alone.
-    fn sweep(&self, request: &PlanRequest<'_>, deciding: &Deciding) -> Vec<Diagnostic> {
+    fn sweep(&self, request: &PlanRequest<'_>, plan_inputs: &PlanInputs) -> Vec<Diagnostic> {
         let mut found = Vec::new();
-        for name in &deciding.params {
+        for name in &plan_inputs.params {
             let Ok(param) = self.param(name) else {
                 continue;
             };
@@ -146,7 +146,7 @@ impl Graph {
                 found.extend(self.wrong_with(&changed, &format!("with `{name}` = {value}")));
             }
         }
-        for feature in deciding.features.iter() {
+        for feature in plan_inputs.features.iter() {
             let mut changed = request.clone();
             changed.features.toggle(feature);
             let has = if changed.features.contains(feature) {

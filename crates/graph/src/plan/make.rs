@@ -7,7 +7,9 @@ use super::{
 };
 use crate::{
     diagnostics::{diagnostic::Diagnostic, list::Diagnostics, reports::Reports},
-    errors::{flow::OrderError, instantiate::BorderError, plan::OutputError, resource::SizeError},
+    errors::{
+        flow::OrderError, instantiate::InterfaceError, plan::OutputError, resource::SizeError,
+    },
     flow::{
         aliases::aliases,
         conditions::conditions,
@@ -15,10 +17,10 @@ use crate::{
         lifetimes::{Lifetime, Lifetimes, lifetimes},
         order::{Order, order, order_of_live},
         schedule::{Schedule, sequence},
-        work::Work,
+        view::GraphView,
     },
     graph::Graph,
-    instantiate::{build::flatten, flat::Deciding, lower::lower},
+    instantiate::{build::flatten, flat::PlanInputs, lower::lower},
     link::{
         linker::{Linked, link},
         pass::{Access, LinkedPass, PassId},
@@ -34,7 +36,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(super) struct Outcome {
     pub plan: Option<Plan>,
     pub found: Vec<Diagnostic>,
-    pub deciding: Deciding,
+    pub plan_inputs: PlanInputs,
 }
 
 impl Graph {
@@ -59,13 +61,13 @@ impl Graph {
         let backend = request.partial_backend.as_ref();
         if let Some(error) = backend.and_then(|backend| self.not_proven(backend)) {
             reports.report(error);
-            return Outcome::lacking(reports, Deciding::default());
+            return Outcome::lacking(reports, PlanInputs::default());
         }
         let Ok(params) = params else {
-            return Outcome::failed(reports, Deciding::default());
+            return Outcome::failed(reports, PlanInputs::default());
         };
         if reports.errors() > 0 {
-            return Outcome::failed(reports, Deciding::default());
+            return Outcome::failed(reports, PlanInputs::default());
         }
         let values = params.list.iter().filter_map(|bound| {
             let value = bound.value.clone().ok()?;
@@ -74,15 +76,15 @@ impl Graph {
         let values = values.collect();
         let flat = flatten(self, request, params, &mut reports);
         if lacks_features(&reports) {
-            return Outcome::lacking(reports, flat.deciding);
+            return Outcome::lacking(reports, flat.plan_inputs);
         }
         let lowered = lower(flat, &mut reports);
         check_captures(request, &lowered.passes, &mut reports);
         let mut linked = link(lowered, &mut reports);
-        let deciding = std::mem::take(&mut linked.deciding);
+        let plan_inputs = std::mem::take(&mut linked.plan_inputs);
         match self.schedule(linked, request, &mut reports) {
-            Some(scheduled) => self.finish(scheduled, request, values, (reports, deciding)),
-            None => Outcome::failed(reports, deciding),
+            Some(scheduled) => self.finish(scheduled, request, values, (reports, plan_inputs)),
+            None => Outcome::failed(reports, plan_inputs),
         }
     }
 
@@ -93,40 +95,40 @@ impl Graph {
         request: &PlanRequest<'_>,
         reports: &mut Reports,
     ) -> Option<Scheduled> {
-        let is_complete = linked.valid_prefix.is_none();
-        let valid_prefix = linked.valid_prefix.unwrap_or(linked.passes.len());
-        let order = order(linked.work(), valid_prefix, reports);
+        let is_complete = linked.first_invalid.is_none();
+        let first_invalid = linked.first_invalid.unwrap_or(linked.passes.len());
+        let order = order(linked.view(), first_invalid, reports);
         if is_complete {
-            never_written(linked.work(), &order, reports);
-            check_counters(linked.work(), &order, reports);
-            borders(&linked, reports);
+            never_written(linked.view(), &order, reports);
+            check_counters(linked.view(), &order, reports);
+            interfaces(&linked, reports);
         }
         let written = |target: &Target| !is_complete || !order.final_writers(target).is_empty();
-        let readable = readable(self, request, &mut linked.world, written, reports);
+        let readable = readable(self, request, &mut linked.symbols, written, reports);
         if !is_complete || reports.errors() > 0 {
             return None;
         }
-        let (passes, resources) = (linked.passes, linked.world.resources);
-        let work = Work {
+        let (passes, resources) = (linked.passes, linked.symbols.resources);
+        let view = GraphView {
             passes: &passes,
             resources: &resources,
         };
-        let live = live(work, &readable, &order);
-        let sequence = sequence(&order_of_live(work, &live), &live);
-        let mut lifetimes = lifetimes(work, &sequence);
-        unsized_buffers(&lifetimes, work, reports);
+        let live = live(view, &readable, &order);
+        let sequence = sequence(&order_of_live(view, &live), &live);
+        let mut lifetimes = lifetimes(view, &sequence);
+        unsized_buffers(&lifetimes, view, reports);
         // Whether conditions agree must not depend on which outputs are asked for.
-        let all: Vec<PassId> = work.ids().map(|(id, _)| id).collect();
-        conditions(work, &all, reports);
-        let conditions = conditions(work, &sequence, &mut Reports::default());
-        let previous = previous(&lifetimes, work);
+        let all: Vec<PassId> = view.ids().map(|(id, _)| id).collect();
+        conditions(view, &all, reports);
+        let conditions = conditions(view, &sequence, &mut Reports::default());
+        let previous = previous(&lifetimes, view);
         for (id, base) in &previous {
             // What the host provides is copied behind the frame, so it must be there.
             let lifetime = lifetimes[id].clone();
             lifetimes.entry(*base).or_insert(lifetime);
         }
-        further_uses(&mut lifetimes, &readable, &previous, request, work);
-        let counters: Vec<ResourceId> = growing(lifetimes.keys(), work.resources)
+        further_uses(&mut lifetimes, &readable, &previous, request, view);
+        let counters: Vec<ResourceId> = growing(lifetimes.keys(), view.resources)
             .map(|(_, growth)| growth.counter.id)
             .collect();
         for counter in &counters {
@@ -134,13 +136,13 @@ impl Graph {
                 lifetime.buffers |= wgt::BufferUsages::COPY_SRC;
             }
         }
-        usages::check(work, &sequence, request, reports);
+        usages::check(view, &sequence, request, reports);
         if reports.errors() > 0 {
             return None;
         }
         let constants = lifetimes
             .keys()
-            .filter(|id| work.resource(**id).origin == Origin::Constant);
+            .filter(|id| view.resource(**id).origin == Origin::Constant);
         let kept: BTreeSet<ResourceId> = conditions
             .kept
             .iter()
@@ -150,11 +152,11 @@ impl Graph {
             .chain(previous.values().copied())
             .chain(counters)
             .collect();
-        let aliases = aliases(work, &sequence, &lifetimes, &kept);
-        let culled = culled(work, &live);
+        let aliases = aliases(view, &sequence, &lifetimes, &kept);
+        let culled = culled(view, &live);
         let own = previous
             .values()
-            .filter(|base| work.resource(**base).origin == Origin::Own);
+            .filter(|base| view.resource(**base).origin == Origin::Own);
         let schedule = Schedule {
             ping_pong: own.copied().collect(),
             passes: sequence,
@@ -176,11 +178,11 @@ impl Graph {
         scheduled: Scheduled,
         request: &PlanRequest<'_>,
         values: BTreeMap<String, crate::document::params::ParamValue>,
-        (mut reports, deciding): (Reports, Deciding),
+        (mut reports, plan_inputs): (Reports, PlanInputs),
     ) -> Outcome {
         let mut plan = Plan {
             graph: self.clone(),
-            request: Request::of(request),
+            request: Request::new(request),
             values,
             resources: scheduled.resources,
             passes: scheduled.passes,
@@ -192,17 +194,17 @@ impl Graph {
         };
         if let Some(too_much) = plan.check_memory(request.memory_limit) {
             reports.report(too_much);
-            return Outcome::failed(reports, deciding);
+            return Outcome::failed(reports, plan_inputs);
         }
         if let Some(error) = plan.refused_light() {
             reports.report(error);
-            return Outcome::failed(reports, deciding);
+            return Outcome::failed(reports, plan_inputs);
         }
         plan.warnings = reports.into_list();
         Outcome {
             plan: Some(plan),
             found: Vec::new(),
-            deciding,
+            plan_inputs,
         }
     }
 }
@@ -217,17 +219,17 @@ struct Scheduled {
 }
 
 impl Outcome {
-    fn failed(reports: Reports, deciding: Deciding) -> Self {
+    fn failed(reports: Reports, plan_inputs: PlanInputs) -> Self {
         Self {
             plan: None,
             found: reports.into_list(),
-            deciding,
+            plan_inputs,
         }
     }
 
     /// On a device that cannot run the graph nothing else is worth knowing.
-    fn lacking(reports: Reports, deciding: Deciding) -> Self {
-        let mut outcome = Self::failed(reports, deciding);
+    fn lacking(reports: Reports, plan_inputs: PlanInputs) -> Self {
+        let mut outcome = Self::failed(reports, plan_inputs);
         outcome.found.retain(is_lacking);
         outcome
     }
@@ -243,20 +245,20 @@ fn lacks_features(reports: &Reports) -> bool {
 }
 
 impl Linked<'_> {
-    fn work(&self) -> Work<'_> {
-        Work {
+    fn view(&self) -> GraphView<'_> {
+        GraphView {
             passes: &self.passes,
-            resources: &self.world.resources,
+            resources: &self.symbols.resources,
         }
     }
 }
 
 /// Whether each pass is needed, by an output or by the host.
-fn live(work: Work<'_>, readable: &[(String, Target)], order: &Order) -> Vec<bool> {
+fn live(view: GraphView<'_>, readable: &[(String, Target)], order: &Order) -> Vec<bool> {
     // What the host imports is written for the host.
     let of_host =
-        |access: &Access| access.writes && work.resource(access.resource).origin == Origin::Host;
-    let imports = work
+        |access: &Access| access.writes && view.resource(access.resource).origin == Origin::Host;
+    let imports = view
         .ids()
         .filter(|(_, pass)| pass.accesses.iter().any(of_host));
     let roots: BTreeSet<PassId> = readable
@@ -266,7 +268,7 @@ fn live(work: Work<'_>, readable: &[(String, Target)], order: &Order) -> Vec<boo
         .collect();
     cull::live(order, roots, |pass| {
         let of = |access: &Access| {
-            let resource = work.resource(access.resource);
+            let resource = view.resource(access.resource);
             match (&resource.origin, &resource.kind) {
                 (Origin::Previous(id), _) => order.final_writers(&Target {
                     id: *id,
@@ -279,7 +281,7 @@ fn live(work: Work<'_>, readable: &[(String, Target)], order: &Order) -> Vec<boo
                 _ => BTreeSet::new(),
             }
         };
-        work.pass(pass)
+        view.pass(pass)
             .accesses
             .iter()
             .flat_map(of)
@@ -303,8 +305,8 @@ pub(super) fn growing<'a>(
 }
 
 /// The resources that are last frame's version of another one, with that one.
-fn previous(lifetimes: &Lifetimes, work: Work<'_>) -> BTreeMap<ResourceId, ResourceId> {
-    let of = |id: &ResourceId| match work.resource(*id).origin {
+fn previous(lifetimes: &Lifetimes, view: GraphView<'_>) -> BTreeMap<ResourceId, ResourceId> {
+    let of = |id: &ResourceId| match view.resource(*id).origin {
         Origin::Previous(base) => Some((*id, base)),
         _ => None,
     };
@@ -318,7 +320,7 @@ fn further_uses(
     readable: &[(String, Target)],
     previous: &BTreeMap<ResourceId, ResourceId>,
     request: &PlanRequest<'_>,
-    work: Work<'_>,
+    view: GraphView<'_>,
 ) {
     for (_, target) in readable {
         let Some(lifetime) = lifetimes.get_mut(&target.id) else {
@@ -328,7 +330,7 @@ fn further_uses(
         lifetime.buffers |= wgt::BufferUsages::COPY_SRC;
     }
     for (id, lifetime) in lifetimes.iter_mut() {
-        let resource = work.resource(*id);
+        let resource = view.resource(*id);
         let is_constant = resource.origin == Origin::Constant;
         if request.poison.is_some() || is_constant {
             fillable(&resource.kind, lifetime);
@@ -361,8 +363,8 @@ fn fillable(kind: &ResourceKind, lifetime: &mut Lifetime) {
 }
 
 /// A buffer that is only cleared or copied has no size: no shader says what its items are.
-fn unsized_buffers(lifetimes: &Lifetimes, work: Work<'_>, reports: &mut Reports) {
-    for resource in lifetimes.keys().map(|id| work.resource(*id)) {
+fn unsized_buffers(lifetimes: &Lifetimes, view: GraphView<'_>, reports: &mut Reports) {
+    for resource in lifetimes.keys().map(|id| view.resource(*id)) {
         if let ResourceKind::Buffer(Buffer { bytes: 0, .. }) = resource.kind
             && let Some(declared) = &resource.declared
         {
@@ -373,19 +375,19 @@ fn unsized_buffers(lifetimes: &Lifetimes, work: Work<'_>, reports: &mut Reports)
 }
 
 /// Reads of last frame's version of what no frame writes.
-fn never_written(work: Work<'_>, order: &Order, reports: &mut Reports) {
-    for pass in work.passes {
+fn never_written(view: GraphView<'_>, order: &Order, reports: &mut Reports) {
+    for pass in view.passes {
         for access in &pass.accesses {
-            let Origin::Previous(id) = work.resource(access.resource).origin else {
+            let Origin::Previous(id) = view.resource(access.resource).origin else {
                 continue;
             };
             let part = access.part.clone();
-            let is_host = work.resource(id).origin == Origin::Host;
+            let is_host = view.resource(id).origin == Origin::Host;
             if is_host || !order.final_writers(&Target { id, part }).is_empty() {
                 continue;
             }
             reports.report(OrderError::NeverWritten {
-                name: work.resource(id).name.clone(),
+                name: view.resource(id).name.clone(),
                 pass: pass.name.clone(),
                 read: access.span.clone(),
             });
@@ -394,13 +396,13 @@ fn never_written(work: Work<'_>, order: &Order, reports: &mut Reports) {
 }
 
 /// Buffers that grow by what no pass counts, or by items of a size that cannot be copied.
-fn check_counters(work: Work<'_>, order: &Order, reports: &mut Reports) {
-    let ids: Vec<ResourceId> = (0..work.resources.len()).map(ResourceId).collect();
-    for (id, Growth { counter, .. }) in growing(ids.iter(), work.resources) {
-        let Some(declared) = &work.resource(id).declared else {
+fn check_counters(view: GraphView<'_>, order: &Order, reports: &mut Reports) {
+    let ids: Vec<ResourceId> = (0..view.resources.len()).map(ResourceId).collect();
+    for (id, Growth { counter, .. }) in growing(ids.iter(), view.resources) {
+        let Some(declared) = &view.resource(id).declared else {
             continue;
         };
-        let Resource { name, kind, .. } = work.resource(counter.id);
+        let Resource { name, kind, .. } = view.resource(counter.id);
         let stride = match kind {
             ResourceKind::Buffer(buffer) => buffer.stride,
             _ => 0,
@@ -408,7 +410,7 @@ fn check_counters(work: Work<'_>, order: &Order, reports: &mut Reports) {
         let is_item = counter.part.items().is_some();
         if order.final_writers(counter).is_empty() {
             reports.report(OrderError::NeverCounted {
-                name: Located::new(work.resource(id).name.clone(), declared.clone()),
+                name: Located::new(view.resource(id).name.clone(), declared.clone()),
                 counter: name.clone(),
             });
         } else if is_item && (stride == 0 || stride % 4 != 0) {
@@ -421,19 +423,19 @@ fn check_counters(work: Work<'_>, order: &Order, reports: &mut Reports) {
 }
 
 /// What documents give must be written in them, and what they only take must not.
-fn borders(linked: &Linked<'_>, reports: &mut Reports) {
-    for border in &linked.borders {
+fn interfaces(linked: &Linked<'_>, reports: &mut Reports) {
+    for border in &linked.interfaces {
         let within = |pass: &usize| {
             linked.instances[*pass]
-                .is_some_and(|instance| linked.world.frames.is_within(instance, border.instance))
+                .is_some_and(|instance| linked.symbols.scopes.is_within(instance, border.instance))
         };
         let passes: Vec<usize> = (0..linked.passes.len()).filter(within).collect();
         for (name, target) in &border.outputs {
-            let has_content = linked.world.get(target.id).origin != Origin::Own;
+            let has_content = linked.symbols.get(target.id).origin != Origin::Own;
             let mut passes = passes.iter();
             if !has_content && !passes.any(|pass| linked.writes(*pass, target.id, &target.part)) {
                 let name = Located::new(name.value.to_string(), name.span.clone());
-                reports.report(BorderError::UnwrittenOutput(name));
+                reports.report(InterfaceError::UnwrittenOutput(name));
             }
         }
         for (name, target) in &border.read_only {
@@ -442,14 +444,14 @@ fn borders(linked: &Linked<'_>, reports: &mut Reports) {
             if let Some(writer) = writer {
                 let name = Located::new(name.value.to_string(), name.span.clone());
                 let by = linked.passes[*writer].name.span.clone();
-                reports.report(BorderError::WrittenInput(name, by));
+                reports.report(InterfaceError::WrittenInput(name, by));
             }
         }
     }
 }
 
-fn culled(work: Work<'_>, live: &[bool]) -> Vec<CulledPass> {
-    let passes = work.passes.iter().zip(live);
+fn culled(view: GraphView<'_>, live: &[bool]) -> Vec<CulledPass> {
+    let passes = view.passes.iter().zip(live);
     passes
         .filter(|(_, live)| !**live)
         .map(|(pass, _)| {
@@ -457,17 +459,18 @@ fn culled(work: Work<'_>, live: &[bool]) -> Vec<CulledPass> {
                 .accesses
                 .iter()
                 .filter(|access| access.writes)
-                .map(|access| format!("`{}`", work.resource(access.resource).name))
+                .map(|access| format!("`{}`", view.resource(access.resource).name))
                 .collect();
             let written: Vec<String> = written.into_iter().collect();
             CulledPass {
                 name: pass.name.value.clone(),
-                reason: match written.is_empty() {
-                    true => "it writes nothing".to_owned(),
-                    false => format!(
+                reason: if written.is_empty() {
+                    "it writes nothing".to_owned()
+                } else {
+                    format!(
                         "nothing that an output needs reads what it writes ({})",
                         written.join(", ")
-                    ),
+                    )
                 },
             }
         })

@@ -2,7 +2,7 @@
 
 use super::{make::growing, plan::Plan, text};
 use crate::{
-    diagnostics::reports::Mistake,
+    diagnostics::reports::IntoDiagnostic,
     errors::plan::OutputError,
     flow::aliases::Allocation,
     resource::{Growth, ResourceId, ResourceKind},
@@ -182,7 +182,7 @@ impl Plan {
     }
 
     /// What a plan that takes more than there is is told.
-    pub(super) fn check_memory(&self, limit: Option<u64>) -> Option<impl Mistake + use<>> {
+    pub(super) fn check_memory(&self, limit: Option<u64>) -> Option<impl IntoDiagnostic + use<>> {
         let takes = self.memory_bytes();
         let limit = limit.filter(|limit| takes > *limit)?;
         let largest = self

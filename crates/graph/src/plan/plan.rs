@@ -7,7 +7,7 @@ use crate::{
     flow::{
         order::{Dependences, dependences},
         schedule::Schedule,
-        work::Work,
+        view::GraphView,
     },
     graph::Graph,
     link::pass::{LinkedPass, PassId},
@@ -83,11 +83,11 @@ impl Plan {
     /// What passes depend on, and through which resources, as if only those ran of which `runs` is
     /// true.
     pub fn dependences(&self, runs: impl Fn(PassId) -> bool) -> Dependences {
-        let work = Work {
+        let view = GraphView {
             passes: &self.passes,
             resources: &self.resources,
         };
-        dependences(work, runs)
+        dependences(view, runs)
     }
 
     /// What the host said that it would import, by name.

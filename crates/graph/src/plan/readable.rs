@@ -4,7 +4,7 @@ use crate::{
     diagnostics::reports::Reports,
     errors::plan::OutputError,
     graph::Graph,
-    instantiate::{lower::LoweredPass, world::World},
+    instantiate::{lower::LoweredPass, symbols::SymbolTable},
     request::PlanRequest,
     resource::{ResourceKind, Target},
     source::span::Located,
@@ -14,7 +14,7 @@ use crate::{
 pub(super) fn readable(
     graph: &Graph,
     request: &PlanRequest<'_>,
-    world: &mut World<'_>,
+    symbols: &mut SymbolTable<'_>,
     written: impl Fn(&Target) -> bool,
     reports: &mut Reports,
 ) -> Vec<(String, Target)> {
@@ -29,23 +29,23 @@ pub(super) fn readable(
             });
         }
     }
-    let place = world.root();
+    let place = symbols.root();
     for output in &graph.document.outputs {
         if let Some(condition) = &output.condition {
-            match condition.boolean(&mut world.at(place, None, reports)) {
+            match condition.boolean(&mut symbols.at(place, None, reports)) {
                 Ok(true) => {}
                 Ok(false) | Err(_) => continue,
             }
         }
         let name = Located::new(output.name.value.to_string(), output.name.span.clone());
         let material = &output.material;
-        let Ok(target) = world.resolve(material, place, reports) else {
+        let Ok(target) = symbols.resolve(material, place, reports) else {
             continue;
         };
         if !written(&target) {
             let material = Located::new(material.text().to_owned(), material.span.clone());
             reports.report(OutputError::UnwrittenOutput { name, material });
-        } else if let Some(what) = unreadable(world, &target) {
+        } else if let Some(what) = unreadable(symbols, &target) {
             reports.report(OutputError::UnreadableOutput {
                 name,
                 material: material.span.clone(),
@@ -65,13 +65,13 @@ pub(super) fn readable(
             continue;
         }
         // Those after a pass were entered as resources of their own.
-        let target = match world.find_full(&name, reports) {
+        let target = match symbols.find_full(&name, reports) {
             Some(Ok(target)) => target,
             Some(Err(_)) => continue,
             None => {
                 if capture.after.is_none() {
                     let outputs = declared.iter().map(|&name| name.to_owned());
-                    let known = reports.known(world.full_names().into_iter().chain(outputs));
+                    let known = reports.known(symbols.full_names().into_iter().chain(outputs));
                     reports.report(OutputError::NoMaterial {
                         graph: graph.path().to_owned(),
                         name,
@@ -82,13 +82,13 @@ pub(super) fn readable(
             }
         };
         if matches!(
-            world.get(target.id).kind,
+            symbols.get(target.id).kind,
             ResourceKind::Provided(_) | ResourceKind::AccelerationStructure | ResourceKind::Frame
         ) {
             reports.report(OutputError::Provided(name));
         } else if !written(&target) {
             reports.report(OutputError::Unwritten(name));
-        } else if let Some(what) = unreadable(world, &target) {
+        } else if let Some(what) = unreadable(symbols, &target) {
             reports.report(OutputError::Unreadable { name, what });
         } else {
             readable.push((name, target));
@@ -119,8 +119,8 @@ pub(super) fn check_captures(
 }
 
 /// Why the content of a resource cannot come back to the host.
-fn unreadable(world: &World<'_>, target: &Target) -> Option<String> {
-    match &world.get(target.id).kind {
+fn unreadable(symbols: &SymbolTable<'_>, target: &Target) -> Option<String> {
+    match &symbols.get(target.id).kind {
         ResourceKind::Texture(texture) if texture.samples > 1 => {
             Some(format!("a texture of {} samples", texture.samples))
         }

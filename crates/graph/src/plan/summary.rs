@@ -90,23 +90,26 @@ impl Plan {
             ResourceKind::Provided(provided) if is_light(&resource.name) => provided.kind,
             _ => None,
         });
-        let takes = |kind: &ProvidedKind| match document.lights.is_empty() {
-            true => kind.number == 0,
-            false => document
-                .lights
-                .iter()
-                .any(|word| word.as_str() == kind.word()),
+        let takes = |kind: &ProvidedKind| {
+            if document.lights.is_empty() {
+                kind.number == 0
+            } else {
+                document
+                    .lights
+                    .iter()
+                    .any(|word| word.as_str() == kind.word())
+            }
         };
         let kind = kinds.into_iter().find(|kind| !takes(kind))?;
         let words = document.lights.iter().map(|word| word.value.to_string());
-        let takes = match document.lights.is_empty() {
-            true => kind
-                .words
+        let takes = if document.lights.is_empty() {
+            kind.words
                 .iter()
                 .take(1)
                 .map(|word| (*word).to_owned())
-                .collect(),
-            false => words.collect(),
+                .collect()
+        } else {
+            words.collect()
         };
         let place = document.lights.first().map(|word| word.span.clone());
         Some(OutputError::Light {

@@ -3,7 +3,7 @@
 use crate::{
     diagnostics::reports::Reports,
     errors::plan::OutputError,
-    flow::work::Work,
+    flow::view::GraphView,
     link::pass::{PassId, Usage},
     provider::Import,
     request::PlanRequest,
@@ -13,7 +13,7 @@ use crate::{
 
 /// What the host imports must have been made for what passes do with it.
 pub(super) fn check(
-    work: Work<'_>,
+    view: GraphView<'_>,
     sequence: &[PassId],
     request: &PlanRequest<'_>,
     reports: &mut Reports,
@@ -22,9 +22,9 @@ pub(super) fn check(
         let names: Vec<String> = flags.map(|(name, _)| format!("{of}::{name}")).collect();
         names.join(" | ")
     }
-    for pass in sequence.iter().map(|&pass| work.pass(pass)) {
+    for pass in sequence.iter().map(|&pass| view.pass(pass)) {
         for access in &pass.accesses {
-            let resource = work.resource(access.resource);
+            let resource = view.resource(access.resource);
             if resource.origin != Origin::Host {
                 continue;
             }

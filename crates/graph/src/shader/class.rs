@@ -62,7 +62,7 @@ impl fmt::Display for ScalarClass {
 }
 
 impl ScalarClass {
-    pub fn of(kind: naga::ScalarKind) -> Option<Self> {
+    pub fn from_kind(kind: naga::ScalarKind) -> Option<Self> {
         match kind {
             naga::ScalarKind::Float => Some(Self::Float),
             naga::ScalarKind::Uint => Some(Self::Uint),
@@ -85,9 +85,11 @@ pub(crate) struct Member {
 pub(super) fn vector(module: &naga::Module, ty: Handle<naga::Type>) -> Option<(ScalarClass, u32)> {
     match module.types[ty].inner {
         TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => {
-            Some((ScalarClass::of(scalar.kind)?, 1))
+            Some((ScalarClass::from_kind(scalar.kind)?, 1))
         }
-        TypeInner::Vector { size, scalar } => Some((ScalarClass::of(scalar.kind)?, size as u32)),
+        TypeInner::Vector { size, scalar } => {
+            Some((ScalarClass::from_kind(scalar.kind)?, size as u32))
+        }
         _ => None,
     }
 }
@@ -173,7 +175,7 @@ fn image(dim: naga::ImageDimension, arrayed: bool, class: &ImageClass) -> Class 
         })
     };
     match class {
-        ImageClass::Sampled { kind, multi } => match ScalarClass::of(*kind) {
+        ImageClass::Sampled { kind, multi } => match ScalarClass::from_kind(*kind) {
             Some(scalar) => sampled(scalar, false, *multi),
             None => Class::Unsupported("a texture of this scalar type"),
         },

@@ -23,7 +23,7 @@ struct ChoiceConstant {
 
 impl ChoiceConstants {
     /// Those of these params, and the words that give one constant.
-    pub fn of(params: &[Param]) -> (Self, Vec<ShaderError>) {
+    pub fn new(params: &[Param]) -> (Self, Vec<ShaderError>) {
         let (mut constants, mut clashes) = (BTreeMap::<String, ChoiceConstant>::new(), Vec::new());
         for param in params {
             let ParamType::Choice(words) = &param.ty else {

@@ -5,7 +5,7 @@
 
 use super::text::{BREAKS, Comments};
 use crate::{
-    diagnostics::{diagnostic::Diagnostic, reports::Mistake, suggest::likeness},
+    diagnostics::{diagnostic::Diagnostic, reports::IntoDiagnostic, suggest::likeness},
     errors::shader::ImportError,
     source::{
         paths::{escapes, folder_of, import_candidates, shader_candidates},
@@ -91,15 +91,17 @@ impl<'a> ShaderFiles<'a> {
     pub fn expand(&mut self, name: &Located<String>) -> Result<Expanded, Diagnostic> {
         let candidates = shader_candidates(folder_of(&name.span.file.name), name);
         if escapes(name) {
-            return Err(ImportError::Outside(name.clone()).diagnostic());
+            return Err(ImportError::Outside(name.clone()).into_diagnostic());
         }
         let file = match self.find(&candidates) {
             Ok(Some(file)) => file,
             Ok(None) => {
                 let likeness = self.likeness(&candidates, name);
-                return Err(ImportError::NoShader(name.clone(), candidates, likeness).diagnostic());
+                return Err(
+                    ImportError::NoShader(name.clone(), candidates, likeness).into_diagnostic()
+                );
             }
-            Err(why) => return Err(ImportError::Unreadable(name.clone(), why).diagnostic()),
+            Err(why) => return Err(ImportError::Unreadable(name.clone(), why).into_diagnostic()),
         };
         let mut expanded = Expanded {
             text: String::new(),
@@ -107,7 +109,7 @@ impl<'a> ShaderFiles<'a> {
             pieces: Vec::new(),
         };
         self.append(&file, &mut expanded, &mut vec![file.name.to_string()], 0)
-            .map_err(Mistake::diagnostic)?;
+            .map_err(IntoDiagnostic::into_diagnostic)?;
         Ok(expanded)
     }
 

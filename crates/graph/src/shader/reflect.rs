@@ -343,7 +343,7 @@ impl Shader {
         let mut overrides = self.module.overrides.iter();
         let (_, found) = overrides.find(|(_, found)| found.name.as_deref() == Some(name))?;
         let scalar = self.module.types[found.ty].inner.scalar()?;
-        ScalarClass::of(scalar.kind)
+        ScalarClass::from_kind(scalar.kind)
     }
 
     /// The value of a scalar module-scope constant.

@@ -87,7 +87,7 @@ pub(super) struct Declared<'t> {
 }
 
 impl<'t> Declared<'t> {
-    pub fn of(text: &'t str) -> Self {
+    pub fn new(text: &'t str) -> Self {
         const BEFORE_A_NAME: [&str; 8] = [
             "fn", "let", "var", "const", "override", "struct", "alias", ">",
         ];

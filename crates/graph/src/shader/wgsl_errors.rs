@@ -89,7 +89,7 @@ pub(super) fn parse_error(error: &naga::front::wgsl::ParseError, source: &Expand
 /// What may have been meant by a field or name that there is not.
 fn meant(message: &str, text: &str) -> Option<String> {
     let word = message.split('`').nth(1)?;
-    let declared = Declared::of(text);
+    let declared = Declared::new(text);
     match message.split('`').next()? {
         "invalid field accessor " => suggestion(word, declared.fields),
         "no definition in scope for identifier: " => likeness(word, declared.names),

@@ -177,10 +177,10 @@ fn what_a_group_says() {
         r#"bind: {"image": "maps[1]"},"#,
         r#", bind: {"image": "image"}"#,
     );
-    assert_eq!(codes(&checked(&own)), [Code::Unasked]);
+    assert_eq!(codes(&checked(&own)), [Code::Unused]);
     for (group, code) in [
-        (r#"bind: {"picture": "image"},"#, Code::Unasked),
-        (r#"set: {"vlaue": 1},"#, Code::Unasked),
+        (r#"bind: {"picture": "image"},"#, Code::Unused),
+        (r#"set: {"vlaue": 1},"#, Code::Unused),
         (r#"shader: "blur","#, Code::UnknownField),
         ("repeat: -1,", Code::Expression),
     ] {

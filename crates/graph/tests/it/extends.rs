@@ -235,13 +235,14 @@ fn entries_are_put_and_taken_where_a_path_says() {
         ),
     ] {
         let files = extending(&format!("passes: [{edits}]"));
-        let files = match edits.starts_with(r#"Remove(pass: "both")"#) {
-            true => files.edited(
+        let files = if edits.starts_with(r#"Remove(pass: "both")"#) {
+            files.edited(
                 "base.ron",
                 r#"from: "first", to: "second""#,
                 r#"from: "second", to: "first""#,
-            ),
-            false => files,
+            )
+        } else {
+            files
         };
         assert_eq!(all(&files).join(" "), expected, "{edits}");
     }

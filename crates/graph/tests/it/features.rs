@@ -294,7 +294,7 @@ fn samples_are_resolved() {
     assert!(
         accesses
             .iter()
-            .all(|access| access.writes && access.covers && !access.reads)
+            .all(|access| access.writes && access.fully_overwrites && !access.reads)
     );
     for (of, to, rest, code) in [
         ("Rgba8Unorm", "Rgba8Unorm", "", Code::ResourceKind),

@@ -277,13 +277,13 @@ fn nothing_else_crosses_the_border() {
         (
             r#", bind: {"own": "image"}"#,
             &[],
-            Code::Unasked,
+            Code::Unused,
             "`inner.ron` has no input, output or param `own`",
         ),
         (
             r#", set: {"vlaue": 1}"#,
             &[],
-            Code::Unasked,
+            Code::Unused,
             "`inner.ron` has no input, output or param `vlaue`",
         ),
         (
@@ -478,7 +478,7 @@ fn what_the_scene_gives_is_known_everywhere_and_may_be_replaced() {
     let other = bound(&files(r#", bind: {"light": "lights[2]"}"#));
     assert_eq!(other, (shine, "lights".to_owned(), Some(2..3)));
     let unknown = checked(&files(r#", bind: {"lihgt": "lights[2]"}"#));
-    assert_eq!(codes(&unknown), [Code::Unasked]);
+    assert_eq!(codes(&unknown), [Code::Unused]);
     assert_eq!(
         codes(&checked(&files(r#", bind: {"light": "lights[3]"}"#))),
         [Code::Range]

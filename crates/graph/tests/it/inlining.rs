@@ -142,9 +142,10 @@ impl Shape {
 
     /// What an outer pass calls the material of a number.
     fn outer(&self, number: usize) -> String {
-        match number < OWN {
-            true => format!("o{number}"),
-            false => self.full(number - OWN),
+        if number < OWN {
+            format!("o{number}")
+        } else {
+            self.full(number - OWN)
         }
     }
 
@@ -179,9 +180,12 @@ impl Shape {
     }
 
     fn included(&self) -> Files {
-        let own = |number: usize| match number < OWN {
-            true => format!("i{number}"),
-            false => format!("o{}", number - OWN),
+        let own = |number: usize| {
+            if number < OWN {
+                format!("i{number}")
+            } else {
+                format!("o{}", number - OWN)
+            }
         };
         let names: Vec<String> = (0..OWN).map(own).collect();
         // What is written of the inputs is given back, too.
@@ -263,7 +267,7 @@ fn describe(plan: &Plan) -> Vec<String> {
         let mut line = pass.name.value.clone();
         for access in &pass.accesses {
             let name = plan.resource(access.resource).name.replace('.', "_");
-            let (reads, writes, covers) = (access.reads, access.writes, access.covers);
+            let (reads, writes, covers) = (access.reads, access.writes, access.fully_overwrites);
             // Writing to a String cannot fail.
             let _ = write!(line, " {name} {:?} {reads} {writes} {covers}", access.part);
         }

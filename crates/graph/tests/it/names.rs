@@ -291,7 +291,7 @@ fn constants_for_each_pass() {
         .expect("it has one");
     assert_eq!(program.constants, [("steps".to_owned(), 8.0)]);
     for (change, code) in [
-        (format!("{all}, \"direktion\": 1"), Code::Unasked),
+        (format!("{all}, \"direktion\": 1"), Code::Unused),
         (all.replace("direction", "direktion"), Code::UnknownParam),
         (all.replace("(1, -2)", "(1, -2, 3)"), Code::ParamValue),
         (all.replace("(1, -2)", "(1, 0.5)"), Code::ParamValue),

@@ -14,7 +14,7 @@ const BY_HAND: &[(&str, &str)] = &[
     ("ComposeError::Clash", "duplicate_pass"),
     ("EvaluationError::Words", "param_cull"),
     ("EvaluationError::Unknown", "unknown_param"),
-    ("BorderError::UnwrittenOutput", "include_unwritten"),
+    ("InterfaceError::UnwrittenOutput", "include_unwritten"),
     ("OutputError::UnwrittenOutput", "output_unwritten"),
     ("ShaderError::Naga", "unparsable"),
     ("LayoutError::Alignment", "item_alignment"),
@@ -71,7 +71,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("ParamError::Unknown", "`mistakes.rs`: a request"),
     ("ParamError::Asked", "`mistakes.rs`: a request"),
     (
-        "BorderError::NoImport",
+        "InterfaceError::NoImport",
         "`mistakes.rs`: a request; `check` takes what is asked for as given",
     ),
     ("OutputError::NoOutput", "`mistakes.rs`: a request"),

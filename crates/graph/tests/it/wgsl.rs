@@ -297,13 +297,15 @@ const ACCESSES: &[(&str, &str, &str, bool)] = &[
 #[test]
 fn access_is_derived_from_the_shader() {
     let needs_clear = |declaration: &str, body: &str, clear: bool| {
-        let clear = match clear {
-            true => "Clear(name: \"reset\", target: \"items\"),",
-            false => "",
+        let clear = if clear {
+            "Clear(name: \"reset\", target: \"items\"),"
+        } else {
+            ""
         };
-        let items = match declaration.contains("storage,") {
-            true => "Buffer(name: \"items\", count: 4)",
-            false => "Texture(name: \"items\", format: R32Uint)",
+        let items = if declaration.contains("storage,") {
+            "Buffer(name: \"items\", count: 4)"
+        } else {
+            "Texture(name: \"items\", format: R32Uint)"
         };
         let sections = format!(
             "materials: [{items}, Buffer(name: \"total\")],

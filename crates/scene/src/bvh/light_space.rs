@@ -79,9 +79,10 @@ impl LightSpace {
     pub fn build(&self, mesh: &Mesh, most: usize) -> Option<(Vec<LightSpaceNode>, Bvh)> {
         let bvh = self.tree(mesh);
         // Nothing is merged in an empty one.
-        let bvh = match bvh.nodes.is_empty() {
-            true => bvh,
-            false => bvh.merged(most),
+        let bvh = if bvh.nodes.is_empty() {
+            bvh
+        } else {
+            bvh.merged(most)
         };
         Some((self.refit(&bvh, mesh)?, bvh))
     }
@@ -194,9 +195,10 @@ fn corners<'a>(bvh: &'a Bvh, mesh: &'a Mesh, leaf: &BvhNode) -> impl Iterator<It
 /// The greatest f32 that is not greater.
 fn down(value: f64) -> f32 {
     let near = value as f32;
-    match f64::from(near) > value {
-        true => near.next_down(),
-        false => near,
+    if f64::from(near) > value {
+        near.next_down()
+    } else {
+        near
     }
 }
 

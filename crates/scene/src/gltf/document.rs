@@ -55,9 +55,10 @@ pub(super) fn parse(bytes: &[u8], materials: MaterialUse) -> Result<Parsed, Faul
 }
 
 fn in_json(why: &serde_json::Error) -> Fault {
-    let cut = match why.is_eof() {
-        true => ": the file is cut off",
-        false => "",
+    let cut = if why.is_eof() {
+        ": the file is cut off"
+    } else {
+        ""
     };
     ("its JSON".to_owned(), format!("{why}{cut}"))
 }

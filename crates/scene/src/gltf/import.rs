@@ -151,7 +151,7 @@ impl<'a> Import<'a> {
     }
 
     fn read_nodes(&mut self) -> Result<(), Fault> {
-        let Some(nodes) = Nodes::of(self.document, self.beside)? else {
+        let Some(nodes) = Nodes::new(self.document, self.beside)? else {
             for mesh in self.document.meshes() {
                 let placing = Placing {
                     group: group(&mesh, None),
@@ -226,9 +226,10 @@ impl<'a> Import<'a> {
             None => false,
         };
         // The transform of a skinned mesh's own node counts for nothing.
-        let node = match is_skinned {
-            true => DMat4::IDENTITY,
-            false => placing.node,
+        let node = if is_skinned {
+            DMat4::IDENTITY
+        } else {
+            placing.node
         };
         let triangles = self.triangles(primitive.mode(), &arrays.indices, arrays.restart);
         for instance in &placing.instances {

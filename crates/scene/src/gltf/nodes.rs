@@ -19,7 +19,7 @@ impl<'a> Nodes<'a> {
     ///
     /// # Errors
     /// A node with two parents, or a transform that is not finite.
-    pub fn of(document: &'a Document, beside: &Beside) -> Result<Option<Self>, Fault> {
+    pub fn new(document: &'a Document, beside: &Beside) -> Result<Option<Self>, Fault> {
         let mut scenes = document.scenes();
         let Some(scene) = document.default_scene().or_else(|| scenes.next()) else {
             return Ok(None);

@@ -209,9 +209,10 @@ pub(super) fn instances(
     }
     let turn = |[x, y, z, w]: [f32; 4]| {
         let turn = DQuat::from_xyzw(x.into(), y.into(), z.into(), w.into());
-        match turn.length_squared() > 0.0 {
-            true => turn.normalize(),
-            false => DQuat::IDENTITY,
+        if turn.length_squared() > 0.0 {
+            turn.normalize()
+        } else {
+            DQuat::IDENTITY
         }
     };
     let at = |item: usize| {

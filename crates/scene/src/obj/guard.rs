@@ -454,9 +454,10 @@ fn resolve(written: &str, available: Available) -> Option<Result<usize, (String,
         return None;
     }
     let counts_back = written.starts_with('-');
-    let most = match counts_back {
-        true => available.above,
-        false => available.total,
+    let most = if counts_back {
+        available.above
+    } else {
+        available.total
     };
     let index = match digits.parse::<usize>() {
         Ok(back) if counts_back => (most + 1).checked_sub(back).filter(|_| back > 0),

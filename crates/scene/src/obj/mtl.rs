@@ -229,9 +229,10 @@ impl Reading<'_> {
             let name = source.display().to_string();
             Texture::new(name, Source::File(source), [statement.wrap; 2])
         });
-        let (mask, mask_uvs) = match self.with_masks {
-            true => self.mask(file, &place, from)?,
-            false => (None, None),
+        let (mask, mask_uvs) = if self.with_masks {
+            self.mask(file, &place, from)?
+        } else {
+            (None, None)
         };
         let colour_uvs = colour.map_or(UvTransform::IDENTITY, |statement| statement.uv);
         let uvs = mask_uvs.unwrap_or(colour_uvs);
@@ -317,9 +318,10 @@ fn level(channel: Channel, own: usize, texel: [u8; 4]) -> f32 {
 
 /// Alpha where a texture has any, red of a grey one.
 fn opacity_channel(texels: &Texels) -> usize {
-    match texels.has_alpha && texels.rgba.iter().any(|texel| texel[3] < 255) {
-        true => 3,
-        false => 0,
+    if texels.has_alpha && texels.rgba.iter().any(|texel| texel[3] < 255) {
+        3
+    } else {
+        0
     }
 }
 

@@ -114,16 +114,15 @@ fn load_with(
     concave: Concave,
 ) -> Result<(Mesh, ImportReport), SceneError> {
     let path = faults().join(file);
-    match file.ends_with(".obj") {
-        true => {
-            let options = ObjOptions {
-                materials: ObjMaterials::from(materials),
-                concave,
-                ..ObjOptions::default()
-            };
-            load_obj(&path, &options)
-        }
-        false => load_gltf(&path, materials),
+    if file.ends_with(".obj") {
+        let options = ObjOptions {
+            materials: ObjMaterials::from(materials),
+            concave,
+            ..ObjOptions::default()
+        };
+        load_obj(&path, &options)
+    } else {
+        load_gltf(&path, materials)
     }
 }
 

@@ -78,9 +78,10 @@ fn indices_that_name_nothing() {
         "18446744073709551617",
         "-9223372036854775808",
     ] {
-        let there = match index.starts_with('-') {
-            true => "3 vertices stand above it",
-            false => "the file has 3 vertices",
+        let there = if index.starts_with('-') {
+            "3 vertices stand above it"
+        } else {
+            "the file has 3 vertices"
         };
         let part = format!("(line 4) names vertex {index}, but {there}");
         assert_error(format!("{vertices}f 1 2 {index}\n"), "house.obj: ", &part);

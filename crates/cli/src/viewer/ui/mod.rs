@@ -42,9 +42,10 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer, surface: &mut Surface) {
 fn state_line(ui: &mut Ui, viewer: &Viewer) {
     ui.horizontal_wrapped(|ui| {
         if let Some((text, is_error)) = &viewer.notice {
-            let colour = match is_error {
-                true => ui.visuals().error_fg_color,
-                false => ui.visuals().text_color(),
+            let colour = if *is_error {
+                ui.visuals().error_fg_color
+            } else {
+                ui.visuals().text_color()
             };
             ui.label(RichText::new(text).color(colour));
         } else if viewer.is_current() {

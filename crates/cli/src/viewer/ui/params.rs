@@ -99,9 +99,10 @@ fn slider(
     }
     let low = bounds.0.unwrap_or(f64::from(f32::MIN));
     let high = bounds.1.unwrap_or(f64::from(f32::MAX));
-    let speed = match is_whole {
-        true => 0.2,
-        false => (number.abs() * 0.01).max(1e-4),
+    let speed = if is_whole {
+        0.2
+    } else {
+        (number.abs() * 0.01).max(1e-4)
     };
     ui.horizontal(|ui| {
         let drag = DragValue::new(number).range(low..=high).speed(speed);

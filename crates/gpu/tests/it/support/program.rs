@@ -38,10 +38,7 @@ fn each(globals: &str, items: usize, value: &str) -> String {
 impl Pass {
     /// How many items it writes.
     fn items(&self) -> usize {
-        match self.whole {
-            true => ITEMS,
-            false => ITEMS / 2,
-        }
+        if self.whole { ITEMS } else { ITEMS / 2 }
     }
 
     /// The entry of the document and the shader: a sum of what is read, times a large number.
@@ -60,14 +57,12 @@ impl Pass {
             let _ = writeln!(globals, "var<storage, read> r{number}: array<u32>;");
             let _ = write!(sum, " + {}u * r{number}[i]", 2 * number + 3);
         }
-        let overwrites = match self.whole {
-            true => format!("overwrites: [\"m{target}\"],"),
-            false => String::new(),
+        let overwrites = if self.whole {
+            format!("overwrites: [\"m{target}\"],")
+        } else {
+            String::new()
         };
-        let condition = match self.optional {
-            true => "if: \"extra\",",
-            false => "",
-        };
+        let condition = if self.optional { "if: \"extra\"," } else { "" };
         let more = format!("run: {run}, {overwrites} {condition}");
         let pass = compute(&format!("p{index}"), &more, &bind);
         let value = format!("({sum}) * 2654435761u");

@@ -1,12 +1,12 @@
 //! Resources of a plan, and how references of its documents find them.
 
 use super::{
-    frames::{FrameId, Frames, Meaning, Place},
+    scopes::{Position, ScopeId, Scopes, Symbol},
     state::{Declared, State},
 };
 use crate::{
-    diagnostics::reports::{Reported, Reports},
-    errors::instantiate::BorderError,
+    diagnostics::reports::{ErrorGuaranteed, Reports},
+    errors::instantiate::InterfaceError,
     graph::Graph,
     language::{
         name::wgsl_identifier,
@@ -22,10 +22,10 @@ use crate::{
 use std::collections::{BTreeMap, HashMap};
 
 /// Everything that names of a graph can mean in one plan.
-pub(crate) struct World<'a> {
+pub(crate) struct SymbolTable<'a> {
     pub graph: &'a Graph,
     pub request: &'a PlanRequest<'a>,
-    pub frames: Frames,
+    pub scopes: Scopes,
     pub resources: Vec<Resource>,
     /// Of each resource: whether its size is known.
     pub(super) states: Vec<State>,
@@ -34,12 +34,12 @@ pub(crate) struct World<'a> {
     /// Resources of the scene that were named so far.
     scene: HashMap<String, ResourceId>,
     /// How shaders spell the names of the scene.
-    spelt: HashMap<String, String>,
+    wgsl_name: HashMap<String, String>,
     /// Last frame's versions, by the resource that they are versions of.
     previous: BTreeMap<ResourceId, ResourceId>,
 }
 
-impl<'a> World<'a> {
+impl<'a> SymbolTable<'a> {
     pub fn new(graph: &'a Graph, request: &'a PlanRequest<'a>) -> Self {
         let names = request
             .provider
@@ -49,12 +49,12 @@ impl<'a> World<'a> {
         Self {
             graph,
             request,
-            frames: Frames::default(),
+            scopes: Scopes::default(),
             resources: Vec::new(),
             states: Vec::new(),
             evaluating: Vec::new(),
             scene: HashMap::new(),
-            spelt: names.map(|name| (wgsl_identifier(&name), name)).collect(),
+            wgsl_name: names.map(|name| (wgsl_identifier(&name), name)).collect(),
             previous: BTreeMap::new(),
         }
     }
@@ -88,9 +88,9 @@ impl<'a> World<'a> {
     }
 
     /// A buffer whose number of items was asked for and is not known.
-    pub(super) fn mark_broken(&mut self, id: ResourceId, reported: Reported) {
+    pub(super) fn mark_invalid(&mut self, id: ResourceId, reported: ErrorGuaranteed) {
         if matches!(self.get(id).kind, ResourceKind::Buffer(_)) {
-            self.states[id.0] = State::Broken(reported);
+            self.states[id.0] = State::Invalid(reported);
         }
     }
 
@@ -107,26 +107,26 @@ impl<'a> World<'a> {
     pub fn resolve(
         &mut self,
         reference: &Reference,
-        place: Place,
+        position: Position,
         reports: &mut Reports,
-    ) -> Result<Target, Reported> {
-        let (mut target, selection) = self.named(reference, place, reports)?;
-        self.settle(target.id, reports)?;
+    ) -> Result<Target, ErrorGuaranteed> {
+        let (mut target, selection) = self.named(reference, position, reports)?;
+        self.resolve_size(target.id, reports)?;
         // A part of an input is a part of what is bound to it; a whole one is known only now.
         if target.part == SubresourceRange::WHOLE {
             target = self.whole(target.id);
         }
         // Mips first: of a 3D texture they have fewer slices.
         if let Some(mips) = &reference.mips {
-            self.select_mips(&mut target, mips, reference, place, reports)?;
+            self.select_mips(&mut target, mips, reference, position, reports)?;
         }
         if let Some(selection) = selection {
-            self.select_layers(&mut target, selection, reference, place, reports)?;
+            self.select_layers(&mut target, selection, reference, position, reports)?;
         }
         if reference.previous {
             let id = self.previous(target.id);
             target.id = id.map_err(|what| {
-                reports.report(BorderError::NoPrevious {
+                reports.report(InterfaceError::NoPrevious {
                     name: reference.text().to_owned(),
                     span: reference.span.clone(),
                     what,
@@ -140,46 +140,46 @@ impl<'a> World<'a> {
     fn named<'r>(
         &mut self,
         reference: &'r Reference,
-        place: Place,
+        position: Position,
         reports: &mut Reports,
-    ) -> Result<(Target, Option<&'r Selection>), Reported> {
+    ) -> Result<(Target, Option<&'r Selection>), ErrorGuaranteed> {
         let first = &reference.segments[0];
-        let Some(meaning) = self.frames.find(place.frame, &first.name.value).cloned() else {
-            return self.of_scene(reference, place, reports);
+        let Some(symbol) = self.scopes.find(position.scope, &first.name.value).cloned() else {
+            return self.of_scene(reference, position, reports);
         };
-        let mut meaning = meaning;
+        let mut symbol = symbol;
         let mut walked = first.name.value.to_string();
         let mut segments = reference.segments.iter().peekable();
         while let Some(segment) = segments.next() {
-            let names = match meaning {
-                Meaning::Broken(reported) => return Err(reported),
-                Meaning::Target(target) => {
+            let names = match symbol {
+                Symbol::Invalid(reported) => return Err(reported),
+                Symbol::Target(target) => {
                     return match segments.peek() {
                         None => Ok((target, segment.selection.as_ref())),
-                        Some(next) => Err(reports.report(BorderError::NotOfMaterial {
+                        Some(next) => Err(reports.report(InterfaceError::NotOfMaterial {
                             of: walked,
                             name: Located::new(next.name.value.to_string(), next.name.span.clone()),
                         })),
                     };
                 }
-                Meaning::Namespace(names) => names,
-                Meaning::Repeated(list) => {
-                    let index = self.repetition(segment, list.len(), place, reports)?;
+                Symbol::Namespace(names) => names,
+                Symbol::Repeated(list) => {
+                    let index = self.repetition(segment, list.len(), position, reports)?;
                     list.into_iter().nth(index).unwrap_or_default()
                 }
             };
             let Some(next) = segments.peek() else {
                 let name = Located::new(walked, segment.name.span.clone());
-                return Err(reports.report(BorderError::Namespace(name)));
+                return Err(reports.report(InterfaceError::Namespace(name)));
             };
             let Some(found) = names.get(&next.name.value) else {
                 let known = reports.known(names.keys().map(|name| name.to_string()));
                 return Err(self.private(&walked, &next.name, known, reports));
             };
             walked = format!("{walked}.{}", next.name.value);
-            meaning = found.clone();
+            symbol = found.clone();
         }
-        Err(self.unknown(reference, place, reports))
+        Err(self.unknown(reference, position, reports))
     }
 
     fn private(
@@ -188,8 +188,8 @@ impl<'a> World<'a> {
         name: &Located<crate::language::name::Name>,
         known: Vec<String>,
         reports: &mut Reports,
-    ) -> Reported {
-        reports.report(BorderError::Private {
+    ) -> ErrorGuaranteed {
+        reports.report(InterfaceError::Private {
             entry: entry.to_owned(),
             name: Located::new(name.value.to_string(), name.span.clone()),
             known,
@@ -201,18 +201,18 @@ impl<'a> World<'a> {
         &mut self,
         segment: &Segment,
         count: usize,
-        place: Place,
+        position: Position,
         reports: &mut Reports,
-    ) -> Result<usize, Reported> {
+    ) -> Result<usize, ErrorGuaranteed> {
         let name = &segment.name;
         let Some(Selection::One(expr)) = &segment.selection else {
             let name = Located::new(name.value.to_string(), name.span.clone());
-            return Err(reports.report(BorderError::Namespace(name)));
+            return Err(reports.report(InterfaceError::Namespace(name)));
         };
-        let index = expr.count(&mut self.at(place, None, reports))?;
+        let index = expr.count(&mut self.at(position, None, reports))?;
         let index = usize::try_from(index).ok().filter(|index| *index < count);
         index.ok_or_else(|| {
-            reports.report(BorderError::Range {
+            reports.report(InterfaceError::Range {
                 text: format!("{}[{}]", name.value, expr.text()),
                 span: expr.span.clone(),
                 what: format!("it is repeated {count} times, counted from 0"),
@@ -225,9 +225,9 @@ impl<'a> World<'a> {
     fn of_scene<'r>(
         &mut self,
         reference: &'r Reference,
-        place: Place,
+        position: Position,
         reports: &mut Reports,
-    ) -> Result<(Target, Option<&'r Selection>), Reported> {
+    ) -> Result<(Target, Option<&'r Selection>), ErrorGuaranteed> {
         let path = reference.path();
         let (last, others) = match reference.segments.split_last() {
             Some((last, others)) => (last.selection.as_ref(), others),
@@ -235,13 +235,13 @@ impl<'a> World<'a> {
         };
         let is_plain = others.iter().all(|segment| segment.selection.is_none());
         if let (Some(Selection::One(number)), true) = (last, is_plain)
-            && let Some(of_list) = self.of_list(&path, number, reference, place, reports)
+            && let Some(of_list) = self.of_list(&path, number, reference, position, reports)
         {
             return of_list.map(|target| (target, None));
         }
-        match self.find_scene(&path, place.frame).filter(|_| is_plain) {
+        match self.find_scene(&path, position.scope).filter(|_| is_plain) {
             Some(target) => Ok((target?, last)),
-            None => Err(self.unknown(reference, place, reports)),
+            None => Err(self.unknown(reference, position, reports)),
         }
     }
 
@@ -252,23 +252,23 @@ impl<'a> World<'a> {
         list: &str,
         number: &Expr,
         reference: &Reference,
-        place: Place,
+        position: Position,
         reports: &mut Reports,
-    ) -> Option<Result<Target, Reported>> {
-        let instance = self.frames.instance_of(place.frame);
-        if self.frames.scene(instance, list).is_some() {
+    ) -> Option<Result<Target, ErrorGuaranteed>> {
+        let instance = self.scopes.instance_of(position.scope);
+        if self.scopes.scene(instance, list).is_some() {
             return None;
         }
         let provider = self.request.provider;
         provider.describe(&format!("{list}.0"))?;
         let count = provider.describe(list)?.items?;
-        let number = match number.count(&mut self.at(place, None, reports)) {
+        let number = match number.count(&mut self.at(position, None, reports)) {
             Ok(number) => number,
             Err(reported) => return Some(Err(reported)),
         };
-        let found = self.find_scene(&format!("{list}.{number}"), place.frame);
+        let found = self.find_scene(&format!("{list}.{number}"), position.scope);
         Some(found.unwrap_or_else(|| {
-            Err(reports.report(BorderError::Range {
+            Err(reports.report(InterfaceError::Range {
                 text: reference.text().to_owned(),
                 span: reference.span.clone(),
                 what: format!("there are {count} of them, counted from 0; this is [{number}]"),
@@ -278,9 +278,13 @@ impl<'a> World<'a> {
     }
 
     /// What a name of the scene stands for in a frame.
-    pub fn find_scene(&mut self, name: &str, frame: FrameId) -> Option<Result<Target, Reported>> {
-        let instance = self.frames.instance_of(frame);
-        if let Some(bound) = self.frames.scene(instance, name) {
+    pub fn find_scene(
+        &mut self,
+        name: &str,
+        scope: ScopeId,
+    ) -> Option<Result<Target, ErrorGuaranteed>> {
+        let instance = self.scopes.instance_of(scope);
+        if let Some(bound) = self.scopes.scene(instance, name) {
             return Some(bound);
         }
         let id = match self.scene.get(name) {
@@ -310,8 +314,8 @@ impl<'a> World<'a> {
 
     /// The kind of what a name of the scene stands for in a frame. A document's own material that
     /// stands in for it is of the first kind.
-    pub fn provided_kind(&mut self, name: &str, frame: FrameId) -> Option<ProvidedKind> {
-        let target = self.find_scene(name, frame)?.ok()?;
+    pub fn provided_kind(&mut self, name: &str, scope: ScopeId) -> Option<ProvidedKind> {
+        let target = self.find_scene(name, scope)?.ok()?;
         if let ResourceKind::Provided(provided) = &self.get(target.id).kind {
             return provided.kind;
         }
@@ -320,32 +324,33 @@ impl<'a> World<'a> {
     }
 
     /// The kind that a shader asks for by an overridable constant of that name: `light_kind`.
-    pub fn kind_spelt(&mut self, constant: &str, frame: FrameId) -> Option<ProvidedKind> {
-        let name = self.spelt.get(constant.strip_suffix("_kind")?)?.clone();
-        self.provided_kind(&name, frame)
+    pub fn kind_of_wgsl_name(&mut self, constant: &str, scope: ScopeId) -> Option<ProvidedKind> {
+        let name = self.wgsl_name.get(constant.strip_suffix("_kind")?)?.clone();
+        self.provided_kind(&name, scope)
     }
 
     /// What a shader's global of that name stands for in a frame.
     pub fn find_global(
         &mut self,
         global: &str,
-        frame: FrameId,
+        scope: ScopeId,
         reports: &mut Reports,
-    ) -> Option<Result<Target, Reported>> {
-        let found = self.frames.find_spelt(frame, global).or_else(|| {
-            let name = self.spelt.get(global).cloned()?;
-            self.find_scene(&name, frame)
+    ) -> Option<Result<Target, ErrorGuaranteed>> {
+        let found = self.scopes.find_wgsl_name(scope, global).or_else(|| {
+            let name = self.wgsl_name.get(global).cloned()?;
+            self.find_scene(&name, scope)
         });
         if let Some(found) = found {
             return Some(found.and_then(|target| {
-                self.settle(target.id, reports)?;
-                Ok(match target.part == SubresourceRange::WHOLE {
-                    true => self.whole(target.id),
-                    false => target,
+                self.resolve_size(target.id, reports)?;
+                Ok(if target.part == SubresourceRange::WHOLE {
+                    self.whole(target.id)
+                } else {
+                    target
                 })
             }));
         }
-        let base = self.find_global(global.strip_suffix("_previous")?, frame, reports)?;
+        let base = self.find_global(global.strip_suffix("_previous")?, scope, reports)?;
         let previous = base.map(|base| {
             let id = self.previous(base.id).ok()?;
             Some(Target { id, ..base })
@@ -354,13 +359,18 @@ impl<'a> World<'a> {
     }
 
     /// Reports a reference that names nothing.
-    fn unknown(&self, reference: &Reference, place: Place, reports: &mut Reports) -> Reported {
-        let instance = self.frames.document(place.frame);
+    fn unknown(
+        &self,
+        reference: &Reference,
+        position: Position,
+        reports: &mut Reports,
+    ) -> ErrorGuaranteed {
+        let instance = self.scopes.document(position.scope);
         if let Some(reported) = instance.incomplete {
             return reported;
         }
-        let known = reports.known(self.known(place.frame));
-        reports.report(BorderError::Unknown {
+        let known = reports.known(self.known(position.scope));
+        reports.report(InterfaceError::Unknown {
             name: Located::new(reference.path(), reference.span.clone()),
             document: instance.document.file.name.to_string(),
             known,
@@ -368,9 +378,9 @@ impl<'a> World<'a> {
     }
 
     /// The place of the root document's own expressions.
-    pub fn root(&self) -> Place {
-        Place {
-            frame: self.frames.root(),
+    pub fn root(&self) -> Position {
+        Position {
+            scope: self.scopes.root(),
             index: None,
         }
     }
@@ -381,14 +391,14 @@ impl<'a> World<'a> {
         &mut self,
         name: &str,
         reports: &mut Reports,
-    ) -> Option<Result<Target, Reported>> {
+    ) -> Option<Result<Target, ErrorGuaranteed>> {
         let known = self
             .resources
             .iter()
             .position(|resource| resource.name == name);
         if let Some(number) = known {
             let id = ResourceId(number);
-            return Some(self.settle(id, reports).map(|()| self.whole(id)));
+            return Some(self.resolve_size(id, reports).map(|()| self.whole(id)));
         }
         // A file of its own, so that mistakes in it are told as those of a command.
         let file = SourceFile::new("command line", name);
@@ -413,8 +423,8 @@ impl<'a> World<'a> {
     }
 
     /// Every name that is known in a frame, its document's first.
-    pub fn known(&self, frame: FrameId) -> Vec<String> {
-        let mut known = self.frames.known(frame);
+    pub fn known(&self, scope: ScopeId) -> Vec<String> {
+        let mut known = self.scopes.known(scope);
         known.extend(self.request.provider.names());
         known
     }

@@ -16,7 +16,7 @@ use skiagraph_graph::{Growth, Plan, ResourceId, ResourceKind};
 const COUNTER: u64 = 4;
 
 /// A buffer that may grow, and its counter on the way to the host.
-pub(super) struct Watch {
+pub(super) struct GrowthReadback {
     /// Full name of the buffer.
     pub name: String,
     count: u64,
@@ -27,10 +27,10 @@ pub(super) struct Watch {
     is_asked: bool,
 }
 
-impl Watch {
+impl GrowthReadback {
     /// Those of a plan that have not yet grown as far as they may.
     pub fn all(plan: &Plan, device: &wgpu::Device) -> Result<Vec<Self>, ExecuteError> {
-        let watch = |(id, growth): (ResourceId, Growth)| {
+        let readback = |(id, growth): (ResourceId, Growth)| {
             let resource = plan.resource(id);
             let ResourceKind::Buffer(buffer) = &resource.kind else {
                 return None;
@@ -53,17 +53,20 @@ impl Watch {
                 is_asked: false,
             }))
         };
-        plan.growing().into_iter().filter_map(watch).collect()
+        plan.growing().into_iter().filter_map(readback).collect()
     }
 
     /// Goes on with what a plan before had under way for the same buffers: a host that changes its
     /// plan in every frame would lose each counter otherwise.
-    pub fn take_over(watches: &mut [Self], before: Vec<Self>) {
+    pub fn take_over(growth_readbacks: &mut [Self], before: Vec<Self>) {
         for old in before {
-            if let Some(watch) = watches.iter_mut().find(|watch| watch.name == old.name) {
-                watch.staging = old.staging;
-                watch.mapped = old.mapped;
-                watch.is_asked = old.is_asked;
+            if let Some(readback) = growth_readbacks
+                .iter_mut()
+                .find(|readback| readback.name == old.name)
+            {
+                readback.staging = old.staging;
+                readback.mapped = old.mapped;
+                readback.is_asked = old.is_asked;
             }
         }
     }

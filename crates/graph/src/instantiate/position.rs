@@ -1,9 +1,9 @@
 //! Expressions and selections at their places in a document.
 
-use super::{frames::Place, world::World};
+use super::{scopes::Position, symbols::SymbolTable};
 use crate::{
-    diagnostics::reports::{Reported, Reports},
-    errors::{evaluation::EvaluationError, instantiate::BorderError},
+    diagnostics::reports::{ErrorGuaranteed, Reports},
+    errors::{evaluation::EvaluationError, instantiate::InterfaceError},
     language::{
         eval::Environment,
         name::Name,
@@ -19,23 +19,23 @@ use std::{ops::Range, sync::Arc};
 
 /// What names of an expression stand for at a place of a document.
 pub(crate) struct At<'w, 'a, 'r> {
-    world: &'w mut World<'a>,
-    place: Place,
+    symbols: &'w mut SymbolTable<'a>,
+    position: Position,
     /// The shader of the pass, where it is one's expression.
-    shader: Option<Result<Arc<Shader>, Reported>>,
+    shader: Option<Result<Arc<Shader>, ErrorGuaranteed>>,
     reports: &'r mut Reports,
 }
 
-impl<'a> World<'a> {
+impl<'a> SymbolTable<'a> {
     pub fn at<'w, 'r>(
         &'w mut self,
-        place: Place,
-        shader: Option<Result<Arc<Shader>, Reported>>,
+        position: Position,
+        shader: Option<Result<Arc<Shader>, ErrorGuaranteed>>,
         reports: &'r mut Reports,
     ) -> At<'w, 'a, 'r> {
         At {
-            world: self,
-            place,
+            symbols: self,
+            position,
             shader,
             reports,
         }
@@ -47,9 +47,9 @@ impl<'a> World<'a> {
         target: &mut Target,
         selection: &Selection,
         reference: &Reference,
-        place: Place,
+        position: Position,
         reports: &mut Reports,
-    ) -> Result<(), Reported> {
+    ) -> Result<(), ErrorGuaranteed> {
         let resource = self.get(target.id);
         let (what, count) = match &resource.kind {
             ResourceKind::Texture(texture) => {
@@ -61,7 +61,7 @@ impl<'a> World<'a> {
             ResourceKind::Sampler(_)
             | ResourceKind::AccelerationStructure
             | ResourceKind::Frame => {
-                return Err(reports.report(BorderError::NoPart {
+                return Err(reports.report(InterfaceError::NoPart {
                     text: reference.text().to_owned(),
                     span: reference.span.clone(),
                     what: "only textures and buffers have parts",
@@ -76,10 +76,18 @@ impl<'a> World<'a> {
             let name = Located::new(reference.path(), reference.span.clone());
             return Err(reports.report(self.uncounted(target, name)));
         };
-        let range = self.range(selection, (what, count), reference, target, place, reports)?;
-        let start = match target.part == SubresourceRange::WHOLE {
-            true => 0,
-            false => target.part.layers.start,
+        let range = self.range(
+            selection,
+            (what, count),
+            reference,
+            target,
+            position,
+            reports,
+        )?;
+        let start = if target.part == SubresourceRange::WHOLE {
+            0
+        } else {
+            target.part.layers.start
         };
         target.part.layers = start + range.start..start + range.end;
         Ok(())
@@ -99,18 +107,18 @@ impl<'a> World<'a> {
         target: &mut Target,
         selection: &Selection,
         reference: &Reference,
-        place: Place,
+        position: Position,
         reports: &mut Reports,
-    ) -> Result<(), Reported> {
+    ) -> Result<(), ErrorGuaranteed> {
         if !matches!(self.get(target.id).kind, ResourceKind::Texture(_)) {
-            return Err(reports.report(BorderError::NoPart {
+            return Err(reports.report(InterfaceError::NoPart {
                 text: reference.path(),
                 span: reference.span.clone(),
                 what: "only textures have mips",
             }));
         }
         let have = ("mips", target.part.mips.len() as u64);
-        let range = self.range(selection, have, reference, target, place, reports)?;
+        let range = self.range(selection, have, reference, target, position, reports)?;
         let start = target.part.mips.start;
         target.part.mips = start + range.start..start + range.end;
         if let ResourceKind::Texture(texture) = &self.get(target.id).kind
@@ -118,7 +126,7 @@ impl<'a> World<'a> {
         {
             let layers = texture.mip_layers(target.part.mips.start);
             if target.part.layers.start >= layers {
-                return Err(reports.report(BorderError::NoPart {
+                return Err(reports.report(InterfaceError::NoPart {
                     text: reference.text().to_owned(),
                     span: reference.span.clone(),
                     what: "this mip has fewer slices",
@@ -136,10 +144,10 @@ impl<'a> World<'a> {
         (what, count): (&str, u64),
         reference: &Reference,
         target: &Target,
-        place: Place,
+        position: Position,
         reports: &mut Reports,
-    ) -> Result<Range<u32>, Reported> {
-        let at = &mut self.at(place, None, reports);
+    ) -> Result<Range<u32>, ErrorGuaranteed> {
+        let at = &mut self.at(position, None, reports);
         let (range, span) = match selection {
             Selection::One(one) => {
                 let first = one.count(at)?;
@@ -154,7 +162,7 @@ impl<'a> World<'a> {
         let narrow = || Some(u32::try_from(range.start).ok()?..u32::try_from(range.end).ok()?);
         narrow().filter(|_| fits).ok_or_else(|| {
             let last = count.saturating_sub(1);
-            reports.report(BorderError::Range {
+            reports.report(InterfaceError::Range {
                 text: reference.text().to_owned(),
                 span: span.clone(),
                 what: match count {
@@ -182,12 +190,12 @@ impl<'a> World<'a> {
             _ => return None,
         };
         let [width, height] = texture.mip_size(part.mips.start);
-        let layers = match texture.is_3d {
-            true => part
-                .layers
+        let layers = if texture.is_3d {
+            part.layers
                 .len()
-                .min(texture.mip_layers(part.mips.start) as usize),
-            false => part.layers.len(),
+                .min(texture.mip_layers(part.mips.start) as usize)
+        } else {
+            part.layers.len()
         };
         let whole = |number: u32| Scalar::Whole(number.into());
         Some(match attribute {
@@ -225,37 +233,41 @@ impl<'a> World<'a> {
 
 impl Environment for At<'_, '_, '_> {
     fn viewport(&self) -> [u32; 2] {
-        self.world.request.viewport
+        self.symbols.request.viewport
     }
 
     fn has(&self, feature: wgt::Features) -> bool {
-        self.world.request.features.contains(feature)
+        self.symbols.request.features.contains(feature)
     }
 
     fn provided_items(&self, name: &str) -> Option<u64> {
-        self.world.request.provider.describe(name)?.items
+        self.symbols.request.provider.describe(name)?.items
     }
 
-    fn param(&mut self, name: &str, span: &Span) -> Result<Value, Reported> {
-        let instance = self.world.frames.document(self.place.frame);
+    fn param(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed> {
+        let instance = self.symbols.scopes.document(self.position.scope);
         if let Some(value) = instance.params.value(name, self.reports) {
             return value;
         }
-        if let Some(reported) = instance.document.broken_params {
+        if let Some(reported) = instance.document.invalid_params {
             return Err(reported);
         }
-        let is_material = self.world.frames.find(self.place.frame, name).is_some();
+        let is_material = self
+            .symbols
+            .scopes
+            .find(self.position.scope, name)
+            .is_some();
         let known = self.reports.known(instance.params.names());
         Err(self.report(EvaluationError::param(name, span, is_material, known)))
     }
 
     fn word_or_param(&mut self, name: &Name) -> Option<Value> {
-        let instance = self.world.frames.document(self.place.frame);
+        let instance = self.symbols.scopes.document(self.position.scope);
         instance.params.value(name, self.reports)?.ok()
     }
 
-    fn index(&mut self, of: Option<&Name>, span: &Span) -> Result<u32, Reported> {
-        let index = self.world.frames.index(self.place, of);
+    fn index(&mut self, of: Option<&Name>, span: &Span) -> Result<u32, ErrorGuaranteed> {
+        let index = self.symbols.scopes.index(self.position, of);
         let missing = || EvaluationError::NoIndex(span.clone(), of.cloned());
         index.ok_or_else(|| self.reports.report(missing()))
     }
@@ -265,21 +277,21 @@ impl Environment for At<'_, '_, '_> {
         of: &Reference,
         attribute: Attribute,
         span: &Span,
-    ) -> Result<Value, Reported> {
-        let target = self.world.resolve(of, self.place, self.reports)?;
-        if let Some(value) = self.world.attribute(&target, attribute) {
+    ) -> Result<Value, ErrorGuaranteed> {
+        let target = self.symbols.resolve(of, self.position, self.reports)?;
+        if let Some(value) = self.symbols.attribute(&target, attribute) {
             return Ok(value);
         }
         if attribute == Attribute::Kind
-            && let Some(kind) = self.world.provided_kind(&of.path(), self.place.frame)
+            && let Some(kind) = self.symbols.provided_kind(&of.path(), self.position.scope)
         {
             return Ok(Value::kind(kind));
         }
-        let resource = self.world.get(target.id);
+        let resource = self.symbols.get(target.id);
         let error = match (attribute, &resource.kind) {
             (Attribute::Count, ResourceKind::Buffer(_) | ResourceKind::Provided(_)) => {
                 let name = Located::new(of.path(), of.span.clone());
-                self.world.uncounted(&target, name)
+                self.symbols.uncounted(&target, name)
             }
             _ => EvaluationError::NoAttribute {
                 span: span.clone(),
@@ -290,12 +302,12 @@ impl Environment for At<'_, '_, '_> {
         let reported = self.report(error);
         if counts {
             // Its shaders would miss the same number.
-            self.world.mark_broken(target.id, reported);
+            self.symbols.mark_invalid(target.id, reported);
         }
         Err(reported)
     }
 
-    fn constant(&mut self, name: &str, span: &Span) -> Result<Value, Reported> {
+    fn constant(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed> {
         let shader = match &self.shader {
             Some(shader) => shader.as_ref().map_err(|reported| *reported)?,
             None => return Err(self.reports.report(EvaluationError::NoShader(span.clone()))),
@@ -313,10 +325,10 @@ impl Environment for At<'_, '_, '_> {
     }
 
     fn kind(&mut self, of: &str) -> Option<ProvidedKind> {
-        self.world.provided_kind(of, self.place.frame)
+        self.symbols.provided_kind(of, self.position.scope)
     }
 
-    fn report(&mut self, error: EvaluationError) -> Reported {
+    fn report(&mut self, error: EvaluationError) -> ErrorGuaranteed {
         self.reports.report(error)
     }
 }

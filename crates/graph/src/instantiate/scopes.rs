@@ -3,7 +3,7 @@
 
 use super::params::Params;
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::reports::ErrorGuaranteed,
     document::typed::{Document, Output},
     language::name::{Name, wgsl_identifier},
     resource::Target,
@@ -14,11 +14,11 @@ use std::{
     sync::Arc,
 };
 
-/// Number of a frame in [`Frames`].
+/// Number of a frame in [`Scopes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct FrameId(usize);
+pub(crate) struct ScopeId(usize);
 
-/// Number of an instance of a document in [`Frames`].
+/// Number of an instance of a document in [`Scopes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct InstanceId(usize);
 
@@ -28,19 +28,19 @@ pub(crate) struct Instance {
     pub document: Arc<Document>,
     pub params: Arc<Params>,
     /// What stands for names of the scene in here, besides what the scene gives itself.
-    pub scene: BTreeMap<String, Result<Target, Reported>>,
+    pub scene: BTreeMap<String, Result<Target, ErrorGuaranteed>>,
     /// Where it is included; `None` for the root.
     pub outer: Option<Outer>,
     /// The materials outside that are written instead of its own ones, with the place that says so.
-    pub overrides: BTreeMap<String, (Located<String>, Result<Target, Reported>)>,
+    pub overrides: BTreeMap<String, (Located<String>, Result<Target, ErrorGuaranteed>)>,
     /// Something in it could not be read, so that unknown names are no mistakes.
-    pub incomplete: Option<Reported>,
+    pub incomplete: Option<ErrorGuaranteed>,
 }
 
 /// Where a document is included.
 #[derive(Debug)]
 pub(crate) struct Outer {
-    pub frame: FrameId,
+    pub scope: ScopeId,
     /// What stands before the names of its outputs there: `left.`, `lamp[2].`.
     pub namespace: Option<String>,
     /// What full names of everything else in it begin with.
@@ -49,39 +49,39 @@ pub(crate) struct Outer {
 
 /// The names of an instance of a document, or of one repetition of a group in it.
 #[derive(Debug)]
-struct Frame {
+struct Scope {
     instance: InstanceId,
     /// The frame around it in the same document.
-    parent: Option<FrameId>,
+    parent: Option<ScopeId>,
     /// What stands before its names in the document: `sample[3].`.
     path: String,
     names: Names,
     /// Their spellings in shaders, those of parts of namespaces included.
-    spelt: HashMap<String, Result<Target, Reported>>,
+    wgsl_name: HashMap<String, Result<Target, ErrorGuaranteed>>,
     /// The repeated entry, and which repetition this is.
     index: Option<(Name, u32)>,
 }
 
 /// Names and what they mean.
-pub(crate) type Names = BTreeMap<Name, Meaning>;
+pub(crate) type Names = BTreeMap<Name, Symbol>;
 
 /// What a name of a document means.
 #[derive(Clone, Debug)]
-pub(crate) enum Meaning {
+pub(crate) enum Symbol {
     Target(Target),
     /// Declared with a mistake.
-    Broken(Reported),
+    Invalid(ErrorGuaranteed),
     /// What a named include gives.
     Namespace(Names),
     /// What each repetition of an entry gives.
     Repeated(Vec<Names>),
 }
 
-impl Meaning {
+impl Symbol {
     /// What a name behind a dot may mean; of repetitions, in each of them.
     pub fn named<'m>(&'m self, name: &Name) -> Vec<&'m Self> {
         match self {
-            Self::Target(_) | Self::Broken(_) => Vec::new(),
+            Self::Target(_) | Self::Invalid(_) => Vec::new(),
             Self::Namespace(names) => names.get(name).into_iter().collect(),
             Self::Repeated(list) => list.iter().filter_map(|names| names.get(name)).collect(),
         }
@@ -90,49 +90,49 @@ impl Meaning {
 
 /// Where an expression stands: the frame, and the index of its own entry if that is repeated.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
-    pub frame: FrameId,
+pub(crate) struct Position {
+    pub scope: ScopeId,
     pub index: Option<u32>,
 }
 
 /// All frames of a graph.
 #[derive(Debug, Default)]
-pub(crate) struct Frames {
-    frames: Vec<Frame>,
+pub(crate) struct Scopes {
+    scopes: Vec<Scope>,
     instances: Vec<Instance>,
 }
 
-impl Frames {
+impl Scopes {
     pub fn add_instance(&mut self, instance: Instance) -> InstanceId {
         self.instances.push(instance);
         InstanceId(self.instances.len() - 1)
     }
 
-    pub fn add_frame(
+    pub fn add_scope(
         &mut self,
         instance: InstanceId,
-        parent: Option<FrameId>,
+        parent: Option<ScopeId>,
         path: String,
         index: Option<(Name, u32)>,
-    ) -> FrameId {
-        self.frames.push(Frame {
+    ) -> ScopeId {
+        self.scopes.push(Scope {
             instance,
             parent,
             path,
             names: Names::new(),
-            spelt: HashMap::new(),
+            wgsl_name: HashMap::new(),
             index,
         });
-        FrameId(self.frames.len() - 1)
+        ScopeId(self.scopes.len() - 1)
     }
 
     /// The frame of the root document.
-    pub fn root(&self) -> FrameId {
-        FrameId(0)
+    pub fn root(&self) -> ScopeId {
+        ScopeId(0)
     }
 
-    pub fn instance_of(&self, frame: FrameId) -> InstanceId {
-        self.frames[frame.0].instance
+    pub fn instance_of(&self, scope: ScopeId) -> InstanceId {
+        self.scopes[scope.0].instance
     }
 
     pub fn instance(&self, id: InstanceId) -> &Instance {
@@ -144,13 +144,13 @@ impl Frames {
     }
 
     /// The instance of the document that a frame is of.
-    pub fn document(&self, frame: FrameId) -> &Instance {
-        self.instance(self.instance_of(frame))
+    pub fn document(&self, scope: ScopeId) -> &Instance {
+        self.instance(self.instance_of(scope))
     }
 
     /// What stands before a frame's names in its document.
-    pub fn path(&self, frame: FrameId) -> &str {
-        &self.frames[frame.0].path
+    pub fn path(&self, scope: ScopeId) -> &str {
+        &self.scopes[scope.0].path
     }
 
     /// The full name of what a document calls `name`: the outermost name by which it is known.
@@ -162,10 +162,10 @@ impl Frames {
         let is_it = |output: &&Output| output.material.text() == name;
         match instance.document.outputs.iter().find(is_it) {
             Some(output) => {
-                let path = self.path(outer.frame);
+                let path = self.path(outer.scope);
                 let namespace = outer.namespace.as_deref().unwrap_or("");
                 let outside = format!("{path}{namespace}{}", output.name.value);
-                self.full_name(self.instance_of(outer.frame), &outside)
+                self.full_name(self.instance_of(outer.scope), &outside)
             }
             None => format!("{}{name}", outer.private),
         }
@@ -174,60 +174,64 @@ impl Frames {
     /// The instance around another one.
     fn parent(&self, id: InstanceId) -> Option<InstanceId> {
         let outer = self.instance(id).outer.as_ref()?;
-        Some(self.instance_of(outer.frame))
+        Some(self.instance_of(outer.scope))
     }
 
     /// The names that were declared in a frame itself.
-    pub fn names(&self, frame: FrameId) -> &Names {
-        &self.frames[frame.0].names
+    pub fn names(&self, scope: ScopeId) -> &Names {
+        &self.scopes[scope.0].names
     }
 
     /// The frame and those around it in its document, from the inside out.
-    fn outwards(&self, id: FrameId) -> impl Iterator<Item = &Frame> {
-        std::iter::successors(Some(&self.frames[id.0]), |frame| {
-            frame.parent.map(|parent| &self.frames[parent.0])
+    fn outwards(&self, id: ScopeId) -> impl Iterator<Item = &Scope> {
+        std::iter::successors(Some(&self.scopes[id.0]), |scope| {
+            scope.parent.map(|parent| &self.scopes[parent.0])
         })
     }
 
     /// The first of a name stays; a second one is reported where documents are read.
-    pub fn declare(&mut self, frame: FrameId, name: &Name, meaning: Meaning) {
-        let frame = &mut self.frames[frame.0];
-        spell(&mut frame.spelt, &wgsl_identifier(name), &meaning);
-        frame.names.entry(name.clone()).or_insert(meaning);
+    pub fn declare(&mut self, scope: ScopeId, name: &Name, symbol: Symbol) {
+        let scope = &mut self.scopes[scope.0];
+        spell(&mut scope.wgsl_name, &wgsl_identifier(name), &symbol);
+        scope.names.entry(name.clone()).or_insert(symbol);
     }
 
-    pub fn find(&self, frame: FrameId, name: &str) -> Option<&Meaning> {
-        self.outwards(frame).find_map(|frame| frame.names.get(name))
+    pub fn find(&self, scope: ScopeId, name: &str) -> Option<&Symbol> {
+        self.outwards(scope).find_map(|scope| scope.names.get(name))
     }
 
     /// What a shader's global of that spelling means.
-    pub fn find_spelt(&self, frame: FrameId, identifier: &str) -> Option<Result<Target, Reported>> {
-        self.outwards(frame)
-            .find_map(|frame| frame.spelt.get(identifier).cloned())
+    pub fn find_wgsl_name(
+        &self,
+        scope: ScopeId,
+        identifier: &str,
+    ) -> Option<Result<Target, ErrorGuaranteed>> {
+        self.outwards(scope)
+            .find_map(|scope| scope.wgsl_name.get(identifier).cloned())
     }
 
     /// The index of the innermost repetition, or of that of a named entry.
-    pub fn index(&self, place: Place, of: Option<&Name>) -> Option<u32> {
-        let own = place.index.filter(|_| of.is_none());
+    pub fn index(&self, position: Position, of: Option<&Name>) -> Option<u32> {
+        let own = position.index.filter(|_| of.is_none());
         own.or_else(|| {
-            self.outwards(place.frame).find_map(|frame| {
-                let (name, index) = frame.index.as_ref()?;
+            self.outwards(position.scope).find_map(|scope| {
+                let (name, index) = scope.index.as_ref()?;
                 of.is_none_or(|of| of == name).then_some(*index)
             })
         })
     }
 
     /// Every name that is known in a frame, with those of namespaces.
-    pub fn known(&self, frame: FrameId) -> Vec<String> {
+    pub fn known(&self, scope: ScopeId) -> Vec<String> {
         let mut known = Vec::new();
-        for frame in self.outwards(frame) {
-            list(&frame.names, "", &mut known);
+        for scope in self.outwards(scope) {
+            list(&scope.names, "", &mut known);
         }
         known
     }
 
     /// The resource that a name of the scene stands for in an instance, where an include says so.
-    pub fn scene(&self, id: InstanceId, name: &str) -> Option<Result<Target, Reported>> {
+    pub fn scene(&self, id: InstanceId, name: &str) -> Option<Result<Target, ErrorGuaranteed>> {
         let mut instances = std::iter::successors(Some(id), |id| self.parent(*id));
         instances.find_map(|id| self.instance(id).scene.get(name).cloned())
     }
@@ -239,25 +243,31 @@ impl Frames {
 }
 
 /// Notes how shaders spell what a name means.
-fn spell(spelt: &mut HashMap<String, Result<Target, Reported>>, spelling: &str, meaning: &Meaning) {
-    match meaning {
-        Meaning::Target(target) => {
-            spelt
+fn spell(
+    wgsl_name: &mut HashMap<String, Result<Target, ErrorGuaranteed>>,
+    spelling: &str,
+    symbol: &Symbol,
+) {
+    match symbol {
+        Symbol::Target(target) => {
+            wgsl_name
                 .entry(spelling.to_owned())
                 .or_insert_with(|| Ok(target.clone()));
         }
-        Meaning::Broken(reported) => {
-            spelt.entry(spelling.to_owned()).or_insert(Err(*reported));
+        Symbol::Invalid(reported) => {
+            wgsl_name
+                .entry(spelling.to_owned())
+                .or_insert(Err(*reported));
         }
-        Meaning::Namespace(names) => {
-            for (name, meaning) in names {
-                spell(spelt, &format!("{spelling}_{name}"), meaning);
+        Symbol::Namespace(names) => {
+            for (name, symbol) in names {
+                spell(wgsl_name, &format!("{spelling}_{name}"), symbol);
             }
         }
-        Meaning::Repeated(list) => {
+        Symbol::Repeated(list) => {
             for (index, names) in list.iter().enumerate() {
-                for (name, meaning) in names {
-                    spell(spelt, &format!("{spelling}_{index}_{name}"), meaning);
+                for (name, symbol) in names {
+                    spell(wgsl_name, &format!("{spelling}_{index}_{name}"), symbol);
                 }
             }
         }
@@ -265,11 +275,11 @@ fn spell(spelt: &mut HashMap<String, Result<Target, Reported>>, spelling: &str, 
 }
 
 fn list(names: &Names, prefix: &str, into: &mut Vec<String>) {
-    for (name, meaning) in names {
-        match meaning {
-            Meaning::Target(_) | Meaning::Broken(_) => into.push(format!("{prefix}{name}")),
-            Meaning::Namespace(inner) => list(inner, &format!("{prefix}{name}."), into),
-            Meaning::Repeated(inner) => {
+    for (name, symbol) in names {
+        match symbol {
+            Symbol::Target(_) | Symbol::Invalid(_) => into.push(format!("{prefix}{name}")),
+            Symbol::Namespace(inner) => list(inner, &format!("{prefix}{name}."), into),
+            Symbol::Repeated(inner) => {
                 if let Some(first) = inner.first() {
                     list(first, &format!("{prefix}{name}[0]."), into);
                 }

@@ -20,7 +20,7 @@ use std::{collections::VecDeque, sync::Arc, time::Duration};
 
 /// A frame that was encoded, with what was asked of it.
 #[derive(Default)]
-pub(super) struct Flight {
+pub(super) struct FrameInFlight {
     pub index: u32,
     done: Signal,
     /// Of a frame that is timed, and kept for the next one that is.
@@ -39,13 +39,13 @@ pub(super) struct Flight {
 
 /// The frames that are under way, and what is left of earlier ones for the next.
 #[derive(Default)]
-pub(super) struct Flights {
-    under_way: VecDeque<Flight>,
-    spare: Vec<Flight>,
+pub(super) struct FramesInFlight {
+    under_way: VecDeque<FrameInFlight>,
+    spare: Vec<FrameInFlight>,
     pub staging: StagingPool,
 }
 
-impl Flight {
+impl FrameInFlight {
     fn is_asked(&self) -> bool {
         self.is_timed || self.counters.is_some() || !self.fetches.is_empty()
     }
@@ -63,47 +63,47 @@ impl Flight {
     }
 }
 
-impl Flights {
+impl FramesInFlight {
     /// The frames that bring a report.
     pub fn asked(&self) -> usize {
         self.under_way
             .iter()
-            .filter(|flight| flight.is_asked())
+            .filter(|frame_in_flight| frame_in_flight.is_asked())
             .count()
     }
 
     /// A frame to fill, out of what an earlier one has left.
-    pub fn begin(&mut self) -> Flight {
+    pub fn begin(&mut self) -> FrameInFlight {
         self.sweep();
         self.spare.pop().unwrap_or_default()
     }
 
     /// Takes in a frame all of which is encoded.
-    pub fn enter(&mut self, flight: Flight, encoder: &wgpu::CommandEncoder) {
-        flight.done.when_done(encoder);
-        self.under_way.push_back(flight);
+    pub fn submit(&mut self, frame_in_flight: FrameInFlight, encoder: &wgpu::CommandEncoder) {
+        frame_in_flight.done.when_done(encoder);
+        self.under_way.push_back(frame_in_flight);
     }
 
     /// Keeps what the next frame can use of one that is over, or was never encoded.
-    pub fn put_aside(&mut self, mut flight: Flight) {
-        for fetch in flight.fetches.drain(..) {
+    pub fn recycle(&mut self, mut frame_in_flight: FrameInFlight) {
+        for fetch in frame_in_flight.fetches.drain(..) {
             fetch.give_up(&mut self.staging);
         }
-        flight.cpu.clear();
-        flight.skipped.clear();
-        flight.is_timed = false;
-        flight.counters = None;
-        self.spare.push(flight);
+        frame_in_flight.cpu.clear();
+        frame_in_flight.skipped.clear();
+        frame_in_flight.is_timed = false;
+        frame_in_flight.counters = None;
+        self.spare.push(frame_in_flight);
     }
 
     /// Puts aside the frames that are over and of which nothing was asked.
     fn sweep(&mut self) {
         let mut at = 0;
-        while let Some(flight) = self.under_way.get(at) {
-            if flight.is_asked() || flight.done.progress() == Progress::UnderWay {
+        while let Some(frame_in_flight) = self.under_way.get(at) {
+            if frame_in_flight.is_asked() || frame_in_flight.done.progress() == Progress::UnderWay {
                 at += 1;
             } else if let Some(over) = self.under_way.remove(at) {
-                self.put_aside(over);
+                self.recycle(over);
             }
         }
     }
@@ -116,10 +116,10 @@ impl Flights {
         presence: &Presence,
     ) -> Result<Option<FrameReport>, ExecuteError> {
         self.sweep();
-        while let Some(mut flight) = self.under_way.pop_front() {
-            match flight.done.progress() {
+        while let Some(mut frame_in_flight) = self.under_way.pop_front() {
+            match frame_in_flight.done.progress() {
                 Progress::UnderWay => {
-                    self.under_way.push_front(flight);
+                    self.under_way.push_front(frame_in_flight);
                     // Nobody says that what was under way on a lost device will not come.
                     presence.check()?;
                     return Ok(None);
@@ -127,43 +127,48 @@ impl Flights {
                 Progress::Done => {}
                 Progress::Failed | Progress::Dropped => {
                     // What was written into its queries is for nobody.
-                    flight.timer = None;
-                    self.put_aside(flight);
+                    frame_in_flight.timer = None;
+                    self.recycle(frame_in_flight);
                     presence.check()?;
                     continue;
                 }
             }
-            let timing = match flight.is_timed {
-                true => match flight.times(device) {
+            let timing = if frame_in_flight.is_timed {
+                match frame_in_flight.times(device) {
                     Ok(Some(timing)) => Some(timing),
                     Ok(None) => {
-                        self.under_way.push_front(flight);
+                        self.under_way.push_front(frame_in_flight);
                         return Ok(None);
                     }
                     Err(error) => {
-                        flight.timer = None;
-                        self.put_aside(flight);
+                        frame_in_flight.timer = None;
+                        self.recycle(frame_in_flight);
                         return Err(error);
                     }
-                },
-                false => None,
+                }
+            } else {
+                None
             };
-            let fetched: Result<Vec<_>, _> = flight
+            let fetched: Result<Vec<_>, _> = frame_in_flight
                 .fetches
                 .drain(..)
                 .map(|fetch| fetch.take(&mut self.staging))
                 .collect();
-            let counted = flight.counters.as_mut().map(Counters::take).transpose();
+            let counted = frame_in_flight
+                .counters
+                .as_mut()
+                .map(Counters::take)
+                .transpose();
             let report = fetched.and_then(|readbacks| {
                 Ok(FrameReport {
-                    index: flight.index,
+                    index: frame_in_flight.index,
                     timing,
                     statistics: counted?,
-                    skipped: names(&flight.skipped),
+                    skipped: names(&frame_in_flight.skipped),
                     readbacks,
                 })
             });
-            self.put_aside(flight);
+            self.recycle(frame_in_flight);
             if report.is_err() {
                 presence.check()?;
             }
@@ -174,8 +179,12 @@ impl Flights {
 
     /// Takes no GPU times of the oldest frame: they have not come although the GPU is done.
     pub fn give_up_times(&mut self) {
-        if let Some(flight) = self.under_way.iter_mut().find(|flight| flight.is_asked()) {
-            flight.timer = None;
+        if let Some(frame_in_flight) = self
+            .under_way
+            .iter_mut()
+            .find(|frame_in_flight| frame_in_flight.is_asked())
+        {
+            frame_in_flight.timer = None;
         }
     }
 }

@@ -8,12 +8,12 @@ use std::collections::BTreeMap;
 
 /// Linked passes and the resources of a plan.
 #[derive(Clone, Copy)]
-pub(crate) struct Work<'p> {
+pub(crate) struct GraphView<'p> {
     pub passes: &'p [LinkedPass],
     pub resources: &'p [Resource],
 }
 
-impl<'p> Work<'p> {
+impl<'p> GraphView<'p> {
     /// Every pass with its number.
     pub fn ids(self) -> impl Iterator<Item = (PassId, &'p LinkedPass)> {
         let passes = self.passes.iter().enumerate();
@@ -50,7 +50,7 @@ struct Reach {
 }
 
 impl Reach {
-    fn of(resource: &Resource) -> Self {
+    fn new(resource: &Resource) -> Self {
         let (layers, is_3d, is_combined) = match &resource.kind {
             ResourceKind::Texture(texture) => {
                 let is_combined = texture.format.is_combined_depth_stencil_format();
@@ -74,17 +74,18 @@ impl Reach {
 
     /// Layers of a mip: the slices of a 3D texture become fewer.
     fn layers(self, mip: u32) -> u32 {
-        match self.is_3d {
-            true => (self.layers >> mip).max(1),
-            false => self.layers,
+        if self.is_3d {
+            (self.layers >> mip).max(1)
+        } else {
+            self.layers
         }
     }
 }
 
 impl Subresources {
-    pub fn new(work: Work<'_>) -> Self {
+    pub fn new(view: GraphView<'_>) -> Self {
         let mut cuts: BTreeMap<ResourceId, Vec<u32>> = BTreeMap::new();
-        for access in work.passes.iter().flat_map(|pass| &pass.accesses) {
+        for access in view.passes.iter().flat_map(|pass| &pass.accesses) {
             let layers = &access.part.layers;
             cuts.entry(access.resource)
                 .or_default()
@@ -96,7 +97,7 @@ impl Subresources {
         }
         Self {
             cuts,
-            reach: work.resources.iter().map(Reach::of).collect(),
+            reach: view.resources.iter().map(Reach::new).collect(),
         }
     }
 

@@ -1,6 +1,7 @@
-// The predicates that decide visibility, on f32 coordinates as they are given. Bounds hold whether
-// or not a compiler fuses a product with the sum that it goes into, and with subnormal numbers
-// flushed to zero. CPU references and tests at the bounds: tests/src/cpu_reference/predicates.rs.
+// The predicates that decide visibility, on f32 coordinates as they are given. Bounds hold where
+// operations are rounded to the nearest, whether or not a compiler fuses a product with the sum
+// that it goes into, and with subnormal numbers flushed to zero; which hold beyond that:
+// docs/precision.md. CPU references and tests at the bounds: tests/src/cpu_reference/predicates.rs.
 
 // Half an ulp of 1: what one rounding errs by, relative to its result.
 const HALF_ULP: f32 = 5.9604645e-8;

@@ -1,5 +1,7 @@
-//! The light buffer: its lists against a CPU reference, its answers against `rt`'s, to the bit,
-//! whatever has room and whatever has not.
+//! The light buffer: its lists against a CPU reference, its answers against `rt`'s, whatever has
+//! room and whatever has not. To the bit, which is stricter than what is promised: a driver may
+//! evaluate one test in two ways in two pipelines (compiled_apart.rs), but none did that this was
+//! run on.
 
 use crate::support::{
     graphs::{frame, open, plan, provider, run_on, values},
@@ -144,7 +146,7 @@ struct Answer {
 }
 
 /// A soup over a potato over a floor: triangles of all sizes, open and closed, through each other.
-fn mixed(seed: u64) -> Arc<Scene> {
+pub(crate) fn mixed(seed: u64) -> Arc<Scene> {
     let mut random = Random(seed);
     let size = [0.05, 0.3, 1.0][seed as usize % 3];
     let solids = joined(floor(2.5, -1.2), &potato(3, 0.4, seed));
@@ -612,7 +614,7 @@ fn far_from_the_origin_the_grid_is_coarser() {
 }
 
 /// So much farther from the origin than it is wide.
-fn moved(scene: &Scene, by: f32) -> Arc<Scene> {
+pub(crate) fn moved(scene: &Scene, by: f32) -> Arc<Scene> {
     let mut scene = scene.clone();
     let positions = &mut scene.mesh.positions;
     positions.iter_mut().for_each(|position| *position += by);

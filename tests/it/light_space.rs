@@ -1,5 +1,6 @@
-//! `Trace` by the hierarchy in light space finds what the compute hierarchy finds, to the bit, and
-//! is refused for rays that nothing says go towards the light.
+//! `Trace` by the hierarchy in light space finds what the compute hierarchy finds, to the bit where
+//! a driver compiles both alike (where not: compiled_apart.rs), and is refused for rays that
+//! nothing says go towards the light.
 
 use crate::support::{
     bench::Bench,

@@ -20,6 +20,7 @@ mod support;
 
 mod area;
 mod changes;
+mod compiled_apart;
 mod cpu_one_rings;
 mod cpu_reference;
 mod cpu_status;

@@ -1,19 +1,31 @@
 //! A scene under a view, the oracle's word on it, and what runs presets on it.
 
-use super::graphs::{allow_ray_queries, open, plan, provider, run_on, values};
+use super::graphs::{allow_ray_queries, open, plan, plan_with, provider, run_on, values};
 use skiagraph_gpu::device::Gpu;
-use skiagraph_graph::{Capture, ParamValue};
-use skiagraph_passes::SceneProvider;
-use skiagraph_reference::{Oracle, OracleMode, PixelCounts, Progress, Reference, Statistics};
+use skiagraph_graph::{Capture, ParamValue, Sources};
+use skiagraph_passes::{EmbeddedSources, SceneProvider};
+use skiagraph_reference::{
+    Oracle, OracleMode, PixelCounts, Progress, Reference, Statistics, statistics::status,
+};
 use skiagraph_scene::{Scene, View};
 use std::sync::Arc;
 
 /// What a preset answers, pixel by pixel, and the oracle.
 pub struct Answers {
     pub visibility: Vec<u32>,
+    pub status: Vec<u32>,
     pub primitives: Vec<u32>,
     pub reference: Reference,
     pub counts: Statistics,
+}
+
+impl Answers {
+    /// Number of pixels that face the light and asked no ray.
+    pub fn certain(&self) -> usize {
+        let is_certain =
+            |word: &&u32| [status::CERTAIN_LIGHT, status::CERTAIN_SHADOW].contains(word);
+        self.status.iter().filter(is_certain).count()
+    }
 }
 
 /// A scene under a view, its oracle, and what runs graphs on it.
@@ -52,7 +64,18 @@ impl<'a> Bench<'a> {
 
     /// A preset's answers, and what the oracle says of them.
     pub fn answers(&mut self, preset: &str, params: &[(&str, ParamValue)]) -> Answers {
-        let plan = plan(
+        self.answers_with(&EmbeddedSources, preset, params)
+    }
+
+    /// The same by a preset, and shaders, from other files.
+    pub fn answers_with(
+        &mut self,
+        sources: &dyn Sources,
+        preset: &str,
+        params: &[(&str, ParamValue)],
+    ) -> Answers {
+        let plan = plan_with(
+            sources,
             &format!("pipelines/{preset}.ron"),
             &self.provider,
             self.viewport,
@@ -96,6 +119,7 @@ impl<'a> Bench<'a> {
         );
         Answers {
             visibility,
+            status,
             primitives,
             reference,
             counts,

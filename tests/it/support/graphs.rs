@@ -201,8 +201,18 @@ pub fn plan(
     viewport: [u32; 2],
     adjust: impl FnOnce(&mut PlanRequest),
 ) -> Plan {
-    let graph =
-        Graph::load(path, &registry(), &EmbeddedSources).unwrap_or_else(|error| panic!("{error}"));
+    plan_with(&EmbeddedSources, path, provider, viewport, adjust)
+}
+
+/// The same preset from other files.
+pub fn plan_with(
+    sources: &dyn Sources,
+    path: &str,
+    provider: &SceneProvider,
+    viewport: [u32; 2],
+    adjust: impl FnOnce(&mut PlanRequest),
+) -> Plan {
+    let graph = Graph::load(path, &registry(), sources).unwrap_or_else(|error| panic!("{error}"));
     let mut request = PlanRequest::new(viewport, provider);
     adjust(&mut request);
     graph

@@ -12,6 +12,7 @@
 //! around (i + ½, j + ½); z is depth, 0 to 1, and grows away from the light. A triangle faces the
 //! light if [`TexelTriangle::area`] is negative.
 
+pub mod arithmetic;
 mod bounds;
 mod casters;
 pub mod exact;

@@ -2,7 +2,7 @@
 
 use crate::support::{
     brute::{self, Hit, MISS, Ray},
-    graphs::{Extended, run_text, trace, trace_all},
+    graphs::{Extended, run_text, trace, trace_all, trace_by},
     meshes,
     random::Random,
 };
@@ -385,4 +385,69 @@ fn nested_triangles_of_all_sizes_are_told_apart() {
             (level as u32, 2f32.powi(level as i32 - 60))
         );
     }
+}
+
+/// The primitive of a ray whose way the driver broke off.
+const UNANSWERED: u32 = 0xffff_fffd;
+
+/// Sheets over each other, whose boxes all hold a ray up that none of them holds, and one at each
+/// end that does: the first primitive at the bottom, the last at the top.
+fn stack(sheets: u32) -> Mesh {
+    let corners = |number: u32| {
+        // A hierarchy of pairs that are all alike takes long to build.
+        let [a, b, c] = [0.618, 0.755, 0.57].map(|step| (number as f32 * step).fract());
+        let y = (number as f32 + a / 2.0) / (sheets + 1) as f32;
+        let end = if number % (sheets + 1) == 0 { 4.0 } else { 0.5 };
+        [(1.0, -1.0), (-1.0, -1.0), (-1.0, end)].map(|(x, z)| Vec3::new(x + b / 10.0, y, z + c / 10.0))
+    };
+    let positions = (0..sheets + 2).flat_map(corners).collect();
+    let triangles = (0..sheets + 2).map(|number| [0, 1, 2].map(|corner| 3 * number + corner));
+    meshes::mesh(positions, triangles.collect())
+}
+
+/// Drivers may end loops without a word; lavapipe does.
+#[test]
+fn a_way_that_is_broken_off_has_no_answer() {
+    let up = |y: f32| Ray {
+        origin: Vec3::new(0.0, y, 0.0),
+        t_min: 0.0,
+        direction: Vec3::Y,
+        t_max: 10.0,
+    };
+    let beside = Ray {
+        origin: Vec3::new(0.0, -0.5, 100.0),
+        ..up(0.0)
+    };
+    let mut is_broken_off = false;
+    for sheets in [1_000, 150_000] {
+        let mesh = stack(sheets);
+        // From below through all of them to the first, and from above the first to the last; two
+        // groups of rays beside them all.
+        let mut rays = vec![up(-0.5), up(0.3 / (sheets + 1) as f32)];
+        rays.resize(192, beside);
+        for fields in [
+            "mode: Any",
+            "mode: Closest",
+            r#"mode: Any, engine: LightSpace, direction: Light"#,
+            r#"mode: Closest, engine: LightSpace, direction: Light"#,
+        ] {
+            let hits = trace_by(fields, DVec3::NEG_Y, &mesh, &rays, None, rays.len() as u32);
+            let found = [hits[0], hits[1]].map(|hit| hit.primitive);
+            println!("{sheets} sheets, {fields}: {found:?}");
+            for (primitive, right) in found.into_iter().zip([0, sheets + 1]) {
+                let is_any = primitive == sheets + 1 && fields.starts_with("mode: Any");
+                let is_unanswered = primitive == UNANSWERED && sheets > 1_000;
+                assert!(
+                    primitive == right || is_any || is_unanswered,
+                    "{fields}: {found:?}"
+                );
+                is_broken_off |= is_unanswered;
+            }
+            assert!(
+                hits[64..].iter().all(|hit| hit.primitive == MISS),
+                "{fields}"
+            );
+        }
+    }
+    println!("ways are broken off: {is_broken_off}");
 }

@@ -1,5 +1,5 @@
-// The primitive ids that no triangle has, the pixel of rays whose answer is not used, and the values
-// of `status`. NO_PRIMITIVE is that of background pixels and missed rays.
+// The primitive ids that no triangle has, the pixel of rays whose answer is not used, and the
+// values of `status`. NO_PRIMITIVE is that of background pixels and missed rays.
 
 const NO_PRIMITIVE: u32 = 0xffffffffu;
 // Of a receiver of which only the depth is known.

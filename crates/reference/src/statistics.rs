@@ -21,8 +21,8 @@ pub mod status {
     pub const UNCERTAIN: u32 = 4;
 }
 
-/// The `visibility` of a pixel whose ray the driver broke off. It shows as in shadow, and frames with
-/// such pixels are not judged.
+/// The `visibility` of a pixel whose ray the driver broke off. It shows as in shadow, and frames
+/// with such pixels are not judged.
 pub const UNANSWERED: u32 = 2;
 
 /// The reference's pixels. `background + facing_away + facing_light` is the viewport, `lit +

@@ -56,7 +56,7 @@ pub enum Error {
     /// Pixels whose `visibility` is [`UNANSWERED`](crate::statistics::UNANSWERED).
     #[error(
         "{pixels} pixels have no answer, the first at ({x}, {y}): the driver ended loops of the \
-         shader that traces their rays, which pass too many triangles; a GPU's driver does not"
+         shader that traces their rays, which pass too many triangles; another adapter may answer"
     )]
     Unanswered {
         /// Number of such pixels.

@@ -3,6 +3,7 @@
 #import "shared/groups.wgsl"
 #import "shared/ray.wgsl"
 #import "shared/ids.wgsl"
+#import "shared/light_area.wgsl"
 
 var<storage, read> asked_count: u32;
 var<storage, read> sample_count: u32;
@@ -15,9 +16,11 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     if slot >= asked_count {
         return;
     }
-    var sum = 0u;
+    var sum = seen[slot];
     for (var ray = slot; ray < sample_count; ray += asked_count) {
-        sum += select(0u, 1u, hits[ray].primitive == NO_PRIMITIVE);
+        let primitive = hits[ray].primitive;
+        sum += select(0u, 1u, primitive == NO_PRIMITIVE);
+        sum |= select(0u, UNANSWERED_SAMPLE, primitive == UNANSWERED);
     }
-    seen[slot] += sum;
+    seen[slot] = sum;
 }

@@ -17,6 +17,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     }
     let width = textureDimensions(visibility).x;
     let pixel = vec2(ray_pixels[slot] % width, ray_pixels[slot] / width);
-    let lit = hits[slot].primitive == NO_PRIMITIVE;
-    textureStore(visibility, pixel, vec4(select(0u, 1u, lit)));
+    let primitive = hits[slot].primitive;
+    let answer = select(0u, 1u, primitive == NO_PRIMITIVE);
+    let shown = select(answer, VISIBILITY_UNANSWERED, primitive == UNANSWERED);
+    textureStore(visibility, pixel, vec4(shown));
 }

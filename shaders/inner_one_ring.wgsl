@@ -185,45 +185,56 @@ fn patch_depth(vertex: Vertex) -> f32 {
         return NOT_COVERED;
     }
 
+    // Each member by its corner opposite the edge over which the walk came to it; the first one by
+    // its first corner.
     let ring = corners_of(first);
     var members: array<u32, MOST_MEMBERS>;
-    members[0] = first;
+    members[0] = 3u * first;
     var count = 1u;
     for (var side = 0u; side < 3u; side++) {
         if overlaps[side] {
-            members[count] = scene_adjacency[3u * first + side] / 3u;
+            members[count] = scene_adjacency[3u * first + side];
             count += 1u;
         }
     }
-    var containing = select(0u, 1u, contains(first, triangle, centre));
+    var containing = select(0u, 1u, contains(ring, triangle, centre));
     for (var member = 1u; member < count; member++) {
-        let primitive = members[member];
+        let primitive = members[member] / 3u;
+        let behind = (members[member] + 1u) % 3u;
+        let ids = corners_of(primitive);
         triangle = light_triangle(primitive);
         if params.depth != DEPTH_PLANE {
             depth = max(depth, texel_depth(triangle, centre, params.depth, FARTHEST));
         }
-        containing += select(0u, 1u, contains(primitive, triangle, centre));
-        let corners = array(triangle.a.xy, triangle.b.xy, triangle.c.xy);
-        for (var side = 0u; side < 3u; side++) {
-            let p = corners[side];
-            let q = corners[(side + 1u) % 3u];
-            if !edge_overlaps_texel(p, q, centre) {
-                continue;
-            }
-            let own = corners[(side + 2u) % 3u];
-            let edge = 3u * primitive + side;
-            let beyond = adjacent_triangle(edge, p, q, own, params.cull);
+        containing += select(0u, 1u, contains(ids, triangle, centre));
+        // Edges to go over. One at a time: most members have none but the one behind.
+        var open = vec3(
+            edge_overlaps_texel(triangle.a.xy, triangle.b.xy, centre),
+            edge_overlaps_texel(triangle.b.xy, triangle.c.xy, centre),
+            edge_overlaps_texel(triangle.c.xy, triangle.a.xy, centre),
+        ) & (vec3(behind) != vec3(0u, 1u, 2u));
+        while any(open) {
+            let side = select(select(2u, 1u, open.y), 0u, open.x);
+            open &= vec3(side) != vec3(0u, 1u, 2u);
+            let p = select(select(triangle.c, triangle.b, side == 1u), triangle.a, side == 0u).xy;
+            let q = select(select(triangle.a, triangle.c, side == 1u), triangle.b, side == 0u).xy;
+            let own = select(select(triangle.b, triangle.a, side == 1u), triangle.c, side == 0u).xy;
+            let beyond = adjacent_corner(3u * primitive + side, p, q, own, params.cull);
             if beyond == NO_NEIGHBOUR {
                 return NOT_COVERED;
             }
             var known = false;
             for (var other = 0u; other < count; other++) {
-                known = known || members[other] == beyond;
+                known = known || members[other] / 3u == beyond / 3u;
             }
             if known {
                 continue;
             }
-            if count == MOST_MEMBERS || !has_corner_of(beyond, ring) {
+            let next = 3u * primitive + (side + 1u) % 3u;
+            let touches = is_corner(scene_indices[3u * primitive + side], ring)
+                || is_corner(scene_indices[next], ring)
+                || is_corner(scene_indices[beyond], ring);
+            if count == MOST_MEMBERS || !touches {
                 return NOT_COVERED;
             }
             members[count] = beyond;
@@ -243,10 +254,8 @@ fn overlapped(vertex: Vertex) -> vec3<bool> {
     );
 }
 
-// Whether a triangle has one of three corners.
-fn has_corner_of(primitive: u32, ring: vec3<u32>) -> bool {
-    let corners = corners_of(primitive);
-    return any(corners == ring) || any(corners.yzx == ring) || any(corners.zxy == ring);
+fn is_corner(id: u32, corners: vec3<u32>) -> bool {
+    return any(vec3(id) == corners);
 }
 
 fn corners_of(primitive: u32) -> vec3<u32> {
@@ -256,9 +265,8 @@ fn corners_of(primitive: u32) -> vec3<u32> {
 
 // Whether the triangle contains the point; of two triangles on opposite sides of an edge that the
 // point lies on, one does.
-fn contains(primitive: u32, triangle: LightTriangle, point: vec2<f32>) -> bool {
-    let corners = corners_of(primitive);
-    let left = left_of(corners.x, corners.y, triangle.a.xy, triangle.b.xy, point);
-    return left == left_of(corners.y, corners.z, triangle.b.xy, triangle.c.xy, point)
-        && left == left_of(corners.z, corners.x, triangle.c.xy, triangle.a.xy, point);
+fn contains(ids: vec3<u32>, triangle: LightTriangle, point: vec2<f32>) -> bool {
+    let left = left_of(ids.x, ids.y, triangle.a.xy, triangle.b.xy, point);
+    return left == left_of(ids.y, ids.z, triangle.b.xy, triangle.c.xy, point)
+        && left == left_of(ids.z, ids.x, triangle.c.xy, triangle.a.xy, point);
 }

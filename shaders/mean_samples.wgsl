@@ -23,5 +23,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     let width = textureDimensions(visibility).x;
     let pixel = vec2(ray_pixels[slot] % width, ray_pixels[slot] / width);
     let share = f32(seen[slot]) / f32(samples_needed(params.samples));
-    textureStore(visibility, pixel, vec4(share));
+    // No share of light.
+    let is_unanswered = (seen[slot] & UNANSWERED_SAMPLE) != 0u;
+    textureStore(visibility, pixel, vec4(select(share, -1.0, is_unanswered)));
 }

@@ -89,7 +89,7 @@ fn kept_tag(corner: u32, lane: u32, triangle: LightTriangle) -> u32 {
         let next = texels[first + (lane + 1u) % 3u].xy;
         let own = texels[first + (lane + 2u) % 3u].xy;
         let here = texels[lane].xy;
-        kept = adjacent_triangle(corner, here, next, own, params.cull) != NO_NEIGHBOUR;
+        kept = adjacent_corner(corner, here, next, own, params.cull) != NO_NEIGHBOUR;
     }
     return select(0u, KEPT, kept);
 }

@@ -1,10 +1,13 @@
-// The primitive id of background pixels and missed rays, the pixel of rays whose answer is not
-// used, and the values of `status`.
+// The primitive ids that no triangle has, the pixel of rays whose answer is not used, and the
+// values of `status`. NO_PRIMITIVE is that of background pixels and missed rays.
 
 const NO_PRIMITIVE: u32 = 0xffffffffu;
 // Of a receiver of which only the depth is known.
 const UNKNOWN_PRIMITIVE: u32 = 0xfffffffeu;
 const NO_PIXEL: u32 = 0xffffffffu;
+// Of a ray whose way the driver broke off, and what its pixel shows.
+const UNANSWERED: u32 = 0xfffffffdu;
+const VISIBILITY_UNANSWERED: u32 = 2u;
 
 const STATUS_BACKGROUND: u32 = 0u;
 const STATUS_FACING_AWAY: u32 = 1u;

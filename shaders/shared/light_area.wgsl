@@ -28,6 +28,9 @@ fn across_light(point: vec2<f32>, to_light: vec3<f32>) -> vec3<f32> {
     return light_area.radius * (right * point.x + cross(right, to_light) * point.y);
 }
 
+// A bit beyond the number of samples that were seen: one of them has no answer.
+const UNANSWERED_SAMPLE: u32 = 0x80000000u;
+
 // A light without extent looks the same from each of its points: one sample does.
 fn samples_needed(samples: u32) -> u32 {
     return select(samples, 1u, light_area.radius == 0.0);

@@ -7,11 +7,11 @@ var<storage, read> scene_adjacency: array<u32>;
 
 const NO_NEIGHBOUR: u32 = 0xffffffffu;
 
-// The primitive beyond the edge from `p` to `q`, which is number `entry` in the corner table, of a
-// triangle whose third corner is `own`: the edge's only other triangle, in the map, and on its
-// other side as the light sees it. The sides decide, not the windings; NO_NEIGHBOUR if there is
-// none such.
-fn adjacent_triangle(
+// The triangle beyond the edge from `p` to `q`, which is number `entry` in the corner table, of one
+// whose third corner is `own`: the edge's only other triangle, in the map, and on its other side as
+// the light sees it. The sides decide, not the windings. It is given by its corner opposite the
+// edge; NO_NEIGHBOUR if there is none such.
+fn adjacent_corner(
     entry: u32,
     p: vec2<f32>,
     q: vec2<f32>,
@@ -27,8 +27,8 @@ fn adjacent_triangle(
         return NO_NEIGHBOUR;
     }
     // On opposite sides, and wound alike: it faces as this one does, which is in the map.
-    let neighbour = corner / 3u;
-    let wound_alike = scene_indices[3u * neighbour + (corner + 1u) % 3u] != scene_indices[entry];
+    let next = 3u * (corner / 3u) + (corner + 1u) % 3u;
+    let wound_alike = scene_indices[next] != scene_indices[entry];
     let both_cast = cull != CULL_FRONT && cull != CULL_BACK;
-    return select(NO_NEIGHBOUR, neighbour, wound_alike || both_cast);
+    return select(NO_NEIGHBOUR, corner, wound_alike || both_cast);
 }

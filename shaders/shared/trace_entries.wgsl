@@ -18,7 +18,7 @@ const STACK_SIZE: u32 = 64u;
 fn any_hit(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let ray = thread_number(group, lane);
     if ray < ray_total() {
-        hits[ray] = trace(rays[ray], NO_PRIMITIVE, true);
+        hits[ray] = answer(rays[ray], NO_PRIMITIVE, true);
     }
 }
 
@@ -29,7 +29,7 @@ fn any_hit_skip(
 ) {
     let ray = thread_number(group, lane);
     if ray < ray_total() {
-        hits[ray] = trace(rays[ray], skip[ray], true);
+        hits[ray] = answer(rays[ray], skip[ray], true);
     }
 }
 
@@ -40,7 +40,7 @@ fn closest_hit(
 ) {
     let ray = thread_number(group, lane);
     if ray < ray_total() {
-        hits[ray] = trace(rays[ray], NO_PRIMITIVE, false);
+        hits[ray] = answer(rays[ray], NO_PRIMITIVE, false);
     }
 }
 
@@ -51,8 +51,33 @@ fn closest_hit_skip(
 ) {
     let ray = thread_number(group, lane);
     if ray < ray_total() {
-        hits[ray] = trace(rays[ray], skip[ray], false);
+        hits[ray] = answer(rays[ray], skip[ray], false);
     }
+}
+
+// A ray's hit, or that it has no answer. Nothing but the scene bounds the rounds of its way, and
+// drivers may end loops without a word.
+fn answer(ray: Ray, skipped: u32, first_found: bool) -> Hit {
+    var hit = trace(ray, skipped, first_found);
+    let is_open = !first_found || hit.primitive == NO_PRIMITIVE;
+    // An empty ray has no way.
+    if loops_are_cut() && is_open && ray.t_min < ray.t_max {
+        hit = Hit(ray.t_max, UNANSWERED, 0.0, 0.0);
+    }
+    return hit;
+}
+
+// Whether the driver has ended loops of this thread, which it does with all further ones: lavapipe
+// counts 65,535 rounds of the loops of threads that run in step, and leaves each later loop after
+// one round. So here, after the traversal, is one of two rounds. Its step, 1, is no constant to the
+// compiler, which would unroll the loop.
+fn loops_are_cut() -> bool {
+    let step = select(1u, 2u, arrayLength(&hits) == 0u);
+    var rounds = 0u;
+    while rounds < 2u {
+        rounds += step;
+    }
+    return rounds < 2u;
 }
 
 fn ray_total() -> u32 {

@@ -2,13 +2,15 @@
 
 use crate::support::{
     brute::{self, Hit, MISS, Ray},
-    graphs::{Extended, run_text, trace, trace_all},
+    graphs::{self, Extended, run_text, trace, trace_all, trace_by},
     meshes,
     random::Random,
 };
 use glam::{DVec3, Vec3};
+use skiagraph_graph::Capture;
 use skiagraph_passes::SceneProvider;
-use skiagraph_scene::{DirectionalLight, Mesh, Scene};
+use skiagraph_reference::{Error, Oracle, OracleMode, Progress, Statistics, statistics};
+use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
 use std::sync::Arc;
 
 /// Weight by which a ray must miss or hit a triangle's border for f32 to be sure of it.
@@ -385,4 +387,133 @@ fn nested_triangles_of_all_sizes_are_told_apart() {
             (level as u32, 2f32.powi(level as i32 - 60))
         );
     }
+}
+
+/// The primitive of a ray whose way the driver broke off.
+const UNANSWERED: u32 = 0xffff_fffd;
+
+/// Sheets over each other, whose boxes all hold a ray up that none of them holds, and one at each
+/// end that does: the first primitive at the bottom, the last at the top.
+fn stack(sheets: u32) -> Mesh {
+    let corners = |number: u32| {
+        // A hierarchy of pairs that are all alike takes long to build.
+        let [a, b, c] = [0.618, 0.755, 0.57].map(|step| (number as f32 * step).fract());
+        let y = (number as f32 + a / 2.0) / (sheets + 1) as f32;
+        let is_end = number.is_multiple_of(sheets + 1);
+        let end = if is_end { 4.0 } else { 0.5 };
+        [(1.0, -1.0), (-1.0, -1.0), (-1.0, end)]
+            .map(|(x, z)| Vec3::new(x + b / 10.0, y, z + c / 10.0))
+    };
+    let positions = (0..sheets + 2).flat_map(corners).collect();
+    let triangles = (0..sheets + 2).map(|number| [0, 1, 2].map(|corner| 3 * number + corner));
+    meshes::mesh(positions, triangles.collect())
+}
+
+/// Drivers may end loops without a word; lavapipe does.
+#[test]
+fn a_way_that_is_broken_off_has_no_answer() {
+    let up = |y: f32| Ray {
+        origin: Vec3::new(0.0, y, 0.0),
+        t_min: 0.0,
+        direction: Vec3::Y,
+        t_max: 10.0,
+    };
+    let beside = Ray {
+        origin: Vec3::new(0.0, -0.5, 100.0),
+        ..up(0.0)
+    };
+    let mut is_broken_off = false;
+    for sheets in [1_000, 150_000] {
+        let mesh = stack(sheets);
+        // From below through all of them to the first, and from above the first to the last; two
+        // groups of rays beside them all.
+        let mut rays = vec![up(-0.5), up(0.3 / (sheets + 1) as f32)];
+        rays.resize(192, beside);
+        for fields in [
+            "mode: Any",
+            "mode: Closest",
+            r#"mode: Any, engine: LightSpace, direction: Light"#,
+            r#"mode: Closest, engine: LightSpace, direction: Light"#,
+        ] {
+            let hits = trace_by(fields, DVec3::NEG_Y, &mesh, &rays, None, rays.len() as u32);
+            let found = [hits[0], hits[1]].map(|hit| hit.primitive);
+            println!("{sheets} sheets, {fields}: {found:?}");
+            for (primitive, right) in found.into_iter().zip([0, sheets + 1]) {
+                let is_any = primitive == sheets + 1 && fields.starts_with("mode: Any");
+                let is_unanswered = primitive == UNANSWERED && sheets > 1_000;
+                assert!(
+                    primitive == right || is_any || is_unanswered,
+                    "{fields}: {found:?}"
+                );
+                is_broken_off |= is_unanswered;
+            }
+            assert!(
+                hits[64..].iter().all(|hit| hit.primitive == MISS),
+                "{fields}"
+            );
+        }
+    }
+    println!("ways are broken off: {is_broken_off}");
+}
+
+/// A floor below the sheets instead of the lowest one.
+#[test]
+fn a_pixel_without_an_answer_is_neither_lit_nor_judged() {
+    let mut mesh = stack(150_000);
+    mesh.positions[..3].copy_from_slice(
+        &[(90.0, -40.0), (-40.0, -40.0), (-40.0, 90.0)].map(|(x, z)| Vec3::new(x, -1.0, z)),
+    );
+    let view = View {
+        name: "main".into(),
+        eye: DVec3::new(0.0, -0.3, 3.0),
+        direction: DVec3::new(0.0, -0.7, -3.0),
+        up: DVec3::Y,
+        fov_y_degrees: 60.0,
+        near: 0.1,
+        far: 200.0,
+        light: None,
+    };
+    let scene = Arc::new(Scene {
+        name: "stack".into(),
+        mesh: meshes::mesh(mesh.positions, mesh.triangles),
+        views: vec![view.clone()],
+        lights: vec![DirectionalLight::new(DVec3::NEG_Y).into()],
+    });
+    let viewport = [32, 32];
+    let mut provider = graphs::provider(&scene, &view, viewport);
+    let plan = graphs::plan("pipelines/rt.ron", &provider, viewport, |request| {
+        request.captures.push(Capture {
+            material: "primitive".into(),
+            after: None,
+        });
+    });
+    let report = graphs::run(plan, &mut provider, &["visibility", "status", "primitive"]);
+    let [visibility, status, primitives] =
+        ["visibility", "status", "primitive"].map(|name| graphs::values(&report, name));
+    let oracle = Oracle::new(&scene.mesh);
+    let reference = oracle.shade(
+        &view.camera(viewport),
+        scene.light(),
+        &primitives,
+        OracleMode::Exact,
+        Progress::default(),
+    );
+    let reference = reference.unwrap();
+    let is_unanswered = |shown: &&u32| **shown == statistics::UNANSWERED;
+    let unanswered = visibility.iter().filter(is_unanswered).count();
+    match Statistics::judged(&visibility, &status, &reference) {
+        Err(Error::Unanswered { pixels, .. }) => assert_eq!(pixels, unanswered),
+        judged => assert_eq!((judged.unwrap().wrong.total, unanswered), (0, 0)),
+    }
+    // Those that have one have the right one.
+    let (mut wrong, mut in_shadow) = (0, 0);
+    for ((&shown, right), &status) in visibility.iter().zip(reference.visibility()).zip(&status) {
+        let is_answered = status == 4 && shown != statistics::UNANSWERED;
+        in_shadow += usize::from(is_answered && right == 0);
+        wrong += usize::from(is_answered && shown != u32::from(right));
+    }
+    println!("{unanswered} unanswered, {in_shadow} in shadow, {wrong} wrong");
+    assert_eq!(wrong, 0);
+    let all_in_shadow = unanswered + in_shadow;
+    assert!((50..1000).contains(&all_in_shadow), "{all_in_shadow}");
 }

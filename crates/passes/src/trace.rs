@@ -110,7 +110,8 @@ pub struct Trace {
     rays: Reference,
     /// Buffer of 16-byte items `t: f32, primitive: u32, u: f32, v: f32`; u and v are the weights of
     /// the primitive's second and third corner. A ray that hits nothing gets its t_max and the
-    /// primitive `0xffffffff`.
+    /// primitive `0xffffffff`; one without an answer, because the driver ended the shader's loops
+    /// before it had passed all triangles on its way, `0xfffffffd`.
     hits: Reference,
     /// Buffer of one u32, the number of rays; rays beyond the end of `rays` or `hits` are left out.
     count: Reference,

@@ -53,6 +53,19 @@ pub enum Error {
         /// The values the contract allows, as a sentence.
         expected: &'static str,
     },
+    /// Pixels whose `visibility` is [`UNANSWERED`](crate::statistics::UNANSWERED).
+    #[error(
+        "{pixels} pixels have no answer, the first at ({x}, {y}): the driver ended loops of the \
+         shader that traces their rays, which pass too many triangles; another adapter may answer"
+    )]
+    Unanswered {
+        /// Number of such pixels.
+        pixels: usize,
+        /// Column of the first one.
+        x: u32,
+        /// Row of the first one.
+        y: u32,
+    },
     /// The light cannot be: its direction has no length, a number is not finite.
     #[error("{0}")]
     Light(String),

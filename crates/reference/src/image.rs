@@ -4,7 +4,7 @@ use crate::{
     error::Error,
     oracle::{Class, Reference},
     pixels::check_pixel_count,
-    statistics::{Verdict, for_each_verdict, status},
+    statistics::{UNANSWERED, Verdict, for_each_verdict, status},
 };
 
 type Colour = [u8; 3];
@@ -65,7 +65,7 @@ impl Shown for u8 {
 
 impl Shown for u32 {
     fn share(self) -> f32 {
-        f32::from(u8::from(self != 0))
+        f32::from(u8::from(!matches!(self, 0 | UNANSWERED)))
     }
 }
 

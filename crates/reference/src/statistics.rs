@@ -21,6 +21,10 @@ pub mod status {
     pub const UNCERTAIN: u32 = 4;
 }
 
+/// The `visibility` of a pixel whose ray the driver broke off. It shows as in shadow, and frames
+/// with such pixels are not judged.
+pub const UNANSWERED: u32 = 2;
+
 /// The reference's pixels. `background + facing_away + facing_light` is the viewport, `lit +
 /// shadow` is `facing_light`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -284,6 +288,7 @@ pub(crate) fn for_each_verdict(
 ) -> Result<(), Error> {
     check_pixel_count("visibility", reference.viewport, visibility.len())?;
     check_pixel_count("status", reference.viewport, status.len())?;
+    check_answers(visibility, reference.viewport)?;
     for (index, (&class, &indeterminate)) in reference
         .classes
         .iter()
@@ -322,6 +327,21 @@ pub(crate) fn for_each_verdict(
         pixel(class, status, indeterminate, verdict);
     }
     Ok(())
+}
+
+/// Refuses pixels without an answer.
+fn check_answers(visibility: &[impl Copy + Into<u32>], viewport: [u32; 2]) -> Result<(), Error> {
+    let mut unanswered = (0u32..)
+        .zip(visibility)
+        .filter(|(_, shown)| (**shown).into() == UNANSWERED);
+    let Some((first, _)) = unanswered.next() else {
+        return Ok(());
+    };
+    Err(Error::Unanswered {
+        pixels: 1 + unanswered.count(),
+        x: first % viewport[0],
+        y: first / viewport[0],
+    })
 }
 
 #[cfg(test)]
@@ -500,5 +520,13 @@ mod tests {
         assert_eq!(named([1, 255], [2, 3]), Some(("visibility", 1, 0, 255)));
         assert_eq!(named([1, 0], [5, 3]), Some(("status", 0, 0, 5)));
         assert_eq!(named([1, 0], [2, 3]), None);
+        assert_eq!(
+            Statistics::judged(&[0u8, 2], &[2u8, 4], &reference),
+            Err(Error::Unanswered {
+                pixels: 1,
+                x: 1,
+                y: 0
+            })
+        );
     }
 }

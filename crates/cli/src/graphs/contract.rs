@@ -280,7 +280,13 @@ pub fn judged(
         CliError::Contract(format!("`{name}` breaks the contract of outputs: {reason}"))
     };
     let outputs = outputs.map_err(broken)?;
-    let judgement = Judgement::new(&outputs, right).map_err(|error| broken(error.to_string()))?;
+    let judgement = Judgement::new(&outputs, right).map_err(|error| match error {
+        // The driver's doing, not the method's.
+        skiagraph_reference::Error::Unanswered { .. } => {
+            CliError::Contract(format!("`{}`: {error}", preset.name))
+        }
+        error => broken(error.to_string()),
+    })?;
     Ok((outputs, judgement))
 }
 

@@ -10,7 +10,7 @@ use crate::viewer::wanted::{MethodShot, Shot};
 use crate::wording::{percent, thousands};
 use skiagraph_gpu::Content;
 use skiagraph_graph::{Capture, PartSummary};
-use skiagraph_reference::{Class, Image};
+use skiagraph_reference::{Class, Image, statistics::UNANSWERED};
 use std::collections::BTreeMap;
 
 /// What a pane shows.
@@ -118,6 +118,14 @@ fn lit(shot: &Shot, method: &MethodShot, show: &Show) -> Result<Drawn, String> {
     let legend = match outputs.rays {
         Some(rays) => format!("{legend}; {} rays", thousands(rays)),
         None => legend,
+    };
+    let unanswered = outputs.visibility.iter();
+    let legend = match unanswered.filter(|&&shown| shown == UNANSWERED).count() {
+        0 => legend,
+        count => format!(
+            "{legend}; {} pixels without an answer",
+            thousands(count as u64)
+        ),
     };
     // The numbers under the cursor are those of the answer.
     let numbers = method.contents.get(VISIBILITY).map(Content::split);

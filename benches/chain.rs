@@ -112,7 +112,7 @@ fn document(kind: Kind, passes: usize) -> Generated {
         .collect();
     let last = names[ends(passes - 1)[1]];
     let document = format!(
-        "(\n    format: 2,\n    inputs: [Texture(name: \"source\", format: Rgba16Float)],\n    \
+        "(\n    format: 3,\n    inputs: [Texture(name: \"source\", format: Rgba16Float)],\n    \
          materials: [\n{materials}    ],\n    passes: [\n{body}    ],\n    \
          outputs: [\"{last}\"],\n)\n"
     );

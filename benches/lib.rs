@@ -311,7 +311,7 @@ impl Writer {
             ""
         };
         let text = format!(
-            "(\n    format: 2,\n    params: [{params}],\n    \
+            "(\n    format: 3,\n    params: [{params}],\n    \
              materials: [\n{}    ],\n    passes: [\n{}    ],\n    outputs: [{}],\n)\n",
             self.materials,
             self.body,

@@ -153,7 +153,7 @@ const SHELF: &[(&str, &str)] = &[
     (
         "pipelines/fixed.ron",
         r#"(
-    format: 2,
+    format: 3,
     params: [
         U32(name: "edge", default: 16, min: 1, max: 64),
         F32(name: "bias", default: 0.5),
@@ -186,7 +186,7 @@ const SHELF: &[(&str, &str)] = &[
     (
         "pipelines/shared/half.ron",
         r#"(
-    format: 2,
+    format: 3,
     params: [U32(name: "factor", default: 2, min: 1)],
     materials: [
         Texture(name: "half", format: Rgba32Float, size: "ceil_div(viewport.size, factor)"),
@@ -198,7 +198,7 @@ const SHELF: &[(&str, &str)] = &[
     (
         "pipelines/shared/twice.ron",
         r#"(
-    format: 2,
+    format: 3,
     passes: [
         Include(graph: "shared/half.ron", name: "left"),
         Include(graph: "shared/half.ron", name: "right", set: {"factor": 4}),

@@ -1,7 +1,7 @@
 // Stage to append each caster to the lists of the texels that it overlaps and in which some
-// receiver is not nearer to the light. `bin_small`: one thread per triangle, which leaves those over
-// many tiles to `bin_large`: one workgroup per part of a large one, whose threads take its tiles in
-// turns. So no thread looks at more than 2,048 texels, however large a triangle is.
+// receiver is not nearer to the light. `bin_small`: one thread per triangle, which leaves those
+// over many tiles to `bin_large`: one workgroup per part of a large one, whose threads take its
+// tiles in turns. So no thread looks at more than 2,048 texels, however large a triangle is.
 
 #import "shared/camera.wgsl"
 #import "shared/groups.wgsl"
@@ -367,7 +367,8 @@ fn least_depth(caster: Binned, centre: vec2<f32>) -> f32 {
 fn texels_in(caster: Binned, tile: vec2<u32>) -> vec2<u32> {
     let marked = tiles[tile_number(binned_layer, tile)];
     let middle = (vec2<f32>(tile) + 0.5) * f32(TILE);
-    let depth = depth_bound(caster.plane, middle, 0.5 * f32(TILE), NEAREST) - caster.depth_tolerance;
+    let nearest = depth_bound(caster.plane, middle, 0.5 * f32(TILE), NEAREST);
+    let depth = nearest - caster.depth_tolerance;
     let may_shade = depth_bits(depth) <= marked.x
         && all(edge_functions(caster.triangle, middle) >= -f32(TILE) * caster.edge_threshold);
     let low = max(caster.first, tile * TILE) - tile * TILE;

@@ -5,6 +5,7 @@
 
 #import "shared/map_fit.wgsl"
 #import "shared/geometry.wgsl"
+#import "shared/solid.wgsl"
 
 // Of a point light's map.
 override face: u32 = 0u;
@@ -14,9 +15,25 @@ struct Vertex {
     @location(0) depth: f32,
 }
 
+struct MaskedVertex {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) depth: f32,
+    @location(1) @interpolate(flat) primitive: u32,
+    // Weights of the second and the third corner.
+    @location(2) weights: vec2<f32>,
+}
+
 @vertex
 fn vertex(@builtin(vertex_index) corner: u32) -> Vertex {
     return projected(corner);
+}
+
+@vertex
+fn vertex_masked(@builtin(vertex_index) corner: u32) -> MaskedVertex {
+    let place = projected(corner);
+    let own = corner % 3u;
+    let weights = vec2(f32(own == 1u), f32(own == 2u));
+    return MaskedVertex(place.clip, place.depth, corner / 3u, weights);
 }
 
 fn projected(corner: u32) -> Vertex {
@@ -31,6 +48,15 @@ fn projected(corner: u32) -> Vertex {
 
 @fragment
 fn fragment(vertex: Vertex) -> @builtin(frag_depth) f32 {
+    return map_depth(vertex.depth);
+}
+
+// What a mask leaves out casts no shadow.
+@fragment
+fn fragment_masked(vertex: MaskedVertex) -> @builtin(frag_depth) f32 {
+    if !is_opaque(vertex.primitive, vertex.weights.x, vertex.weights.y) {
+        discard;
+    }
     return map_depth(vertex.depth);
 }
 

@@ -176,7 +176,7 @@ pub fn engine<'a>(gpu: &'a Gpu, rays: &'a Rays, name: &str, builds: &[&str]) -> 
     };
     let document = Document(format!(
         r#"(
-            format: 2,
+            format: 3,
             materials: [Buffer(name: "hits", count: "bench.rays.count")],
             passes: [
                 Trace(

@@ -1,6 +1,6 @@
 // Where a square shadow map lies across light space: any affine map of it will do, the same for
 // receivers and casters; where nothing is proven of the map, a projective one, too. Made by
-// shared/fitted/fit_map.ron.
+// shared/fit_map.ron.
 
 #import "shared/light.wgsl"
 

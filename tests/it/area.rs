@@ -66,7 +66,7 @@ fn shown(document: &str, scene: &Arc<Scene>) -> Shown {
 
 fn preset(name: &str, set: &str) -> String {
     format!(
-        r#"(format: 2, extends: "{name}.ron", lights: [directional, spot, point], set: {{{set}}})"#
+        r#"(format: 3, extends: "{name}.ron", lights: [directional, spot, point], set: {{{set}}})"#
     )
 }
 
@@ -165,7 +165,7 @@ fn samples_and_pixels_in_turns_show_what_they_show_at_once() {
     let at = |most_rays: u32| {
         let document = format!(
             r#"(
-                format: 2,
+                format: 3,
                 extends: "rt_area.ron",
                 set: {{"samples": 23}},
                 passes: [Change(pass: "sample_light", set: {{"most_rays": {most_rays}}})],

@@ -168,7 +168,7 @@ fn passes_that_read_nothing_of_a_change_are_skipped() {
     let mut executor = start(&gpu, &graph, &mut provider);
     let of_map = [
         "create_shadow_map.fit_map.over_scene",
-        "create_shadow_map.draw",
+        "create_shadow_map.draw[0]",
     ];
     assert_eq!(next(&gpu, &mut executor).skipped, [""; 0]);
     assert_eq!(next(&gpu, &mut executor).skipped, of_map);

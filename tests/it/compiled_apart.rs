@@ -335,7 +335,7 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
 "#;
 
 const DOCUMENT: &str = r#"(
-    format: 2,
+    format: 3,
     description: "operands in, results out",
     materials: [Buffer(name: "results", count: "test.operands.count")],
     passes: [Compute(name: "evaluate", dispatch: Over("test.operands.count"))],

@@ -75,7 +75,7 @@ fn a_near_plane_however_near_hides_no_plate_behind_its_floor() {
 fn a_receiver_comes_back_from_the_gbuffers_depth() {
     let gpu = open();
     let document = r#"(
-        format: 2,
+        format: 3,
         materials: [Texture(name: "place", format: Rgba32Float)],
         passes: [
             Include(graph: "shared/gbuffer.ron"),

@@ -107,18 +107,18 @@ fn the_steps_of_a_frame_are_passes() {
         "gbuffer.primitive",
         "gbuffer.surface",
         "detect_facing",
-        "fill_rays.clear",
-        "fill_rays.compact",
-        "fill_rays.dispatch_arguments",
-        "trace_rays",
-        "fix_pixels",
+        "turn[0].fill_rays.clear",
+        "turn[0].fill_rays.compact",
+        "turn[0].fill_rays.dispatch_arguments",
+        "turn[0].trace_rays",
+        "turn[0].fix_pixels",
     ];
     assert_eq!(live(&plan("pipelines/rt.ron", None)), rt);
     let nsm = [
         "gbuffer.primitive",
         "gbuffer.surface",
         "create_shadow_map.fit_map.over_scene",
-        "create_shadow_map.draw",
+        "create_shadow_map.draw[0]",
         "shadow_lookup",
     ];
     assert_eq!(live(&plan("pipelines/nsm.ron", None)), nsm);
@@ -130,16 +130,16 @@ fn the_steps_of_a_frame_are_passes() {
         "gbuffer.primitive",
         "gbuffer.surface",
         "fit_map.over_scene",
-        "create_shadow_map.layer[0].reset",
-        "create_shadow_map.layer[0].select",
         "create_shadow_map.layer[0].outer",
-        "create_shadow_map.layer[0].inner",
+        "create_shadow_map.layer[0].turn[0].reset",
+        "create_shadow_map.layer[0].turn[0].select",
+        "create_shadow_map.layer[0].turn[0].inner",
         "detect_uncertain",
-        "fill_rays.clear",
-        "fill_rays.compact",
-        "fill_rays.dispatch_arguments",
-        "trace_rays",
-        "fix_pixels",
+        "turn[0].fill_rays.clear",
+        "turn[0].fill_rays.compact",
+        "turn[0].fill_rays.dispatch_arguments",
+        "turn[0].trace_rays",
+        "turn[0].fix_pixels",
     ];
     assert_eq!(live(&plan("pipelines/crsma.ron", None)), crsma);
 }
@@ -199,14 +199,18 @@ fn what_no_output_needs_is_culled() {
             "gbuffer.primitive",
             "gbuffer.surface",
             "detect_facing",
-            "fill_rays.clear",
-            "fill_rays.compact"
+            "turn[0].fill_rays.clear",
+            "turn[0].fill_rays.compact"
         ]
     );
     let culled: Vec<String> = plan.culled().iter().map(|pass| pass.name.clone()).collect();
     assert_eq!(
         culled,
-        ["fill_rays.dispatch_arguments", "trace_rays", "fix_pixels"]
+        [
+            "turn[0].fill_rays.dispatch_arguments",
+            "turn[0].trace_rays",
+            "turn[0].fix_pixels"
+        ]
     );
 }
 

@@ -337,7 +337,7 @@ fn on_depth(
 ) -> FrameReport {
     let document = format!(
         r#"(
-            format: 2,
+            format: 3,
             extends: "{preset}.ron",
             inputs: [Texture(name: "depth"), Texture(name: "normal")],
             passes: [Change(pass: "gbuffer", graph: "shared/from_depth.ron")],

@@ -83,7 +83,7 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
 "#;
 
 const DOCUMENT: &str = r#"(
-    format: 2,
+    format: 3,
     description: "questions in, answers out",
     materials: [Buffer(name: "answers", count: "test.questions.count")],
     passes: [Compute(name: "judge", dispatch: Over("test.questions.count"))],

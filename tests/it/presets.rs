@@ -161,7 +161,7 @@ fn casters_in_turns_make_the_layers_that_they_make_at_once() {
         let answers = |corners: u32| {
             let document = format!(
                 r#"(
-                    format: 2,
+                    format: 3,
                     extends: "{preset}.ron",
                     set: {{"map_size": 64}},
                     materials: [Buffer(name: "casters", count: {corners})],
@@ -200,10 +200,10 @@ fn pixels_in_turns_get_the_answers_that_they_get_at_once() {
         let answers = |most: u32| {
             let document = format!(
                 r#"(
-                    format: 2,
+                    format: 3,
                     extends: "{preset}.ron",
                     set: {{{set}}},
-                    passes: [Change(pass: "fill_rays", set: {{"most": {most}}})],
+                    values: {{"most": "min(status.count, {most})"}},
                 )"#
             );
             let scene = scene();

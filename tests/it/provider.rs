@@ -149,7 +149,7 @@ fn a_new_camera_renews_what_depends_on_the_camera() {
         "gbuffer.primitive",
         "gbuffer.surface",
         "create_shadow_map.fit_map.over_scene",
-        "create_shadow_map.draw",
+        "create_shadow_map.draw[0]",
         "shadow_lookup",
     ];
     let second = next(&mut executor);
@@ -272,7 +272,7 @@ fn lights_have_numbers() {
     let plan = |number: &str| {
         let document = format!(
             r#"(
-                format: 2,
+                format: 3,
                 materials: [Texture(name: "kinds", format: R32Uint, layers: "lights.count")],
                 passes: [
                     Fullscreen(

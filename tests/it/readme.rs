@@ -155,7 +155,7 @@ fn the_documents_of_the_authoring_guide_are_right() {
             let name = names.pop_front().expect("the guide names its shaders");
             fs::write(folder.path().join(name), text).unwrap();
         } else if let Some(text) = part.strip_prefix("ron\n") {
-            assert!(text.starts_with("(\n    format: 2,"), "{text}");
+            assert!(text.starts_with("(\n    format: 3,"), "{text}");
             documents.push(text);
         }
     }

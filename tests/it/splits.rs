@@ -137,7 +137,7 @@ fn the_shaders_trapezoid_is_the_papers() {
         provider.add("test.corners", frusta.as_flattened());
         let document = format!(
             r#"(
-                format: 2,
+                format: 3,
                 materials: [Buffer(name: "maps", count: {FRUSTA})],
                 passes: [Compute(name: "map", dispatch: Over({FRUSTA}), set: {{"warp": {focus}}})],
                 outputs: ["maps"],

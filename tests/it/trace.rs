@@ -338,7 +338,7 @@ fn the_dispatch_is_folded_to_two_dimensions() {
         let mut provider = Extended::new(SceneProvider::new(Arc::new(scene)));
         provider.add("test.number", &[count]);
         let document = r#"(
-            format: 2,
+            format: 3,
             description: "the size of a dispatch",
             materials: [Buffer(name: "groups")],
             passes: [

@@ -45,13 +45,13 @@ fn reached(preset: &str, scene: &Arc<Scene>, lines: &[(&str, &str)]) -> u32 {
         .collect();
     let document = format!(
         r#"(
-            format: 2,
+            format: 3,
             extends: "pipelines/{preset}.ron",
             description: "{preset}, and how often a line is reached",
             materials: [Buffer(name: "times")],
             passes: [
                 Clear(
-                    after: "create_shadow_map.layer.reset",
+                    before: "create_shadow_map.layer.outer",
                     name: "reset_times",
                     target: "times",
                 ),

@@ -12,15 +12,18 @@ use crate::{
         flat::flat,
         materials::{Material, TextureEntry},
         params::{Param, ParamFault, ParamValue},
-        raw::Invalid,
-        typed::{Document, Entry, What},
+        typed::{Document, What, each_entry},
     },
     errors::{compose::ComposeError, resource::SizeError},
     kinds::registry::Registry,
     language::{name::Name, syntax::Leaf},
-    shader::{constants::ChoiceConstants, expand::ShaderFiles, reflect::Shader},
+    shader::{
+        expand::ShaderFiles,
+        reflect::Shader,
+        store::{self, Shaders},
+    },
     source::{
-        paths::{escapes, folder_of, include_candidates},
+        paths::{escapes, include_candidates},
         sources::{Picture, Sources},
         span::{Located, Span},
     },
@@ -44,31 +47,6 @@ pub struct Graph {
     /// What they ask for by `has`, or their passes can make use of.
     asked_for: wgt::Features,
     warnings: Vec<Diagnostic>,
-}
-
-/// The shaders of all documents.
-#[derive(Debug, Default)]
-pub(crate) struct Shaders(HashMap<ShaderKey, Result<Arc<Shader>, ErrorGuaranteed>>);
-
-/// The path of the document whose `Choice` words a shader sees, the folder that it was first looked
-/// for in, its name.
-type ShaderKey = (Arc<str>, String, String);
-
-impl Shaders {
-    fn key(document: &Document, name: &Located<String>) -> ShaderKey {
-        let folder = folder_of(&name.span.file.name).to_owned();
-        (Arc::clone(&document.file.name), folder, name.value.clone())
-    }
-
-    /// The shader that a pass of a document names; `None` if it was not there when the document was
-    /// read.
-    pub fn get(
-        &self,
-        document: &Document,
-        name: &Located<String>,
-    ) -> Option<&Result<Arc<Shader>, ErrorGuaranteed>> {
-        self.0.get(&Self::key(document, name))
-    }
 }
 
 /// The pictures of all documents, by the path of the document and their own.
@@ -198,7 +176,7 @@ impl Graph {
             .into_iter()
             .chain(included.iter().map(|d| &**d))
             .collect();
-        let shaders = load_shaders(&documents, sources, &mut reports);
+        let shaders = store::load(&root, ShaderFiles::new(sources), &mut reports);
         let pictures = load_pictures(&documents, sources, &mut reports);
         let mut graph = Self {
             required: required(&documents),
@@ -234,9 +212,9 @@ impl Graph {
         &self.document.params
     }
 
-    /// Names of the declared outputs, whatever their conditions.
+    /// Names of the declared outputs that are materials, whatever their conditions.
     pub fn outputs(&self) -> Vec<&str> {
-        let outputs = self.document.outputs.iter();
+        let outputs = self.document.material_outputs();
         outputs.map(|output| output.name.as_str()).collect()
     }
 
@@ -309,6 +287,14 @@ impl Graph {
                 reports.warn(ComposeError::UnusedMaterial(name));
             }
         }
+        for (name, _) in &document.values {
+            let is_used =
+                used.params.contains(name.as_str()) || used.materials.contains(name.as_str());
+            if is_own(&name.span) && !is_used {
+                let name = Located::new(name.value.to_string(), name.span.clone());
+                reports.warn(ComposeError::UnusedValue(name));
+            }
+        }
         for param in &document.params[..document.declared] {
             if is_own(&param.name.span) && !used.params.contains(&param.name.value) {
                 reports.warn(ComposeError::UnusedParam(param.name.clone()));
@@ -340,10 +326,8 @@ impl Used {
         });
         each_entry(&document.entries, &mut |entry| match &entry.what {
             What::Pass(pass) => {
-                for name in &pass.shaders {
-                    let Some(Ok(shader)) = shaders.get(document, name) else {
-                        continue;
-                    };
+                let variants = pass.shaders.iter();
+                for shader in variants.flat_map(|shader| shaders.variants(document, shader)) {
                     used.params.extend(shader.params().map(str::to_owned));
                     used.materials
                         .extend(shader.global_names().map(str::to_owned));
@@ -377,19 +361,6 @@ impl Used {
     }
 }
 
-/// Calls `each` with every entry, those in groups, too.
-pub(crate) fn each_entry<'e>(
-    entries: &'e [Result<Entry, Invalid>],
-    each: &mut dyn FnMut(&'e Entry),
-) {
-    for entry in entries.iter().flatten() {
-        each(entry);
-        if let What::Group(inner) = &entry.what {
-            each_entry(inner, each);
-        }
-    }
-}
-
 fn required(documents: &[&Document]) -> wgt::Features {
     let required = documents.iter().flat_map(|document| &document.requires);
     required.fold(wgt::Features::empty(), |all, (_, flag)| all | *flag)
@@ -410,47 +381,6 @@ fn asked_for(documents: &[&Document]) -> wgt::Features {
         });
     }
     features
-}
-
-fn load_shaders(documents: &[&Document], sources: &dyn Sources, reports: &mut Reports) -> Shaders {
-    let mut files = ShaderFiles::new(sources);
-    let mut shaders = HashMap::new();
-    // A shader that several documents use is one, unless their words make two of it.
-    let mut parsed: HashMap<String, Result<Arc<Shader>, ErrorGuaranteed>> = HashMap::new();
-    for document in documents {
-        let (constants, clashes) = ChoiceConstants::new(&document.params);
-        for clash in clashes {
-            reports.report(clash);
-        }
-        each_entry(&document.entries, &mut |entry| {
-            let What::Pass(pass) = &entry.what else {
-                return;
-            };
-            for name in &pass.shaders {
-                let key = Shaders::key(document, name);
-                if shaders.contains_key(&key) {
-                    continue;
-                }
-                let shader = match files.expand(name) {
-                    Err(error) => Err(reports.emit(error)),
-                    Ok(mut source) => {
-                        let declared = constants.append(&mut source);
-                        let text = format!("{}\n{}", source.file.name, source.text);
-                        let shader = parsed.entry(text).or_insert_with(|| {
-                            let shader = Shader::new(source).map(Arc::new);
-                            shader.map_err(|error| reports.report(error))
-                        });
-                        shader.clone().and_then(|shader| {
-                            let clash = constants.disagreement(&shader, &declared);
-                            clash.map_or(Ok(shader), |clash| Err(reports.report(clash)))
-                        })
-                    }
-                };
-                shaders.insert(key, shader);
-            }
-        });
-    }
-    Shaders(shaders)
 }
 
 fn load_pictures(

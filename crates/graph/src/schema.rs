@@ -11,7 +11,7 @@ use crate::{
         },
         params::ParamFields,
         raw::{FORMAT, SECTIONS},
-        typed::{ClaimEntry, ClaimFields, Output, OutputFields},
+        typed::{ClaimEntry, ClaimFields, ImportEntry, Narrow, Output, OutputFields},
         written::{short_or_long, written},
     },
     errors::document::PARAM_TYPES,
@@ -83,6 +83,13 @@ written!(Load, "Load", generator => {
         "description": "What is done to an attachment before the first draw.",
         "oneOf": [
             { "const": "Load", "description": "Keeps what is there." },
+            {
+                "type": "object",
+                "description": "Keeps what is there under a condition, and clears else.",
+                "properties": { "LoadIf": value },
+                "required": ["LoadIf"],
+                "additionalProperties": false,
+            },
             {
                 "type": "object",
                 "description": "One value for all channels, or four.",
@@ -213,6 +220,18 @@ fn tagged(tags: impl IntoIterator<Item = (String, Value)>) -> Value {
     })
 }
 
+/// `Remove(name: …)` of a section.
+fn removed() -> (String, Value) {
+    let removed = json!({
+        "description": "What the extended document has of this name is left out.",
+        "type": "object",
+        "properties": { "name": { "description": "Its name.", "type": "string" } },
+        "required": ["name"],
+        "additionalProperties": false,
+    });
+    ("Remove".to_owned(), removed)
+}
+
 struct Kinds<'k> {
     kinds: &'k [Kind],
     generator: &'k mut SchemaGenerator,
@@ -239,18 +258,23 @@ impl Kinds<'_> {
             "requires" => self.list::<String>(),
             "params" => {
                 let fields = self.of::<ParamFields>();
-                tagged(PARAM_TYPES.map(|tag| (tag.to_owned(), fields.clone())))
+                let params = PARAM_TYPES.map(|tag| (tag.to_owned(), fields.clone()));
+                tagged(params.into_iter().chain([removed()]))
             }
-            "set" => self.map::<Expr>(),
+            "set" | "values" => self.map::<Expr>(),
+            "narrow" => self.map::<Narrow>(),
+            "imports" => self.list::<ImportEntry>(),
             "inputs" => tagged([
                 ("Texture".to_owned(), self.of::<TextureInput>()),
                 ("Buffer".to_owned(), self.of::<BufferInput>()),
                 ("Sampler".to_owned(), self.of::<SamplerInput>()),
+                removed(),
             ]),
             "materials" => tagged([
                 ("Texture".to_owned(), self.of::<TextureEntry>()),
                 ("Buffer".to_owned(), self.of::<BufferEntry>()),
                 ("Sampler".to_owned(), self.of::<SamplerEntry>()),
+                removed(),
             ]),
             "passes" => self.passes(),
             "outputs" => self.list::<Output>(),

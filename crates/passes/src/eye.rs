@@ -23,9 +23,9 @@ const FARTHEST: f64 = 65536.0;
 /// plane or without.
 ///
 /// What is reconstructed from a depth buffer (`shared/from_depth.ron`) is right for any of them.
-/// Fits to the eye's frustum (`fit: camera`, `pssm`) are laid over a symmetric one that holds it; one
-/// without a far plane counts as ending at 65,536 times its near plane. `shared/gbuffer.ron` draws
-/// that symmetric frustum, too, in reversed depth whatever the host's is.
+/// Fits to the eye's frustum (`fit: camera`, `pssm`) are laid over a symmetric one that holds it;
+/// one without a far plane counts as ending at 65,536 times its near plane. `shared/gbuffer.ron`
+/// draws that symmetric frustum, too, in reversed depth whatever the host's is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Eye {
     pub(crate) camera: CameraUniform,

@@ -43,6 +43,12 @@ pub enum Direction {
     Light,
 }
 
+/// The modules that shaders import in the place of others where triangles are masked.
+const MASKED: [(&str, &str); 2] = [
+    ("shared/solid.wgsl", "shared/masks.wgsl"),
+    ("shared/ray_total.wgsl", "shared/ray_total_uniform.wgsl"),
+];
+
 impl Engine {
     /// The engines as words of a `Choice`.
     pub const WORDS: [(&str, Self); 3] = [
@@ -57,15 +63,6 @@ impl Engine {
             Self::Hierarchy => "trace_rays",
             Self::RayQuery => "trace_ray_query",
             Self::LightSpace => "trace_light_space",
-        }
-    }
-
-    /// The same where triangles are masked.
-    fn masked_shader(self) -> &'static str {
-        match self {
-            Self::Hierarchy => "trace_rays_masked",
-            Self::RayQuery => "trace_ray_query_masked",
-            Self::LightSpace => "trace_light_space_masked",
         }
     }
 
@@ -196,13 +193,13 @@ impl PassKind for Trace {
         // A document that chooses by a param is read with the shaders of all its words.
         if let Chosen::Expr(_) = &self.engine {
             for (_, engine) in Engine::WORDS {
-                pass.alternative(engine.shader(), engine.features());
-                pass.alternative(engine.masked_shader(), engine.features());
-                pass.alternative(engine.masked_shader(), engine.features());
+                pass.alternative(engine.shader(), &[], engine.features());
+                pass.alternative(engine.shader(), &MASKED, engine.features());
             }
         }
         let engine = pass.word(&self.engine, &Engine::WORDS);
-        pass.alternative(engine.shader(), engine.features());
+        pass.alternative(engine.shader(), &[], engine.features());
+        pass.alternative(engine.shader(), &MASKED, engine.features());
         if engine == Engine::LightSpace {
             match (self.direction, pass.kind_of(LIGHT)) {
                 (None, _) => self.refuse(pass),
@@ -212,12 +209,13 @@ impl PassKind for Trace {
                 (Some(Direction::Light), _) => {}
             }
         }
-        let is_masked = pass.provided_items(MASKS) > 0;
-        let mut trace = pass.program_of(if is_masked {
-            engine.masked_shader()
-        } else {
-            engine.shader()
-        });
+        let mut trace = pass.program_of(engine.shader());
+        if pass.provided_items(MASKS) > 0 {
+            let modules = MASKED.iter();
+            trace.imports = modules
+                .map(|(of, is)| ((*of).to_owned(), (*is).to_owned()))
+                .collect();
+        }
         trace.compute = Some(pass.named(self.entry_point()));
         bind(pass, &mut trace, "count", (&self.count).into());
         bind(pass, &mut trace, "rays", (&self.rays).into());

@@ -20,7 +20,7 @@ use std::sync::{Arc, Mutex};
 
 /// `light_buffer` on a host's depth and normals.
 const DOCUMENT: &str = r#"(
-    format: 2,
+    format: 3,
     extends: "light_buffer.ron",
     inputs: [Texture(name: "depth"), Texture(name: "normal")],
     passes: [Change(pass: "gbuffer", graph: "shared/from_depth.ron", set: {"unsigned": true})],

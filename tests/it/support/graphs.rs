@@ -174,7 +174,7 @@ pub fn trace_by(
     };
     let document = format!(
         r#"(
-            format: 2,
+            format: 3,
             description: "rays in, hits out",
             materials: [Buffer(name: "hits", count: "test.rays.count")],
             passes: [

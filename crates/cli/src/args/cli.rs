@@ -63,7 +63,7 @@ pub enum Command {
     /// for all that the frame needs: frames before it, which it counts, find out how much that is.
     #[command(
         after_help = "Examples:\n  skiagraph run nsm --save visibility=shadow.png\n  \
-        skiagraph run nsm --save shadow_map@create_shadow_map.draw=map.png --set map_size=512\n  \
+        skiagraph run nsm --save shadow_map@create_shadow_map.draw[0]=map.png --map-size 512\n  \
         skiagraph run my_method.ron --scene sponza --save status=status.bin\n  \
         skiagraph run my_method.ron --poison"
     )]

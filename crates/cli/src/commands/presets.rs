@@ -7,7 +7,7 @@ use crate::graphs::planning::{Capabilities, placeholder};
 use crate::graphs::preset::{self, Preset, RAY_COUNT, VISIBILITY};
 use crate::measuring::guarantee;
 use crate::terminal::console::print;
-use skiagraph_graph::{Graph, Param, ParamType};
+use skiagraph_graph::{Graph, Param};
 
 /// Lists the presets with their params, or as a table.
 ///
@@ -93,13 +93,10 @@ fn row(preset: &Preset) -> Result<[String; 7], CliError> {
         _ => lights.join(", "),
     };
     let traces = graph.outputs().contains(&RAY_COUNT);
-    let fits = match preset.param("fit").map(|fit| &fit.ty) {
-        Some(ParamType::Choice(words)) => {
-            let words: Vec<&str> = words.iter().map(|word| word.as_str()).collect();
-            words.join(", ")
-        }
-        _ => "–".to_owned(),
-    };
+    let fits = preset.param("fit").map_or("–".to_owned(), |fit| {
+        let words: Vec<&str> = fit.words().map(|word| word.as_str()).collect();
+        words.join(", ")
+    });
     let method = Method::new(preset, Default::default());
     let promise = guarantee::of(&method, &[])?;
     let promise = promise.map_or("–", |(guarantee, _)| guarantee.word());

@@ -28,7 +28,7 @@ pub fn show(args: &ShowArgs) -> Result<(), CliError> {
     }
     match Graph::flat(&path, &sources) {
         Ok(text) => print(&text),
-        Err(faults) => Err(GraphFaults::new(&args.file, &faults)),
+        Err(faults) => Err(GraphFaults::one(&args.file, &faults)),
     }
 }
 

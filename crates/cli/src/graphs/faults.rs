@@ -26,7 +26,7 @@ impl GraphFaults {
     }
 
     /// The faults of one graph alone, as an error.
-    pub fn new(graph: &str, diagnostics: &Diagnostics) -> CliError {
+    pub fn one(graph: &str, diagnostics: &Diagnostics) -> CliError {
         let mut faults = Self::default();
         faults.add(graph, diagnostics);
         faults.into_error()

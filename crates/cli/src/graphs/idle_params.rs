@@ -3,7 +3,7 @@
 use crate::graphs::method::Method;
 use crate::graphs::planning::{Capabilities, placeholder, stand_ins};
 use crate::terminal::console::note;
-use skiagraph_graph::{Graph, ParamType, ParamValue, Plan, PlanRequest};
+use skiagraph_graph::{Graph, ParamValue, Plan, PlanRequest};
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::LightKind;
 use std::collections::BTreeSet;
@@ -66,12 +66,11 @@ pub fn under_other_lights(graph: &Graph) -> String {
 
 /// Params of words that do not all mean the same in a plan.
 fn choosing(graph: &Graph, plan: &Plan) -> BTreeSet<String> {
-    let choices = graph.params().iter().filter(|param| match &param.ty {
-        ParamType::Choice(words) => words.iter().any(|word| {
+    let choices = graph.params().iter().filter(|param| {
+        param.words().any(|word| {
             let value = ParamValue::Choice(word.to_string());
             !plan.is_same_with(param.name.as_str(), value)
-        }),
-        _ => false,
+        })
     });
     choices.map(|param| param.name.value.to_string()).collect()
 }

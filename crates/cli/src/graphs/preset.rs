@@ -36,11 +36,8 @@ pub fn sources() -> LayeredSources {
 }
 
 /// Folders of what presets are made of.
-const PARTS: [&str; 6] = [
+const PARTS: [&str; 3] = [
     "pipelines/shared",
-    "pipelines/shared/fitted",
-    "pipelines/shared/layered",
-    "pipelines/shared/projective",
     "shaders",
     "shaders/shared",
 ];
@@ -135,7 +132,7 @@ impl Preset {
     /// Its faults.
     pub fn plan(&self, request: &PlanRequest) -> Result<Plan, CliError> {
         let plan = self.graph.plan(request);
-        let plan = plan.map_err(|diagnostics| GraphFaults::new(&self.name, &diagnostics))?;
+        let plan = plan.map_err(|diagnostics| GraphFaults::one(&self.name, &diagnostics))?;
         warn(&self.graph, plan.warnings());
         Ok(plan)
     }

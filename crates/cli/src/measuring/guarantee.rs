@@ -150,7 +150,7 @@ mod tests {
     fn a_claim_that_nobody_judges_is_an_error_with_the_nearest_word() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("claims.ron");
-        let text = "(format: 2, extends: \"rt.ron\", claims: {\"exakt\": (because: \"\")})";
+        let text = "(format: 3, extends: \"rt.ron\", claims: {\"exakt\": (because: \"\")})";
         std::fs::write(&file, text).unwrap();
         let name = file.to_str().unwrap().to_owned();
         let presets = preset::load_all(&[name], &preset::sources()).unwrap();

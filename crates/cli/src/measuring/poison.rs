@@ -31,7 +31,7 @@ pub fn check(
     let mut render = |pattern: u8| {
         let plan = plan
             .with(|request| request.poison = Some(pattern))
-            .map_err(|diagnostics| GraphFaults::new(&preset.name, &diagnostics))?;
+            .map_err(|diagnostics| GraphFaults::one(&preset.name, &diagnostics))?;
         // Which items of a buffer that is too small have room is chance.
         let (contents, _) = frame::render(gpu, &preset.name, plan, provider, &outputs)?;
         Ok(contents)

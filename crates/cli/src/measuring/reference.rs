@@ -38,7 +38,7 @@ impl PrimaryVisibility {
     pub fn load(sources: &dyn Sources) -> Result<Self, CliError> {
         let recorded = RecordedSources::new(sources);
         let graph = Graph::load(GBUFFER, &registry(), &recorded)
-            .map_err(|diagnostics| GraphFaults::new(GBUFFER, &diagnostics))?;
+            .map_err(|diagnostics| GraphFaults::one(GBUFFER, &diagnostics))?;
         Ok(Self {
             graph,
             fingerprint: recorded.fingerprint(),
@@ -59,7 +59,7 @@ impl PrimaryVisibility {
         request.outputs = Some(vec!["primitive".to_owned()]);
         self.graph
             .plan(&request)
-            .map_err(|diagnostics| GraphFaults::new(GBUFFER, &diagnostics))
+            .map_err(|diagnostics| GraphFaults::one(GBUFFER, &diagnostics))
     }
 
     /// The primitive that each pixel shows.

@@ -367,7 +367,7 @@ pub struct Measured {
 
 /// The step that a pass belongs to: its name up to the first dot, so that `create_shadow_map.outer`
 /// and `create_shadow_map.inner` are one. What is repeated is no step, but what is in it:
-/// `further[0].trace_rays` is of the step `trace_rays`.
+/// `turn[0].trace_rays` is of the step `trace_rays`.
 pub fn step(pass: &str) -> &str {
     let mut steps = pass.split('.');
     steps.find(|step| !step.ends_with(']')).unwrap_or(pass)
@@ -635,7 +635,7 @@ pub(crate) mod tests {
         for (pass, of) in [
             ("trace_rays", "trace_rays"),
             ("fill_rays.compact", "fill_rays"),
-            ("further[0].fill_rays.compact", "fill_rays"),
+            ("turn[0].fill_rays.compact", "fill_rays"),
             ("fill[3]", "fill[3]"),
         ] {
             assert_eq!(step(pass), of);

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 /// What is said before the tables.
 const HEAD: &str = "# The language of documents: reference
 
-Format 2, as the types that read it have it: `skiagraph schema --format markdown` made this page,
+Format 3, as the types that read it have it: `skiagraph schema --format markdown` made this page,
 `skiagraph schema` is the same as a JSON Schema. [Writing a graph](authoring.md) explains it.
 
 Fields in **bold** must be given; the others may be left out.

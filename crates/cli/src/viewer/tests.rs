@@ -291,7 +291,7 @@ fn the_reference_becomes_finer_and_tells_what_is_wrong() {
     });
 }
 
-const METHOD: &str = r#"(format: 2, params: [F32(name: "share", default: 1, min: 0, max: 1)],
+const METHOD: &str = r#"(format: 3, params: [F32(name: "share", default: 1, min: 0, max: 1)],
     materials: [Texture(name: "visibility", format: R32Float)],
     passes: [Include(graph: "shared/gbuffer.ron"), Fullscreen(name: "all", color: ["visibility"])],
     outputs: ["visibility"])"#;

@@ -177,7 +177,11 @@ fn graph_draws_without_a_gpu_and_writes_whole_files() {
         .collect();
     assert_eq!(
         culled,
-        ["fill_rays.dispatch_arguments", "trace_rays", "fix_pixels"]
+        [
+            "turn[0].fill_rays.dispatch_arguments",
+            "turn[0].trace_rays",
+            "turn[0].fix_pixels"
+        ]
     );
 }
 

@@ -16,7 +16,7 @@ use tempfile::TempDir;
 fn method(folder: &Path, name: &str, groups: &str, body: &str) {
     let graph = format!(
         r#"(
-    format: 2,
+    format: 3,
     materials: [
         Texture(name: "visibility", format: R32Uint),
         Texture(name: "status", format: R8Uint),
@@ -128,8 +128,8 @@ fn check_warns_of_what_not_every_adapter_can_and_asks_one_that_is_named() {
         "{stderr}"
     );
     let needs = light.replace(
-        "format: 2,",
-        "format: 2, requires: [\"EXPERIMENTAL_MESH_SHADER\"],",
+        "format: 3,",
+        "format: 3, requires: [\"EXPERIMENTAL_MESH_SHADER\"],",
     );
     fs::write(folder.path().join("needs.ron"), needs).unwrap();
     let (code, _, stderr) = run(folder.path(), "check needs.ron");
@@ -149,10 +149,10 @@ fn check_warns_of_what_not_every_adapter_can_and_asks_one_that_is_named() {
 fn a_feature_that_the_adapter_lacks_is_one_diagnostic_before_anything_runs() {
     let folder = folder();
     let light = fs::read_to_string(folder.path().join("light.ron")).unwrap();
-    let needs = "format: 2,\n    requires: [\"EXPERIMENTAL_MESH_SHADER\"],";
+    let needs = "format: 3,\n    requires: [\"EXPERIMENTAL_MESH_SHADER\"],";
     fs::write(
         folder.path().join("light.ron"),
-        light.replace("format: 2,", needs),
+        light.replace("format: 3,", needs),
     )
     .unwrap();
     for verb in ["run", "profile", "compare"] {
@@ -175,7 +175,7 @@ fn a_graph_that_does_not_fit_is_refused_with_a_memory_table() {
     let passes = entries(&|n| format!("Clear(name: \"clear_{n}\", target: \"image_{n}\"),"));
     let outputs = entries(&|n| format!("\"image_{n}\","));
     let graph =
-        format!("(format: 2, materials: [{textures}], passes: [{passes}], outputs: [{outputs}])");
+        format!("(format: 3, materials: [{textures}], passes: [{passes}], outputs: [{outputs}])");
     fs::write(folder.path().join("huge.ron"), graph).unwrap();
     for verb in ["run", "profile"] {
         let line = format!("{verb} huge.ron --size 16x16 --memory-limit 8GiB");
@@ -198,7 +198,7 @@ fn a_graph_that_does_not_fit_is_refused_with_a_memory_table() {
 #[test]
 fn a_driver_without_memory_names_the_material_with_the_table() {
     let folder = tempfile::tempdir().unwrap();
-    let graph = "(format: 2, materials: [Texture(name: \"image\", format: Rgba32Float, size: 8192, \
+    let graph = "(format: 3, materials: [Texture(name: \"image\", format: Rgba32Float, size: 8192, \
                  layers: 256)], \
                  passes: [Clear(name: \"clear\", target: \"image\")], outputs: [\"image\"])";
     fs::write(folder.path().join("huge.ron"), graph).unwrap();

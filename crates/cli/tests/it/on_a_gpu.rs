@@ -92,7 +92,7 @@ fn compare_measures_judges_and_pictures_every_run() {
         }
         match run["preset"].as_str() {
             // Its map depends on the light, not on the camera, which is all that moves.
-            Some("nsm") => assert_eq!(run["cached"]["skipped"][1], "create_shadow_map.draw"),
+            Some("nsm") => assert_eq!(run["cached"]["skipped"][1], "create_shadow_map.draw[0]"),
             _ => assert_eq!(run["cached"], Value::Null),
         }
         assert!(run["frame"]["wall_ms"]["median"].as_f64().unwrap() > 0.0);
@@ -227,7 +227,7 @@ fn a_bare_stress_takes_the_presets_that_presets_lists() {
 fn run_saves_outputs_and_materials_and_says_what_ran() {
     let folder = tempfile::tempdir().unwrap();
     let line = "run nsm --size 48x32 --map-size 64 --save visibility=v.png --save status=s.png \
-        --save shadow_map@create_shadow_map.draw=map.png --save primitive=ids.bin --save \
+        --save shadow_map@create_shadow_map.draw[0]=map.png --save primitive=ids.bin --save \
         primitive=ids.png";
     let output = skiagraph(folder.path(), line);
     let text = String::from_utf8_lossy(&output.stdout);
@@ -649,7 +649,7 @@ const LAMPS: &str = include_str!("../../../../scenes/lamps.ron");
 
 /// A graph that includes `rt` for each light.
 const EVERY_LIGHT: &str = r#"(
-    format: 2,
+    format: 3,
     materials: [
         Texture(name: "visibility", format: R32Uint, layers: "lights.count"),
         Texture(name: "status", format: R32Uint, layers: "lights.count"),
@@ -980,8 +980,8 @@ fn what_could_not_run_is_tried_again() {
     let folder = tempfile::tempdir().unwrap();
     // One is for Windows, one for Android: no adapter has both.
     let nowhere = LIT.replace(
-        "format: 2,",
-        r#"format: 2, requires: [
+        "format: 3,",
+        r#"format: 3, requires: [
             "VULKAN_EXTERNAL_MEMORY_WIN32",
             "VULKAN_GOOGLE_DISPLAY_TIMING",
         ],"#,

@@ -42,7 +42,7 @@ fn every_frame_is_judged_and_exact_methods_do_not_shimmer() {
                 "{shimmer}"
             );
             let skipped = frames[5]["skipped"].to_string();
-            assert!(skipped.contains("create_shadow_map.draw"), "{skipped}");
+            assert!(skipped.contains("create_shadow_map.draw[0]"), "{skipped}");
             for frame in frames {
                 let wall = frame["every_pass"]["wall_ms"].as_f64();
                 assert!(wall.is_some_and(|ms| ms > 0.0), "{frame}");
@@ -96,7 +96,7 @@ fn a_moving_light_is_followed_by_what_is_kept_and_by_the_reference() {
         // The map is drawn while the light moves, and kept in the two frames in which it stands.
         for (index, frame) in frames.iter().enumerate() {
             let skipped = frame["skipped"].to_string();
-            let is_kept = skipped.contains("create_shadow_map.draw");
+            let is_kept = skipped.contains("create_shadow_map.draw[0]");
             assert_eq!(is_kept, index == 0 || index > 14, "{index}: {skipped}");
         }
     }
@@ -151,8 +151,8 @@ fn moving_parts_are_followed_by_what_is_kept_and_by_the_reference() {
             for (index, frame) in frames.iter().enumerate() {
                 let skipped = frame["skipped"].to_string();
                 let expected = match run["preset"].as_str() {
-                    Some("nsm") => "create_shadow_map.draw",
-                    Some("crsm") => "create_shadow_map.layer[0].select",
+                    Some("nsm") => "create_shadow_map.draw[0]",
+                    Some("crsm") => "create_shadow_map.layer[0].turn[0].select",
                     // They keep nothing: every pass of theirs reads the mesh or the eye.
                     _ => {
                         assert_eq!(skipped, "null", "{path} {}", run["preset"]);

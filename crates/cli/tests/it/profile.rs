@@ -47,7 +47,7 @@ const PASSES: [&str; 5] = [
     "gbuffer.primitive",
     "gbuffer.surface",
     "create_shadow_map.fit_map.over_scene",
-    "create_shadow_map.draw",
+    "create_shadow_map.draw[0]",
     "shadow_lookup",
 ];
 
@@ -181,9 +181,9 @@ fn a_baseline_stands_beside_and_other_conditions_are_called_out() {
         "WARNING: measured under other conditions",
         "viewport: then 32x24, now 16x16",
         "method: then nsm, now rt",
-        "Only then: create_shadow_map.fit_map.over_scene, create_shadow_map.draw, shadow_lookup",
-        "Only now: detect_facing, fill_rays.clear, fill_rays.compact, \
-         fill_rays.dispatch_arguments, trace_rays, fix_pixels",
+        "Only then: create_shadow_map.fit_map.over_scene, create_shadow_map.draw[0], shadow_lookup",
+        "Only now: detect_facing, turn[0].fill_rays.clear, turn[0].fill_rays.compact, \
+         turn[0].fill_rays.dispatch_arguments, turn[0].trace_rays, turn[0].fix_pixels",
     ] {
         assert!(other.contains(part), "no {part:?} in\n{other}");
     }

@@ -131,7 +131,7 @@ const TOLD: &str = r#"
 fn shaders_know_number_time_jitter_and_the_frame_before() {
     let folder = tempfile::tempdir().unwrap();
     let document = r#"(
-        format: 2,
+        format: 3,
         materials: [Buffer(name: "told", count: 1)],
         passes: [Compute(name: "tell", dispatch: Groups(1, 1, 1), overwrites: ["told"])],
         outputs: ["told"],
@@ -183,7 +183,7 @@ fn shaders_know_number_time_jitter_and_the_frame_before() {
 
 /// Ten items are wanted and four have room at first; how many frames there were is remembered.
 const GROWS: &str = r#"(
-    format: 2,
+    format: 3,
     materials: [
         Buffer(name: "needed"),
         Buffer(name: "items", count: 4, grow: (counter: "needed", max: 64)),

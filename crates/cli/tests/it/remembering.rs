@@ -77,7 +77,7 @@ fn a_picture_that_cycles_is_judged_by_its_worst_and_its_mean() {
     std::fs::write(
         folder.path().join("blink.ron"),
         r#"(
-            format: 2,
+            format: 3,
             description: "All in shadow in two frames of three, and all in light in the third.",
             materials: [Texture(name: "visibility", format: R32Uint)],
             passes: [Fullscreen(name: "blink", color: ["visibility"])],

@@ -8,7 +8,7 @@ use std::{
 
 /// Two mips of two layers, each of another grey; odd values; a buffer of items.
 const GRAPH: &str = r#"(
-    format: 2,
+    format: 3,
     materials: [
         Texture(name: "stack", format: R32Float, size: 8, mips: 2, layers: 2),
         Texture(name: "odd", format: Rg32Float),
@@ -136,7 +136,7 @@ fn buffers_become_tables_of_their_items() {
 fn a_cameras_depths_are_distances_and_a_lights_are_not() {
     let folder = tempfile::tempdir().unwrap();
     let line = "nsm --size 32x32 --map-size 32 --save depth=d.png --save \
-        shadow_map@create_shadow_map.draw=m.png";
+        shadow_map@create_shadow_map.draw[0]=m.png";
     let text = saved(folder.path(), &line.split(' ').collect::<Vec<_>>());
     assert!(
         text.contains("d.png: 32x32, distance along the view, black to white "),
@@ -169,7 +169,7 @@ fn what_cannot_be_saved_says_why_and_what_else_there_is() {
 
 /// Layers and mips written one by one, out of order.
 const STEPWISE: &str = r#"(
-    format: 2,
+    format: 3,
     materials: [
         Texture(name: "stack", format: R32Float, size: 8, mips: 2, layers: 2),
         Texture(name: "other", format: R32Float, size: 8),
@@ -235,7 +235,7 @@ fn what_is_saved_after_a_pass_is_what_has_been_written_by_then() {
 fn the_maps_of_a_layered_group_are_saved_as_they_are_drawn() {
     let folder = tempfile::tempdir().unwrap();
     for (layer, part) in [(0, "layer 0 of 4, "), (1, "layers 0 to 1 of 4, ")] {
-        let save = format!("shadow_maps@create_shadow_map.draw_layer[{layer}]=x.png");
+        let save = format!("shadow_maps@create_shadow_map.draw[{layer}]=x.png");
         let line = format!("pssm --scene park --size 64x64 --map-size 64 --save {save}");
         let arguments: Vec<&str> = line.split(' ').collect();
         let text = saved(folder.path(), &arguments);

@@ -46,10 +46,11 @@ impl<'t> Ron<'t> {
     }
 
     fn string(&mut self) -> String {
-        let text = self.0;
-        let mut values = serde_json::Deserializer::from_str(text).into_iter::<String>();
+        // Prose may be broken into lines, which JSON may not.
+        let text = self.0.replace('\n', " ");
+        let mut values = serde_json::Deserializer::from_str(&text).into_iter::<String>();
         let string = values.next().unwrap().unwrap();
-        self.0 = &text[values.byte_offset()..];
+        self.0 = &self.0[values.byte_offset()..];
         string
     }
 
@@ -176,7 +177,7 @@ fn the_reference_of_the_language_is_that_of_its_types() {
 
 /// A document with one pass, material and param, into which mistakes are put.
 const RIGHT: &str = r#"(
-    format: 2,
+    format: 3,
     params: [F32(name: "gain", default: 1, min: 0)],
     materials: [
         Texture(name: "image", format: Rgba8Unorm, size: (64, 64), mips: All),
@@ -201,7 +202,7 @@ fn what_is_misspelt_is_no_document() {
     let schema = validator();
     assert_eq!(mistakes(&schema, RIGHT), [""; 0]);
     let misspelt = [
-        ("format: 2", "format: 1"),
+        ("format: 3", "format: 1"),
         ("params:", "parameters:"),
         ("F32(", "Float("),
         ("min: 0", "minimum: 0"),

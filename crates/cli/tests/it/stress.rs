@@ -180,8 +180,8 @@ fn what_this_adapter_cannot_run_is_said_once() {
     let folder = tempfile::tempdir().unwrap();
     // One is for Windows, one for Android: no adapter has both.
     let nowhere = LIT.replace(
-        "format: 2,",
-        r#"format: 2, requires: [
+        "format: 3,",
+        r#"format: 3, requires: [
             "VULKAN_EXTERNAL_MEMORY_WIN32",
             "VULKAN_GOOGLE_DISPLAY_TIMING",
         ],"#,

@@ -138,6 +138,8 @@ impl FramesInFlight {
                     Ok(Some(timing)) => Some(timing),
                     Ok(None) => {
                         self.under_way.push_front(frame_in_flight);
+                        // Of a device that is lost meanwhile they never come.
+                        presence.check()?;
                         return Ok(None);
                     }
                     Err(error) => {

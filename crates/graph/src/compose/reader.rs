@@ -16,13 +16,17 @@ use crate::{
     },
     errors::compose::ComposeError,
     kinds::registry::Registry,
+    language::name::Name,
     source::{
         paths::{escapes, folder_of, include_candidates},
         sources::{self, Sources},
         span::{Located, SourceFile, Span},
     },
 };
-use std::{collections::HashMap, sync::Arc};
+use std::{
+    collections::{BTreeSet, HashMap},
+    sync::Arc,
+};
 
 /// Deepest chain of includes or extended documents; far above any sensible house, far below the
 /// stack.
@@ -114,6 +118,8 @@ impl<'a> Reader<'a> {
             let mut document = read::document(raw, self.registry, self.reports);
             document.include_depth = self.attach(&mut document.entries);
             self.expose(&mut document);
+            self.narrow(&mut document);
+            document.gives_values = value_outputs(&document);
             unique::check(&document, self.reports);
             document
         });
@@ -242,8 +248,45 @@ impl<'a> Reader<'a> {
         Err(self.reports.report(error))
     }
 
+    /// Takes words away from the choices that a document narrows.
+    fn narrow(&mut self, document: &mut Document) {
+        for (name, narrow) in std::mem::take(&mut document.narrow) {
+            let mut params = document.params.iter_mut();
+            let Some(param) = params.find(|param| *param.name.value == *name) else {
+                let known = document.params.iter().map(|param| param.name.value.clone());
+                let error = ComposeError::NoParam {
+                    name,
+                    document: document.file.name.to_string(),
+                    known: known.collect(),
+                };
+                if document.invalid_params.is_none() {
+                    self.reports.report(error);
+                }
+                continue;
+            };
+            if let Err(word) = param.narrow(&narrow.words, &narrow.because) {
+                let declared = param.name.span.clone();
+                self.reports.report(match word {
+                    None => ComposeError::NarrowOfOther { name, declared },
+                    Some(word) => ComposeError::NarrowWord {
+                        known: param.words().map(Name::to_string).collect(),
+                        declared,
+                        word,
+                    },
+                });
+            }
+        }
+    }
+
     /// Adds the params of included documents that a document makes its own.
     fn expose(&mut self, document: &mut Document) {
+        let own = document.params.iter().map(|param| param.name.value.clone());
+        let values = document
+            .values
+            .iter()
+            .map(|(name, _)| name.value.to_string());
+        let own = own.chain(values).collect();
+        expose_all(&mut document.entries, &own, &BTreeSet::new());
         let mut exposed: Vec<(Param, Span)> = Vec::new();
         collect(&document.entries, &mut |entry, include| {
             let Some(inner) = include.document() else {
@@ -286,6 +329,10 @@ impl<'a> Reader<'a> {
                 .params
                 .iter()
                 .find(|known| known.name.value == param.name.value);
+            // The same declaration twice is one param.
+            if known.is_some_and(|known| known.name.span == param.name.span) {
+                continue;
+            }
             if let Some(known) = known {
                 let error = ComposeError::ExposedTwice {
                     name: Located::new(param.name.value, span),
@@ -314,6 +361,61 @@ impl<'a> Reader<'a> {
             }
         }
     }
+}
+
+/// Writes out which params `expose: All` exposes: those that neither the include nor a group around
+/// it sets, and that do not ask for a param or value of the document's own.
+fn expose_all(
+    entries: &mut [Result<Entry, Invalid>],
+    own: &BTreeSet<String>,
+    set_around: &BTreeSet<String>,
+) {
+    for entry in entries.iter_mut().flatten() {
+        let set = entry.set.iter().map(|(name, _)| name.value.clone());
+        let set: BTreeSet<String> = set.chain(set_around.iter().cloned()).collect();
+        match &mut entry.what {
+            What::Group(inner) => expose_all(inner, own, &set),
+            What::Include(include) if include.exposes_all => {
+                let span = include.graph.span.clone();
+                let Some(document) = include.document() else {
+                    continue;
+                };
+                let is_free = |param: &&Param| {
+                    let name = &param.name.value;
+                    !set.contains(name) && (param.default.is_some() || !own.contains(name))
+                };
+                let free = document.params.iter().filter(is_free);
+                include.expose = free
+                    .map(|param| Located::new(param.name.value.clone(), span.clone()))
+                    .collect();
+            }
+            What::Include(_) | What::Pass(_) => {}
+        }
+    }
+}
+
+/// The outputs of a document that are values: its own, or those of includes without a name.
+fn value_outputs(document: &Document) -> BTreeSet<String> {
+    let own = document
+        .values
+        .iter()
+        .map(|(name, _)| name.value.to_string());
+    let mut values: BTreeSet<String> = own.collect();
+    collect(&document.entries, &mut |entry, include| {
+        let Some(inner) = include.document() else {
+            return;
+        };
+        values.extend(inner.gives_values.iter().map(|name| {
+            if include.is_named {
+                format!("{}.{name}", *entry.name)
+            } else {
+                name.clone()
+            }
+        }));
+    });
+    let outputs = document.outputs.iter();
+    let values = outputs.filter(|output| values.contains(&output.material.path()));
+    values.map(|output| output.name.value.to_string()).collect()
 }
 
 /// Calls `each` with every include, those in groups, too.

@@ -8,8 +8,8 @@ use crate::{
         typed::{Document, Entry, What},
     },
     errors::compose::ComposeError,
-    language::name::wgsl_identifier,
-    source::span::Span,
+    language::name::{Name, wgsl_identifier},
+    source::span::{Located, Span},
 };
 use std::collections::HashMap;
 
@@ -23,6 +23,10 @@ pub(super) fn check(document: &Document, reports: &mut Reports) {
         let name = material.name();
         materials.add(&name.value, &name.span, reports);
     }
+    for (name, _) in &document.values {
+        materials.add(&name.value, &name.span, reports);
+        check_value(document, name, reports);
+    }
     check_entries(
         &document.entries,
         &mut materials,
@@ -33,6 +37,28 @@ pub(super) fn check(document: &Document, reports: &mut Reports) {
     let mut outputs = Names::new("output");
     for output in &document.outputs {
         outputs.add(&output.name.value, &output.name.span, reports);
+    }
+}
+
+/// A value is told apart from params, and from words that stand where it may.
+fn check_value(document: &Document, name: &Located<Name>, reports: &mut Reports) {
+    for param in &document.params {
+        if *param.name.value == *name.value.as_str() {
+            reports.report(ComposeError::Clash {
+                what: "value",
+                name: name.value.to_string(),
+                known: name.value.to_string(),
+                span: name.span.clone(),
+                first: param.name.span.clone(),
+            });
+        }
+        if param.words().any(|word| *word == name.value) {
+            reports.report(ComposeError::ValueIsWord {
+                name: Located::new(name.value.to_string(), name.span.clone()),
+                param: param.name.value.clone(),
+                declared: param.name.span.clone(),
+            });
+        }
     }
 }
 

@@ -54,7 +54,7 @@ codes! {
          program must be registered.";
     /// The document's `format` is not one this version reads.
     FormatVersion = "format-version",
-        "Write the document in format 2 (docs/authoring.md), or use a newer Skiagraph.";
+        "Write the document in format 3 (docs/authoring.md), or use a newer Skiagraph.";
     /// A name outside the grammar, reserved, or spelt in WGSL like another.
     Name = "name",
         "Names begin with a small letter and go on with small letters, digits and single \
@@ -154,6 +154,12 @@ codes! {
     /// know.
     Feature = "feature",
         "Run on an adapter that has the feature, or ask `has(FEATURE)` in an `if`.";
+    /// A value that is made of itself.
+    Value = "value",
+        "Let one of the values of the ring be made of params or sizes alone.";
+    /// An include that runs twice although another one has the same content.
+    TwoCopies = "two-copies",
+        "Put the include above the pass that writes in between, or give it a name.";
     /// A light of a kind that the document does not take.
     Light = "light",
         "Run it under a light of a kind that it takes; if its passes know others, say so in \

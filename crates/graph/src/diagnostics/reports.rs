@@ -36,7 +36,7 @@ pub(crate) trait IntoDiagnostic: Display {
 pub(crate) struct ErrorGuaranteed(());
 
 /// The mistakes found so far.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Reports {
     list: Vec<Diagnostic>,
     errors: usize,

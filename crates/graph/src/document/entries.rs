@@ -3,7 +3,7 @@
 use super::{
     fields::Mentions,
     raw::{Invalid, RawEntry, RawMap, stem},
-    ron::{Field, Node, from_fields, from_some_fields},
+    ron::{Field, Node, from_fields, from_some_fields, raw, read as read_text, refuse},
     typed::{Entry, Include, Pass, Run, What},
 };
 use crate::{
@@ -15,7 +15,7 @@ use crate::{
     kinds::{
         kind::{Lowering, OF_PASS},
         registry::Registry,
-        step::Step,
+        step::{Program, Step},
     },
     language::{
         name::{Name, RESERVED},
@@ -23,7 +23,7 @@ use crate::{
     },
     source::span::Located,
 };
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 
 /// The tags that are no pass kinds.
 const COMPOSITION: [&str; 2] = ["Include", "Group"];
@@ -83,10 +83,46 @@ pub(crate) struct PassFields {
 pub(crate) struct IncludeFields {
     /// The document: the name of a preset, or a path.
     graph: Located<String>,
-    /// Its params that are params here, too.
+    /// Its params that are params here, too: a list, or `All` that are not set.
     #[serde(default)]
-    expose: Vec<Located<String>>,
+    expose: Expose,
 }
+
+/// Params of an included document that are params of this one.
+#[derive(Debug)]
+enum Expose {
+    /// Those that neither the include nor a group around it sets.
+    All,
+    List(Vec<Located<String>>),
+}
+
+impl Default for Expose {
+    fn default() -> Self {
+        Self::List(Vec::new())
+    }
+}
+
+impl<'de> Deserialize<'de> for Expose {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (text, span) = raw(deserializer)?;
+        if text == "All" {
+            Ok(Self::All)
+        } else if text.starts_with('[') {
+            read_text(text).map(Self::List)
+        } else {
+            Err(refuse(DocumentError::Expose(span)))
+        }
+    }
+}
+
+#[cfg(feature = "schema")]
+crate::document::written::written!(Expose, "Expose", generator => {
+    let list = generator.subschema_for::<Vec<Located<String>>>();
+    schemars::json_schema!({
+        "description": "Names of params, or `All` that are not set.",
+        "anyOf": [list, {"const": "All"}],
+    })
+});
 
 const HEADER: [&str; 4] = ["name", "if", "repeat", "run"];
 
@@ -190,7 +226,7 @@ fn pass(
     let mut lowering = Lowering::new(name, common.shader.as_ref(), &[], None);
     body.lower(&mut lowering);
     let programs = lowering.steps.iter().filter_map(Step::program);
-    let run = programs.filter_map(|program| program.shader.clone());
+    let run = programs.filter_map(Program::shader_use);
     let shaders = run.chain(lowering.alternatives).collect();
     let features = lowering.features;
     Ok(Pass {
@@ -221,10 +257,15 @@ fn include(
             Located::new(name.map_err(IntoDiagnostic::into_diagnostic)?, span)
         }
     };
+    let (exposes_all, expose) = match fields.expose {
+        Expose::All => (true, Vec::new()),
+        Expose::List(names) => (false, names),
+    };
     let include = Include {
         graph: fields.graph,
         is_named,
-        expose: fields.expose,
+        expose,
+        exposes_all,
         document: None,
     };
     Ok((include, name))

@@ -1,13 +1,17 @@
 //! `extends`: a document is another one with edits, as if the result had been written out.
 
 use super::{
-    raw::{Invalid, RawDocument, RawEntry, RawItem},
+    raw::{Invalid, RawDocument, RawEntry, RawItem, RawMap},
     ron::Field,
+    typed::Narrow,
 };
 use crate::{diagnostics::reports::Reports, errors::edit::EditError, source::span::Located};
 use std::collections::HashMap;
 
 type Entries = Vec<Result<RawEntry, Invalid>>;
+
+/// The edit that takes something out.
+const REMOVE: &str = "Remove";
 
 /// Where an entry that is no edit comes to stand.
 pub(crate) const PLACES: [&str; 3] = ["before", "after", "instead"];
@@ -19,9 +23,12 @@ pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports)
         description: own.description.or(base.description),
         extends: None,
         requires: [base.requires, own.requires].concat(),
-        params: merge(base.params, own.params),
-        inputs: merge(base.inputs, own.inputs),
-        materials: merge(base.materials, own.materials),
+        params: merge(base.params, own.params, reports),
+        values: redefine(base.values, own.values),
+        narrow: narrower(base.narrow, own.narrow, reports),
+        imports: [base.imports, own.imports].concat(),
+        inputs: merge(base.inputs, own.inputs, reports),
+        materials: merge(base.materials, own.materials, reports),
         passes: base.passes,
         outputs: if own.outputs.is_empty() {
             base.outputs
@@ -71,11 +78,52 @@ fn default_field(name: &Located<String>, node: super::ron::Node) -> Field {
     }
 }
 
-/// What has the same name is replaced, the rest is added.
-fn merge(base: Vec<RawItem>, own: Vec<RawItem>) -> Vec<RawItem> {
+/// A value of the same name is replaced where it stands, the rest is added.
+fn redefine(base: RawMap, own: RawMap) -> RawMap {
+    let mut values = base;
+    for (name, value) in own {
+        match values.iter_mut().find(|(known, _)| **known == *name) {
+            Some(known) => *known = (name, value),
+            None => values.push((name, value)),
+        }
+    }
+    values
+}
+
+/// What narrows a param narrows it again, and gives no word back.
+fn narrower(base: RawMap, own: RawMap, reports: &mut Reports) -> RawMap {
+    for (name, node) in &own {
+        let Some((first, before)) = base.iter().find(|(known, _)| **known == **name) else {
+            continue;
+        };
+        // One that cannot be read is reported where it is.
+        let (Ok(before), Ok(now)) = (before.parse::<Narrow>(), node.parse::<Narrow>()) else {
+            continue;
+        };
+        for word in now.words {
+            if before.words.iter().all(|known| known.value != word.value) {
+                reports.report(EditError::Widens {
+                    name: name.clone(),
+                    word,
+                    first: first.span.clone(),
+                });
+            }
+        }
+    }
+    redefine(base, own)
+}
+
+/// What has the same name is replaced or, by `Remove`, taken out; the rest is added.
+fn merge(base: Vec<RawItem>, own: Vec<RawItem>, reports: &mut Reports) -> Vec<RawItem> {
     let mut merged = base;
     for item in own {
         let name = item.name().map(|name| name.value);
+        if *item.tag == REMOVE {
+            if let Err(error) = remove(&mut merged, &item) {
+                reports.report(error);
+            }
+            continue;
+        }
         let mut known = merged.iter_mut();
         let known = known.find(|other| name.is_some() && other.name().map(|n| n.value) == name);
         match known {
@@ -84,6 +132,40 @@ fn merge(base: Vec<RawItem>, own: Vec<RawItem>) -> Vec<RawItem> {
         }
     }
     merged
+}
+
+/// Takes the item of that name out.
+fn remove(merged: &mut Vec<RawItem>, edit: &RawItem) -> Result<(), EditError> {
+    let mut others = edit.fields.iter().filter(|field| *field.name != "name");
+    if let Some(field) = others.next() {
+        return Err(EditError::Field(field.name.clone(), REMOVE));
+    }
+    let name = edit
+        .name()
+        .ok_or_else(|| EditError::NoPath(edit.tag.clone(), "name"))?;
+    let known = merged
+        .iter()
+        .position(|item| item.name().is_some_and(|it| *it == *name));
+    let Some(at) = known else {
+        let known = merged.iter().filter_map(RawItem::name);
+        return Err(EditError::NoSuchItem {
+            known: known.map(|name| name.value).collect(),
+            name,
+        });
+    };
+    merged.remove(at);
+    Ok(())
+}
+
+/// Reports `Remove` in the sections of a document that extends none, and takes it out.
+pub(crate) fn no_removals(items: &mut Vec<RawItem>, reports: &mut Reports) {
+    items.retain(|item| {
+        let is_edit = *item.tag == REMOVE;
+        if is_edit {
+            reports.report(EditError::NotExtending(item.tag.clone()));
+        }
+        !is_edit
+    });
 }
 
 /// Puts a field into the place of the one of its name, or behind the others.
@@ -105,10 +187,10 @@ impl Edits<'_> {
     fn apply(&mut self, entries: &mut Entries, mut edit: RawEntry) -> Result<(), EditError> {
         match edit.tag.as_str() {
             "Change" => self.change(entries, edit),
-            "Remove" => {
+            REMOVE => {
                 let path = path_of(&mut edit, "pass")?;
                 if let Some(field) = edit.fields.first() {
-                    return Err(EditError::Field(field.name.clone(), "Remove"));
+                    return Err(EditError::Field(field.name.clone(), REMOVE));
                 }
                 let (list, at) = find(entries, &path)?;
                 drop(list.remove(at));
@@ -235,7 +317,7 @@ pub(crate) fn no_edits(entries: &mut Entries, reports: &mut Reports) {
             .iter()
             .find(|field| PLACES.contains(&field.name.as_str()));
         let mistake = match (entry.tag.as_str(), place) {
-            ("Change" | "Remove", _) => Some(EditError::NotExtending(entry.tag.clone())),
+            ("Change" | REMOVE, _) => Some(EditError::NotExtending(entry.tag.clone())),
             (_, Some(place)) => Some(EditError::NotExtending(place.name.clone())),
             _ => None,
         };

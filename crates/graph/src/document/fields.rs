@@ -135,6 +135,18 @@ impl<'de, T: DeserializeOwned> Deserialize<'de> for Chosen<T> {
     }
 }
 
+/// Reads prose, which may be broken into lines: any white space is one space.
+pub(crate) fn prose<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    let text = String::deserialize(deserializer)?;
+    Ok(one_line(&text))
+}
+
+/// Prose without its line breaks.
+pub(crate) fn one_line(text: &str) -> String {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    words.join(" ")
+}
+
 /// An entry of which a string alone is the most important field: `color: ["image"]`.
 pub(crate) fn short_or_long<'de, D, T, L>(
     deserializer: D,
@@ -153,12 +165,16 @@ where
     }
 }
 
-/// What is done to an attachment before the first draw: `Load`, `Clear(v)` for all channels,
-/// `Clear(r, g, b, a)`.
+/// What is done to an attachment before the first draw: `Load`, `LoadIf("index > 0")`, `Clear(v)`
+/// for all channels, `Clear(r, g, b, a)`.
 #[derive(Clone, Debug)]
 pub(crate) enum Load {
     Clear(Vec<Expr>),
-    Load,
+    /// `Load`.
+    Keep,
+    /// `LoadIf`: keeps what is there where the condition holds; else clears it, as an attachment is
+    /// cleared that says nothing.
+    KeepIf(Expr),
 }
 
 impl<'de> Deserialize<'de> for Load {
@@ -168,7 +184,14 @@ impl<'de> Deserialize<'de> for Load {
         let node = Node { span: span.clone() };
         let (tag, body) = node.variant().ok_or_else(unknown)?;
         match (tag.as_str(), text.len() == tag.len()) {
-            ("Load", true) => Ok(Self::Load),
+            ("Load", true) => Ok(Self::Keep),
+            ("LoadIf", false) => {
+                let values = body.list().map_err(|_| unknown())?;
+                let [condition] = &values[..] else {
+                    return Err(unknown());
+                };
+                read(condition.text()).map(Self::KeepIf)
+            }
             ("Clear", false) => {
                 let values = body.list().map_err(|_| unknown())?;
                 if !matches!(values.len(), 1 | 4) {

@@ -6,17 +6,20 @@ use super::{
 };
 use crate::source::span::Span;
 
-/// The document as text in format 2, which reads as it does.
+/// The document as text in format 3, which reads as it does.
 pub(crate) fn flat(document: &RawDocument) -> String {
     let mut flat = Flat::default();
     flat.line(0, "(", &[]);
-    flat.line(1, "format: 2,", &[]);
+    flat.line(1, "format: 3,", &[]);
     if let Some(node) = &document.description {
         flat.line(1, &format!("description: {},", node.text()), &[&node.span]);
     }
     flat.nodes("requires", &document.requires);
     flat.items("params", &document.params);
     flat.map(1, "set", &document.set);
+    flat.map(1, "narrow", &document.narrow);
+    flat.nodes("imports", &document.imports);
+    flat.map(1, "values", &document.values);
     flat.items("inputs", &document.inputs);
     flat.items("materials", &document.materials);
     if !document.passes.is_empty() {

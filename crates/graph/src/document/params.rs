@@ -1,6 +1,9 @@
 //! Params: the typed knobs of a document.
 
-use super::ron::{Field, from_fields};
+use super::{
+    fields::prose,
+    ron::{Field, from_fields},
+};
 use crate::{
     diagnostics::{diagnostic::Diagnostic, reports::IntoDiagnostic, suggest::likeness},
     errors::document::DocumentError,
@@ -100,7 +103,7 @@ pub struct Param {
     pub max: Option<f64>,
     /// What it does.
     pub description: String,
-    /// Words that a [`ParamType::Choice`] has elsewhere but not here, each with the reason.
+    /// Words of a [`ParamType::Choice`] that `narrow` took away, each with the reason.
     pub refused: BTreeMap<String, String>,
 }
 
@@ -136,11 +139,8 @@ pub(crate) struct ParamFields {
     #[serde(default)]
     max: Option<f64>,
     /// What it does, shown to who may set it.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "prose")]
     description: String,
-    /// Words that a `Choice` has elsewhere but not here, each with the reason.
-    #[serde(default)]
-    refused: BTreeMap<String, String>,
 }
 
 impl Param {
@@ -176,14 +176,6 @@ impl Param {
             };
             return Err(wrong(why).into_diagnostic());
         }
-        let taken = fields
-            .words
-            .iter()
-            .any(|word| fields.refused.contains_key(word.as_str()));
-        if taken || !is_choice && !fields.refused.is_empty() {
-            let why = "`refused` has words that a Choice has not, each with the reason";
-            return Err(wrong(why).into_diagnostic());
-        }
         if let (Some(min), Some(max)) = (fields.min, fields.max)
             && min.partial_cmp(&max).is_none_or(std::cmp::Ordering::is_gt)
         {
@@ -200,8 +192,46 @@ impl Param {
             min: fields.min,
             max: fields.max,
             description: fields.description,
-            refused: fields.refused,
+            refused: BTreeMap::new(),
         })
+    }
+
+    /// The words of a `Choice` that may be set; none of another type.
+    pub fn words(&self) -> impl Iterator<Item = &Name> {
+        let words = match &self.ty {
+            ParamType::Choice(words) => &words[..],
+            _ => &[],
+        };
+        let is_left = |word: &&Name| !self.refused.contains_key(word.as_str());
+        words.iter().filter(is_left)
+    }
+
+    /// Keeps only these words; numbers of words stay. Fails with the first that is none, or with
+    /// `None` if this is no `Choice`.
+    pub(crate) fn narrow(
+        &mut self,
+        kept: &[Located<Name>],
+        because: &str,
+    ) -> Result<(), Option<Located<String>>> {
+        if !matches!(self.ty, ParamType::Choice(_)) {
+            return Err(None);
+        }
+        let unknown = kept
+            .iter()
+            .find(|word| self.words().all(|known| *known != word.value));
+        if let Some(word) = unknown {
+            return Err(Some(Located::new(
+                word.value.to_string(),
+                word.span.clone(),
+            )));
+        }
+        let gone = self
+            .words()
+            .filter(|word| kept.iter().all(|kept| kept.value != **word));
+        let gone: Vec<String> = gone.map(Name::to_string).collect();
+        self.refused
+            .extend(gone.into_iter().map(|word| (word, because.to_owned())));
+        Ok(())
     }
 
     /// The value of an expression as one of this param.
@@ -276,8 +306,8 @@ impl Param {
             ParamType::Vec2 => ParamValue::Vec(vec![number as f32; 2]),
             ParamType::Vec3 => ParamValue::Vec(vec![number as f32; 3]),
             ParamType::Vec4 => ParamValue::Vec(vec![number as f32; 4]),
-            ParamType::Choice(words) => {
-                ParamValue::Choice(words.first().map(Name::to_string).unwrap_or_default())
+            ParamType::Choice(_) => {
+                ParamValue::Choice(self.words().next().map(Name::to_string).unwrap_or_default())
             }
         }
     }
@@ -292,9 +322,9 @@ impl Param {
             (most, _) => most.is_none(),
         };
         match (&self.ty, &other.ty) {
-            (ParamType::Choice(words), ParamType::Choice(others)) => {
-                others.iter().all(|word| words.contains(word))
-            }
+            (ParamType::Choice(_), ParamType::Choice(_)) => other
+                .words()
+                .all(|word| self.words().any(|known| known == word)),
             (a, b) => a == b && within,
         }
     }
@@ -362,8 +392,8 @@ impl Param {
             (ParamType::Vec4, ParamValue::Vec(v)) if v.len() == 4 => {
                 v.iter().map(|&v| f64::from(v)).collect()
             }
-            (ParamType::Choice(words), ParamValue::Choice(word)) => {
-                let words: Vec<&str> = words.iter().map(Name::as_str).collect();
+            (ParamType::Choice(_), ParamValue::Choice(word)) => {
+                let words: Vec<&str> = self.words().map(Name::as_str).collect();
                 let known = words.join(", ");
                 return match (words.contains(&word.as_str()), self.refused.get(word)) {
                     (true, _) => Ok(()),

@@ -14,7 +14,7 @@ use std::collections::{HashMap, HashSet};
 const MOST_ENTRIES: usize = 4096;
 
 /// The document format that is read.
-pub(crate) const FORMAT: u32 = 2;
+pub(crate) const FORMAT: u32 = 3;
 
 /// A map as it is written, each key once.
 pub(crate) type RawMap = Vec<(Located<String>, Node)>;
@@ -27,6 +27,10 @@ pub(crate) struct RawDocument {
     pub extends: Option<Node>,
     pub requires: Vec<Node>,
     pub params: Vec<RawItem>,
+    pub values: RawMap,
+    /// In the order in which they hold: those of extended documents first.
+    pub narrow: RawMap,
+    pub imports: Vec<Node>,
     pub inputs: Vec<RawItem>,
     pub materials: Vec<RawItem>,
     pub passes: Vec<Result<RawEntry, Invalid>>,
@@ -108,8 +112,8 @@ pub(crate) fn stem(path: &str) -> &str {
 }
 
 /// The sections of a document, and what each holds.
-pub(crate) const SECTIONS: [(&str, &str); 13] = [
-    ("format", "The version of the language, 2."),
+pub(crate) const SECTIONS: [(&str, &str); 16] = [
+    ("format", "The version of the language, 3."),
     ("extends", "Another document, of which this one is an edit."),
     ("description", "A sentence, shown by `skiagraph presets`."),
     (
@@ -120,6 +124,18 @@ pub(crate) const SECTIONS: [(&str, &str); 13] = [
     (
         "set",
         "Other defaults for params of the extended document, or of included ones that are exposed.",
+    ),
+    (
+        "values",
+        "Expressions with a name, for every expression and shader of the document.",
+    ),
+    (
+        "narrow",
+        "Fewer words for a `Choice`, of this document's own or of an exposed one, with the reason.",
+    ),
+    (
+        "imports",
+        "Modules that shaders import in the place of others.",
     ),
     ("inputs", "Materials that the includer gives, or the host."),
     ("materials", "What passes share."),
@@ -164,6 +180,9 @@ pub(crate) fn split(
         extends: sections.nodes.remove("extends"),
         requires: sections.list("requires"),
         params: Vec::new(),
+        values: sections.map("values"),
+        narrow: sections.map("narrow"),
+        imports: sections.list("imports"),
         inputs,
         materials,
         outputs: sections.list("outputs"),

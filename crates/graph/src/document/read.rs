@@ -2,10 +2,11 @@
 
 use super::{
     entries,
-    extend::no_edits,
+    extend::{no_edits, no_removals},
+    fields::one_line,
     materials::{BufferInput, Input, Material, SamplerInput, TextureInput},
     params::Param,
-    raw::{RawDocument, RawItem},
+    raw::{RawDocument, RawItem, RawMap},
     ron::{Node, from_fields},
     typed::Document,
 };
@@ -16,19 +17,33 @@ use crate::{
     },
     errors::{document::DocumentError, language::SyntaxFault},
     kinds::registry::Registry,
-    language::name::{Name, RESERVED},
+    language::{
+        name::{Name, RESERVED},
+        syntax::Expr,
+    },
     source::span::Located,
 };
+use std::collections::BTreeSet;
 
 /// Reads what a document holds. What is wrong is reported; what could be read is returned all the
 /// same, so that later phases find more mistakes in one go.
-pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Reports) -> Document {
+pub(crate) fn document(
+    mut raw: RawDocument,
+    registry: &Registry,
+    reports: &mut Reports,
+) -> Document {
+    for items in [&mut raw.params, &mut raw.inputs, &mut raw.materials] {
+        no_removals(items, reports);
+    }
     let mut document = Document {
         description: String::new(),
         requires: Vec::new(),
         params: Vec::new(),
         declared: 0,
         defaults: Vec::new(),
+        values: Vec::new(),
+        narrow: Vec::new(),
+        imports: Vec::new(),
         inputs: Vec::new(),
         materials: Vec::new(),
         entries: Vec::new(),
@@ -40,11 +55,14 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
         invalid_params: raw.invalid_params,
         broken_outputs: None,
         incomplete: raw.incomplete,
+        gives_values: BTreeSet::new(),
         include_depth: 0,
         file: raw.file,
     };
     if let Some(node) = &raw.description {
-        keep(node.parse(), reports, |text| document.description = text);
+        keep(node.parse(), reports, |text: String| {
+            document.description = one_line(&text);
+        });
     }
     for node in &raw.requires {
         keep(feature(node), reports, |feature| {
@@ -86,23 +104,53 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
             document.defaults.push((name, value))
         });
     }
-    for node in &raw.lights {
-        keep(node.parse(), reports, |kind| document.lights.push(kind));
-    }
-    for node in &raw.proven_on {
-        keep(node.parse(), reports, |backend| {
-            document.proven_on.push(backend)
-        });
-    }
-    for (name, node) in raw.claims {
-        keep(node.parse(), reports, |value| {
-            document.claims.push((name, value))
-        });
-    }
+    document.values(raw.values, raw.narrow, &raw.imports, reports);
+    document.promises(&raw.lights, &raw.proven_on, raw.claims, reports);
     document
 }
 
 impl Document {
+    /// Reads what expressions and shaders are given by name.
+    fn values(&mut self, values: RawMap, narrow: RawMap, imports: &[Node], reports: &mut Reports) {
+        for (name, node) in values {
+            match value(name.clone(), &node) {
+                Ok(value) => self.values.push(value),
+                Err(error) => self.lacks(Some(name), reports.emit(error)),
+            }
+        }
+        for (name, node) in narrow {
+            keep(node.parse(), reports, |narrow| {
+                self.narrow.push((name, narrow))
+            });
+        }
+        for node in imports {
+            keep(node.parse(), reports, |entry| self.imports.push(entry));
+        }
+    }
+
+    /// Reads what the document says of itself as a method.
+    fn promises(
+        &mut self,
+        lights: &[Node],
+        proven_on: &[Node],
+        claims: RawMap,
+        reports: &mut Reports,
+    ) {
+        for node in lights {
+            keep(node.parse(), reports, |kind| self.lights.push(kind));
+        }
+        for node in proven_on {
+            keep(node.parse(), reports, |backend| {
+                self.proven_on.push(backend)
+            });
+        }
+        for (name, node) in claims {
+            keep(node.parse(), reports, |value| {
+                self.claims.push((name, value))
+            });
+        }
+    }
+
     /// Notes what cannot be read, by its name if that can.
     fn lacks(&mut self, name: Option<Located<String>>, reported: ErrorGuaranteed) {
         match name {
@@ -117,6 +165,15 @@ fn keep<T>(result: Result<T, Diagnostic>, reports: &mut Reports, keep: impl FnOn
         Ok(value) => keep(value),
         Err(error) => drop(reports.emit(error)),
     }
+}
+
+/// A value whose name is free to be one.
+fn value(name: Located<String>, node: &Node) -> Result<(Located<Name>, Expr), Diagnostic> {
+    let span = name.span.clone();
+    let wrong = |fault| DocumentError::Name(span, name.value.clone(), fault).into_diagnostic();
+    let named = Located::new(Name::new(&name).map_err(wrong)?, name.span.clone());
+    let value = node.parse()?;
+    free(named.clone(), (named, value))
 }
 
 /// A material whose name is free to be one.

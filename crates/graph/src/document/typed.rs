@@ -1,7 +1,7 @@
 //! A document with everything in it read, and nothing looked up.
 
 use super::{
-    fields::{Mentions, short_or_long},
+    fields::{Mentions, prose, short_or_long},
     materials::{Input, Material},
     params::Param,
     raw::Invalid,
@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     diagnostics::reports::ErrorGuaranteed,
-    kinds::kind::PassKind,
+    kinds::{kind::PassKind, step::ShaderUse},
     language::{
         name::Name,
         syntax::{Expr, Leaf, Reference},
@@ -17,7 +17,7 @@ use crate::{
     source::span::{Located, SourceFile},
 };
 use serde::{Deserialize, Deserializer};
-use std::sync::Arc;
+use std::{collections::BTreeSet, sync::Arc};
 
 /// A document as its author wrote it.
 #[derive(Debug)]
@@ -29,6 +29,12 @@ pub(crate) struct Document {
     pub params: Vec<Param>,
     /// How many of them it declares.
     pub declared: usize,
+    /// Expressions with a name.
+    pub values: Vec<(Located<Name>, Expr)>,
+    /// Fewer words for a `Choice`.
+    pub narrow: Vec<(Located<String>, Narrow)>,
+    /// Modules that stand in for others.
+    pub imports: Vec<ImportEntry>,
     /// Other defaults for exposed params.
     pub defaults: Vec<(Located<String>, Expr)>,
     pub inputs: Vec<Input>,
@@ -48,8 +54,44 @@ pub(crate) struct Document {
     pub incomplete: Option<ErrorGuaranteed>,
     /// An output could not be read: nobody knows what it would have been called.
     pub broken_outputs: Option<ErrorGuaranteed>,
+    /// The outputs that are values.
+    pub gives_values: BTreeSet<String>,
     /// How many includes there are one within the other below this document.
     pub include_depth: usize,
+}
+
+/// Fewer words of a `Choice`: `(words: [scene, camera], because: "…")`.
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "Narrow")
+)]
+#[serde(rename = "narrow", deny_unknown_fields)]
+pub(crate) struct Narrow {
+    /// The words that stay, in any order.
+    pub words: Vec<Located<Name>>,
+    /// Why the others are refused.
+    #[serde(deserialize_with = "prose")]
+    pub because: String,
+}
+
+/// A module that shaders import in the place of another one.
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "Import")
+)]
+#[serde(rename = "import", deny_unknown_fields)]
+pub(crate) struct ImportEntry {
+    /// The module that shaders name, as an `#import` writes it.
+    pub of: Located<String>,
+    /// The module that they get.
+    pub is: Located<String>,
+    /// Whether it stands in; always without it.
+    #[serde(default, rename = "if")]
+    pub condition: Option<Expr>,
 }
 
 /// What a method promises: `(if: "n >= 0.5", because: "…")`, or the condition alone.
@@ -69,7 +111,7 @@ pub(crate) struct ClaimFields {
     #[serde(default, rename = "if")]
     condition: Option<Expr>,
     /// Why it holds, or ends.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "prose")]
     because: String,
 }
 
@@ -162,8 +204,8 @@ pub(crate) struct Pass {
     pub overwrites: Vec<Reference>,
     pub kind: &'static str,
     pub body: Arc<dyn PassKind>,
-    /// Names of the shaders that it runs, or may run for other values.
-    pub shaders: Vec<Located<String>>,
+    /// The shaders that it runs, or may run for other values.
+    pub shaders: Vec<ShaderUse>,
     /// The features that it can make use of.
     pub features: wgt::Features,
     /// What its fields name.
@@ -176,8 +218,11 @@ pub(crate) struct Include {
     pub graph: Located<String>,
     /// Whether it has a name of its own, which stands before what it gives.
     pub is_named: bool,
-    /// Params of the included document that are params here, too.
+    /// Params of the included document that are params here, too; those of `All` are written out
+    /// once that document is read.
     pub expose: Vec<Located<String>>,
+    /// Every param that is not set is exposed.
+    pub exposes_all: bool,
     /// Put here once it is read.
     pub document: Option<Result<Arc<Document>, ErrorGuaranteed>>,
 }
@@ -210,6 +255,12 @@ pub(crate) enum Run {
 }
 
 impl Document {
+    /// The outputs that are no values.
+    pub fn material_outputs(&self) -> impl Iterator<Item = &Output> {
+        let is_value = |output: &&Output| self.gives_values.contains(output.name.as_str());
+        self.outputs.iter().filter(move |output| !is_value(output))
+    }
+
     /// Calls `each` with everything that expressions and references of the document are made of.
     pub fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
         for param in &self.params[..self.declared] {
@@ -219,7 +270,13 @@ impl Document {
             .claims
             .iter()
             .filter_map(|(_, claim)| claim.condition.as_ref());
-        for value in claims.chain(self.defaults.iter().map(|(_, value)| value)) {
+        let values = self.values.iter().map(|(_, value)| value);
+        let imports = self
+            .imports
+            .iter()
+            .filter_map(|entry| entry.condition.as_ref());
+        let defaults = self.defaults.iter().map(|(_, value)| value);
+        for value in claims.chain(defaults).chain(values).chain(imports) {
             value.visit(each);
         }
         for material in &self.materials {
@@ -259,6 +316,19 @@ fn visit_entries<'a>(entries: &'a [Result<Entry, Invalid>], each: &mut dyn FnMut
         for reference in bound.chain(references) {
             each(Leaf::Material(reference));
             reference.visit(each);
+        }
+    }
+}
+
+/// Calls `each` with every entry, those in groups, too.
+pub(crate) fn each_entry<'e>(
+    entries: &'e [Result<Entry, Invalid>],
+    each: &mut dyn FnMut(&'e Entry),
+) {
+    for entry in entries.iter().flatten() {
+        each(entry);
+        if let What::Group(inner) = &entry.what {
+            each_entry(inner, each);
         }
     }
 }

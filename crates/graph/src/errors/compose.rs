@@ -25,7 +25,7 @@ pub(crate) enum ComposeError {
     },
     #[error("documents include or extend each other more than {1} deep")]
     TooDeep(Located<String>, usize),
-    #[error("{}", if name == known { format!("two of the name `{name}`: every {what} needs its own") } else { format!("`{name}` and `{known}` are one name in a shader") })]
+    #[error("{}", same_name(name, known, what))]
     Clash {
         what: &'static str,
         name: String,
@@ -41,6 +41,25 @@ pub(crate) enum ComposeError {
     },
     #[error("`{}` is a param here already", **name)]
     ExposedTwice { name: Located<String>, first: Span },
+    #[error("`{}` is no `Choice`, and has no words to narrow", **name)]
+    NarrowOfOther {
+        name: Located<String>,
+        declared: Span,
+    },
+    #[error("`{}` is no word that is left to narrow", **word)]
+    NarrowWord {
+        word: Located<String>,
+        declared: Span,
+        known: Vec<String>,
+    },
+    #[error("nothing uses the value `{}`", **.0)]
+    UnusedValue(Located<String>),
+    #[error("the value `{}` is called as a word of the param `{param}`", **name)]
+    ValueIsWord {
+        name: Located<String>,
+        param: String,
+        declared: Span,
+    },
     #[error("`{}` cannot be exposed: its default is made of other params", **.0)]
     ExposedDefault(Located<String>),
     #[error("the document has no outputs, so none of its passes is needed")]
@@ -49,6 +68,15 @@ pub(crate) enum ComposeError {
     UnusedMaterial(Located<String>),
     #[error("nothing uses the param `{}`", **.0)]
     UnusedParam(Located<String>),
+}
+
+/// What is wrong with two names that are one.
+fn same_name(name: &str, known: &str, what: &str) -> String {
+    if name == known {
+        format!("two of the name `{name}`: every {what} needs its own")
+    } else {
+        format!("`{name}` and `{known}` are one name in a shader")
+    }
 }
 
 impl IntoDiagnostic for ComposeError {
@@ -61,7 +89,9 @@ impl IntoDiagnostic for ComposeError {
             Self::NoParam { .. } => Code::UnknownParam,
             Self::ExposedTwice { .. } | Self::ExposedDefault(_) => Code::ParamValue,
             Self::NoOutputs(_) => Code::Output,
-            Self::UnusedMaterial(_) | Self::UnusedParam(_) => Code::Unused,
+            Self::UnusedMaterial(_) | Self::UnusedParam(_) | Self::UnusedValue(_) => Code::Unused,
+            Self::NarrowWord { .. } | Self::NarrowOfOther { .. } => Code::ParamValue,
+            Self::ValueIsWord { .. } => Code::Name,
             _ => Code::MissingFile,
         }
     }
@@ -119,6 +149,25 @@ impl IntoDiagnostic for ComposeError {
                 .at(name.span, "")
                 .help("declare a param here, and `set` it to that"),
             Self::NoOutputs(span) => diagnostic.at(span, "").help("add `outputs: [\"…\"]`"),
+            Self::NarrowOfOther { name, declared } => diagnostic
+                .at(name.span, "")
+                .at(declared, "declared here")
+                .help("give a number another `min` or `max` where it is declared"),
+            Self::NarrowWord {
+                word,
+                declared,
+                known,
+            } => diagnostic
+                .at(word.span.clone(), "")
+                .at(declared, "declared here")
+                .suggest(&word, known),
+            Self::UnusedValue(name) => diagnostic.at(name.span, "").help(
+                "remove it, or check the names in expressions, outputs, params and overrides",
+            ),
+            Self::ValueIsWord { name, declared, .. } => diagnostic
+                .at(name.span, "")
+                .at(declared, "its words are declared here")
+                .help("rename the value: beside the param its name would be the word"),
             Self::UnusedMaterial(name) => diagnostic
                 .at(name.span, "")
                 .help("remove it, or check the names of the shader globals that should be it"),

@@ -65,6 +65,8 @@ pub(crate) enum DocumentError {
     Unnamed(Span, String),
     #[error("`{1}` has no value")]
     BareWord(Span, String),
+    #[error("`expose` is a list of names, or `All`")]
+    Expose(Span),
     #[error("a name in quotes is needed here")]
     NoString(Span),
     #[error("this is no tuple of numbers")]
@@ -127,13 +129,14 @@ impl IntoDiagnostic for DocumentError {
                 let line = file.text.lines().next().map_or(0, str::len);
                 diagnostic
                     .at(file.span(0..line), "")
-                    .help("begin with `(format: 2, …)`")
+                    .help("begin with `(format: 3, …)`")
             }
-            Self::NoFormat(span) => diagnostic.at(span, "").help("begin with `format: 2,`"),
+            Self::NoFormat(span) => diagnostic.at(span, "").help("begin with `format: 3,`"),
             Self::Format(span, 1) => diagnostic.at(span, "").help(FORMAT_1),
+            Self::Format(span, 2) => diagnostic.at(span, "").help(FORMAT_2),
             Self::Format(span, _) => diagnostic
                 .at(span, "")
-                .help("this version of Skiagraph reads `format: 2`"),
+                .help("this version of Skiagraph reads `format: 3`"),
             Self::Panicked(span, panicked) => diagnostic
                 .at(span, "this brings it about")
                 .help(panicked.way_out()),
@@ -170,8 +173,15 @@ impl IntoDiagnostic for DocumentError {
     }
 }
 
-/// What changed since format 1, for its authors.
-const FORMAT_1: &str = "this is format 2 (docs/authoring.md): a param is `U32(name: …)`, an \
+/// What changed since format 2, for its authors.
+const FORMAT_2: &str = "this is format 3 (docs/authoring.md): write `format: 3`; `refused` of a \
+    param is `narrow` of the document; shadow maps come from `shared/create_shadow_map.ron` and \
+    their place from `shared/fit_map.ron`, which give `map_layers` and `map_is_projective`, too; \
+    the fit `eye` is `camera`, `tighten` is `fit_to_receivers`, `focus` is `warp`; a shader \
+    `x_masked` is `x` with `imports`";
+
+/// What changed since format 1.
+const FORMAT_1: &str = "this is format 3 (docs/authoring.md): a param is `U32(name: …)`, an \
     expression stands in quotes (`size: \"map_size\"`, `count: \"scene.indices.count\"`), \
     `\"x.previous\"` and `\"x.mip[1]\"` are references, included documents state `inputs` and \
     `outputs`, and `Include` has `name`, `bind`, `set` and `expose`";
@@ -195,6 +205,9 @@ impl DocumentError {
                 "these words have a meaning of their own: {}",
                 RESERVED.join(", ")
             )),
+            Self::Expose(span) => diagnostic.at(span, "").help(
+                "write `expose: [\"map_size\"]`, or `expose: All` for every param that is not set",
+            ),
             Self::Unnamed(span, _) => diagnostic.at(span, "the include would be called so"),
             Self::BareWord(span, _) => diagnostic.at(span, "").help(
                 "an expression stands in quotes, `\"viewport.size / 2\"`; a word of a Choice has \
@@ -204,7 +217,7 @@ impl DocumentError {
             Self::NoTuple(span) => diagnostic.at(span, "for example `(1, 0)`"),
             Self::Load(span) => diagnostic
                 .at(span, "")
-                .help("write `Load`, `Clear(0)` or `Clear(r, g, b, a)`"),
+                .help("write `Load`, `LoadIf(\"…\")`, `Clear(0)` or `Clear(r, g, b, a)`"),
             Self::WriteMask(span) => diagnostic
                 .at(span, "")
                 .help("write `rgb`, `true` or `false`"),

@@ -2,6 +2,7 @@
 
 use crate::{
     diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
+    language::name::Name,
     source::span::{Located, Span},
 };
 
@@ -12,6 +13,17 @@ pub(crate) enum EditError {
         path: Located<String>,
         name: String,
         known: Vec<String>,
+    },
+    #[error("the extended document has nothing called `{}` here", **name)]
+    NoSuchItem {
+        name: Located<String>,
+        known: Vec<String>,
+    },
+    #[error("`{}` is no word of `{}` any more", **word, **name)]
+    Widens {
+        name: Located<String>,
+        word: Located<Name>,
+        first: Span,
     },
     #[error("`{}` stands behind the interface of `{entry}`", **path)]
     Behind {
@@ -50,6 +62,13 @@ impl IntoDiagnostic for EditError {
             Self::NoSuchEntry { path, name, known } => {
                 diagnostic.at(path.span, "").suggest(&name, known)
             }
+            Self::NoSuchItem { name, known } => {
+                diagnostic.at(name.span.clone(), "").suggest(&name, known)
+            }
+            Self::Widens { word, first, .. } => diagnostic
+                .at(word.span, "widened here")
+                .at(first, "narrowed by the extended document")
+                .help("`narrow` only takes words away: leave it out"),
             Self::Behind { path, entry } => diagnostic.at(path.span, "").help(format!(
                 "change the `graph` of `{entry}`; the new document may extend the old one"
             )),

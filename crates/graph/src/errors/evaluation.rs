@@ -52,6 +52,10 @@ pub(crate) enum EvaluationError {
     Uncounted(Located<String>),
     #[error("`{}`: its size is that of itself", **.0)]
     Circular(Located<String>),
+    #[error("`{}` is made of itself", .0.first().map_or("", |name| name.as_str()))]
+    CircularValue(Vec<Located<String>>),
+    #[error("values are made of each other more than {most} deep at `{}`", **name)]
+    DeepValue { name: Located<String>, most: usize },
     /// An index where nothing is repeated; of a group or include, if one is named.
     #[error("nothing is repeated here")]
     NoIndex(Span, Option<Name>),
@@ -96,6 +100,7 @@ impl IntoDiagnostic for EvaluationError {
         match self {
             Self::Unknown { .. } => Code::UnknownParam,
             Self::Circular(_) | Self::NoCount(_) | Self::Uncounted(_) => Code::Size,
+            Self::CircularValue(_) | Self::DeepValue { .. } => Code::Value,
             _ => Code::Expression,
         }
     }
@@ -146,6 +151,16 @@ impl IntoDiagnostic for EvaluationError {
             Self::Circular(name) => diagnostic
                 .at(name.span, "")
                 .help("give one of these materials a size of its own"),
+            Self::CircularValue(ring) => {
+                let names: Vec<&str> = ring.iter().map(|name| name.as_str()).collect();
+                let help = format!("the ring is {}", names.join(" → "));
+                let places = ring.iter().take(ring.len() - 1);
+                let diagnostic = places.fold(diagnostic, |diagnostic, name| {
+                    diagnostic.at(name.span.clone(), "asks for the next")
+                });
+                diagnostic.help(help)
+            }
+            Self::DeepValue { name, .. } => diagnostic.at(name.span, "").help("use fewer steps"),
             Self::NoIndex(span, None) => diagnostic
                 .at(span, "`index` is that of a repetition")
                 .help("write a number, or `repeat: …`"),

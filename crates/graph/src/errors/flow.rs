@@ -7,7 +7,7 @@ use crate::{
 
 #[derive(Clone, Debug, thiserror::Error)]
 pub(crate) enum OrderError {
-    #[error("`{name}` cannot be read back: {}", if *partly { "something has written some of it, but not all" } else { "nothing has written it yet" })]
+    #[error("`{name}` cannot be read back: {}", written(*partly))]
     Capture {
         name: String,
         first: Option<String>,
@@ -66,6 +66,15 @@ fn verb(changes: bool, partly: bool) -> &'static str {
         (true, false) => "reads and changes",
         (false, true) => "reads a part of",
         (false, false) => "reads",
+    }
+}
+
+/// How far something is written.
+fn written(partly: bool) -> &'static str {
+    if partly {
+        "something has written some of it, but not all"
+    } else {
+        "nothing has written it yet"
     }
 }
 

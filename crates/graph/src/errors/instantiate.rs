@@ -102,6 +102,17 @@ impl IntoDiagnostic for ParamError {
 /// What does not pass between two documents.
 #[derive(Clone, Debug, thiserror::Error)]
 pub(crate) enum InterfaceError {
+    /// Two includes of one content, between which a pass writes what they read or write.
+    #[error("`{graph}` runs twice, because `{pass}` writes `{material}` in between")]
+    TwoCopies {
+        graph: String,
+        pass: String,
+        material: String,
+        span: Span,
+        by: Span,
+    },
+    #[error("`{}` is a value, and no material", **.0)]
+    IsValue(Located<String>),
     #[error("`{document}` asks for `{name}`, {kind}")]
     NoInput {
         document: String,
@@ -208,10 +219,12 @@ impl IntoDiagnostic for InterfaceError {
             | Self::WrittenInput(..) => Code::Input,
             Self::Unused { .. } | Self::UnusedInGroup { .. } => Code::Unused,
             Self::UnwrittenOutput(_) | Self::BoundOutput { .. } => Code::Output,
+            Self::TwoCopies { .. } => Code::TwoCopies,
             Self::Unknown { .. } | Self::Private { .. } => Code::UnknownResource,
             Self::Namespace(_)
             | Self::NoPart { .. }
             | Self::NotOfMaterial { .. }
+            | Self::IsValue(_)
             | Self::NoPrevious { .. } => Code::ResourceKind,
             Self::Range { .. } => Code::Range,
             Self::TooMany { .. } => Code::Size,
@@ -232,6 +245,16 @@ impl IntoDiagnostic for InterfaceError {
                 .at(declared, "asked for here")
                 .suggest(&name, known)
                 .help(format!("bind what is meant: `bind: {{\"{name}\": \"…\"}}`")),
+            Self::TwoCopies { span, by, .. } => diagnostic
+                .at(span, "the second copy")
+                .at(by, "written by this pass")
+                .help(
+                    "put the include above that pass, or give it a name, which says that two \
+                     are meant",
+                ),
+            Self::IsValue(name) => diagnostic.at(name.span, "a material is meant here").help(
+                "values stand in expressions, and in params and overrides of shaders by name",
+            ),
             Self::NoImport(name) => diagnostic
                 .at(
                     name.span,

@@ -24,6 +24,15 @@ pub(crate) enum ImportError {
     NoFile(Located<String>, Vec<String>, Option<String>),
     #[error("`{}` cannot be read", **.0)]
     UnreadableFile(Located<String>, String),
+    #[error("`{}` declares `{function}` otherwise than the module it stands in for", **module)]
+    Signature {
+        module: Located<String>,
+        function: String,
+        place: Span,
+        declared: Span,
+    },
+    #[error("{1} conditions of `imports` meet in one document, {2} at most")]
+    TooManyConditions(Span, usize, usize),
     #[error("imports are nested too deep")]
     TooDeep(Span),
 }
@@ -31,7 +40,11 @@ pub(crate) enum ImportError {
 impl IntoDiagnostic for ImportError {
     fn code(&self) -> Code {
         match self {
-            Self::Unquoted(_) | Self::Leaves(_) | Self::TooDeep(_) => Code::Shader,
+            Self::Unquoted(_)
+            | Self::Leaves(_)
+            | Self::TooDeep(_)
+            | Self::Signature { .. }
+            | Self::TooManyConditions(..) => Code::Shader,
             _ => Code::MissingFile,
         }
     }
@@ -56,6 +69,19 @@ impl IntoDiagnostic for ImportError {
                 .at(path.span, "")
                 .help(looked_for(&candidates, likeness)),
             Self::UnreadableFile(path, why) => diagnostic.at(path.span, "").help(why),
+            Self::Signature {
+                module,
+                place,
+                declared,
+                ..
+            } => diagnostic
+                .at(place, "here")
+                .at(declared, "there")
+                .at(module.span, "asked for here")
+                .help("give both the same parameters and result; a replacement may add functions"),
+            Self::TooManyConditions(span, ..) => diagnostic.at(span, "the last of them").help(
+                "a shader is compiled for all their values: give several imports one condition",
+            ),
             Self::TooDeep(span) => diagnostic.at(span, ""),
         }
     }

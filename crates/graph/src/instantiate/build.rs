@@ -1,10 +1,11 @@
 //! Walks the entries of documents: conditions, repetitions, groups.
 
 use super::{
-    flat::{Flat, FlatPass, Inherited, Interface, PlanInputs, Run},
+    flat::{Flat, FlatPass, Inherited, Interface, Merge, PlanInputs, Run},
+    merge::Site,
     params::Params,
     scopes::{Instance, InstanceId, Names, Position, ScopeId, Symbol},
-    state::Declared,
+    state::{Declared, DeclaredValue, ValueState},
     symbols::SymbolTable,
 };
 use crate::{
@@ -23,9 +24,13 @@ use crate::{
     provider::Import,
     request::PlanRequest,
     resource::{Buffer, Origin, Resource, ResourceKind, Sampler, Texture},
+    shader::expand::Replaced,
     source::span::Located,
 };
-use std::{collections::BTreeMap, sync::Arc};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 /// Most passes (groups and includes among them), and most materials, of a graph. A guard against
 /// documents that double with each include: what is above takes memory and time that nobody means
@@ -38,7 +43,7 @@ pub(super) struct EntryContext<'a> {
     pub scope: ScopeId,
     /// What names of passes begin with.
     pub prefix: String,
-    run: Option<(Run, bool)>,
+    pub run: Option<(Run, bool)>,
     pub bind: Vec<Inherited<'a, Reference>>,
     pub set: Vec<Inherited<'a, Expr>>,
 }
@@ -67,10 +72,14 @@ impl<'a> EntryContext<'a> {
 
 pub(super) struct Builder<'a, 'r> {
     pub symbols: SymbolTable<'a>,
-    passes: Vec<FlatPass<'a>>,
+    pub(super) passes: Vec<FlatPass<'a>>,
     first_invalid: Option<usize>,
     pub interfaces: Vec<Interface>,
     plan_inputs: PlanInputs,
+    /// Whether includes of one content are one.
+    pub(super) merges: bool,
+    pub(super) sites: Vec<Site>,
+    pub(super) merged: Vec<Merge>,
     /// What groups say, and whether something in them asks for it.
     said: Vec<(&'a Located<Name>, &'a Located<String>, bool)>,
     spent: usize,
@@ -78,11 +87,12 @@ pub(super) struct Builder<'a, 'r> {
     pub reports: &'r mut Reports,
 }
 
-/// Flattens a document with all that it includes.
+/// Flattens a document with all that it includes; `merges`: those of one content are one.
 pub(crate) fn flatten<'a>(
     graph: &'a Graph,
     request: &'a PlanRequest<'a>,
     params: Params,
+    merges: bool,
     reports: &mut Reports,
 ) -> Flat<'a> {
     let mut builder = Builder {
@@ -91,6 +101,9 @@ pub(crate) fn flatten<'a>(
         first_invalid: None,
         interfaces: Vec::new(),
         plan_inputs: PlanInputs::default(),
+        merges,
+        sites: Vec::new(),
+        merged: Vec::new(),
         said: Vec::new(),
         spent: 0,
         full: None,
@@ -103,6 +116,7 @@ pub(crate) fn flatten<'a>(
         scene: BTreeMap::new(),
         outer: None,
         overrides: BTreeMap::new(),
+        replaced: Replaced::new(),
         incomplete: None,
     });
     let scope = builder
@@ -224,6 +238,16 @@ impl<'a> Builder<'a, '_> {
             self.incomplete(scope, reported);
             self.broken();
         }
+        for (number, (name, _)) in document.values.iter().enumerate() {
+            let value = DeclaredValue {
+                scope,
+                document: Arc::clone(document),
+                number,
+                state: ValueState::Declared,
+            };
+            let symbol = Symbol::Value(self.symbols.declare_value(value));
+            self.symbols.scopes.declare(scope, &name.value, symbol);
+        }
         for (number, material) in document.materials.iter().enumerate() {
             if self.symbols.resources.len() >= MOST {
                 let name = material.name();
@@ -249,7 +273,22 @@ impl<'a> Builder<'a, '_> {
             };
             self.symbols.scopes.declare(scope, &name.value, symbol);
         }
+        self.replace_modules(document, scope);
         self.entries(&document.entries, context);
+    }
+
+    /// Finds the modules that stand in for others in a document's shaders.
+    fn replace_modules(&mut self, document: &Document, scope: ScopeId) {
+        let instance = self.symbols.scopes.instance_of(scope);
+        let mut replaced = self.symbols.scopes.instance(instance).replaced.clone();
+        for entry in &document.imports {
+            // A condition without a value was reported.
+            if self.is_there(entry.condition.as_ref(), scope) == Ok(true) {
+                let shaders = &self.symbols.graph.shaders;
+                shaders.replace(&mut replaced, &entry.of, &entry.is);
+            }
+        }
+        self.symbols.scopes.instance_mut(instance).replaced = replaced;
     }
 
     fn incomplete(&mut self, scope: ScopeId, reported: ErrorGuaranteed) {
@@ -293,9 +332,10 @@ impl<'a> Builder<'a, '_> {
         let Some(condition) = condition else {
             return Ok(true);
         };
-        let params = &self.symbols.scopes.document(scope).params;
-        self.plan_inputs.params.extend(params.roots(condition));
-        condition.visit(&mut |leaf| {
+        self.plan_inputs
+            .params
+            .extend(self.symbols.roots(scope, condition));
+        self.symbols.visit(scope, condition, &mut |_, leaf| {
             if let Leaf::Has(feature) = leaf {
                 self.plan_inputs.features |= feature;
             }
@@ -449,15 +489,29 @@ impl<'a> Builder<'a, '_> {
         let private = outer.map_or(String::new(), |outer| outer.private.clone());
         // Conditions of two documents are one if they are made of the same params of the root;
         // attributes (`index` is one) are what they are here.
+        let scopes = &self.symbols.scopes;
+        let is_value = |name: &str| scopes.find_value(position.scope, name).is_some();
+        let own: BTreeSet<String> = {
+            let mut own = BTreeSet::new();
+            condition.visit(&mut |leaf| {
+                if let Leaf::Param(name) = leaf
+                    && params.bound(name).is_none()
+                    && is_value(name)
+                {
+                    own.insert(name.to_owned());
+                }
+            });
+            own
+        };
         let text = condition.canonical(&mut |leaf| match leaf.as_param() {
-            Some(name) => match params.bound(name) {
+            Some(name) if !own.contains(name) => match params.bound(name) {
                 Some(bound) => match &bound.root {
                     Some(root) => root.clone(),
                     None => format!("{private}{name}"),
                 },
                 None => name.to_owned(),
             },
-            None => {
+            _ => {
                 let value = leaf.value(&mut self.symbols.at(position, None, self.reports));
                 value.map_or_else(|_| leaf.text().to_owned(), |value| value.to_string())
             }
@@ -539,9 +593,11 @@ impl<'a> Builder<'a, '_> {
         let What::Pass(pass) = &entry.what else {
             return false;
         };
-        let document = &self.symbols.scopes.document(scope).document;
+        let instance = self.symbols.scopes.document(scope);
+        let (document, replaced) = (&instance.document, &instance.replaced);
+        let known = &self.symbols.graph.shaders;
         let shaders = pass.shaders.iter();
-        let mut shaders = shaders.filter_map(|name| self.symbols.graph.shaders.get(document, name));
+        let mut shaders = shaders.filter_map(|shader| known.get(document, shader, replaced));
         // One with a mistake may ask for anything.
         shaders.any(|shader| shader.as_ref().map_or(true, |shader| asks(shader)))
     }
@@ -581,6 +637,7 @@ impl<'a> Builder<'a, '_> {
             passes: self.passes,
             first_invalid: self.first_invalid,
             interfaces: self.interfaces,
+            merged: self.merged,
             plan_inputs: self.plan_inputs,
         }
     }

@@ -10,10 +10,10 @@ use crate::{
         name::Name,
         syntax::{Expr, Reference},
     },
-    resource::Target,
-    source::span::Located,
+    resource::{ResourceId, Target},
+    source::span::{Located, Span},
 };
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, ops::Range};
 
 /// In which frames a pass runs.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,7 +44,22 @@ pub(crate) struct Flat<'a> {
     /// How many passes stand above the first entry with a mistake that was reported.
     pub first_invalid: Option<usize>,
     pub interfaces: Vec<Interface>,
+    /// Includes that others stand for.
+    pub merged: Vec<Merge>,
     pub plan_inputs: PlanInputs,
+}
+
+/// An include that another one stands for.
+pub(crate) struct Merge {
+    /// The numbers of the passes between the end of the one that stands there and this one.
+    pub between: Range<usize>,
+    /// What it reads from outside.
+    pub inputs: Vec<ResourceId>,
+    /// The resources of the one that stands there.
+    pub owned: Range<usize>,
+    /// The document that is included.
+    pub graph: String,
+    pub span: Span,
 }
 
 /// A pass with its place in the graph.

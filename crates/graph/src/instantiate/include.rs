@@ -3,9 +3,10 @@
 
 use super::{
     build::{Builder, EntryContext},
-    flat::Interface,
-    params::{Given, Params},
-    scopes::{Instance, InstanceId, Names, Outer, Position, Symbol},
+    flat::{Interface, Merge},
+    merge::{Content, Site},
+    params::{Given, Params, SetParam},
+    scopes::{Instance, InstanceId, Names, Outer, Position, ScopeId, Symbol},
 };
 use crate::{
     diagnostics::reports::ErrorGuaranteed,
@@ -16,8 +17,7 @@ use crate::{
     errors::instantiate::InterfaceError,
     language::{
         name::Name,
-        syntax::{Expr, Reference},
-        value::Value,
+        syntax::{Expr, ExprKind, Reference},
     },
     resource::{ResourceKind, Target},
     source::span::Located,
@@ -31,6 +31,31 @@ type Bound = (Located<String>, Result<Target, ErrorGuaranteed>);
 struct Overrides<'e> {
     bind: Vec<(&'e Located<String>, &'e Reference, Position)>,
     set: Vec<(&'e Located<String>, &'e Expr, Position)>,
+}
+
+/// Where an include stands.
+fn outer(
+    entry: &Entry,
+    position: Position,
+    has_namespace: bool,
+    context: &EntryContext<'_>,
+) -> Outer {
+    Outer {
+        scope: position.scope,
+        namespace: has_namespace.then(|| {
+            let suffix = position
+                .index
+                .map_or(String::new(), |index| format!("[{index}]"));
+            format!("{}{suffix}.", entry.name.value)
+        }),
+        private: context.prefix.clone(),
+    }
+}
+
+/// True if a document writes into one of its inputs.
+fn is_output(document: &Document, input: &Input) -> bool {
+    let mut outputs = document.outputs.iter();
+    outputs.any(|output| output.material.path() == *input.name.as_str())
 }
 
 impl<'a> Builder<'a, '_> {
@@ -55,47 +80,52 @@ impl<'a> Builder<'a, '_> {
         self.require(document);
         let said = self.said(entry, document, position, context);
         let has_namespace = include.is_named || position.index.is_some();
-        let outer = Outer {
-            scope: position.scope,
-            namespace: has_namespace.then(|| {
-                let suffix = position
-                    .index
-                    .map_or(String::new(), |index| format!("[{index}]"));
-                format!("{}{suffix}.", entry.name.value)
-            }),
-            private: context.prefix.clone(),
-        };
         let params = self.params(entry, include, document, &said, position);
         let (scene, overrides) = self.outside(entry, document, &said, position, has_namespace);
+        let inputs: Vec<Result<Target, ErrorGuaranteed>> = document
+            .inputs
+            .iter()
+            .map(|input| self.input(input, document, include, &said, position))
+            .collect();
+        let around = self.symbols.scopes.instance_of(position.scope);
+        let replaced = self.symbols.scopes.instance(around).replaced.clone();
+        // With a name, or in a repetition, an include is one of its own; so is one that writes into
+        // what it is given.
+        let may_merge = self.merges
+            && !has_namespace
+            && overrides.is_empty()
+            && self.symbols.scopes.index(position, None).is_none()
+            && !document
+                .inputs
+                .iter()
+                .any(|input| is_output(document, input));
+        let content = may_merge.then(|| {
+            let mut bound = self.symbols.scopes.bound_scene(around);
+            bound.extend(scene.clone());
+            let run = context.run.clone();
+            Content::new(document, &params, &inputs, bound, &replaced, run)
+        });
+        let content = content.flatten();
+        if let Some(names) = self.stands_above(content.as_ref(), include) {
+            self.give(entry, document, &names, (position, has_namespace))?;
+            return Ok(names);
+        }
+        let first_resource = self.symbols.resources.len();
+        let outer = outer(entry, position, has_namespace, context);
         let instance = self.symbols.scopes.add_instance(Instance {
             document: Arc::clone(document),
             params: Arc::new(params),
             scene,
             outer: Some(outer),
             overrides,
+            replaced,
             incomplete: None,
         });
         let scope = self
             .symbols
             .scopes
             .add_scope(instance, None, String::new(), None);
-        let mut read_only = Vec::new();
-        for input in &document.inputs {
-            let target = self.input(input, document, include, &said, position);
-            if let Ok(target) = &target {
-                let is_output = document
-                    .outputs
-                    .iter()
-                    .any(|output| output.material.path() == *input.name.as_str());
-                if !is_output {
-                    read_only.push((input.name.clone(), target.clone()));
-                }
-            }
-            let symbol = target.map_or_else(Symbol::Invalid, Symbol::Target);
-            self.symbols
-                .scopes
-                .declare(scope, &input.name.value, symbol);
-        }
+        let read_only = self.declare_inputs(scope, document, inputs);
         let inner = context.inside(scope);
         self.document(document, &inner);
         let (names, outputs) = self.outputs(document, &said, Position { scope, index: None });
@@ -104,8 +134,52 @@ impl<'a> Builder<'a, '_> {
             outputs,
             read_only,
         });
+        if let Some(content) = content {
+            self.sites.push(Site {
+                content,
+                names: names.clone(),
+                end: self.passes.len(),
+                owned: first_resource..self.symbols.resources.len(),
+            });
+        }
         self.give(entry, document, &names, (position, has_namespace))?;
         Ok(names)
+    }
+
+    /// The names that an include of the same content above gives, which stands for this one.
+    fn stands_above(&mut self, content: Option<&Content>, include: &Include) -> Option<Names> {
+        let content = content?;
+        let site = self.sites.iter().find(|site| site.content == *content)?;
+        self.merged.push(Merge {
+            between: site.end..self.passes.len(),
+            inputs: content.inputs.iter().map(|target| target.id).collect(),
+            owned: site.owned.clone(),
+            graph: include.graph.value.clone(),
+            span: include.graph.span.clone(),
+        });
+        Some(site.names.clone())
+    }
+
+    /// Makes what an include is given known in it; returns what it may only read.
+    fn declare_inputs(
+        &mut self,
+        scope: ScopeId,
+        document: &Document,
+        inputs: Vec<Result<Target, ErrorGuaranteed>>,
+    ) -> Vec<(Located<Name>, Target)> {
+        let mut read_only = Vec::new();
+        for (input, target) in document.inputs.iter().zip(inputs) {
+            if let Ok(target) = &target
+                && !is_output(document, input)
+            {
+                read_only.push((input.name.clone(), target.clone()));
+            }
+            let symbol = target.map_or_else(Symbol::Invalid, Symbol::Target);
+            self.symbols
+                .scopes
+                .declare(scope, &input.name.value, symbol);
+        }
+        read_only
     }
 
     /// Makes what an include gives known where it stands.
@@ -206,8 +280,7 @@ impl<'a> Builder<'a, '_> {
         said: &Overrides<'_>,
         position: Position,
     ) -> Params {
-        let mut set: BTreeMap<String, (Located<Expr>, Result<Value, ErrorGuaranteed>)> =
-            BTreeMap::new();
+        let mut set: BTreeMap<String, SetParam> = BTreeMap::new();
         for (name, expr, at) in &said.set {
             if !document
                 .params
@@ -228,9 +301,14 @@ impl<'a> Builder<'a, '_> {
                 Some(value) => value,
                 None => expr.value(&mut self.symbols.at(*at, None, self.reports)),
             };
-            let expr = Located::new((*expr).clone(), expr.span.clone());
-            set.insert(name.value.clone(), (expr, value));
+            let given = SetParam {
+                roots: self.symbols.roots(at.scope, expr),
+                expr: Located::new((*expr).clone(), expr.span.clone()),
+                value,
+            };
+            set.insert(name.value.clone(), given);
         }
+        self.values_asked(include, document, position, &mut set);
         let outer = Arc::clone(&self.symbols.scopes.document(position.scope).params);
         let exposed = include.expose.iter().map(|name| {
             let own = if include.is_named {
@@ -247,6 +325,37 @@ impl<'a> Builder<'a, '_> {
             context: self.symbols.request.surroundings(),
         };
         given.bind(document, &set, self.reports)
+    }
+
+    /// Params without a default that the include does not set are filled by values of that name.
+    fn values_asked(
+        &mut self,
+        include: &Include,
+        document: &Document,
+        position: Position,
+        set: &mut BTreeMap<String, SetParam>,
+    ) {
+        for param in &document.params {
+            let name = &param.name.value;
+            let is_asked = param.default.is_none()
+                && !set.contains_key(name)
+                && include.expose.iter().all(|exposed| **exposed != *name);
+            let outer = &self.symbols.scopes.document(position.scope).params;
+            if !is_asked || outer.bound(name).is_some() {
+                continue;
+            }
+            let Some(id) = self.symbols.scopes.find_value(position.scope, name) else {
+                continue;
+            };
+            let span = include.graph.span.clone();
+            let expr = Expr::new(ExprKind::Param(name.clone()), span.clone());
+            let given = SetParam {
+                roots: self.symbols.roots(position.scope, &expr),
+                value: self.symbols.value(id, self.reports),
+                expr: Located::new(expr, span),
+            };
+            set.insert(name.clone(), given);
+        }
     }
 
     /// What an include binds besides inputs: outputs, which are written into a material here, and
@@ -456,6 +565,14 @@ impl<'a> Builder<'a, '_> {
                     names.insert(name.value.clone(), Symbol::Invalid(reported));
                     continue;
                 }
+            }
+            let value = self
+                .symbols
+                .scopes
+                .find_value(position.scope, &output.material.path());
+            if let Some(id) = value {
+                names.insert(name.value.clone(), Symbol::Value(id));
+                continue;
             }
             let target = self
                 .symbols

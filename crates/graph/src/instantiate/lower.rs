@@ -1,7 +1,7 @@
 //! Passes become steps: each kind says what its body is, with values of this plan.
 
 use super::{
-    flat::{Flat, FlatPass, Interface, PlanInputs},
+    flat::{Flat, FlatPass, Interface, Merge, PlanInputs},
     scopes::InstanceId,
     symbols::SymbolTable,
 };
@@ -9,7 +9,7 @@ use crate::{
     diagnostics::reports::Reports,
     kinds::{
         kind::Lowering,
-        step::{Names, Step},
+        step::{Names, ShaderUse, Step},
     },
     resource::{Buffer, Origin, Resource, ResourceId, ResourceKind},
     source::span::Located,
@@ -34,6 +34,7 @@ pub(crate) struct Lowered<'a> {
     pub passes: Vec<LoweredPass<'a>>,
     pub first_invalid: Option<usize>,
     pub interfaces: Vec<Interface>,
+    pub merged: Vec<Merge>,
     pub plan_inputs: PlanInputs,
 }
 
@@ -50,6 +51,7 @@ pub(crate) fn lower<'a>(flat: Flat<'a>, reports: &mut Reports) -> Lowered<'a> {
         passes,
         first_invalid: flat.first_invalid,
         interfaces: flat.interfaces,
+        merged: flat.merged,
         plan_inputs: flat.plan_inputs,
     }
 }
@@ -61,12 +63,15 @@ fn lower_pass<'a>(
 ) -> LoweredPass<'a> {
     let (entry, pass) = (flat.entry, flat.pass);
     let before = reports.errors();
-    let document = &symbols.scopes.document(flat.position.scope).document;
+    let instance = symbols.scopes.document(flat.position.scope);
     // Constants are those of the pass's own shader, or of the first that its kind brings.
-    let shader = pass.shader.as_ref().or(pass.shaders.first());
-    let shader = shader
-        .and_then(|name| symbols.graph.shaders.get(document, name))
-        .cloned();
+    let is_own = |shader: &&ShaderUse| pass.shader.as_ref() == Some(&shader.name);
+    let own = pass.shaders.iter().find(is_own);
+    let shader = own.or(pass.shaders.first()).and_then(|shader| {
+        let shaders = &symbols.graph.shaders;
+        shaders.get(&instance.document, shader, &instance.replaced)
+    });
+    let shader = shader.cloned();
     let mut environment = symbols.at(flat.position, shader, reports);
     let mut lowering = Lowering::new(
         &entry.name,

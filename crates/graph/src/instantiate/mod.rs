@@ -8,6 +8,7 @@ pub(crate) mod flat;
 pub(crate) mod include;
 pub(crate) mod lower;
 pub(crate) mod materials;
+pub(crate) mod merge;
 pub(crate) mod params;
 pub(crate) mod position;
 pub(crate) mod scopes;

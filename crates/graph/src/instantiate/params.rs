@@ -214,6 +214,14 @@ pub(crate) fn root(
     params
 }
 
+/// What an include sets a param to.
+pub(crate) struct SetParam {
+    pub expr: Located<Expr>,
+    pub value: Result<Value, ErrorGuaranteed>,
+    /// The params of the root document that it depends on.
+    pub roots: BTreeSet<String>,
+}
+
 /// What an include says of the params of its document.
 pub(crate) struct Given<'a> {
     /// What the params are called where they are exposed: with the include's name, if it has one.
@@ -225,18 +233,17 @@ pub(crate) struct Given<'a> {
 }
 
 impl Given<'_> {
-    /// The params of an included document; `set` are values with the params of the root that they
-    /// depend on.
+    /// The params of an included document.
     pub fn bind(
         &self,
         document: &Document,
-        set: &BTreeMap<String, (Located<Expr>, Result<Value, ErrorGuaranteed>)>,
+        set: &BTreeMap<String, SetParam>,
         reports: &mut Reports,
     ) -> Params {
         let mut params = Params::default();
         for param in in_order(document) {
             let bound = match set.get(&param.name.value) {
-                Some((expr, value)) => self.set(param, expr, value, reports),
+                Some(given) => self.set(param, given, reports),
                 None => self.unset(document, param, &params, reports),
             };
             params.list.push(bound);
@@ -247,8 +254,7 @@ impl Given<'_> {
     fn set(
         &self,
         param: &Param,
-        expr: &Located<Expr>,
-        value: &Result<Value, ErrorGuaranteed>,
+        SetParam { expr, value, roots }: &SetParam,
         reports: &mut Reports,
     ) -> BoundParam {
         let source = expr
@@ -275,7 +281,7 @@ impl Given<'_> {
             param: param.clone(),
             value,
             root: source.and_then(|source| source.root.clone()),
-            roots: self.outer.roots(&expr.value),
+            roots: roots.clone(),
         }
     }
 

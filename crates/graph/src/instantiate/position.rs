@@ -249,6 +249,9 @@ impl Environment for At<'_, '_, '_> {
         if let Some(value) = instance.params.value(name, self.reports) {
             return value;
         }
+        if let Some(id) = self.symbols.scopes.find_value(self.position.scope, name) {
+            return self.symbols.value(id, self.reports);
+        }
         if let Some(reported) = instance.document.invalid_params {
             return Err(reported);
         }
@@ -257,13 +260,22 @@ impl Environment for At<'_, '_, '_> {
             .scopes
             .find(self.position.scope, name)
             .is_some();
-        let known = self.reports.known(instance.params.names());
+        let values = instance
+            .document
+            .values
+            .iter()
+            .map(|(name, _)| name.as_str());
+        let known = self.reports.known(instance.params.names().chain(values));
         Err(self.report(EvaluationError::param(name, span, is_material, known)))
     }
 
     fn word_or_param(&mut self, name: &Name) -> Option<Value> {
         let instance = self.symbols.scopes.document(self.position.scope);
-        instance.params.value(name, self.reports)?.ok()
+        if let Some(value) = instance.params.value(name, self.reports) {
+            return value.ok();
+        }
+        let id = self.symbols.scopes.find_value(self.position.scope, name)?;
+        self.symbols.value(id, self.reports).ok()
     }
 
     fn index(&mut self, of: Option<&Name>, span: &Span) -> Result<u32, ErrorGuaranteed> {

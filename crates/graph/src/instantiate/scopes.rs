@@ -7,6 +7,7 @@ use crate::{
     document::typed::{Document, Output},
     language::name::{Name, wgsl_identifier},
     resource::Target,
+    shader::expand::Replaced,
     source::span::Located,
 };
 use std::{
@@ -17,6 +18,10 @@ use std::{
 /// Number of a frame in [`Scopes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ScopeId(usize);
+
+/// Number of a value in [`SymbolTable`](super::symbols::SymbolTable).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct ValueId(pub(super) usize);
 
 /// Number of an instance of a document in [`Scopes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +38,8 @@ pub(crate) struct Instance {
     pub outer: Option<Outer>,
     /// The materials outside that are written instead of its own ones, with the place that says so.
     pub overrides: BTreeMap<String, (Located<String>, Result<Target, ErrorGuaranteed>)>,
+    /// Modules that stand in for others in its shaders.
+    pub replaced: Replaced,
     /// Something in it could not be read, so that unknown names are no mistakes.
     pub incomplete: Option<ErrorGuaranteed>,
 }
@@ -58,6 +65,8 @@ struct Scope {
     names: Names,
     /// Their spellings in shaders, those of parts of namespaces included.
     wgsl_name: HashMap<String, Result<Target, ErrorGuaranteed>>,
+    /// The same of values.
+    wgsl_values: HashMap<String, ValueId>,
     /// The repeated entry, and which repetition this is.
     index: Option<(Name, u32)>,
 }
@@ -69,6 +78,8 @@ pub(crate) type Names = BTreeMap<Name, Symbol>;
 #[derive(Clone, Debug)]
 pub(crate) enum Symbol {
     Target(Target),
+    /// A named expression.
+    Value(ValueId),
     /// Declared with a mistake.
     Invalid(ErrorGuaranteed),
     /// What a named include gives.
@@ -81,7 +92,7 @@ impl Symbol {
     /// What a name behind a dot may mean; of repetitions, in each of them.
     pub fn named<'m>(&'m self, name: &Name) -> Vec<&'m Self> {
         match self {
-            Self::Target(_) | Self::Invalid(_) => Vec::new(),
+            Self::Target(_) | Self::Value(_) | Self::Invalid(_) => Vec::new(),
             Self::Namespace(names) => names.get(name).into_iter().collect(),
             Self::Repeated(list) => list.iter().filter_map(|names| names.get(name)).collect(),
         }
@@ -121,6 +132,7 @@ impl Scopes {
             path,
             names: Names::new(),
             wgsl_name: HashMap::new(),
+            wgsl_values: HashMap::new(),
             index,
         });
         ScopeId(self.scopes.len() - 1)
@@ -192,7 +204,7 @@ impl Scopes {
     /// The first of a name stays; a second one is reported where documents are read.
     pub fn declare(&mut self, scope: ScopeId, name: &Name, symbol: Symbol) {
         let scope = &mut self.scopes[scope.0];
-        spell(&mut scope.wgsl_name, &wgsl_identifier(name), &symbol);
+        spell(scope, &wgsl_identifier(name), &symbol);
         scope.names.entry(name.clone()).or_insert(symbol);
     }
 
@@ -208,6 +220,28 @@ impl Scopes {
     ) -> Option<Result<Target, ErrorGuaranteed>> {
         self.outwards(scope)
             .find_map(|scope| scope.wgsl_name.get(identifier).cloned())
+    }
+
+    /// The value of that name; of a named include with a dot, `left.edge`.
+    pub fn find_value(&self, scope: ScopeId, name: &str) -> Option<ValueId> {
+        let mut parts = name.split('.');
+        let mut symbol = self.find(scope, parts.next()?)?;
+        for part in parts {
+            let Symbol::Namespace(names) = symbol else {
+                return None;
+            };
+            symbol = names.get(part)?;
+        }
+        match symbol {
+            Symbol::Value(id) => Some(*id),
+            _ => None,
+        }
+    }
+
+    /// The value that a shader's param or override of that spelling is.
+    pub fn find_wgsl_value(&self, scope: ScopeId, identifier: &str) -> Option<ValueId> {
+        self.outwards(scope)
+            .find_map(|scope| scope.wgsl_values.get(identifier).copied())
     }
 
     /// The index of the innermost repetition, or of that of a named entry.
@@ -230,44 +264,48 @@ impl Scopes {
         known
     }
 
+    /// An instance and those around it, from the inside out.
+    pub(super) fn outer_instances(&self, id: InstanceId) -> impl Iterator<Item = InstanceId> {
+        std::iter::successors(Some(id), |id| self.parent(*id))
+    }
+
     /// The resource that a name of the scene stands for in an instance, where an include says so.
     pub fn scene(&self, id: InstanceId, name: &str) -> Option<Result<Target, ErrorGuaranteed>> {
-        let mut instances = std::iter::successors(Some(id), |id| self.parent(*id));
-        instances.find_map(|id| self.instance(id).scene.get(name).cloned())
+        self.outer_instances(id)
+            .find_map(|id| self.instance(id).scene.get(name).cloned())
     }
 
     /// Whether one instance stands in another one.
     pub fn is_within(&self, inner: InstanceId, outer: InstanceId) -> bool {
-        std::iter::successors(Some(inner), |id| self.parent(*id)).any(|id| id == outer)
+        self.outer_instances(inner).any(|id| id == outer)
     }
 }
 
 /// Notes how shaders spell what a name means.
-fn spell(
-    wgsl_name: &mut HashMap<String, Result<Target, ErrorGuaranteed>>,
-    spelling: &str,
-    symbol: &Symbol,
-) {
+fn spell(scope: &mut Scope, spelling: &str, symbol: &Symbol) {
     match symbol {
         Symbol::Target(target) => {
-            wgsl_name
+            scope
+                .wgsl_name
                 .entry(spelling.to_owned())
                 .or_insert_with(|| Ok(target.clone()));
         }
+        Symbol::Value(id) => {
+            scope.wgsl_values.entry(spelling.to_owned()).or_insert(*id);
+        }
         Symbol::Invalid(reported) => {
-            wgsl_name
-                .entry(spelling.to_owned())
-                .or_insert(Err(*reported));
+            let names = scope.wgsl_name.entry(spelling.to_owned());
+            names.or_insert(Err(*reported));
         }
         Symbol::Namespace(names) => {
             for (name, symbol) in names {
-                spell(wgsl_name, &format!("{spelling}_{name}"), symbol);
+                spell(scope, &format!("{spelling}_{name}"), symbol);
             }
         }
         Symbol::Repeated(list) => {
             for (index, names) in list.iter().enumerate() {
                 for (name, symbol) in names {
-                    spell(wgsl_name, &format!("{spelling}_{index}_{name}"), symbol);
+                    spell(scope, &format!("{spelling}_{index}_{name}"), symbol);
                 }
             }
         }
@@ -277,7 +315,9 @@ fn spell(
 fn list(names: &Names, prefix: &str, into: &mut Vec<String>) {
     for (name, symbol) in names {
         match symbol {
-            Symbol::Target(_) | Symbol::Invalid(_) => into.push(format!("{prefix}{name}")),
+            Symbol::Target(_) | Symbol::Value(_) | Symbol::Invalid(_) => {
+                into.push(format!("{prefix}{name}"))
+            }
             Symbol::Namespace(inner) => list(inner, &format!("{prefix}{name}."), into),
             Symbol::Repeated(inner) => {
                 if let Some(first) = inner.first() {

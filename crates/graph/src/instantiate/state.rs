@@ -1,10 +1,11 @@
-//! Materials on their way to a size.
+//! Materials on their way to a size, and values on theirs to a number.
 
 use super::scopes::ScopeId;
 use crate::{
     diagnostics::reports::ErrorGuaranteed,
     document::{materials::Material, typed::Document},
-    source::span::Span,
+    language::{name::Name, syntax::Expr, value::Value},
+    source::span::{Located, Span},
 };
 use std::sync::Arc;
 
@@ -32,5 +33,34 @@ pub(super) struct Declared {
 impl Declared {
     pub fn material(&self) -> &Material {
         &self.document.materials[self.number]
+    }
+}
+
+/// A value of an instance of a document.
+#[derive(Clone, Debug)]
+pub(super) struct DeclaredValue {
+    pub scope: ScopeId,
+    pub document: Arc<Document>,
+    /// Its number among the document's values.
+    pub number: usize,
+    pub state: ValueState,
+}
+
+/// How far a value is known.
+#[derive(Clone, Debug)]
+pub(super) enum ValueState {
+    Declared,
+    /// It is being found: if it is asked for now, it is made of itself.
+    Resolving,
+    Known(Result<Value, ErrorGuaranteed>),
+}
+
+impl DeclaredValue {
+    pub fn name(&self) -> &Located<Name> {
+        &self.document.values[self.number].0
+    }
+
+    pub fn expr(&self) -> &Expr {
+        &self.document.values[self.number].1
     }
 }

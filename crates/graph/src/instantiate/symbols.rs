@@ -1,25 +1,30 @@
 //! Resources of a plan, and how references of its documents find them.
 
 use super::{
-    scopes::{Position, ScopeId, Scopes, Symbol},
-    state::{Declared, State},
+    scopes::{Position, ScopeId, Scopes, Symbol, ValueId},
+    state::{Declared, DeclaredValue, State, ValueState},
 };
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
-    errors::instantiate::InterfaceError,
+    errors::{evaluation::EvaluationError, instantiate::InterfaceError},
     graph::Graph,
     language::{
         name::wgsl_identifier,
         parser,
-        syntax::{Expr, Reference, Segment, Selection},
+        syntax::{Expr, Leaf, Reference, Segment, Selection},
+        value::Value,
     },
     provided_kind::ProvidedKind,
     provider::{Provided, ProvidedBinding},
     request::PlanRequest,
     resource::{FRAME, Origin, Resource, ResourceId, ResourceKind, SubresourceRange, Target},
-    source::span::{Located, SourceFile},
+    source::span::{Located, SourceFile, Span},
 };
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// Longest chain of values that are made of each other; far above any sensible one, far below the
+/// stack.
+const DEEPEST_VALUE: usize = 64;
 
 /// Everything that names of a graph can mean in one plan.
 pub(crate) struct SymbolTable<'a> {
@@ -31,6 +36,9 @@ pub(crate) struct SymbolTable<'a> {
     pub(super) states: Vec<State>,
     /// The materials whose sizes are being found, each for the sake of the one before.
     pub(super) evaluating: Vec<ResourceId>,
+    /// Values, and those of them that are being found, each for the sake of the one before.
+    values: Vec<DeclaredValue>,
+    resolving: Vec<ValueId>,
     /// Resources of the scene that were named so far.
     scene: HashMap<String, ResourceId>,
     /// How shaders spell the names of the scene.
@@ -53,6 +61,8 @@ impl<'a> SymbolTable<'a> {
             resources: Vec::new(),
             states: Vec::new(),
             evaluating: Vec::new(),
+            values: Vec::new(),
+            resolving: Vec::new(),
             scene: HashMap::new(),
             wgsl_name: names.map(|name| (wgsl_identifier(&name), name)).collect(),
             previous: BTreeMap::new(),
@@ -87,6 +97,102 @@ impl<'a> SymbolTable<'a> {
         ResourceId(self.resources.len() - 1)
     }
 
+    /// Adds a value, which is found when an expression or a shader asks for it.
+    pub(super) fn declare_value(&mut self, value: DeclaredValue) -> ValueId {
+        self.values.push(value);
+        ValueId(self.values.len() - 1)
+    }
+
+    /// The value of a named expression.
+    pub fn value(&mut self, id: ValueId, reports: &mut Reports) -> Result<Value, ErrorGuaranteed> {
+        let declared = &mut self.values[id.0];
+        match &declared.state {
+            ValueState::Known(value) => return value.clone(),
+            ValueState::Resolving => return Err(self.circular_value(id, reports)),
+            ValueState::Declared => {}
+        }
+        if self.resolving.len() == DEEPEST_VALUE {
+            let name = declared.name();
+            let name = Located::new(name.value.to_string(), name.span.clone());
+            return Err(reports.report(EvaluationError::DeepValue {
+                name,
+                most: DEEPEST_VALUE,
+            }));
+        }
+        declared.state = ValueState::Resolving;
+        let position = Position {
+            scope: declared.scope,
+            index: None,
+        };
+        let expr = declared.expr().clone();
+        self.resolving.push(id);
+        let value = expr.value(&mut self.at(position, None, reports));
+        self.resolving.pop();
+        self.values[id.0].state = ValueState::Known(value.clone());
+        value
+    }
+
+    fn circular_value(&self, id: ValueId, reports: &mut Reports) -> ErrorGuaranteed {
+        let ring = self.resolving.iter().skip_while(|other| **other != id);
+        let ring = ring.chain([&id]).map(|id| {
+            let name = self.values[id.0].name();
+            Located::new(name.value.to_string(), name.span.clone())
+        });
+        reports.report(EvaluationError::CircularValue(ring.collect()))
+    }
+
+    /// Where a value is written, for messages about it.
+    pub fn value_span(&self, id: ValueId) -> &Span {
+        &self.values[id.0].expr().span
+    }
+
+    /// Calls `each` with everything that an expression at a scope is made of, values written out,
+    /// each with the scope in which it stands.
+    pub fn visit<'e>(
+        &'e self,
+        scope: ScopeId,
+        expr: &'e Expr,
+        each: &mut dyn FnMut(ScopeId, Leaf<'e>),
+    ) {
+        let mut seen = BTreeSet::new();
+        let mut open = vec![(scope, expr)];
+        while let Some((scope, expr)) = open.pop() {
+            expr.visit(&mut |leaf| {
+                let name = match leaf {
+                    Leaf::Param(name) => Some(name),
+                    Leaf::Word(name) => Some(name.as_str()),
+                    _ => None,
+                };
+                let params = &self.scopes.document(scope).params;
+                let name = name.filter(|name| params.bound(name).is_none());
+                match name.and_then(|name| self.scopes.find_value(scope, name)) {
+                    Some(id) if seen.insert(id) => {
+                        let value = &self.values[id.0];
+                        open.push((value.scope, value.expr()));
+                    }
+                    Some(_) => {}
+                    None => each(scope, leaf),
+                }
+            });
+        }
+    }
+
+    /// The params of the root document that an expression depends on.
+    pub fn roots(&self, scope: ScopeId, expr: &Expr) -> BTreeSet<String> {
+        let mut roots = BTreeSet::new();
+        self.visit(scope, expr, &mut |scope, leaf| {
+            let name = match leaf {
+                Leaf::Param(name) => name,
+                Leaf::Word(name) => name.as_str(),
+                _ => return,
+            };
+            if let Some(bound) = self.scopes.document(scope).params.bound(name) {
+                roots.extend(bound.roots.iter().cloned());
+            }
+        });
+        roots
+    }
+
     /// A buffer whose number of items was asked for and is not known.
     pub(super) fn mark_invalid(&mut self, id: ResourceId, reported: ErrorGuaranteed) {
         if matches!(self.get(id).kind, ResourceKind::Buffer(_)) {
@@ -110,6 +216,14 @@ impl<'a> SymbolTable<'a> {
         position: Position,
         reports: &mut Reports,
     ) -> Result<Target, ErrorGuaranteed> {
+        let mut reference = reference;
+        while let Some(otherwise) = &reference.otherwise {
+            let (condition, other) = &**otherwise;
+            if condition.boolean(&mut self.at(position, None, reports))? {
+                break;
+            }
+            reference = other;
+        }
         let (mut target, selection) = self.named(reference, position, reports)?;
         self.resolve_size(target.id, reports)?;
         // A part of an input is a part of what is bound to it; a whole one is known only now.
@@ -153,6 +267,10 @@ impl<'a> SymbolTable<'a> {
         while let Some(segment) = segments.next() {
             let names = match symbol {
                 Symbol::Invalid(reported) => return Err(reported),
+                Symbol::Value(_) => {
+                    let name = Located::new(walked, segment.name.span.clone());
+                    return Err(reports.report(InterfaceError::IsValue(name)));
+                }
                 Symbol::Target(target) => {
                     return match segments.peek() {
                         None => Ok((target, segment.selection.as_ref())),

@@ -1,15 +1,13 @@
 //! `Compute`: one dispatch of so many threads or workgroups, or with its size in a buffer.
 
 use super::{
+    entry_name::EntryName,
     kind::{Lowering, PassKind},
     step::{Dispatch, Groups, Operand, Step, Threads},
 };
-use crate::{
-    language::{
-        syntax::{Expr, Reference},
-        value::Scalar,
-    },
-    source::span::Located,
+use crate::language::{
+    syntax::{Expr, Reference},
+    value::Scalar,
 };
 use serde::Deserialize;
 
@@ -22,7 +20,7 @@ pub(super) struct Compute {
     dispatch: Size,
     /// The entry point, where the shader has several.
     #[serde(default)]
-    entry: Option<Located<String>>,
+    entry: Option<EntryName>,
 }
 
 /// How many threads or workgroups a dispatch has.
@@ -45,7 +43,7 @@ enum Size {
 impl PassKind for Compute {
     fn lower(&self, pass: &mut Lowering<'_>) {
         let mut program = pass.program();
-        program.compute.clone_from(&self.entry);
+        program.compute = self.entry.as_ref().and_then(|entry| entry.chosen(pass));
         let groups = match &self.dispatch {
             Size::Over(threads) => Groups::Direct(over(threads, pass)),
             Size::Groups(x, y, z) => {

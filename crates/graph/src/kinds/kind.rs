@@ -1,6 +1,6 @@
 //! What a pass kind is: a type that deserialises its own body and lowers it to [`Step`]s.
 
-use super::step::{Names, Operand, Program, Scratch, Step, Threads};
+use super::step::{Names, Operand, Program, Scratch, ShaderUse, Step, Threads};
 use crate::{
     diagnostics::{code::Code, diagnostic::Diagnostic, reports::ErrorGuaranteed},
     document::fields::Chosen,
@@ -47,7 +47,7 @@ pub struct Lowering<'a> {
     pub(crate) environment: Option<&'a mut dyn Environment>,
     pub(crate) steps: Vec<Step<Names>>,
     /// Shaders that are named for other values.
-    pub(crate) alternatives: Vec<Located<String>>,
+    pub(crate) alternatives: Vec<ShaderUse>,
     pub(crate) features: wgt::Features,
     /// Name and bytes of the pass's own buffers.
     pub(crate) scratch: Vec<(String, u64)>,
@@ -113,10 +113,16 @@ impl<'a> Lowering<'a> {
         Scratch(self.scratch.len() - 1)
     }
 
-    /// Says that for other values a step may run this shader, which comes with the kind, and that
-    /// it can make use of these features of a device.
-    pub fn alternative(&mut self, shader: &str, features: wgt::Features) {
-        self.alternatives.push(self.named(shader));
+    /// Says that for other values a step may run this shader, which comes with the kind, with these
+    /// modules in the place of others, and that it can make use of these features of a device.
+    pub fn alternative(&mut self, shader: &str, imports: &[(&str, &str)], features: wgt::Features) {
+        let imports = imports.iter();
+        self.alternatives.push(ShaderUse {
+            name: self.named(shader),
+            imports: imports
+                .map(|(of, is)| ((*of).to_owned(), (*is).to_owned()))
+                .collect(),
+        });
         self.features |= features;
     }
 
@@ -206,15 +212,34 @@ impl<'a> Lowering<'a> {
         Threads::Texels([edge(0), edge(1), edge(2)])
     }
 
+    /// What an expression with conditions comes to before it is evaluated: the part behind the
+    /// condition that holds; the last where the document is only read.
+    pub(crate) fn branch<'e>(&mut self, expr: &'e Expr) -> &'e Expr {
+        let mut expr = expr;
+        while let ExprKind::Ternary(of) = &expr.kind {
+            let [condition, yes, no] = &**of;
+            expr = if self.boolean(condition) { yes } else { no };
+        }
+        expr
+    }
+
     /// A word of the language that may be that of a `Choice` param, all of whose words must be in
     /// `words`: a document must not fail on some of its params' values. The first where the
     /// document is only read. `words` must not be empty.
     pub fn word<T: Copy>(&mut self, chosen: &Chosen<T>, words: &[(&str, T)]) -> T {
-        let expr = match chosen {
+        let whole = match chosen {
             Chosen::Word(word) => return *word,
             Chosen::Expr(expr) => expr,
         };
+        let expr = self.branch(whole);
         let known = |name: &Name| words.iter().find(|(word, _)| **word == **name);
+        // Behind a condition a bare name is a word.
+        if !std::ptr::eq(expr, whole)
+            && let Some(name) = expr.as_param()
+            && let Some((_, value)) = words.iter().find(|(word, _)| *word == name)
+        {
+            return *value;
+        }
         self.evaluate(words[0].1, |environment| {
             let value = expr.value(environment)?;
             if let Value::Word(word) = &value

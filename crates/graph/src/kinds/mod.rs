@@ -3,6 +3,7 @@
 mod clear;
 mod compute;
 mod copy;
+mod entry_name;
 mod fullscreen;
 pub(crate) mod kind;
 mod raster;

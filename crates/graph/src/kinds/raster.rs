@@ -1,6 +1,7 @@
 //! `Raster`: a draw call with vertex pulling into colour, depth and stencil attachments.
 
 use super::{
+    entry_name::EntryName,
     kind::{Lowering, PassKind},
     step::{Draw, DrawCall, Operand, Step},
     targets::{self, ColorEntry, DepthEntry, StencilEntry},
@@ -11,7 +12,6 @@ use crate::{
         ron::{raw, read},
     },
     language::syntax::{Expr, Reference},
-    source::span::Located,
 };
 use serde::{Deserialize, Deserializer};
 
@@ -38,12 +38,13 @@ pub(super) struct Raster {
     #[serde(default)]
     area: Option<Expr>,
     /// The triangles that are left out, none without it, or in quotes a `Choice` of `none`,
-    /// `front`, `back`.
+    /// `front`, `back`, or one of them by a condition.
     #[serde(default = "no_culling")]
     cull: Chosen<Face>,
-    /// Which triangles show their front: `Ccw`, counter-clockwise ones, without it.
-    #[serde(default)]
-    front_face: Winding,
+    /// Which triangles show their front: `Ccw`, counter-clockwise ones, without it; or in quotes
+    /// one of `ccw` and `cw` by a condition.
+    #[serde(default = "counter_clockwise")]
+    front_face: Chosen<Winding>,
     /// What vertices make; `TriangleList` without it.
     #[serde(default)]
     topology: Topology,
@@ -56,11 +57,18 @@ pub(super) struct Raster {
     unclipped: bool,
     /// The vertex entry point, where the shader has several.
     #[serde(default)]
-    vertex: Option<Located<String>>,
-    /// The fragment entry point, where the shader has several.
+    vertex: Option<EntryName>,
+    /// The fragment entry point, where the shader has several; `none` draws depth alone.
     #[serde(default)]
-    fragment: Option<Located<String>>,
+    fragment: Option<EntryName>,
 }
+
+fn counter_clockwise() -> Chosen<Winding> {
+    Chosen::Word(Winding::Ccw)
+}
+
+/// The windings as words behind a condition.
+const WINDINGS: [(&str, Winding); 2] = [("ccw", Winding::Ccw), ("cw", Winding::Cw)];
 
 fn no_culling() -> Chosen<Face> {
     Chosen::Word(Face::None)
@@ -113,10 +121,9 @@ const FACES: [(&str, Face); 3] = [
 ];
 
 /// Which triangles show their front.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[derive(Clone, Copy, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 enum Winding {
-    #[default]
     Ccw,
     Cw,
 }
@@ -135,8 +142,9 @@ enum Topology {
 impl PassKind for Raster {
     fn lower(&self, pass: &mut Lowering<'_>) {
         let mut program = pass.program();
-        program.vertex.clone_from(&self.vertex);
-        program.fragment.clone_from(&self.fragment);
+        program.vertex = self.vertex.as_ref().and_then(|entry| entry.chosen(pass));
+        program.fragment = self.fragment.as_ref().and_then(|entry| entry.chosen(pass));
+        program.no_fragment = self.fragment.is_some() && program.fragment.is_none();
         let call = match &self.draw {
             Call::Vertices(count) => DrawCall::Direct {
                 vertices: pass.count32(count),
@@ -154,7 +162,7 @@ impl PassKind for Raster {
                 Topology::LineList => wgt::PrimitiveTopology::LineList,
                 Topology::PointList => wgt::PrimitiveTopology::PointList,
             },
-            front_face: match self.front_face {
+            front_face: match pass.word(&self.front_face, &WINDINGS) {
                 Winding::Ccw => wgt::FrontFace::Ccw,
                 Winding::Cw => wgt::FrontFace::Cw,
             },

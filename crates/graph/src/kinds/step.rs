@@ -107,16 +107,38 @@ impl<S: Stage> Step<S> {
 pub struct Program {
     /// Name of the WGSL file without folder and ending.
     pub shader: Option<Located<String>>,
+    /// Modules that it imports in the place of others, `(of, is)`, as an `#import` names them.
+    pub imports: Vec<(String, String)>,
     /// Vertex entry point, where the file has several.
     pub vertex: Option<Located<String>>,
     /// Fragment entry point, where the file has several.
     pub fragment: Option<Located<String>>,
+    /// A draw without a fragment stage, whatever fragment entry points the file has.
+    pub no_fragment: bool,
     /// Compute entry point, where the file has several.
     pub compute: Option<Located<String>>,
     /// Values of pipeline-overridable constants, beside those named like params.
     pub constants: Vec<(String, f64)>,
     /// Shader globals that are bound to a resource of another name.
     pub bind: Vec<(Located<String>, Operand)>,
+}
+
+/// A shader that a pass runs.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ShaderUse {
+    /// Its file without folder and ending.
+    pub name: Located<String>,
+    /// Modules that the pass kind has it import in the place of others.
+    pub imports: Vec<(String, String)>,
+}
+
+impl Program {
+    /// The shader with its modules, where one is named.
+    pub(crate) fn shader_use(&self) -> Option<ShaderUse> {
+        let name = self.shader.clone()?;
+        let imports = self.imports.clone();
+        Some(ShaderUse { name, imports })
+    }
 }
 
 /// A draw call into attachments.

@@ -333,8 +333,13 @@ fn clear(
     area: Option<&Expr>,
     pass: &mut Lowering<'_>,
 ) -> Option<[f64; 4]> {
+    let load = match load {
+        Some(Load::KeepIf(condition)) if pass.boolean(condition) => Some(&Load::Keep),
+        Some(Load::KeepIf(_)) => None,
+        load => load,
+    };
     let values = match (load, area) {
-        (Some(Load::Load), _) | (None, Some(_)) => return None,
+        (Some(Load::Keep | Load::KeepIf(_)), _) | (None, Some(_)) => return None,
         (None, None) => return Some([default; 4]),
         (Some(Load::Clear(values)), None) => values,
         (Some(Load::Clear(values)), Some(area)) => {

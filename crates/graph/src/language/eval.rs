@@ -377,6 +377,9 @@ fn apply(function: Function, a: Scalar, b: Scalar) -> Option<Scalar> {
         (Function::Max, ..) => Some(if b.number() > a.number() { b } else { a }),
         (Function::Floor, a, _) => rounded(a.number().floor()),
         (Function::Ceil, a, _) => rounded(a.number().ceil()),
+        (Function::Exp, a, _) => Some(Scalar::Number(a.number().exp())),
         (Function::Log2, a, _) => Some(Scalar::Number(a.number().log2())),
+        (Function::Pow, a, b) => Some(Scalar::Number(a.number().powf(b.number()))),
+        (Function::Sqrt, a, _) => Some(Scalar::Number(a.number().sqrt())),
     }
 }

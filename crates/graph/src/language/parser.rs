@@ -23,10 +23,7 @@ pub(crate) fn expression(file: &SourceFile, range: Range<usize>) -> Parsed<Expr>
 
 /// Reads the reference that stands in `range` of a file.
 pub(crate) fn reference(file: &SourceFile, range: Range<usize>) -> Parsed<Reference> {
-    whole(file, range, |parser| {
-        let path = parser.path()?;
-        parser.reference(path)
-    })
+    whole(file, range, |parser| parser.conditional())
 }
 
 fn whole<T>(
@@ -112,6 +109,35 @@ impl<'a> Parser<'a> {
     fn span(&self, from: usize) -> Span {
         let end = self.tokens[self.at.saturating_sub(1)].1.end;
         self.file.span(from..end.max(from))
+    }
+
+    /// A reference, or one of two: `condition ? maps : shadow_map`.
+    fn conditional(&mut self) -> Parsed<Reference> {
+        if !self.asks_here() {
+            let path = self.path()?;
+            return self.reference(path);
+        }
+        let condition = self.binary(0)?;
+        self.expect("?")?;
+        let path = self.path()?;
+        let mut reference = self.reference(path)?;
+        self.expect(":")?;
+        let other = self.conditional()?;
+        reference.otherwise = Some(Box::new((condition, other)));
+        Ok(reference)
+    }
+
+    /// True if a `?` follows outside of brackets.
+    fn asks_here(&self) -> bool {
+        let mut depth = 0u32;
+        self.tokens[self.at..].iter().any(|(token, _)| {
+            match token {
+                Token::Sign("(" | "[") => depth += 1,
+                Token::Sign(")" | "]") => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            depth == 0 && *token == Token::Sign("?")
+        })
     }
 
     fn expr(&mut self) -> Parsed<Expr> {
@@ -292,6 +318,7 @@ impl<'a> Parser<'a> {
             segments: Vec::new(),
             previous: false,
             mips: None,
+            otherwise: None,
             span: self.file.span(first..end),
         };
         let is = |part: Option<&Part<'_>>, word: &str, selected: bool| {

@@ -125,18 +125,24 @@ pub(crate) enum Function {
     CeilDiv,
     Floor,
     Ceil,
+    Exp,
     Log2,
+    Pow,
+    Sqrt,
 }
 
 impl Function {
     /// Every function with its name and number of arguments.
-    pub const ALL: [(&str, Self, usize); 6] = [
+    pub const ALL: [(&str, Self, usize); 9] = [
         ("min", Self::Min, 2),
         ("max", Self::Max, 2),
         ("ceil_div", Self::CeilDiv, 2),
         ("floor", Self::Floor, 1),
         ("ceil", Self::Ceil, 1),
+        ("exp", Self::Exp, 1),
         ("log2", Self::Log2, 1),
+        ("pow", Self::Pow, 2),
+        ("sqrt", Self::Sqrt, 1),
     ];
 
     pub fn as_str(self) -> &'static str {
@@ -147,13 +153,16 @@ impl Function {
     }
 }
 
-/// A material or a part of one: `maps[index].mip[0]`, `left.position`, `history.previous`.
+/// A material or a part of one: `maps[index].mip[0]`, `left.position`, `history.previous`; or one
+/// of two, `is_large ? many : few`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     pub(crate) segments: Vec<Segment>,
     /// What it held at the end of the frame before.
     pub(crate) previous: bool,
     pub(crate) mips: Option<Selection>,
+    /// The condition under which it is meant, and the reference that is meant else.
+    pub(crate) otherwise: Option<Box<(Expr, Reference)>>,
     /// Its place, without quotes.
     pub(crate) span: Span,
 }
@@ -192,6 +201,7 @@ impl Reference {
             }],
             previous: false,
             mips: None,
+            otherwise: None,
         }
     }
 
@@ -222,6 +232,12 @@ impl Reference {
             .filter_map(|segment| segment.selection.as_ref());
         for selection in segments.chain(&self.mips) {
             selection.exprs().iter().for_each(|expr| expr.visit(each));
+        }
+        if let Some(otherwise) = &self.otherwise {
+            let (condition, other) = &**otherwise;
+            condition.visit(each);
+            each(Leaf::Material(other));
+            other.visit(each);
         }
     }
 }

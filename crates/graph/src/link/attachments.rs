@@ -34,7 +34,7 @@ impl Linker<'_, '_> {
         let fragment = !draw.colors.is_empty()
             || draw.fullscreen
             || draw.program.fragment.is_some()
-            || colourless();
+            || !draw.program.no_fragment && colourless();
         let stages: &[ShaderStage] = match (draw.fullscreen, fragment) {
             (true, _) => &[ShaderStage::Fragment],
             (false, true) => &[ShaderStage::Vertex, ShaderStage::Fragment],

@@ -6,14 +6,14 @@ use super::{
 };
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
-    errors::link::LinkError,
+    errors::{instantiate::InterfaceError, link::LinkError},
     instantiate::{
-        flat::{Inherited, Interface, PlanInputs, Run},
+        flat::{Inherited, Interface, Merge, PlanInputs, Run},
         lower::{Lowered, LoweredPass},
         scopes::{InstanceId, Position},
         symbols::SymbolTable,
     },
-    kinds::step::{Dispatch, Groups, Names, Operand, Program, Step},
+    kinds::step::{Dispatch, Groups, Names, Operand, Program, ShaderUse, Step},
     language::syntax::{Expr, Reference},
     request::Capture,
     resource::{Origin, ResourceId, SubresourceRange, Target},
@@ -29,6 +29,10 @@ pub(crate) struct Linked<'a> {
     pub passes: Vec<LinkedPass>,
     /// Of each pass: the instance of the document that it stands in; none of a capture.
     pub instances: Vec<Option<InstanceId>>,
+    /// Of each pass before captures are put between them, its number here.
+    pub numbers: Vec<usize>,
+    /// Includes that others stand for.
+    pub merged: Vec<Merge>,
     /// How many of the passes stand above the first mistake, if there is one: what is written below
     /// is not known.
     pub first_invalid: Option<usize>,
@@ -73,7 +77,9 @@ pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a
     let (mut passes, mut instances) = (Vec::new(), Vec::new());
     // What a pass with a mistake writes is not known.
     let mut first_invalid: Option<usize> = None;
+    let mut numbers = Vec::new();
     for (index, pass) in lowered.passes.into_iter().enumerate() {
+        numbers.push(passes.len());
         // For each mistake all names are searched for what was meant.
         if linker.reports.has_enough() {
             first_invalid.get_or_insert(passes.len());
@@ -109,6 +115,8 @@ pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a
         symbols: linker.symbols,
         passes,
         instances,
+        numbers,
+        merged: lowered.merged,
         first_invalid,
         interfaces: lowered.interfaces,
         plan_inputs: lowered.plan_inputs,
@@ -285,11 +293,19 @@ impl<'a> Linker<'a, '_> {
         let (Some(name), Some(position)) = (&program.shader, self.pass.position) else {
             return Err(self.report(LinkError::NoShader));
         };
-        let document = &self.symbols.scopes.document(position.scope).document;
-        match self.symbols.graph.shaders.get(document, name) {
+        let instance = self.symbols.scopes.document(position.scope);
+        let shader = ShaderUse {
+            name: name.clone(),
+            imports: program.imports.clone(),
+        };
+        let shaders = &self.symbols.graph.shaders;
+        match shaders.get(&instance.document, &shader, &instance.replaced) {
             Some(shader) => shader.clone(),
             // A kind names another one for other values.
-            None => Err(self.report(LinkError::ShaderNotLoaded(name.clone()))),
+            None => match shaders.incomplete {
+                Some(reported) => Err(reported),
+                None => Err(self.report(LinkError::ShaderNotLoaded(name.clone()))),
+            },
         }
     }
 
@@ -355,6 +371,31 @@ pub(super) fn access(
 }
 
 impl Linked<'_> {
+    /// The first include that another one cannot stand for, because something in between writes
+    /// what it reads or writes.
+    pub fn two_copies(&self) -> Option<InterfaceError> {
+        self.merged.iter().find_map(|merge| {
+            // After a mistake the last passes are not there.
+            let between = self.numbers.get(merge.between.clone())?.iter();
+            between.copied().find_map(|number| {
+                let pass = self.passes.get(number)?;
+                let written = pass.accesses.iter().find(|access| {
+                    let id = access.resource;
+                    let is_own = merge.owned.contains(&id.index())
+                        && self.symbols.get(id).origin == Origin::Own;
+                    access.writes && (is_own || merge.inputs.contains(&id))
+                })?;
+                Some(InterfaceError::TwoCopies {
+                    graph: merge.graph.clone(),
+                    pass: pass.name.value.clone(),
+                    material: self.symbols.get(written.resource).name.clone(),
+                    span: merge.span.clone(),
+                    by: pass.name.span.clone(),
+                })
+            })
+        })
+    }
+
     /// Whether a pass writes some of a part.
     pub fn writes(&self, pass: usize, id: ResourceId, part: &SubresourceRange) -> bool {
         let writes =

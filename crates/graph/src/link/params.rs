@@ -36,6 +36,8 @@ impl ScalarClass {
 enum Asked<'e> {
     /// What the entry or a group around it says, with its expression.
     Set(Value, &'e Expr),
+    /// A value of the document, with its expression's place.
+    Value(Value, Span),
     /// A param of the document; which one of the root document it is, unchanged.
     Param(Box<Param>, ParamValue, Option<String>),
     /// The number of the repetition.
@@ -89,7 +91,12 @@ impl<'a> Linker<'a, '_> {
             return Some(Ok(Asked::Index(index)));
         }
         let params = &self.symbols.scopes.document(position.scope).params;
-        let bound = params.wgsl_name(name)?;
+        let Some(bound) = params.wgsl_name(name) else {
+            let id = self.symbols.scopes.find_wgsl_value(position.scope, name)?;
+            let value = self.symbols.value(id, self.reports);
+            let span = self.symbols.value_span(id).clone();
+            return Some(value.map(|value| Asked::Value(value, span)));
+        };
         Some(
             bound
                 .value
@@ -163,14 +170,15 @@ impl<'a> Linker<'a, '_> {
             Asked::Index(index) => return Ok(Some(f64::from(*index))),
             Asked::Param(param, value, _) => (param.value(value), value.to_string(), span),
             Asked::Set(value, expr) => (value.clone(), value.to_string(), &expr.span),
+            Asked::Value(value, span) => (value.clone(), value.to_string(), span),
         };
         let class = shader.override_class(name);
         let number = match (&value, asked, class) {
             (Value::Bool(value), _, None | Some(ScalarClass::Uint)) => {
                 Some(f64::from(u8::from(*value)))
             }
-            (Value::Word(_), Asked::Set(_, expr), Some(ScalarClass::Uint)) => {
-                Some(f64::from(self.word(name, &value, expr, shader)?))
+            (Value::Word(_), Asked::Set(..) | Asked::Value(..), Some(ScalarClass::Uint)) => {
+                Some(f64::from(self.word(name, &value, position, shader)?))
             }
             (Value::Word(_), Asked::Param(param, value, _), Some(ScalarClass::Uint)) => {
                 param.as_u32(value).map(f64::from)
@@ -196,11 +204,11 @@ impl<'a> Linker<'a, '_> {
         &mut self,
         name: &str,
         value: &Value,
-        expr: &Expr,
+        span: &Span,
         shader: &Shader,
     ) -> Result<u32, ErrorGuaranteed> {
         let Value::Word(word) = value else {
-            return Err(self.wrong_value(name, "a word", value, expr));
+            return Err(self.wrong_value(name, "a word", value, span));
         };
         let position = self.pass.position.unwrap_or_else(|| self.symbols.root());
         let params = &self.symbols.scopes.document(position.scope).params;
@@ -223,7 +231,7 @@ impl<'a> Linker<'a, '_> {
                 name: name.to_owned(),
                 word: word.word.to_string(),
                 constant,
-                span: expr.span.clone(),
+                span: span.clone(),
             })),
         }
     }
@@ -233,13 +241,13 @@ impl<'a> Linker<'a, '_> {
         name: &str,
         expected: &str,
         found: &Value,
-        expr: &Expr,
+        span: &Span,
     ) -> ErrorGuaranteed {
         self.report(LinkError::SetValue {
             name: name.to_owned(),
             expected: expected.to_owned(),
             found: found.to_string(),
-            span: expr.span.clone(),
+            span: span.clone(),
         })
     }
 
@@ -288,7 +296,11 @@ impl<'a> Linker<'a, '_> {
         };
         let (param, value, root) = match asked {
             Asked::Set(value, expr) => {
-                let words = self.set_member(global, member, &value, expr)?;
+                let words = self.set_member(global, member, &value, &expr.span)?;
+                return Ok((words, None));
+            }
+            Asked::Value(value, span) => {
+                let words = self.set_member(global, member, &value, &span)?;
                 return Ok((words, None));
             }
             Asked::Index(index) => {
@@ -322,7 +334,7 @@ impl<'a> Linker<'a, '_> {
         global: &Global,
         member: &Member,
         value: &Value,
-        expr: &Expr,
+        span: &Span,
     ) -> Result<Vec<u32>, ErrorGuaranteed> {
         let Some((class, width)) = member.vector else {
             return Err(self.report(LinkError::MemberIsNoVector {
@@ -341,7 +353,7 @@ impl<'a> Linker<'a, '_> {
                     ..Program::default()
                 });
                 let shader = self.shader(&shader.unwrap_or_default())?;
-                let number = self.word(&member.name, value, expr, &shader)?;
+                let number = self.word(&member.name, value, span, &shader)?;
                 vec![Scalar::Whole(number.into())]
             }
             Value::Format(_) => Vec::new(),
@@ -351,7 +363,7 @@ impl<'a> Linker<'a, '_> {
             Some(words) => Ok(words),
             None => {
                 let expected = format!("{width} × {class}");
-                Err(self.wrong_value(&member.name, &expected, value, expr))
+                Err(self.wrong_value(&member.name, &expected, value, span))
             }
         }
     }

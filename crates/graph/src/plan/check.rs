@@ -190,8 +190,8 @@ fn ends(param: &Param) -> Vec<ParamValue> {
     let numbers = || [param.min, param.max].into_iter().flatten();
     match &param.ty {
         ParamType::Bool => [true, false].map(ParamValue::Bool).to_vec(),
-        ParamType::Choice(words) => words
-            .iter()
+        ParamType::Choice(_) => param
+            .words()
             .map(|word| ParamValue::Choice(word.to_string()))
             .collect(),
         ParamType::F32 => numbers()

@@ -20,7 +20,11 @@ use crate::{
         view::GraphView,
     },
     graph::Graph,
-    instantiate::{build::flatten, flat::PlanInputs, lower::lower},
+    instantiate::{
+        build::flatten,
+        flat::{Merge, PlanInputs},
+        lower::lower,
+    },
     link::{
         linker::{Linked, link},
         pass::{Access, LinkedPass, PassId},
@@ -74,13 +78,24 @@ impl Graph {
             Some((bound.param.name.value.clone(), value))
         });
         let values = values.collect();
-        let flat = flatten(self, request, params, &mut reports);
-        if lacks_features(&reports) {
-            return Outcome::lacking(reports, flat.plan_inputs);
-        }
-        let lowered = lower(flat, &mut reports);
-        check_captures(request, &lowered.passes, &mut reports);
-        let mut linked = link(lowered, &mut reports);
+        let before = reports.clone();
+        let mut merges = true;
+        let mut linked = loop {
+            let flat = flatten(self, request, params.clone(), merges, &mut reports);
+            if lacks_features(&reports) {
+                return Outcome::lacking(reports, flat.plan_inputs);
+            }
+            let lowered = lower(flat, &mut reports);
+            check_captures(request, &lowered.passes, &mut reports);
+            let linked = link(lowered, &mut reports);
+            let Some(copies) = linked.two_copies() else {
+                break linked;
+            };
+            // Something between two includes of one content changes what they read or write.
+            reports = before.clone();
+            reports.warn(copies);
+            merges = false;
+        };
         let plan_inputs = std::mem::take(&mut linked.plan_inputs);
         match self.schedule(linked, request, &mut reports) {
             Some(scheduled) => self.finish(scheduled, request, values, (reports, plan_inputs)),
@@ -431,7 +446,9 @@ fn interfaces(linked: &Linked<'_>, reports: &mut Reports) {
         };
         let passes: Vec<usize> = (0..linked.passes.len()).filter(within).collect();
         for (name, target) in &border.outputs {
-            let has_content = linked.symbols.get(target.id).origin != Origin::Own;
+            let is_merged = |merge: &Merge| merge.owned.contains(&target.id.index());
+            let has_content = linked.symbols.get(target.id).origin != Origin::Own
+                || linked.merged.iter().any(is_merged);
             let mut passes = passes.iter();
             if !has_content && !passes.any(|pass| linked.writes(*pass, target.id, &target.part)) {
                 let name = Located::new(name.value.to_string(), name.span.clone());

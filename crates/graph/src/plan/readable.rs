@@ -30,7 +30,7 @@ pub(super) fn readable(
         }
     }
     let place = symbols.root();
-    for output in &graph.document.outputs {
+    for output in graph.document.material_outputs() {
         if let Some(condition) = &output.condition {
             match condition.boolean(&mut symbols.at(place, None, reports)) {
                 Ok(true) => {}

@@ -8,12 +8,19 @@ use crate::{
     diagnostics::{diagnostic::Diagnostic, reports::IntoDiagnostic, suggest::likeness},
     errors::shader::ImportError,
     source::{
-        paths::{escapes, folder_of, import_candidates, shader_candidates},
+        paths::{escapes, folder_of, import_candidates, module_candidates, shader_candidates},
         sources::{self, Sources},
         span::{Located, SourceFile, Span},
     },
 };
-use std::{collections::HashMap, ops::Range, sync::Arc};
+use std::{
+    collections::{BTreeMap, HashMap},
+    ops::Range,
+    sync::Arc,
+};
+
+/// Modules that stand in for others: paths, by the path that is replaced.
+pub(crate) type Replaced = BTreeMap<String, String>;
 
 /// Deepest chain of imports; far above any sensible house, far below the stack.
 const DEEPEST_IMPORT: usize = 64;
@@ -71,7 +78,7 @@ impl<'a> ShaderFiles<'a> {
         }
     }
 
-    fn find(&mut self, candidates: &[String]) -> Result<Option<SourceFile>, String> {
+    pub(super) fn find(&mut self, candidates: &[String]) -> Result<Option<SourceFile>, String> {
         for path in candidates {
             if !self.read.contains_key(path) {
                 let file =
@@ -87,8 +94,12 @@ impl<'a> ShaderFiles<'a> {
     }
 
     /// The shader that a document names, with its imports in place. It is looked for beside the
-    /// file in which the name is written.
-    pub fn expand(&mut self, name: &Located<String>) -> Result<Expanded, Diagnostic> {
+    /// file in which the name is written; of modules, those in `replaced` stand in for others.
+    pub fn expand(
+        &mut self,
+        name: &Located<String>,
+        replaced: &Replaced,
+    ) -> Result<Expanded, Diagnostic> {
         let candidates = shader_candidates(folder_of(&name.span.file.name), name);
         if escapes(name) {
             return Err(ImportError::Outside(name.clone()).into_diagnostic());
@@ -108,9 +119,26 @@ impl<'a> ShaderFiles<'a> {
             file: file.clone(),
             pieces: Vec::new(),
         };
-        self.append(&file, &mut expanded, &mut vec![file.name.to_string()], 0)
+        let mut seen = vec![file.name.to_string()];
+        self.append(&file, replaced, &mut expanded, &mut seen, 0)
             .map_err(IntoDiagnostic::into_diagnostic)?;
         Ok(expanded)
+    }
+
+    /// The module that a document names, as an `#import` would.
+    pub fn module(&mut self, name: &Located<String>) -> Result<SourceFile, ImportError> {
+        if escapes(name) {
+            return Err(ImportError::Leaves(name.clone()));
+        }
+        let candidates = module_candidates(folder_of(&name.span.file.name), name);
+        match self.find(&candidates) {
+            Ok(Some(file)) => Ok(file),
+            Ok(None) => {
+                let likeness = self.likeness(&candidates, name);
+                Err(ImportError::NoFile(name.clone(), candidates, likeness))
+            }
+            Err(why) => Err(ImportError::UnreadableFile(name.clone(), why)),
+        }
     }
 
     fn likeness(&self, candidates: &[String], name: &str) -> Option<String> {
@@ -132,6 +160,7 @@ impl<'a> ShaderFiles<'a> {
     fn append(
         &mut self,
         file: &SourceFile,
+        modules: &Replaced,
         into: &mut Expanded,
         seen: &mut Vec<String>,
         depth: usize,
@@ -155,7 +184,16 @@ impl<'a> ShaderFiles<'a> {
             let place = file.span(start..start + line.trim_end().len());
             let unquoted = || ImportError::Unquoted(place.clone());
             let (path, replaced) = paths(rest).ok_or_else(unquoted)?;
-            let imported = self.import(file, path, &place)?;
+            let mut imported = self.import(file, path, &place)?;
+            // What stands in for a module may import it: then it is the module itself.
+            let stands_in = modules
+                .get(&*imported.name)
+                .filter(|path| **path != *file.name);
+            if let Some(path) = stands_in
+                && let Ok(Some(file)) = self.find(std::slice::from_ref(path))
+            {
+                imported = file;
+            }
             if let Some(replaced) = replaced {
                 seen.push(self.import(file, replaced, &place)?.name.to_string());
             }
@@ -165,7 +203,7 @@ impl<'a> ShaderFiles<'a> {
                     return Err(ImportError::TooDeep(place));
                 }
                 seen.push(imported.name.to_string());
-                self.append(&imported, into, seen, depth + 1)?;
+                self.append(&imported, modules, into, seen, depth + 1)?;
                 if !into.text.ends_with('\n') {
                     into.text.push('\n');
                 }

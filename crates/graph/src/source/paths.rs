@@ -6,9 +6,13 @@ use std::path::Path;
 /// looked for: beside the document, in the `shaders` folder beside the document's folder, in the
 /// store's `shaders` folder.
 pub(crate) fn shader_candidates(folder: &str, name: &str) -> Vec<String> {
+    module_candidates(folder, &format!("{name}.wgsl"))
+}
+
+/// The same of a module that a document names with its ending.
+pub(crate) fn module_candidates(folder: &str, file: &str) -> Vec<String> {
     let folder = Path::new(folder);
-    let file = format!("{name}.wgsl");
-    let mut candidates = vec![join(folder, &file)];
+    let mut candidates = vec![join(folder, file)];
     if let Some(parent) = folder.parent() {
         candidates.push(join(parent, &format!("shaders/{file}")));
         // A document in a sub-folder of pipelines (a shared sub-graph) finds the shaders of its

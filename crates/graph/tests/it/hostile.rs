@@ -24,7 +24,7 @@ fn many(count: usize, each: impl Fn(usize) -> String) -> String {
 /// `items`.
 fn document(params: &str, materials: &str, passes: &str) -> String {
     format!(
-        "(format: 2,\nparams: [{params}],\nmaterials: [Buffer(name: \"items\", count: 4), \
+        "(format: 3,\nparams: [{params}],\nmaterials: [Buffer(name: \"items\", count: 4), \
          {materials}],\n\
          passes: [Compute(name: \"index\", dispatch: Over(\"items.count\")), {passes}],\n\
          outputs: [\"items\"])"
@@ -100,7 +100,7 @@ fn as_many_misspelt_names_as_names() {
     let unknown = |index| long("egde", index);
     let endless = |letter: &str| format!("\"{}\"", letter.repeat(1 << 17));
     let inner = format!(
-        "(format: 2, params: [{params}], materials: [Buffer(name: \"inside\", count: 4)],
+        "(format: 3, params: [{params}], materials: [Buffer(name: \"inside\", count: 4)],
         passes: [Clear(name: \"c\", target: \"inside\")], outputs: [\"inside\"])"
     );
     let shader = "var<storage, read_write> items: array<u32>;
@@ -459,7 +459,7 @@ fn files_on_disk() {
         "graph.ron:2:",
         &["the shader `index.wgsl` cannot be read", "no text in UTF-8"],
     );
-    write("binary.ron", b"(format: 2, description: \"\xc3\x28\")");
+    write("binary.ron", b"(format: 3, description: \"\xc3\x28\")");
     assert_said(&load("binary.ron"), "binary.ron", &["no text in UTF-8"]);
     std::fs::create_dir(folder.path().join("folder.ron")).expect("it can be made");
     assert_said(&load("folder.ron"), "folder.ron", &["there is no document"]);

@@ -18,6 +18,7 @@ mod diagnostics;
 mod expressions;
 mod extends;
 mod features;
+mod format_3;
 mod growth;
 mod hostile;
 mod hostile_shaders;

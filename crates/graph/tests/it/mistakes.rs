@@ -29,10 +29,10 @@ fn a_file_that_is_no_text() {
     };
     write("binary.ron", &[0xff, 0xfe, 0x00, 0x28, 0x80]);
     write("binary.wgsl", &[0xc3, 0x28]);
-    let shader = r#"(format: 2, materials: [Texture(name: "image", format: R32Float)],
+    let shader = r#"(format: 3, materials: [Texture(name: "image", format: R32Float)],
     passes: [Fullscreen(name: "binary", color: ["image"])], outputs: ["image"])"#;
     write("shader.ron", shader.as_bytes());
-    let include = r#"(format: 2, passes: [Include(graph: "binary.ron")], outputs: ["image"])"#;
+    let include = r#"(format: 3, passes: [Include(graph: "binary.ron")], outputs: ["image"])"#;
     write("include.ron", include.as_bytes());
     let import = shader.replace("\"binary\"", "\"import\"");
     write("import.ron", import.as_bytes());
@@ -259,7 +259,7 @@ fn values_of_params_from_text() {
 fn comments_and_a_byte_order_mark_are_no_mistakes() {
     let document = "\u{feff}// a title
 (
-    format: 2, // the only one
+    format: 3, // the only one
     /* materials */ materials: [
         Texture(name: /* its */ \"image\", format: R32Float /* one channel */, size: 8 // all of it
         ), // the only one

@@ -55,7 +55,7 @@ fn uses() -> Files {
     )
     .with(
         "blur.ron",
-        r#"(format: 2, params: [F32(name: "radius")], inputs: [Buffer(name: "into")],
+        r#"(format: 3, params: [F32(name: "radius")], inputs: [Buffer(name: "into")],
             passes: [Compute(name: "blur", dispatch: Groups(1, 1, 1))], outputs: ["into"])"#,
     )
     .with(

@@ -156,7 +156,11 @@ proptest! {
             _ => 1e-3,
         };
         let position = DVec3::new(at[0], y, at[2]);
-        let light = if is_spot { spot(position, DVec3::new(-at[0], -1.0, 0.3), 80.0) } else { point(position.into()) };
+        let light = if is_spot {
+            spot(position, DVec3::new(-at[0], -1.0, 0.3), 80.0)
+        } else {
+            point(position.into())
+        };
         let camera = from_above(1.7, [48, 48]);
         let oracle = Oracle::new(&mesh);
         let primitives = oracle.primary(&camera, Progress::default()).expect("nobody interrupts");

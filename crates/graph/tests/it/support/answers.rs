@@ -7,7 +7,7 @@ use crate::{
 use skiagraph_graph::{Diagnostics, Graph, PlanRequest, Registry};
 
 /// A document that only runs a compute shader called `index`.
-pub const COMPUTE: &str = r#"(format: 2, materials: [Buffer(name: "items", count: 4)],
+pub const COMPUTE: &str = r#"(format: 3, materials: [Buffer(name: "items", count: 4)],
     passes: [Compute(name: "index", dispatch: Over("items.count"))], outputs: ["items"])"#;
 
 /// What is said about `graph.ron`, within the bounds; the longest of the files is the hostile one.

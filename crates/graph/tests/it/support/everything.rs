@@ -3,7 +3,7 @@
 use crate::support::Files;
 
 pub const DOCUMENT: &str = r#"(
-    format: 2,
+    format: 3,
     description: "größer → ∞",
     params: [
         U32(name: "edge", default: 16, min: 1, max: 64, description: "texels"),
@@ -62,7 +62,7 @@ pub const DOCUMENT: &str = r#"(
 "#;
 
 const BLUR: &str = r#"(
-    format: 2,
+    format: 3,
     params: [U32(name: "radius")],
     inputs: [Texture(name: "image")],
     materials: [Texture(name: "across", format: "image.format", size: "image.size")],

@@ -53,7 +53,7 @@ pub fn graph(passes: usize) -> Vec<(String, String)> {
         entries.push(texts.pass(&name, "one", &["position"], &name));
     }
     let document = format!(
-        "(\n    format: 2,\n    materials: [\n{}    ],\n    passes: [\n{}    ],\n    outputs: \
+        "(\n    format: 3,\n    materials: [\n{}    ],\n    passes: [\n{}    ],\n    outputs: \
          [(name: \"image\", material: \"{result}\")],\n)\n",
         texts.materials.concat(),
         entries.concat()

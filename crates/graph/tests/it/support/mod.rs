@@ -37,7 +37,7 @@ impl Files {
 
     /// One document more: these sections, after the format.
     pub fn document(self, path: &str, sections: &str) -> Self {
-        self.with(path, format!("(format: 2, {sections})"))
+        self.with(path, format!("(format: 3, {sections})"))
     }
 
     /// A picture of this width; each texel by its first channel, 255 is one.

@@ -1,0 +1,88 @@
+//! Includes without a name whose document, params and bindings equal another's are that one: a step
+//! over a method includes the G-buffer beside it, and it is drawn once.
+
+use super::{
+    flat::Run,
+    scopes::{InstanceId, Names, Scopes},
+};
+use crate::{
+    diagnostics::reports::ErrorGuaranteed,
+    document::{params::ParamValue, typed::Document},
+    resource::Target,
+    shader::expand::Replaced,
+};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    ops::Range,
+    sync::Arc,
+};
+
+/// All that decides what an include does.
+#[derive(PartialEq)]
+pub(super) struct Content {
+    /// Documents are read once each, so two of one path are one.
+    document: *const Document,
+    params: Vec<ParamContent>,
+    pub inputs: Vec<Target>,
+    /// What stands for names of the scene, the nearest first.
+    scene: BTreeMap<String, Target>,
+    replaced: Replaced,
+    run: Option<(Run, bool)>,
+}
+
+/// A param's value, the param of the root document that it is, and those that it is made of.
+type ParamContent = (ParamValue, Option<String>, BTreeSet<String>);
+
+/// An include that others may be.
+pub(super) struct Site {
+    pub content: Content,
+    pub names: Names,
+    /// Number of passes above its end.
+    pub end: usize,
+    /// The resources that were declared in it.
+    pub owned: Range<usize>,
+}
+
+impl Content {
+    /// `None` where something in it is wrong.
+    pub fn new(
+        document: &Arc<Document>,
+        params: &super::params::Params,
+        inputs: &[Result<Target, ErrorGuaranteed>],
+        scene: BTreeMap<String, Result<Target, ErrorGuaranteed>>,
+        replaced: &Replaced,
+        run: Option<(Run, bool)>,
+    ) -> Option<Self> {
+        let params = params.list.iter().map(|bound| {
+            let value = bound.value.clone().ok()?;
+            Some((value, bound.root.clone(), bound.roots.clone()))
+        });
+        let scene = scene
+            .into_iter()
+            .map(|(name, target)| Some((name, target.ok()?)));
+        Some(Self {
+            document: Arc::as_ptr(document),
+            params: params.collect::<Option<_>>()?,
+            inputs: inputs.iter().cloned().collect::<Result<_, _>>().ok()?,
+            scene: scene.collect::<Option<_>>()?,
+            replaced: replaced.clone(),
+            run,
+        })
+    }
+}
+
+impl Scopes {
+    /// What stands for names of the scene in an instance.
+    pub(super) fn bound_scene(
+        &self,
+        id: InstanceId,
+    ) -> BTreeMap<String, Result<Target, ErrorGuaranteed>> {
+        let mut bound = BTreeMap::new();
+        for instance in self.outer_instances(id) {
+            for (name, target) in &self.instance(instance).scene {
+                bound.entry(name.clone()).or_insert_with(|| target.clone());
+            }
+        }
+        bound
+    }
+}

@@ -1,0 +1,53 @@
+//! Names of entry points, or one of two by a condition.
+
+use super::kind::Lowering;
+use crate::{
+    document::ron::{raw, read},
+    language::syntax::Expr,
+    source::span::Located,
+};
+use serde::{Deserialize, Deserializer};
+
+/// The name of a shader's entry point, or one of two: `"masked ? fragment_masked : none"`.
+#[derive(Clone, Debug)]
+pub(crate) enum EntryName {
+    Name(Located<String>),
+    Choice(Expr),
+}
+
+/// What stands for no entry point in an [`EntryName`].
+const NO_ENTRY: &str = "none";
+
+impl<'de> Deserialize<'de> for EntryName {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (text, _) = raw(deserializer)?;
+        if text.contains('?') {
+            read(text).map(Self::Choice)
+        } else {
+            read(text).map(Self::Name)
+        }
+    }
+}
+
+impl EntryName {
+    /// The name; `None` if it is none of the shader's.
+    pub fn chosen(&self, pass: &mut Lowering<'_>) -> Option<Located<String>> {
+        let name = match self {
+            Self::Name(name) => name.clone(),
+            Self::Choice(expr) => {
+                let chosen = pass.branch(expr);
+                Located::new(chosen.text().to_owned(), chosen.span.clone())
+            }
+        };
+        (*name != NO_ENTRY).then_some(name)
+    }
+}
+
+#[cfg(feature = "schema")]
+crate::document::written::written!(EntryName, "EntryName", _generator => {
+    schemars::json_schema!({
+        "description": "The name of an entry point, or by a condition one of two, of which `none` \
+            is no entry point.",
+        "type": "string",
+    })
+});

@@ -1,0 +1,304 @@
+//! The shaders of all documents, each with the modules that its document has it import.
+
+use super::{
+    constants::ChoiceConstants,
+    expand::{Expanded, Replaced, ShaderFiles},
+    reflect::Shader,
+};
+use crate::{
+    diagnostics::reports::{ErrorGuaranteed, IntoDiagnostic, Reports},
+    document::typed::{Document, What, each_entry},
+    errors::shader::ImportError,
+    kinds::step::ShaderUse,
+    source::{
+        paths::folder_of,
+        span::{Located, Span},
+    },
+};
+use std::{
+    collections::{BTreeSet, HashMap, HashSet},
+    sync::Arc,
+};
+
+/// Most conditions of `imports` around one document: a shader is compiled for all their values.
+const MOST_CONDITIONS: usize = 6;
+
+/// The shaders of all documents.
+#[derive(Debug, Default)]
+pub(crate) struct Shaders {
+    shaders: HashMap<ShaderKey, Result<Arc<Shader>, ErrorGuaranteed>>,
+    /// Paths of modules, by the folder of the document that names one, and its name there.
+    modules: HashMap<(String, String), String>,
+    /// Some are not read, which was reported.
+    pub incomplete: Option<ErrorGuaranteed>,
+}
+
+/// The path of the document whose `Choice` words a shader sees, the folder that it was first looked
+/// for in, its name, the modules that stand in for others.
+type ShaderKey = (Arc<str>, String, String, Replaced);
+
+impl Shaders {
+    fn key(document: &Document, name: &Located<String>, replaced: Replaced) -> ShaderKey {
+        let folder = folder_of(&name.span.file.name).to_owned();
+        let document = Arc::clone(&document.file.name);
+        (document, folder, name.value.clone(), replaced)
+    }
+
+    /// The shader that a pass of a document names, where these modules stand in for others; `None`
+    /// if it was not there when the document was read.
+    pub fn get(
+        &self,
+        document: &Document,
+        shader: &ShaderUse,
+        around: &Replaced,
+    ) -> Option<&Result<Arc<Shader>, ErrorGuaranteed>> {
+        let replaced = self.with_own(around, shader);
+        self.shaders
+            .get(&Self::key(document, &shader.name, replaced))
+    }
+
+    /// The shader that a pass of a document names, with any modules.
+    pub fn variants(
+        &self,
+        document: &Document,
+        shader: &ShaderUse,
+    ) -> impl Iterator<Item = &Arc<Shader>> {
+        let (document, folder, name, _) = Self::key(document, &shader.name, Replaced::new());
+        let is_it = move |key: &ShaderKey| key.0 == document && key.1 == folder && key.2 == name;
+        let found = self.shaders.iter().filter(move |(key, _)| is_it(key));
+        found.filter_map(|(_, shader)| shader.as_ref().ok())
+    }
+
+    /// The path of a module that a document names.
+    fn module(&self, name: &Located<String>) -> Option<&String> {
+        let folder = folder_of(&name.span.file.name).to_owned();
+        self.modules.get(&(folder, name.value.clone()))
+    }
+
+    /// `around`, where a module that a document names stands in for another one.
+    pub fn replace(&self, around: &mut Replaced, of: &Located<String>, is: &Located<String>) {
+        // One that is not there was reported.
+        if let (Some(of), Some(is)) = (self.module(of), self.module(is)) {
+            around.insert(of.clone(), is.clone());
+        }
+    }
+
+    /// With the modules that a pass kind has a shader of its own import.
+    fn with_own(&self, around: &Replaced, shader: &ShaderUse) -> Replaced {
+        let mut replaced = around.clone();
+        for (of, is) in &shader.imports {
+            let place = |name: &str| Located::new(name.to_owned(), shader.name.span.clone());
+            self.replace(&mut replaced, &place(of), &place(is));
+        }
+        replaced
+    }
+}
+
+/// A module that stands in for another one, or may.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct Rule {
+    of: String,
+    is: String,
+    /// The document and the text of the condition.
+    condition: Option<(Arc<str>, String)>,
+}
+
+/// Reads the shaders of documents.
+pub(crate) struct Loader<'a> {
+    files: ShaderFiles<'a>,
+    shaders: Shaders,
+    /// A shader that several documents use is one, unless their words make two of it.
+    parsed: HashMap<String, Result<Arc<Shader>, ErrorGuaranteed>>,
+    /// Documents with the rules around them whose shaders are read.
+    seen: HashSet<(Arc<str>, Vec<Rule>)>,
+    clashed: HashSet<Arc<str>>,
+    reports: &'a mut Reports,
+}
+
+/// Reads every shader that a document and those that it includes name.
+pub(crate) fn load(root: &Document, files: ShaderFiles<'_>, reports: &mut Reports) -> Shaders {
+    let mut loader = Loader {
+        files,
+        shaders: Shaders::default(),
+        parsed: HashMap::new(),
+        seen: HashSet::new(),
+        clashed: HashSet::new(),
+        reports,
+    };
+    loader.document(root, &[]);
+    loader.shaders
+}
+
+impl Loader<'_> {
+    fn document(&mut self, document: &Document, around: &[Rule]) {
+        let mut rules = around.to_vec();
+        for entry in &document.imports {
+            let (Some(of), Some(is)) = (self.module(&entry.of), self.module(&entry.is)) else {
+                continue;
+            };
+            self.check(&entry.is, &of, &is);
+            let file = &document.file.name;
+            let condition = entry.condition.as_ref();
+            let condition = condition.map(|expr| (Arc::clone(file), expr.text().to_owned()));
+            rules.push(Rule { of, is, condition });
+        }
+        if !self
+            .seen
+            .insert((Arc::clone(&document.file.name), rules.clone()))
+        {
+            return;
+        }
+        let conditions: BTreeSet<_> = rules
+            .iter()
+            .filter_map(|rule| rule.condition.clone())
+            .collect();
+        if conditions.len() > MOST_CONDITIONS {
+            let place = document.imports.last().map(|entry| entry.of.span.clone());
+            let place = place.unwrap_or_else(|| document.file.span(0..0));
+            let error = ImportError::TooManyConditions(place, conditions.len(), MOST_CONDITIONS);
+            self.shaders.incomplete = Some(self.reports.report(error));
+            return;
+        }
+        let (constants, clashes) = ChoiceConstants::new(&document.params);
+        if self.clashed.insert(Arc::clone(&document.file.name)) {
+            for clash in clashes {
+                self.reports.report(clash);
+            }
+        }
+        for values in 0..1u32 << conditions.len() {
+            let holds = |condition: &(Arc<str>, String)| {
+                let at = conditions.iter().position(|known| known == condition);
+                at.is_some_and(|at| values >> at & 1 == 1)
+            };
+            let in_effect = rules
+                .iter()
+                .filter(|rule| rule.condition.as_ref().is_none_or(holds));
+            let replaced: Replaced = in_effect
+                .map(|rule| (rule.of.clone(), rule.is.clone()))
+                .collect();
+            each_entry(&document.entries, &mut |entry| {
+                if let What::Pass(pass) = &entry.what {
+                    for shader in &pass.shaders {
+                        self.shader(document, shader, &constants, &replaced);
+                    }
+                }
+            });
+        }
+        each_entry(&document.entries, &mut |entry| {
+            if let What::Include(include) = &entry.what
+                && let Some(inner) = include.document()
+            {
+                self.document(inner, &rules);
+            }
+        });
+    }
+
+    fn shader(
+        &mut self,
+        document: &Document,
+        shader: &ShaderUse,
+        constants: &ChoiceConstants,
+        around: &Replaced,
+    ) {
+        for (of, is) in &shader.imports {
+            for name in [of, is] {
+                self.module(&Located::new(name.clone(), shader.name.span.clone()));
+            }
+        }
+        let replaced = self.shaders.with_own(around, shader);
+        let key = Shaders::key(document, &shader.name, replaced);
+        if self.shaders.shaders.contains_key(&key) {
+            return;
+        }
+        let read = match self.files.expand(&shader.name, &key.3) {
+            Err(error) => Err(self.reports.emit(error)),
+            Ok(source) => self.parse(source, constants),
+        };
+        self.shaders.shaders.insert(key, read);
+    }
+
+    fn parse(
+        &mut self,
+        mut source: Expanded,
+        constants: &ChoiceConstants,
+    ) -> Result<Arc<Shader>, ErrorGuaranteed> {
+        let declared = constants.append(&mut source);
+        let text = format!("{}\n{}", source.file.name, source.text);
+        let reports = &mut *self.reports;
+        let shader = self.parsed.entry(text).or_insert_with(|| {
+            let shader = Shader::new(source).map(Arc::new);
+            shader.map_err(|error| reports.report(error))
+        });
+        let shader = shader.clone()?;
+        match constants.disagreement(&shader, &declared) {
+            Some(clash) => Err(self.reports.report(clash)),
+            None => Ok(shader),
+        }
+    }
+
+    /// The path of a module that a document names; `None` if there is none, which is reported once.
+    fn module(&mut self, name: &Located<String>) -> Option<String> {
+        let key = (
+            folder_of(&name.span.file.name).to_owned(),
+            name.value.clone(),
+        );
+        if let Some(path) = self.shaders.modules.get(&key) {
+            return Some(path.clone());
+        }
+        match self.files.module(name) {
+            Ok(file) => {
+                let path = file.name.to_string();
+                self.shaders.modules.insert(key, path.clone());
+                Some(path)
+            }
+            Err(error) => {
+                self.reports.emit(error.into_diagnostic());
+                None
+            }
+        }
+    }
+
+    /// Functions that both modules have must be called alike.
+    fn check(&mut self, name: &Located<String>, of: &str, is: &str) {
+        let signatures = |files: &mut ShaderFiles<'_>, path: &str| {
+            let file = files.find(&[path.to_owned()]).ok().flatten();
+            file.map(|file| signatures(&file)).unwrap_or_default()
+        };
+        let wanted = signatures(&mut self.files, of);
+        let found = signatures(&mut self.files, is);
+        for (function, (text, place)) in found {
+            let Some((other, declared)) = wanted.get(&function) else {
+                continue;
+            };
+            if *other != text {
+                self.reports.report(ImportError::Signature {
+                    module: name.clone(),
+                    function,
+                    place,
+                    declared: declared.clone(),
+                });
+            }
+        }
+    }
+}
+
+/// The functions of a module, by name: parameters and result without spaces, and the place.
+fn signatures(file: &crate::source::span::SourceFile) -> HashMap<String, (String, Span)> {
+    let mut found = HashMap::new();
+    let text = &file.text;
+    for (at, _) in text.match_indices("fn ") {
+        let line = text[..at].rsplit('\n').next().unwrap_or("");
+        let Some(end) = text[at..].find('{').filter(|_| line.trim().is_empty()) else {
+            continue;
+        };
+        let head = &text[at + 3..at + end];
+        let Some((name, rest)) = head.split_once('(') else {
+            continue;
+        };
+        let rest: String = rest.split_whitespace().collect();
+        let rest = rest.replace(",)", ")");
+        let span = file.span(at..at + end);
+        found.insert(name.trim().to_owned(), (rest, span));
+    }
+    found
+}

@@ -36,11 +36,7 @@ pub fn sources() -> LayeredSources {
 }
 
 /// Folders of what presets are made of.
-const PARTS: [&str; 3] = [
-    "pipelines/shared",
-    "shaders",
-    "shaders/shared",
-];
+const PARTS: [&str; 3] = ["pipelines/shared", "shaders", "shaders/shared"];
 
 /// Which files of a folder stand in for built-in ones that differ: a line for the presets, one for
 /// what they are made of.

@@ -17,6 +17,8 @@ pub(crate) enum ParamError {
         value: ParamValue,
         why: ParamFault,
     },
+    #[error("a word of a Choice stands without quotes")]
+    QuotedWord { word: String, span: Span },
     #[error("the default of param `{}` does not fit", **param)]
     Default {
         param: Located<String>,
@@ -69,6 +71,9 @@ impl IntoDiagnostic for ParamError {
             Self::Unknown(_) => diagnostic,
             Self::Asked { name, .. } => diagnostic.at(name.span, "declared here"),
             Self::Default { param, why } => diagnostic.at(param.span, why.to_string()),
+            Self::QuotedWord { word, span } => diagnostic
+                .at(span, "in quotes this is an expression")
+                .help(format!("write `default: {word}`")),
             Self::Set {
                 name,
                 declared,

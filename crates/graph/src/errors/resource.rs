@@ -49,6 +49,12 @@ pub(crate) enum SizeError {
         samples: u32,
         known: Vec<u32>,
     },
+    #[error("`{}`: not every device has {format:?}", **name)]
+    FormatFeature {
+        name: Located<String>,
+        format: wgt::TextureFormat,
+        feature: wgt::Features,
+    },
     #[error("`{}`: a texture of several samples has one mip and one layer", **.0)]
     SamplesOfMany(Located<String>),
     #[error("`{}`: a 3D texture has slices, not layers", **.0)]
@@ -79,6 +85,7 @@ impl IntoDiagnostic for SizeError {
         match self {
             Self::NoPicture(..) | Self::Picture(..) => Code::MissingFile,
             Self::PictureFormat(_) | Self::Samples { .. } => Code::FormatMismatch,
+            Self::FormatFeature { .. } => Code::Feature,
             _ => Code::Size,
         }
     }
@@ -103,6 +110,13 @@ impl IntoDiagnostic for SizeError {
                 diagnostic
                     .at(name.span, "")
                     .help(format!("it can have {}", known.join(", ")))
+            }
+            Self::FormatFeature { name, feature, .. } => {
+                let names: Vec<&str> = feature.iter_names().map(|(name, _)| name).collect();
+                diagnostic.at(name.span, "").help(format!(
+                    "list `requires: [\"{}\"]`, or use a format of floats or 8 bits",
+                    names.join("\", \"")
+                ))
             }
             Self::SamplesOfMany(name) => diagnostic.at(name.span, ""),
             Self::LayersOf3d(name) => diagnostic.at(name.span, "").help("leave `layers` out"),

@@ -330,6 +330,16 @@ impl SymbolTable<'_> {
         texture: &Texture,
         reports: &mut Reports,
     ) -> Result<(), ErrorGuaranteed> {
+        let format = texture.format;
+        let feature = format.required_features() - self.graph.features();
+        if !feature.is_empty() {
+            let name = Located::new(entry.name.value.to_string(), entry.name.span.clone());
+            return Err(reports.report(SizeError::FormatFeature {
+                name,
+                format,
+                feature,
+            }));
+        }
         let limits = &self.request.limits;
         let Texture {
             size: [width, height],

@@ -170,6 +170,13 @@ fn default(
     let Some(default) = &param.default else {
         return Ok(param.stand_in());
     };
+    if let Some(word) = default.as_param()
+        && params.bound(word).is_none()
+        && param.words().any(|known| **known == *word)
+    {
+        let (word, span) = (word.to_owned(), default.span.clone());
+        return Err(reports.report(ParamError::QuotedWord { word, span }));
+    }
     let mut environment = ParamsAlone {
         params,
         context,

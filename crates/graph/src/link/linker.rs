@@ -338,6 +338,8 @@ impl<'a> Linker<'a, '_> {
                 if access.writes && access.resource == target.id && access.part == target.part {
                     is_written = true;
                     access.fully_overwrites = true;
+                    // What it reads of it, it has written.
+                    access.reads = false;
                 }
             }
             if !is_written {

@@ -651,3 +651,54 @@ fn includes_are_two_where_something_is_written_in_between() {
     );
     assert_eq!(warnings, [Code::TwoCopies]);
 }
+
+#[test]
+fn formats_of_16_bits_need_their_feature() {
+    let files = Files::graph(
+        r#"
+        requires: ["TEXTURE_FORMAT_16BIT_NORM"],
+        materials: [Texture(name: "image", format: R16Unorm)],
+        passes: [Compute(name: "two", dispatch: Over("image.size"))],
+        outputs: ["image"]"#,
+    )
+    .with(
+        "two.wgsl",
+        "var image: texture_storage_2d<r16unorm, write>;
+         @compute @workgroup_size(1) fn main(@builtin(global_invocation_id) at: vec3<u32>) {
+             textureStore(image, at.xy, vec4(0.5));
+         }",
+    );
+    let graph = right(load(&files));
+    let mut request = PlanRequest::new([8, 8], &NoProvider);
+    assert_eq!(codes(wrong(graph.plan(&request)).iter()), [Code::Feature]);
+    request.features = graph.features();
+    assert_eq!(names(&right(graph.plan(&request))), ["two"]);
+}
+
+/// `overwrites` is an author's word that a pass reads only what it has written itself.
+#[test]
+fn what_a_pass_writes_first_it_may_read() {
+    let sections = |overwrites: &str| {
+        Files::graph(&format!(
+            r#"
+            materials: [Buffer(name: "sums", count: 8)],
+            passes: [Compute(name: "sum", dispatch: Groups(1, 1, 1){overwrites})],
+            outputs: ["sums"]"#
+        ))
+        .with(
+            "sum.wgsl",
+            "var<storage, read_write> sums: array<u32>;
+             @compute @workgroup_size(1) fn main() {
+                 for (var i = 0u; i < 8u; i++) { sums[i] = i; }
+                 for (var i = 1u; i < 8u; i++) { sums[i] += sums[i - 1u]; }
+             }",
+        )
+    };
+    let errors = wrong(plan(&sections("")));
+    assert_eq!(codes(errors.iter()), [Code::ReadBeforeWrite]);
+    let text = errors.to_string();
+    for way_out in ["Clear(name:", "sums.previous", "overwrites: [\"sums\"]"] {
+        assert!(text.contains(way_out), "no {way_out} in {text}");
+    }
+    right(plan(&sections(r#", overwrites: ["sums"]"#)));
+}

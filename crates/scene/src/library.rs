@@ -250,6 +250,14 @@ impl SceneLibrary {
         }
     }
 
+    /// The text of a scene file, by the path or name that `--scene` takes.
+    ///
+    /// # Errors
+    /// If there is none, or it cannot be read.
+    pub fn text(&self, argument: &str) -> Result<String, SceneError> {
+        self.locate(argument).map(|(_, text)| text)
+    }
+
     /// The file in the scenes folder that is read instead of a built-in scene of that name, if it
     /// says anything else.
     pub fn stand_in(&self, argument: &str) -> Option<PathBuf> {

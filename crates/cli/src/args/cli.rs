@@ -128,9 +128,11 @@ pub enum Command {
     #[command(after_help = "Examples:\n  skiagraph new my_method\n  \
         skiagraph new my_crsm --from crsm")]
     New(NewArgs),
-    /// Print a document or shader, of the working directory or built in.
+    /// Print a document, shader or scene file, of the working directory or built in; behind a
+    /// document what its passes read and write.
     #[command(after_help = "Examples:\n  skiagraph show nsm\n  \
-        skiagraph show shared/light.wgsl\n  skiagraph show crsma_full --flat")]
+        skiagraph show shared/light.wgsl\n  skiagraph show crsma_full --flat\n  \
+        skiagraph show lamps")]
     Show(ShowArgs),
     /// Print what documents may be: a JSON Schema for editors and programs that write documents, or
     /// the reference of the language.

@@ -186,7 +186,8 @@ pub struct NewArgs {
 /// `skiagraph show`.
 #[derive(Args, Debug)]
 pub struct ShowArgs {
-    /// A preset, or a document or shader by its path, also below pipelines/ or shaders/.
+    /// A preset, or a document or shader by its path, also below pipelines/ or shaders/; or a
+    /// scene.
     #[arg(value_name = "NAME|FILE")]
     pub file: String,
     /// Write out what a document extends, each line with the file and line that it comes from.

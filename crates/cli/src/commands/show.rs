@@ -1,39 +1,96 @@
-//! `skiagraph show`: a document or shader as it is written, or with all that it extends.
+//! `skiagraph show`: a document, shader or scene file as it is written; of a document all that it
+//! extends, and what its passes read and write.
 
 use crate::args::commands::ShowArgs;
 use crate::error::CliError;
 use crate::graphs::faults::GraphFaults;
+use crate::graphs::planning::{Capabilities, placeholder};
 use crate::graphs::preset;
 use crate::terminal::console::print;
 use crate::wording::did_you_mean;
-use skiagraph_graph::{Graph, Sources};
+use skiagraph_graph::{Access, Graph, Sources};
+use skiagraph_passes::registry;
+use skiagraph_scene::SceneLibrary;
+use std::collections::BTreeSet;
 
 /// Where documents and shaders stand.
 const FOLDERS: [&str; 4] = ["pipelines", "pipelines/shared", "shaders", "shaders/shared"];
 
-/// Prints a file of the working directory, else one that is built in.
+/// Prints a file of the working directory, else one that is built in; behind a document, as a
+/// comment, what its passes read and write; or a scene file.
 ///
 /// # Errors
 /// A file that there is not, a document that cannot be read, standard output.
 pub fn show(args: &ShowArgs) -> Result<(), CliError> {
     let sources = preset::sources();
-    let (path, text) = find(&args.file, &sources)?;
-    if !args.flat {
+    let (path, text) = match find(&args.file, &sources)? {
+        Found::Text(path, text) => (path, text),
+        Found::Scene(text) if !args.flat => return print(&text),
+        Found::Scene(_) => {
+            return Err(CliError::Usage(format!(
+                "--flat writes out what a document extends; `{}` is a scene file",
+                args.file
+            )));
+        }
+    };
+    if !path.ends_with(".ron") {
+        if args.flat {
+            return Err(CliError::Usage(format!(
+                "--flat writes out what a document extends; `{path}` is a shader"
+            )));
+        }
         return print(&text);
     }
-    if !path.ends_with(".ron") {
-        return Err(CliError::Usage(format!(
-            "--flat writes out what a document extends; `{path}` is a shader"
-        )));
+    let passes = passes(&path, &sources).unwrap_or_default();
+    if !args.flat {
+        return print(&format!("{text}{passes}"));
     }
     match Graph::flat(&path, &sources) {
-        Ok(text) => print(&text),
+        Ok(text) => print(&format!("{text}{passes}")),
         Err(faults) => Err(GraphFaults::one(&args.file, &faults)),
     }
 }
 
+/// What the passes of a document read and write, and what its values come to, as comments of RON;
+/// `None` where it cannot be planned by itself.
+fn passes(path: &str, sources: &dyn Sources) -> Option<String> {
+    let graph = Graph::load(path, &registry(), sources).ok()?;
+    let viewport = [1024, 1024];
+    let provider = placeholder(viewport, &graph);
+    let request = Capabilities::greatest().request(viewport, &provider);
+    let plan = graph.plan(&request).ok()?;
+    let mut text = "// What runs at 1024x1024, with the params as they are:\n".to_owned();
+    for pass in plan.live() {
+        let names = |is_meant: fn(&Access) -> bool| {
+            let used = pass.accesses.iter().filter(|access| is_meant(access));
+            let names: BTreeSet<&str> = used
+                .map(|access| plan.resource(access.resource).name.as_str())
+                .collect();
+            names.into_iter().collect::<Vec<_>>().join(", ")
+        };
+        let (reads, writes) = (names(|access| access.reads), names(|access| access.writes));
+        text += &format!("//   {}\n", *pass.name);
+        for (what, names) in [("reads", reads), ("writes", writes)] {
+            if !names.is_empty() {
+                text += &format!("//     {what} {names}\n");
+            }
+        }
+    }
+    for (name, value) in plan.named_values() {
+        text += &format!("// {name} = {value}\n");
+    }
+    Some(text)
+}
+
+/// What is called by a name.
+enum Found {
+    /// A document or shader: its path and text.
+    Text(String, std::sync::Arc<str>),
+    Scene(String),
+}
+
 /// The path and text of a file by its name.
-fn find(name: &str, sources: &dyn Sources) -> Result<(String, std::sync::Arc<str>), CliError> {
+fn find(name: &str, sources: &dyn Sources) -> Result<Found, CliError> {
     let candidates = [
         name.to_owned(),
         format!("pipelines/{name}.ron"),
@@ -43,10 +100,14 @@ fn find(name: &str, sources: &dyn Sources) -> Result<(String, std::sync::Arc<str
     ];
     for path in candidates {
         match sources.read(&path) {
-            Ok(Some(text)) => return Ok((path, text)),
+            Ok(Some(text)) => return Ok(Found::Text(path, text)),
             Ok(None) => {}
             Err(reason) => return Err(CliError::Input(format!("cannot read `{path}`: {reason}"))),
         }
+    }
+    let scenes = SceneLibrary::from_environment();
+    if let Ok(text) = scenes.text(name) {
+        return Ok(Found::Scene(text));
     }
     let in_folder = |folder: &&str| {
         let files = sources.list(folder).into_iter();
@@ -55,12 +116,15 @@ fn find(name: &str, sources: &dyn Sources) -> Result<(String, std::sync::Arc<str
             .collect::<Vec<_>>()
     };
     let files: Vec<String> = FOLDERS.iter().flat_map(in_folder).collect();
+    let listed = scenes.list().into_iter().map(|scene| scene.name);
+    let listed: Vec<String> = listed.collect();
     let short = files
         .iter()
         .filter_map(|file| Some(file.split_once('/')?.1));
     Err(CliError::Input(format!(
-        "there is no file `{name}`{}\n  there are {}",
-        did_you_mean(name, short),
-        files.join(", ")
+        "there is no file `{name}`{}\n  there are {}; and the scenes {}",
+        did_you_mean(name, short.chain(listed.iter().map(String::as_str))),
+        files.join(", "),
+        listed.join(", ")
     )))
 }

@@ -230,6 +230,14 @@ fn show_writes_out_what_a_document_extends_with_its_origins() {
     };
     let own = show(&["show", "crsma_full"], 0);
     assert!(own.contains("extends: \"crsm.ron\""), "{own}");
+    // Behind it, as comments, what runs.
+    for part in [
+        "//   detect_uncertain\n//     reads camera, inner, light, map_fits, outer, position",
+        "\n//     writes status, visibility\n",
+        "\n// caster_turns = 1\n",
+    ] {
+        assert!(own.contains(part), "no {part} in {own}");
+    }
     let flat = show(&["show", "crsma_full", "--flat"], 0);
     let inner = flat
         .lines()
@@ -259,6 +267,9 @@ fn show_writes_out_what_a_document_extends_with_its_origins() {
     assert!(shader.contains("struct Light"), "{shader}");
     assert!(show(&["show", "shadow_lookup", "--flat"], 2).contains("is a shader"));
     assert!(show(&["show", "shadow_lokup"], 1).contains("did you mean `shadow_lookup"));
+    assert!(show(&["show", "lamps"], 0).contains("name: \"lamps\""));
+    assert!(show(&["show", "lmaps"], 1).contains("did you mean `lamps`"));
+    assert!(show(&["show", "lamps", "--flat"], 2).contains("is a scene file"));
 }
 
 #[test]

@@ -74,6 +74,9 @@ pub(crate) struct PassFields {
     /// What the pass writes in every texel or item, which no reflection sees.
     #[serde(default)]
     overwrites: Vec<Reference>,
+    /// The materials that it reads, all of them; what the scene gives is left out.
+    #[serde(default)]
+    reads: Option<Vec<Reference>>,
 }
 
 /// Runs another document as a part of this one.
@@ -211,7 +214,7 @@ fn pass(
 ) -> Result<Pass, Diagnostic> {
     let (common, own): (Vec<Field>, Vec<Field>) = own
         .into_iter()
-        .partition(|field| matches!(field.name.as_str(), "shader" | "overwrites"));
+        .partition(|field| matches!(field.name.as_str(), "shader" | "overwrites" | "reads"));
     let common: PassFields = from_fields(&common, &tag.span)?;
     let kind = registry
         .get(tag)
@@ -219,9 +222,13 @@ fn pass(
     Mentions::take();
     let body = (kind.parse)(&own, &tag.span)?;
     let mut mentions = Mentions::take();
-    mentions
-        .references
-        .extend(common.overwrites.iter().cloned());
+    mentions.references.extend(
+        common
+            .overwrites
+            .iter()
+            .chain(common.reads.iter().flatten())
+            .cloned(),
+    );
     // Which shaders it names depends on nothing that has a value later.
     let mut lowering = Lowering::new(name, common.shader.as_ref(), &[], None);
     body.lower(&mut lowering);
@@ -232,6 +239,7 @@ fn pass(
     Ok(Pass {
         shader: common.shader,
         overwrites: common.overwrites,
+        reads: common.reads,
         kind: kind.name,
         body,
         shaders,

@@ -202,6 +202,8 @@ pub(crate) struct Pass {
     pub shader: Option<Located<String>>,
     /// What the author promises that the pass writes in every texel or item.
     pub overwrites: Vec<Reference>,
+    /// What the author says that the pass reads, if he does.
+    pub reads: Option<Vec<Reference>>,
     pub kind: &'static str,
     pub body: Arc<dyn PassKind>,
     /// The shaders that it runs, or may run for other values.

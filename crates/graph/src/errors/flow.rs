@@ -111,9 +111,9 @@ impl IntoDiagnostic for OrderError {
                 if changes {
                     diagnostic.help(format!(
                         "put `Clear(name: \"clear\", target: \"{name}\")` above it, if it \
-                         starts anew in each frame; bind `\"{name}.previous\"` and read that, if it \
-                         goes on from the frame before; say `overwrites: [\"{name}\"]`, if the pass \
-                         itself writes all that it reads"
+                         starts anew in each frame; bind `\"{name}.previous\"` and read that, if \
+                         it goes on from the frame before; say `overwrites: [\"{name}\"]`, if the \
+                         pass itself writes all that it reads"
                     ))
                 } else {
                     diagnostic.help("let a pass above write it, or name another material")

@@ -10,6 +10,14 @@ use wgt::TextureFormat;
 
 #[derive(Clone, Debug, thiserror::Error)]
 pub(crate) enum LinkError {
+    #[error("`{pass}` does not read `{}`", **name)]
+    ReadsNot { pass: String, name: Located<String> },
+    #[error("`{}` reads `{name}`, too", **pass)]
+    ReadsMore {
+        pass: Located<String>,
+        name: String,
+        read: Span,
+    },
     #[error("a step of this pass has no shader")]
     NoShader,
     #[error("the shader `{}` was not loaded with the document", **.0)]
@@ -472,6 +480,15 @@ impl IntoDiagnostic for LinkError {
                 .at(writer, "written here")
                 .help("read a copy, or a part that this pass does not write"),
             Self::Overwrites { name, .. } => diagnostic.at(name.span, "said to be overwritten"),
+            Self::ReadsNot { name, .. } => diagnostic
+                .at(name.span, "said to be read")
+                .help("take it out of `reads`"),
+            Self::ReadsMore { pass, name, read } => diagnostic
+                .at(read, "read here")
+                .at(pass.span, "by this pass")
+                .help(format!(
+                    "add `{name}` to its `reads`, as the document calls it"
+                )),
             Self::UnusedSet { name, known, .. } | Self::UnusedBind { name, known, .. } => {
                 diagnostic.at(name.span.clone(), "").suggest(&name, known)
             }

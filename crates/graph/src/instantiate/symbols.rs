@@ -132,6 +132,19 @@ impl<'a> SymbolTable<'a> {
         value
     }
 
+    /// Every value that was found, by its full name, and what it came to.
+    pub fn found_values(&self) -> Vec<(String, String)> {
+        let found = self.values.iter().filter_map(|declared| {
+            let ValueState::Known(Ok(value)) = &declared.state else {
+                return None;
+            };
+            let instance = self.scopes.instance_of(declared.scope);
+            let name = self.scopes.full_name(instance, &declared.name().value);
+            Some((name, value.to_string()))
+        });
+        found.collect()
+    }
+
     fn circular_value(&self, id: ValueId, reports: &mut Reports) -> ErrorGuaranteed {
         let ring = self.resolving.iter().skip_while(|other| **other != id);
         let ring = ring.chain([&id]).map(|id| {

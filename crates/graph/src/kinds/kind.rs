@@ -25,7 +25,7 @@ pub trait PassKind: fmt::Debug + Send + Sync {
 }
 
 /// Fields of a pass beside those of its kind.
-pub(crate) const OF_PASS: [&str; 8] = [
+pub(crate) const OF_PASS: [&str; 9] = [
     "name",
     "shader",
     "bind",
@@ -34,6 +34,7 @@ pub(crate) const OF_PASS: [&str; 8] = [
     "repeat",
     "run",
     "overwrites",
+    "reads",
 ];
 
 /// What a [`PassKind`] lowers with: the pass's name, shader and values in, steps and diagnostics

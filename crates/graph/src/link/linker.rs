@@ -16,7 +16,7 @@ use crate::{
     kinds::step::{Dispatch, Groups, Names, Operand, Program, ShaderUse, Step},
     language::syntax::{Expr, Reference},
     request::Capture,
-    resource::{Origin, ResourceId, SubresourceRange, Target},
+    resource::{Origin, ResourceId, ResourceKind, SubresourceRange, Target},
     shader::reflect::Shader,
     source::span::{Located, Span},
 };
@@ -141,6 +141,9 @@ impl<'a> Linker<'a, '_> {
         linked.enabled = flat.enabled;
         self.unasked()?;
         self.overwrites(&mut linked, &flat.pass.overwrites)?;
+        if let Some(reads) = &flat.pass.reads {
+            self.reads(&linked, reads)?;
+        }
         Ok(linked)
     }
 
@@ -323,6 +326,43 @@ impl<'a> Linker<'a, '_> {
             }
         }
         wrong.map_or(Ok(()), Err)
+    }
+
+    /// Holds what the author says that a pass reads against what it reads.
+    fn reads(
+        &mut self,
+        pass: &LinkedPass,
+        references: &[Reference],
+    ) -> Result<(), ErrorGuaranteed> {
+        let mut stated = BTreeSet::new();
+        for reference in references {
+            let id = self.resolve(reference)?.id;
+            stated.insert(id);
+            let mut read = pass.accesses.iter().filter(|access| access.reads);
+            if !read.any(|access| access.resource == id) {
+                return Err(self.report(LinkError::ReadsNot {
+                    pass: pass.name.value.clone(),
+                    name: Located::new(reference.text().to_owned(), reference.span.clone()),
+                }));
+            }
+        }
+        let unstated = pass.accesses.iter().find(|access| {
+            let kind = &self.symbols.get(access.resource).kind;
+            let is_given = matches!(kind, ResourceKind::Provided(_) | ResourceKind::Frame)
+                || matches!(kind, ResourceKind::AccelerationStructure);
+            access.reads && !is_given && !stated.contains(&access.resource)
+        });
+        match unstated {
+            None => Ok(()),
+            Some(access) => {
+                let name = self.symbols.get(access.resource).name.clone();
+                Err(self.report(LinkError::ReadsMore {
+                    pass: pass.name.clone(),
+                    name,
+                    read: access.span.clone(),
+                }))
+            }
+        }
     }
 
     /// Takes the author's word that a pass writes all of some resources.

@@ -123,6 +123,7 @@ impl Graph {
         if !is_complete || reports.errors() > 0 {
             return None;
         }
+        let named_values = linked.symbols.found_values();
         let (passes, resources) = (linked.passes, linked.symbols.resources);
         let view = GraphView {
             passes: &passes,
@@ -180,6 +181,7 @@ impl Graph {
             aliases,
         };
         Some(Scheduled {
+            named_values,
             passes,
             resources,
             schedule,
@@ -199,6 +201,7 @@ impl Graph {
             graph: self.clone(),
             request: Request::new(request),
             values,
+            named_values: scheduled.named_values,
             resources: scheduled.resources,
             passes: scheduled.passes,
             schedule: scheduled.schedule,
@@ -231,6 +234,7 @@ struct Scheduled {
     schedule: Schedule,
     readable: Vec<(String, Target)>,
     culled: Vec<CulledPass>,
+    named_values: Vec<(String, String)>,
 }
 
 impl Outcome {

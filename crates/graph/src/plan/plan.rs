@@ -24,6 +24,7 @@ pub struct Plan {
     pub(super) graph: Graph,
     pub(super) request: Request,
     pub(super) values: BTreeMap<String, ParamValue>,
+    pub(super) named_values: Vec<(String, String)>,
     pub(super) resources: Vec<Resource>,
     pub(super) passes: Vec<LinkedPass>,
     pub(super) schedule: Schedule,
@@ -88,6 +89,12 @@ impl Plan {
             resources: &self.resources,
         };
         dependences(view, runs)
+    }
+
+    /// The `values` of the documents that something asked for, by full name, and what each came to,
+    /// as a document would write it.
+    pub fn named_values(&self) -> &[(String, String)] {
+        &self.named_values
     }
 
     /// What the host said that it would import, by name.

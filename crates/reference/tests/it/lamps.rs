@@ -183,8 +183,9 @@ proptest! {
             prop_assert_eq!(said, reference.classes[pixel], "pixel {}", pixel);
         }
         let counts = Statistics::judged(&visibility, &status, &reference).expect("the contract's");
-        let band = counts.band as f64 / counts.pixels.facing_light.max(1) as f64;
+        // Of the few pixels that a cone near the floor lights, two may lie at its edge.
+        let most = 0.2 * counts.pixels.facing_light as f64 + 2.0;
         // A light on a caster: whether that shades the floor hangs on the floor's own rounding.
-        prop_assert!(height == 1 || band < 0.2, "{band}");
+        prop_assert!(height == 1 || counts.band as f64 <= most, "{counts:?}");
     }
 }

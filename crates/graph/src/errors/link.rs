@@ -480,15 +480,6 @@ impl IntoDiagnostic for LinkError {
                 .at(writer, "written here")
                 .help("read a copy, or a part that this pass does not write"),
             Self::Overwrites { name, .. } => diagnostic.at(name.span, "said to be overwritten"),
-            Self::ReadsNot { name, .. } => diagnostic
-                .at(name.span, "said to be read")
-                .help("take it out of `reads`"),
-            Self::ReadsMore { pass, name, read } => diagnostic
-                .at(read, "read here")
-                .at(pass.span, "by this pass")
-                .help(format!(
-                    "add `{name}` to its `reads`, as the document calls it"
-                )),
             Self::UnusedSet { name, known, .. } | Self::UnusedBind { name, known, .. } => {
                 diagnostic.at(name.span.clone(), "").suggest(&name, known)
             }
@@ -527,12 +518,28 @@ impl IntoDiagnostic for LinkError {
             Self::Workgroups { most, pass, .. } => diagnostic
                 .at(pass.span, "dispatched by this pass")
                 .help(format!("its limit is {most} in each direction")),
-            other => other.explain_binding(diagnostic),
+            other => other.explain_reads(diagnostic),
         }
     }
 }
 
 impl LinkError {
+    /// What a document says that a pass reads.
+    fn explain_reads(self, diagnostic: Diagnostic) -> Diagnostic {
+        match self {
+            Self::ReadsNot { name, .. } => diagnostic
+                .at(name.span, "said to be read")
+                .help("take it out of `reads`"),
+            Self::ReadsMore { pass, name, read } => diagnostic
+                .at(read, "read here")
+                .at(pass.span, "by this pass")
+                .help(format!(
+                    "add `{name}` to its `reads`, as the document calls it"
+                )),
+            other => other.explain_binding(diagnostic),
+        }
+    }
+
     fn explain_binding(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
             Self::BindGroup { most, span, .. } => diagnostic

@@ -29,7 +29,7 @@ use crate::{
     },
 };
 use std::{
-    collections::{BTreeSet, HashMap},
+    collections::{BTreeMap, BTreeSet, HashMap},
     sync::Arc,
 };
 
@@ -115,7 +115,21 @@ impl Graph {
         registry: &Registry,
         sources: &dyn Sources,
     ) -> Result<Self, Diagnostics> {
-        let (graph, errors) = Self::read(path, registry, sources)?;
+        Self::load_over(path, registry, sources, &BTreeMap::new())
+    }
+
+    /// The same with other documents in its open includes: `chosen` has the paths of these by the
+    /// names in `open` ([`Graph::openings`]).
+    ///
+    /// # Errors
+    /// As [`Graph::load`]; a name that is no open include of the document at `path`.
+    pub fn load_over(
+        path: &str,
+        registry: &Registry,
+        sources: &dyn Sources,
+        chosen: &BTreeMap<String, String>,
+    ) -> Result<Self, Diagnostics> {
+        let (graph, errors) = Self::read(path, registry, sources, chosen)?;
         if errors.is_empty() {
             Ok(graph)
         } else {
@@ -131,7 +145,8 @@ impl Graph {
     pub fn flat(path: &str, sources: &dyn Sources) -> Result<String, Diagnostics> {
         let mut reports = Reports::default();
         let registry = Registry::default();
-        let mut reader = Reader::new(&registry, sources, &mut reports);
+        let chosen = BTreeMap::new();
+        let mut reader = Reader::new(&registry, sources, &chosen, &mut reports);
         let document = reader.flat(path);
         let asked = std::mem::take(&mut reader.include_sites);
         match document {
@@ -155,9 +170,10 @@ impl Graph {
         path: &str,
         registry: &Registry,
         sources: &dyn Sources,
+        chosen: &BTreeMap<String, String>,
     ) -> Result<(Self, Vec<Diagnostic>), Diagnostics> {
         let mut reports = Reports::default();
-        let mut reader = Reader::new(registry, sources, &mut reports);
+        let mut reader = Reader::new(registry, sources, chosen, &mut reports);
         let root = reader.root(path);
         let included: Vec<Arc<Document>> = reader.documents().cloned().collect();
         let asked = std::mem::take(&mut reader.include_sites);
@@ -228,6 +244,12 @@ impl Graph {
     /// graph is known to be right.
     pub fn proven_on(&self) -> impl Iterator<Item = &Located<Name>> {
         self.document.proven_on.iter()
+    }
+
+    /// The open includes of the document: each one's name, and the document that stands there.
+    pub fn openings(&self) -> impl Iterator<Item = (&str, &str)> {
+        let openings = self.document.openings().into_iter();
+        openings.map(|(name, include)| (name.as_str(), include.graph.as_str()))
     }
 
     /// Names of what the host must import.

@@ -6,7 +6,8 @@ use crate::args::values::{Size, unique};
 use crate::error::CliError;
 use crate::files::json;
 use crate::files::write::{check_writable, write_whole};
-use crate::graphs::variants::{self, MethodArgument};
+use crate::graphs::openings;
+use crate::graphs::variants;
 use crate::graphs::{method, preset};
 use crate::measuring::scene_selection::SceneSelection;
 use crate::measuring::{device, profiling};
@@ -31,10 +32,10 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         Some(path) => Some((path.as_path(), read_back::profile(path)?)),
         None => None,
     };
-    let arguments = args.presets.iter().map(|name| MethodArgument::new(name));
-    let arguments: Vec<MethodArgument> = arguments.collect();
-    let presets = preset::load_all(&variants::presets(&arguments), &preset::sources())?;
-    let methods = method::methods(&presets, &arguments, &args.params, &args.map_size)?;
+    let sources = preset::sources();
+    let (arguments, params) = openings::arguments(&args.presets, &args.params, &sources)?;
+    let presets = preset::load_all(&variants::presets(&arguments), &sources)?;
+    let methods = method::methods(&presets, &arguments, &params, &args.map_size)?;
     method::note_without_map(&methods, &args.map_size);
     let gpu = device::open(gpu, preset::graphs(&presets))?;
     let SceneSelection { scene, views } = SceneSelection::load(&args.scene)?;

@@ -76,6 +76,9 @@ fn passes(path: &str, sources: &dyn Sources) -> Option<String> {
             }
         }
     }
+    for (name, document) in graph.openings() {
+        text += &format!("// {name} = {document}, or another one: --set {name}=METHOD\n");
+    }
     for (name, value) in plan.named_values() {
         text += &format!("// {name} = {value}\n");
     }

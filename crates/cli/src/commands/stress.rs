@@ -9,8 +9,9 @@ use crate::files::lock::{self, Locked, Shared};
 use crate::files::write::{check_folder, write_whole};
 use crate::graphs::faults::reasons;
 use crate::graphs::method::{self, Method};
+use crate::graphs::openings;
 use crate::graphs::planning::Capabilities;
-use crate::graphs::variants::{self, MethodArgument};
+use crate::graphs::variants;
 use crate::graphs::{contract, preset};
 use crate::measuring::hard_case::{HardCaseContext, MethodRun};
 use crate::measuring::reference::PrimaryVisibility;
@@ -42,9 +43,9 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let sources = preset::sources();
     let names = preset::named_or_all(&args.presets, &sources);
     check_exact(&args.exact, &names)?;
-    let arguments: Vec<_> = names.iter().map(|name| MethodArgument::new(name)).collect();
+    let (arguments, params) = openings::arguments(&names, &args.params, &sources)?;
     let presets = contract::load_all(&variants::presets(&arguments), &sources)?;
-    let methods = method::methods(&presets, &arguments, &args.params, &args.map_size)?;
+    let methods = method::methods(&presets, &arguments, &params, &args.map_size)?;
     for method in &methods {
         guarantee::of(method, &args.exact)?;
     }

@@ -4,6 +4,7 @@ use crate::args::shared::MethodArgs;
 use crate::args::values::{Assignment, unique};
 use crate::error::CliError;
 use crate::files::fingerprint::Fingerprint;
+use crate::graphs::openings;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::preset::{self, Preset};
 use crate::graphs::variants::{self, MAP_SIZE, MethodArgument, Setting};
@@ -153,6 +154,7 @@ pub fn methods<'a>(
         for Setting { label, set } in variants::settings(preset, &argument, params)? {
             let name = match label.as_str() {
                 "" => preset.name.clone(),
+                label if is_over_another(&preset.name) => format!("{},{label}", preset.name),
                 label => format!("{}@{label}", preset.name),
             };
             let set = set
@@ -167,6 +169,11 @@ pub fn methods<'a>(
         }
     }
     Ok(methods)
+}
+
+/// Whether a preset's name says what stands in an open include of it.
+fn is_over_another(name: &str) -> bool {
+    !MethodArgument::new(name).own.is_empty()
 }
 
 /// Says on which methods `--map-size` has no effect.
@@ -189,13 +196,18 @@ pub fn load_one(
     args: &MethodArgs,
     sources: &dyn Sources,
 ) -> Result<(Preset, ParamValues), CliError> {
-    let argument = MethodArgument::new(&args.preset);
+    let (arguments, params) = openings::arguments([&args.preset], &args.params, sources)?;
+    let [argument] = &arguments[..] else {
+        return Err(CliError::Usage(
+            "name one document for an open include here".into(),
+        ));
+    };
     let mut presets = preset::load_all(slice::from_ref(&argument.preset), sources)?;
-    check_names(&presets, &args.params)?;
+    check_names(&presets, &params)?;
     let preset = presets
         .pop()
         .ok_or_else(|| CliError::Input("no graph".into()))?;
-    let set = [&args.params[..], &argument.own].concat();
+    let set = [&params[..], &argument.own].concat();
     check_names(slice::from_ref(&preset), &argument.own)?;
     let params = param_values(&preset, &set, args.map_size)?;
     Ok((preset, params))
@@ -230,11 +242,7 @@ fn check_names(presets: &[Preset], assignments: &[Assignment]) -> Result<(), Cli
         if presets.iter().any(|preset| preset.param(name).is_some()) {
             continue;
         }
-        let mut known: Vec<&str> = presets
-            .iter()
-            .flat_map(|preset| preset.graph.params())
-            .map(|param| param.name.as_str())
-            .collect();
+        let mut known: Vec<&str> = presets.iter().flat_map(Preset::settable).collect();
         known.sort_unstable();
         known.dedup();
         let list = match &known[..] {

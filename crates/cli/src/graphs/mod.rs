@@ -6,6 +6,7 @@ pub mod faults;
 pub mod idle_params;
 pub mod light_kinds;
 pub mod method;
+pub mod openings;
 pub mod planning;
 pub mod preset;
 pub mod variants;

@@ -1,15 +1,19 @@
 //! From the arguments `nsm` or `my/method.ron` to loaded graphs.
 
+use crate::args::values::Assignment;
 use crate::error::CliError;
 use crate::files::fingerprint::{Fingerprint, RecordedSources};
 use crate::files::picture_sources::PictureSources;
 use crate::graphs::faults::{GraphFaults, warn};
 use crate::graphs::planning;
+use crate::graphs::variants::MethodArgument;
 use crate::terminal::console::note;
 use crate::wording::did_you_mean;
-use skiagraph_graph::{FolderSources, Graph, LayeredSources, Param, Plan, PlanRequest, Sources};
+use skiagraph_graph::{
+    Diagnostics, FolderSources, Graph, LayeredSources, Param, Plan, PlanRequest, Sources,
+};
 use skiagraph_passes::{EmbeddedSources, registry};
-use std::{path::Path, sync::Once};
+use std::{collections::BTreeMap, path::Path, sync::Once};
 
 /// The output from 0 in shadow to 1 in light.
 pub const VISIBILITY: &str = "visibility";
@@ -122,6 +126,12 @@ impl Preset {
             .find(|param| param.name.as_str() == name)
     }
 
+    /// The names that can be set: those of its params and of its open includes.
+    pub fn settable(&self) -> impl Iterator<Item = &str> {
+        let params = self.graph.params().iter().map(|param| param.name.as_str());
+        params.chain(self.graph.openings().map(|(name, _)| name))
+    }
+
     /// Plans the graph, and prints its warnings.
     ///
     /// # Errors
@@ -144,29 +154,46 @@ pub fn graphs(presets: &[Preset]) -> impl Iterator<Item = &Graph> {
 /// # Errors
 /// Every fault of every graph together.
 pub fn load_all(arguments: &[String], sources: &dyn Sources) -> Result<Vec<Preset>, CliError> {
-    let registry = registry();
     let mut presets: Vec<Preset> = Vec::new();
     let mut faults = GraphFaults::default();
     for argument in arguments {
         if presets.iter().any(|preset| preset.name == *argument) {
             continue;
         }
-        let path = locate(argument, sources)?;
         let recorded = RecordedSources::new(sources);
-        match Graph::load(&path, &registry, &recorded) {
-            Ok(graph) => presets.push(Preset {
+        match load(argument, &recorded)? {
+            (Ok(graph), _) => presets.push(Preset {
                 name: argument.clone(),
                 graph,
                 fingerprint: recorded.fingerprint(),
             }),
             // What planning would find besides is shown in the same go.
-            Err(diagnostics) => {
-                let all = planning::check(&path, &registry, sources, None).err();
+            (Err(diagnostics), path) => {
+                let all = planning::check(&path, &registry(), sources, None).err();
                 faults.add(argument, &all.unwrap_or(diagnostics));
             }
         }
     }
     faults.none_or_error().map(|()| presets)
+}
+
+/// Loads the graph that an argument names, `contact.ron@over=msm` with another document in an open
+/// include. Returns its path, too.
+///
+/// # Errors
+/// A file that does not exist; faults of the graph are in the result.
+pub fn load(
+    argument: &str,
+    sources: &dyn Sources,
+) -> Result<(Result<Graph, Diagnostics>, String), CliError> {
+    let named = MethodArgument::new(argument);
+    let path = locate(&named.preset, sources)?;
+    let mut documents = BTreeMap::new();
+    for Assignment { name, value } in named.own {
+        documents.insert(name, locate(&value, sources)?);
+    }
+    let graph = Graph::load_over(&path, &registry(), sources, &documents);
+    Ok((graph, path))
 }
 
 /// The path of the graph that an argument names.

@@ -89,8 +89,7 @@ pub fn settings(
     for (assignment, is_own) in own.chain(others.map(|set| (set, false))) {
         let name = &assignment.name;
         let Some(param) = preset.param(name) else {
-            let known = preset.graph.params().iter();
-            let known: Vec<&str> = known.map(|param| param.name.as_str()).collect();
+            let known: Vec<&str> = preset.settable().collect();
             let hint = did_you_mean(name, known.iter().copied());
             return Err(CliError::Input(format!(
                 "`{}` has no param `{name}`{hint}\n  params: {}",

@@ -9,7 +9,7 @@ use crate::pictures::{colours::ClipPlanes, save::Decoding};
 use crate::viewer::wanted::{MethodShot, PassShot, WantedMethod};
 use skiagraph_gpu::{ExecuteError, Executor, Frame, FrameReport, device::Gpu};
 use skiagraph_graph::{Graph, LinkedPass, Origin, Plan, ResourceKind, Sources};
-use skiagraph_passes::{SceneProvider, registry};
+use skiagraph_passes::SceneProvider;
 use std::{sync::Arc, time::Duration};
 
 /// The device is of no more use.
@@ -72,11 +72,9 @@ impl Slot {
     /// Reads the files; says whether anything in them has changed.
     pub fn read(&mut self, sources: &dyn Sources) -> bool {
         let recorded = RecordedSources::new(sources);
-        let read = preset::locate(&self.name, &recorded)
+        let read = preset::load(&self.name, &recorded)
             .map_err(|error| error.to_string())
-            .and_then(|path| {
-                Graph::load(&path, &registry(), &recorded).map_err(|found| found.render(false))
-            });
+            .and_then(|(graph, _)| graph.map_err(|found| found.render(false)));
         let texts = Some(recorded.fingerprint());
         let faults = read.as_ref().err().cloned();
         if texts == self.texts && faults == self.faults {

@@ -4,6 +4,7 @@ use crate::args::commands::ViewArgs;
 use crate::args::shared::GpuArgs;
 use crate::error::CliError;
 use crate::files::watch::{self, Watch};
+use crate::graphs::openings;
 use crate::graphs::variants::{self, MethodArgument};
 use crate::graphs::{method, preset};
 use crate::measuring::device;
@@ -97,15 +98,14 @@ pub fn start(
 /// The methods of the command line with their settings. Without settings they need not be read
 /// before the window is there, which then shows what is wrong with them.
 fn wanted_methods(args: &ViewArgs) -> Result<Vec<WantedMethod>, CliError> {
-    let arguments = args.methods.iter().map(|it| MethodArgument::new(it));
-    let arguments: Vec<MethodArgument> = arguments.collect();
     let sources = preset::sources();
+    let (arguments, params) = openings::arguments(&args.methods, &args.params, &sources)?;
     for argument in &arguments {
-        preset::locate(&argument.preset, &sources)?;
+        preset::locate(&MethodArgument::new(&argument.preset).preset, &sources)?;
     }
     let map_sizes: Vec<u32> = args.map_size.into_iter().collect();
     let own = arguments.iter().any(|argument| !argument.own.is_empty());
-    if !own && map_sizes.is_empty() && args.params.is_empty() {
+    if !own && map_sizes.is_empty() && params.is_empty() {
         let plain = arguments.into_iter().map(|argument| WantedMethod {
             name: argument.preset,
             params: Default::default(),
@@ -114,7 +114,7 @@ fn wanted_methods(args: &ViewArgs) -> Result<Vec<WantedMethod>, CliError> {
         return Ok(plain.collect());
     }
     let presets = preset::load_all(&variants::presets(&arguments), &sources)?;
-    let methods = method::methods(&presets, &arguments, &args.params, &map_sizes)?;
+    let methods = method::methods(&presets, &arguments, &params, &map_sizes)?;
     if methods.len() > 2 {
         return Err(CliError::Usage(format!(
             "these are {} methods and settings; the window shows two side by side",

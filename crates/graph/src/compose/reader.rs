@@ -24,7 +24,7 @@ use crate::{
     },
 };
 use std::{
-    collections::{BTreeSet, HashMap},
+    collections::{BTreeMap, BTreeSet, HashMap},
     sync::Arc,
 };
 
@@ -52,10 +52,18 @@ pub(crate) struct Reader<'a> {
     open: Vec<(String, Option<Span>)>,
     /// Every place where a document is asked for.
     pub include_sites: Vec<IncludeSite>,
+    /// Documents for open includes of the root document, by path.
+    chosen: &'a BTreeMap<String, String>,
 }
 
 impl<'a> Reader<'a> {
-    pub fn new(registry: &'a Registry, sources: &'a dyn Sources, reports: &'a mut Reports) -> Self {
+    /// `chosen`: paths of documents for open includes of the root document.
+    pub fn new(
+        registry: &'a Registry,
+        sources: &'a dyn Sources,
+        chosen: &'a BTreeMap<String, String>,
+        reports: &'a mut Reports,
+    ) -> Self {
         Self {
             registry,
             sources,
@@ -63,6 +71,7 @@ impl<'a> Reader<'a> {
             read: HashMap::new(),
             open: Vec::new(),
             include_sites: Vec::new(),
+            chosen,
         }
     }
 
@@ -74,7 +83,20 @@ impl<'a> Reader<'a> {
     /// Reads the document at `path` with all that it includes.
     pub fn root(&mut self, path: &str) -> Result<Document, ErrorGuaranteed> {
         let file = self.file(path)?;
-        self.document(file, None)
+        let document = self.document(file, None)?;
+        let known: Vec<String> = document
+            .openings()
+            .into_iter()
+            .map(|(name, _)| name.value.to_string())
+            .collect();
+        for name in self.chosen.keys().filter(|name| !known.contains(name)) {
+            self.reports.report(ComposeError::NoOpening {
+                name: name.clone(),
+                document: path.to_owned(),
+                known: known.clone(),
+            });
+        }
+        Ok(document)
     }
 
     /// Reads the document at `path` with all that it extends.
@@ -117,6 +139,7 @@ impl<'a> Reader<'a> {
         let document = raw.map(|raw| {
             let mut document = read::document(raw, self.registry, self.reports);
             document.include_depth = self.attach(&mut document.entries);
+            self.fewer_lights(&mut document);
             self.expose(&mut document);
             self.narrow(&mut document);
             document.gives_values = value_outputs(&document);
@@ -182,8 +205,14 @@ impl<'a> Reader<'a> {
         depth
     }
 
-    fn include(&mut self, include: &Include) -> Result<Arc<Document>, ErrorGuaranteed> {
-        let file = self.find(&include.graph)?;
+    fn include(&mut self, include: &mut Include) -> Result<Arc<Document>, ErrorGuaranteed> {
+        let file = match self.chosen_for(include) {
+            Some(path) => {
+                include.graph.value = path.clone();
+                self.file(&path)?
+            }
+            None => self.find(&include.graph)?,
+        };
         let path = file.name.to_string();
         let span = include.graph.span.clone();
         if let Some(first) = self.open.iter().position(|(open, _)| *open == path) {
@@ -215,6 +244,35 @@ impl<'a> Reader<'a> {
             return Err(self.reports.report(ComposeError::TooDeep(graph, DEEPEST)));
         }
         Ok(document)
+    }
+
+    /// The path of the document that was asked for in the place of an open include's own. Included
+    /// documents keep theirs: one name would mean a place in each of them.
+    fn chosen_for(&self, include: &Include) -> Option<String> {
+        let is_root = self.open.len() == 1;
+        let name = include.open.as_ref().filter(|_| is_root)?;
+        self.chosen.get(name.as_str()).cloned()
+    }
+
+    /// A document takes no light that the document in an open include of it does not take. One that
+    /// names no lights takes those of any that names none.
+    fn fewer_lights(&mut self, document: &mut Document) {
+        let mut lights = std::mem::take(&mut document.lights);
+        for (_, include) in document.openings() {
+            let Some(inner) = include.document() else {
+                continue;
+            };
+            let had_some = !lights.is_empty();
+            lights.retain(|light| inner.lights.iter().any(|known| known.value == light.value));
+            if had_some && lights.is_empty() && !inner.lights.is_empty() {
+                let takes = inner.lights.iter().map(|light| light.value.to_string());
+                self.reports.report(ComposeError::NoCommonLight {
+                    graph: include.graph.clone(),
+                    takes: takes.collect(),
+                });
+            }
+        }
+        document.lights = lights;
     }
 
     /// The file of a document, beside the one in which its name is written or in `pipelines/`.

@@ -34,6 +34,7 @@ pub(super) fn check(document: &Document, reports: &mut Reports) {
         "",
         reports,
     );
+    check_openings(document, reports);
     let mut outputs = Names::new("output");
     for output in &document.outputs {
         outputs.add(&output.name.value, &output.name.span, reports);
@@ -57,6 +58,22 @@ fn check_value(document: &Document, name: &Located<Name>, reports: &mut Reports)
                 name: Located::new(name.value.to_string(), name.span.clone()),
                 param: param.name.value.clone(),
                 declared: param.name.span.clone(),
+            });
+        }
+    }
+}
+
+/// The name of an open include is set as a param is, and told apart from them.
+fn check_openings(document: &Document, reports: &mut Reports) {
+    for (name, _) in document.openings() {
+        let mut params = document.params.iter();
+        if let Some(param) = params.find(|param| *param.name.value == *name.value.as_str()) {
+            reports.report(ComposeError::Clash {
+                what: "param and open include",
+                name: name.value.to_string(),
+                known: name.value.to_string(),
+                span: name.span.clone(),
+                first: param.name.span.clone(),
             });
         }
     }

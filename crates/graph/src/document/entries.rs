@@ -86,6 +86,10 @@ pub(crate) struct PassFields {
 pub(crate) struct IncludeFields {
     /// The document: the name of a preset, or a path.
     graph: Located<String>,
+    /// Leaves the document open: whoever runs the graph may name another under this name, and
+    /// `graph` is the one without that.
+    #[serde(default)]
+    open: Option<Located<Name>>,
     /// Its params that are params here, too: a list, or `All` that are not set.
     #[serde(default)]
     expose: Expose,
@@ -271,6 +275,7 @@ fn include(
     };
     let include = Include {
         graph: fields.graph,
+        open: fields.open,
         is_named,
         expose,
         exposes_all,

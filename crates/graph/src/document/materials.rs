@@ -350,7 +350,7 @@ impl From<SamplerInput> for Input {
 macro_rules! formats {
     ($($name:ident)*) => {
         pub(crate) const FORMATS: &[&str] = &[$(stringify!($name)),*];
-        fn format_named(name: &str) -> Option<wgt::TextureFormat> {
+        pub(crate) fn format_named(name: &str) -> Option<wgt::TextureFormat> {
             match name {
                 $(stringify!($name) => Some(wgt::TextureFormat::$name),)*
                 _ => None,

@@ -217,7 +217,10 @@ pub(crate) struct Pass {
 /// Another document whose passes stand here.
 #[derive(Debug)]
 pub(crate) struct Include {
+    /// The document that stands here; of an open include the one that was asked for.
     pub graph: Located<String>,
+    /// The name under which another document can be asked for.
+    pub open: Option<Located<Name>>,
     /// Whether it has a name of its own, which stands before what it gives.
     pub is_named: bool,
     /// Params of the included document that are params here, too; those of `All` are written out
@@ -261,6 +264,18 @@ impl Document {
     pub fn material_outputs(&self) -> impl Iterator<Item = &Output> {
         let is_value = |output: &&Output| self.gives_values.contains(output.name.as_str());
         self.outputs.iter().filter(move |output| !is_value(output))
+    }
+
+    /// The open includes, those in groups, too, by the name under which another document can be
+    /// asked for.
+    pub fn openings(&self) -> Vec<(&Located<Name>, &Include)> {
+        let mut found = Vec::new();
+        each_entry(&self.entries, &mut |entry| {
+            if let What::Include(include) = &entry.what {
+                found.extend(include.open.as_ref().map(|name| (name, include)));
+            }
+        });
+        found
     }
 
     /// Calls `each` with everything that expressions and references of the document are made of.

@@ -39,6 +39,17 @@ pub(crate) enum ComposeError {
         document: String,
         known: Vec<String>,
     },
+    #[error("`{document}` has no open include `{name}`")]
+    NoOpening {
+        name: String,
+        document: String,
+        known: Vec<String>,
+    },
+    #[error("no light is taken both here and by `{}`", **graph)]
+    NoCommonLight {
+        graph: Located<String>,
+        takes: Vec<String>,
+    },
     #[error("`{}` is a param here already", **name)]
     ExposedTwice { name: Located<String>, first: Span },
     #[error("`{}` is no `Choice`, and has no words to narrow", **name)]
@@ -88,6 +99,8 @@ impl IntoDiagnostic for ComposeError {
             Self::Clash { .. } => Code::DuplicateName,
             Self::NoParam { .. } => Code::UnknownParam,
             Self::ExposedTwice { .. } | Self::ExposedDefault(_) => Code::ParamValue,
+            Self::NoOpening { .. } => Code::UnknownParam,
+            Self::NoCommonLight { .. } => Code::Light,
             Self::NoOutputs(_) => Code::Output,
             Self::UnusedMaterial(_) | Self::UnusedParam(_) | Self::UnusedValue(_) => Code::Unused,
             Self::NarrowWord { .. } | Self::NarrowOfOther { .. } => Code::ParamValue,
@@ -136,6 +149,16 @@ impl IntoDiagnostic for ComposeError {
             } => clash(diagnostic, what, [name, known], [span, first]),
             Self::NoParam { name, known, .. } => {
                 diagnostic.at(name.span.clone(), "").suggest(&name, known)
+            }
+            Self::NoOpening { name, known, .. } => match &known[..] {
+                [] => diagnostic.help("an include is left open by `open: \"…\"`; it has none"),
+                _ => diagnostic.suggest(&name, known),
+            },
+            Self::NoCommonLight { graph, takes } => {
+                diagnostic.at(graph.span, "included here").help(format!(
+                    "it takes {}: take one of these in `lights`, or another document",
+                    takes.join(", ")
+                ))
             }
             Self::ExposedTwice { name, first } => diagnostic
                 .at(name.span.clone(), "exposed here")

@@ -1,11 +1,12 @@
 //! `Fullscreen`: a fragment shader once per pixel of its targets.
 
 use super::{
+    entry_name::EntryName,
     kind::{Lowering, PassKind},
     step::{Draw, DrawCall, Step},
     targets::{self, ColorEntry, StencilEntry},
 };
-use crate::{language::syntax::Expr, source::span::Located};
+use crate::language::syntax::Expr;
 use serde::Deserialize;
 
 /// Runs a fragment shader once for each pixel of its targets.
@@ -24,13 +25,13 @@ pub(super) struct Fullscreen {
     area: Option<Expr>,
     /// The fragment entry point, where the shader has several.
     #[serde(default)]
-    fragment: Option<Located<String>>,
+    fragment: Option<EntryName>,
 }
 
 impl PassKind for Fullscreen {
     fn lower(&self, pass: &mut Lowering<'_>) {
         let mut program = pass.program();
-        program.fragment.clone_from(&self.fragment);
+        program.fragment = self.fragment.as_ref().and_then(|entry| entry.chosen(pass));
         let area = self.area.as_ref();
         let colors = self
             .color

@@ -9,6 +9,7 @@ use super::{
     value::{Scalar, Value},
 };
 use crate::{
+    document::materials::format_named,
     errors::language::SyntaxFault,
     source::span::{Located, SourceFile, Span},
 };
@@ -219,7 +220,10 @@ impl<'a> Parser<'a> {
             Token::Word(word) if self.tokens[self.at + 1].0 == Token::Sign("(") => self.call(word),
             Token::Word(word) if word.starts_with(|c: char| c.is_ascii_uppercase()) => {
                 self.next();
-                Ok(ExprKind::Constant(word.to_owned()))
+                match format_named(word) {
+                    Some(format) => literal(Value::Format(format)),
+                    None => Ok(ExprKind::Constant(word.to_owned())),
+                }
             }
             Token::Word(_) => {
                 let path = self.path()?;

@@ -45,7 +45,7 @@ impl Graph {
         sources: &dyn Sources,
         request: &PlanRequest<'_>,
     ) -> Result<(Self, Plan), Diagnostics> {
-        let (graph, mut errors) = Self::read(path, registry, sources)?;
+        let (graph, mut errors) = Self::read(path, registry, sources, &BTreeMap::new())?;
         let mut request = request.clone();
         if request.any_adapter {
             // It says itself that not every adapter will do.

@@ -702,3 +702,106 @@ fn what_a_pass_writes_first_it_may_read() {
     }
     right(plan(&sections(r#", overwrites: ["sums"]"#)));
 }
+
+/// A step over a method, which stays open: it gives the method's format and twice its edge.
+fn over() -> Files {
+    Files::graph(
+        r#"
+        lights: [sun, lamp],
+        values: {"is_hard": "image.format == R8Uint"},
+        materials: [
+            Texture(name: "over", format: "image.format", size: "2 * image.width"),
+            Texture(name: "hard", format: R8Uint, size: "is_hard ? 3 : 5"),
+        ],
+        passes: [
+            Include(graph: "method.ron", open: "method", expose: All),
+            Clear(name: "clear", target: "over"),
+            Clear(name: "clear_hard", target: "hard"),
+        ],
+        outputs: ["over", "hard"]"#,
+    )
+    .document(
+        "pipelines/method.ron",
+        r#"
+        lights: [lamp, sky],
+        params: [U32(name: "edge", default: 4)],
+        materials: [Texture(name: "image", format: R8Uint, size: "edge")],
+        passes: [Clear(name: "clear", target: "image")],
+        outputs: ["image"],
+        claims: {"exact": "true"}"#,
+    )
+    .document(
+        "pipelines/soft.ron",
+        r#"
+        lights: [sun],
+        params: [U32(name: "map", default: 7)],
+        materials: [Texture(name: "image", format: R32Float, size: "map")],
+        passes: [Clear(name: "clear", target: "image")],
+        outputs: ["image"]"#,
+    )
+    .document(
+        "pipelines/sky.ron",
+        r#"
+        lights: [sky],
+        materials: [Texture(name: "image", format: R8Uint, size: 1)],
+        passes: [Clear(name: "clear", target: "image")],
+        outputs: ["image"]"#,
+    )
+}
+
+fn load_over(name: &str, path: &str) -> Result<Graph, skiagraph_graph::Diagnostics> {
+    let chosen = BTreeMap::from([(name.to_owned(), path.to_owned())]);
+    Graph::load_over("graph.ron", &Registry::standard(), &over(), &chosen)
+}
+
+#[test]
+fn another_document_stands_in_an_open_include() {
+    let own = right(load(&over()));
+    let chosen = right(load_over("method", "pipelines/soft.ron"));
+    let of = |graph: &Graph| {
+        let planned = right(graph.plan(&PlanRequest::new([64, 64], &NoProvider)));
+        let lights: Vec<String> = graph.lights().map(|light| light.to_string()).collect();
+        let params: Vec<String> = graph
+            .params()
+            .iter()
+            .map(|it| it.name.to_string())
+            .collect();
+        let sizes = [width(&planned, "over"), width(&planned, "hard")];
+        (sizes, lights.join(" "), params.join(" "))
+    };
+    assert_eq!(of(&own), ([8, 3], "lamp".into(), "edge".into()));
+    assert_eq!(of(&chosen), ([14, 5], "sun".into(), "map".into()));
+    let openings: Vec<_> = chosen.openings().collect();
+    assert_eq!(openings, [("method", "pipelines/soft.ron")]);
+    // What a part of it promises is no promise of the whole.
+    let claims = own.claims(&BTreeMap::new(), [64, 64], wgt::Features::empty());
+    assert!(right(claims).is_empty());
+}
+
+#[test]
+fn an_open_include_refuses_what_cannot_stand_there() {
+    let told = |name, path| {
+        let found = load_over(name, path).expect_err("a mistake");
+        found
+            .iter()
+            .map(|it| (it.code, it.message.clone()))
+            .collect::<Vec<_>>()
+    };
+    let [(code, message)] = &told("methd", "pipelines/soft.ron")[..] else {
+        panic!("one mistake")
+    };
+    assert_eq!(*code, Code::UnknownParam);
+    assert!(message.contains("has no open include `methd`"), "{message}");
+    let [(code, message)] = &told("method", "pipelines/sky.ron")[..] else {
+        panic!("one mistake")
+    };
+    assert_eq!(*code, Code::Light);
+    assert!(
+        message.contains("no light is taken both here and by"),
+        "{message}"
+    );
+    let found = told("method", "graph.ron");
+    assert_eq!(found[0].0, Code::IncludeCycle);
+    let found = told("method", "pipelines/none.ron");
+    assert_eq!(found[0].0, Code::MissingFile);
+}

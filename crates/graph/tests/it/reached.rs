@@ -45,6 +45,10 @@ const ELSEWHERE: &[(&str, &str)] = &[
         "`mistakes.rs`: the root document",
     ),
     (
+        "ComposeError::NoOpening",
+        "`format_3.rs`: a document that is asked for",
+    ),
+    (
         "ComposeError::Unreadable",
         "`mistakes.rs`: files that are no text",
     ),

@@ -5,7 +5,6 @@
 // algorithm.
 
 #import "shared/light_triangle.wgsl"
-#import "shared/ids.wgsl"
 
 struct Params {
     cull: u32,

@@ -4,7 +4,6 @@
 
 #import "shared/camera.wgsl"
 #import "shared/geometry.wgsl"
-#import "shared/ids.wgsl"
 #import "shared/pixel_weights.wgsl"
 #import "shared/solid.wgsl"
 

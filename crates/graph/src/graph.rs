@@ -14,13 +14,14 @@ use crate::{
         params::{Param, ParamFault, ParamValue},
         typed::{Document, What, each_entry},
     },
-    errors::{compose::ComposeError, resource::SizeError},
+    errors::{compose::ComposeError, resource::SizeError, shader::ShaderError},
     kinds::registry::Registry,
     language::{name::Name, syntax::Leaf},
     shader::{
         expand::ShaderFiles,
         reflect::Shader,
         store::{self, Shaders},
+        unused::Unused,
     },
     source::{
         paths::{escapes, include_candidates},
@@ -322,6 +323,45 @@ impl Graph {
                 reports.warn(ComposeError::UnusedParam(param.name.clone()));
             }
         }
+        let imported = self.shaders.imported();
+        for entry in &document.imports {
+            let path = self.shaders.module(&entry.of);
+            if is_own(&entry.of.span) && path.is_some_and(|path| !imported.contains(&**path)) {
+                reports.warn(ComposeError::UnusedImport(entry.of.clone()));
+            }
+        }
+        for (unused, shader) in self.unused_in_shaders() {
+            reports.warn(ShaderError::Unused {
+                what: unused.what,
+                name: unused.name,
+                shader,
+            });
+        }
+    }
+
+    /// What nothing in a shader of the document's own passes uses, whatever modules it imports, with
+    /// the shader.
+    fn unused_in_shaders(&self) -> Vec<(Unused, String)> {
+        let mut found: Vec<(Unused, String)> = Vec::new();
+        each_entry(&self.document.entries, &mut |entry| {
+            let What::Pass(pass) = &entry.what else {
+                return;
+            };
+            for shader in &pass.shaders {
+                let mut variants = self.shaders.variants(&self.document, shader);
+                let Some(first) = variants.next() else {
+                    continue;
+                };
+                let mut unused = first.unused();
+                for other in variants {
+                    let other = other.unused();
+                    unused.retain(|unused| other.contains(unused));
+                }
+                unused.retain(|unused| found.iter().all(|(known, _)| known != unused));
+                found.extend(unused.into_iter().map(|it| (it, first.file().to_owned())));
+            }
+        });
+        found
     }
 
     /// The place of the document itself, for mistakes of a request.

@@ -121,9 +121,11 @@ fn find(name: &str, sources: &dyn Sources) -> Result<Found, CliError> {
     let files: Vec<String> = FOLDERS.iter().flat_map(in_folder).collect();
     let listed = scenes.list().into_iter().map(|scene| scene.name);
     let listed: Vec<String> = listed.collect();
-    let short = files
-        .iter()
-        .filter_map(|file| Some(file.split_once('/')?.1));
+    // With their ending and without.
+    let short = files.iter().flat_map(|file| {
+        let name = file.split_once('/').map_or(&**file, |(_, name)| name);
+        [name, name.rsplit_once('.').map_or(name, |(stem, _)| stem)]
+    });
     Err(CliError::Input(format!(
         "there is no file `{name}`{}\n  there are {}; and the scenes {}",
         did_you_mean(name, short.chain(listed.iter().map(String::as_str))),

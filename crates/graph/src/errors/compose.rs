@@ -79,6 +79,8 @@ pub(crate) enum ComposeError {
     UnusedMaterial(Located<String>),
     #[error("nothing uses the param `{}`", **.0)]
     UnusedParam(Located<String>),
+    #[error("no shader imports `{}`", **.0)]
+    UnusedImport(Located<String>),
 }
 
 /// What is wrong with two names that are one.
@@ -102,7 +104,10 @@ impl IntoDiagnostic for ComposeError {
             Self::NoOpening { .. } => Code::UnknownParam,
             Self::NoCommonLight { .. } => Code::Light,
             Self::NoOutputs(_) => Code::Output,
-            Self::UnusedMaterial(_) | Self::UnusedParam(_) | Self::UnusedValue(_) => Code::Unused,
+            Self::UnusedMaterial(_)
+            | Self::UnusedParam(_)
+            | Self::UnusedValue(_)
+            | Self::UnusedImport(_) => Code::Unused,
             Self::NarrowWord { .. } | Self::NarrowOfOther { .. } => Code::ParamValue,
             Self::ValueIsWord { .. } => Code::Name,
             _ => Code::MissingFile,
@@ -194,6 +199,9 @@ impl IntoDiagnostic for ComposeError {
             Self::UnusedMaterial(name) => diagnostic
                 .at(name.span, "")
                 .help("remove it, or check the names of the shader globals that should be it"),
+            Self::UnusedImport(name) => diagnostic
+                .at(name.span, "")
+                .help("remove the entry, or name the module as the shaders import it"),
             Self::UnusedParam(name) => diagnostic.at(name.span, "").help(
                 "remove it, or check the names in `params` of the shaders and in expressions",
             ),

@@ -170,6 +170,12 @@ pub(crate) enum ShaderError {
         at: Span,
         known: Vec<String>,
     },
+    #[error("nothing in `{shader}` uses the {what} `{}`", **name)]
+    Unused {
+        what: &'static str,
+        name: Located<String>,
+        shader: String,
+    },
 }
 
 impl IntoDiagnostic for ShaderError {
@@ -181,12 +187,16 @@ impl IntoDiagnostic for ShaderError {
             Self::NoSuchEntry { .. } | Self::NoEntry { .. } | Self::SeveralEntries { .. } => {
                 Code::EntryPoint
             }
+            Self::Unused { .. } => Code::Unused,
             _ => Code::Shader,
         }
     }
 
     fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
+            Self::Unused { name, .. } => diagnostic
+                .at(name.span, "")
+                .help("remove it, or check the names that should be it"),
             Self::TooLong { at, .. } => diagnostic
                 .at(at, "")
                 .help("split it into several shaders; large tables belong into buffers"),

@@ -33,6 +33,22 @@ pub(crate) struct Expanded {
     pub file: SourceFile,
     /// Consecutive pieces of `text`: where each begins, and the file and offset it came from.
     pieces: Vec<(usize, SourceFile, usize)>,
+    /// The imports of all files.
+    pub imports: Vec<ImportLine>,
+}
+
+/// An `#import` of a shader or of a module of it.
+#[derive(Clone, Debug)]
+pub(crate) struct ImportLine {
+    pub place: Span,
+    /// The path as it is written.
+    pub asked: String,
+    /// The path of the file that was asked for.
+    pub path: Arc<str>,
+    /// The file that stands there.
+    pub file: SourceFile,
+    /// It leaves out another one.
+    pub replaces: bool,
 }
 
 impl Expanded {
@@ -118,6 +134,7 @@ impl<'a> ShaderFiles<'a> {
             text: String::new(),
             file: file.clone(),
             pieces: Vec::new(),
+            imports: Vec::new(),
         };
         let mut seen = vec![file.name.to_string()];
         self.append(&file, replaced, &mut expanded, &mut seen, 0)
@@ -185,6 +202,7 @@ impl<'a> ShaderFiles<'a> {
             let unquoted = || ImportError::Unquoted(place.clone());
             let (path, replaced) = paths(rest).ok_or_else(unquoted)?;
             let mut imported = self.import(file, path, &place)?;
+            let path_asked = Arc::clone(&imported.name);
             // What stands in for a module may import it: then it is the module itself.
             let stands_in = modules
                 .get(&*imported.name)
@@ -197,6 +215,13 @@ impl<'a> ShaderFiles<'a> {
             if let Some(replaced) = replaced {
                 seen.push(self.import(file, replaced, &place)?.name.to_string());
             }
+            into.imports.push(ImportLine {
+                place: place.clone(),
+                asked: path.to_owned(),
+                path: path_asked,
+                file: imported.clone(),
+                replaces: replaced.is_some(),
+            });
             // Once only: this also ends cycles.
             if !seen.contains(&imported.name.to_string()) {
                 if depth == DEEPEST_IMPORT {

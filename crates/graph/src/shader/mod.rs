@@ -12,6 +12,7 @@ pub(crate) mod items;
 pub(crate) mod reflect;
 pub(crate) mod store;
 mod text;
+pub(crate) mod unused;
 pub(crate) mod varyings;
 mod wgsl_errors;
 

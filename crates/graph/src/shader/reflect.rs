@@ -399,6 +399,11 @@ impl Shader {
             .chain(overrides)
     }
 
+    /// Whether an entry point uses a global.
+    pub(super) fn uses(&self, entry: usize, global: Handle<naga::GlobalVariable>) -> bool {
+        self.info.get_entry_point(entry)[global] != GlobalUse::empty()
+    }
+
     /// Names of all globals of the module, used or not.
     pub(crate) fn global_names(&self) -> impl Iterator<Item = &str> {
         let globals = self.module.global_variables.iter();

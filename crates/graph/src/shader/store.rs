@@ -69,8 +69,16 @@ impl Shaders {
         found.filter_map(|(_, shader)| shader.as_ref().ok())
     }
 
+    /// Paths of the modules that any shader imports.
+    pub fn imported(&self) -> BTreeSet<&str> {
+        let read = self.shaders.values().flatten();
+        read.flat_map(|shader| &shader.source.imports)
+            .map(|line| &*line.path)
+            .collect()
+    }
+
     /// The path of a module that a document names.
-    fn module(&self, name: &Located<String>) -> Option<&String> {
+    pub fn module(&self, name: &Located<String>) -> Option<&String> {
         let folder = folder_of(&name.span.file.name).to_owned();
         self.modules.get(&(folder, name.value.clone()))
     }

@@ -1,0 +1,196 @@
+//! Imports, params and globals of a shader that nothing in it uses.
+
+use super::{
+    expand::{Expanded, ImportLine},
+    reflect::Shader,
+    text::next,
+};
+use crate::source::span::{Located, SourceFile};
+use naga::{Expression, TypeInner};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// One that nothing uses: what it is, and its name where it stands.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Unused {
+    pub what: &'static str,
+    pub name: Located<String>,
+}
+
+/// The words of a file.
+#[derive(Default)]
+struct Words<'t> {
+    mentioned: BTreeSet<&'t str>,
+    /// Declared at module scope.
+    declared: BTreeSet<&'t str>,
+    has_entry_point: bool,
+}
+
+impl<'t> Words<'t> {
+    fn of(text: &'t str) -> Self {
+        let mut words = Self::default();
+        let (mut at, mut depth, mut before) = (0, 0usize, "");
+        // Inside `<…>` behind `var`.
+        let mut is_template = false;
+        while let Some((length, token)) = next(&text[at..]) {
+            at += length;
+            match token {
+                "{" | "(" => depth += 1,
+                "}" | ")" => depth = depth.saturating_sub(1),
+                "<" if before == "var" => is_template = true,
+                ">" if is_template => {
+                    is_template = false;
+                    before = "var";
+                    continue;
+                }
+                "compute" | "vertex" | "fragment" if before == "@" => words.has_entry_point = true,
+                word if word.starts_with(|c: char| c.is_alphabetic() || c == '_') => {
+                    let declares = ["fn", "const", "override", "struct", "alias", "var"];
+                    if depth == 0 && !is_template && declares.contains(&before) {
+                        words.declared.insert(word);
+                    } else {
+                        words.mentioned.insert(word);
+                    }
+                }
+                _ => {}
+            }
+            before = token;
+        }
+        words
+    }
+}
+
+impl Shader {
+    /// What nothing uses: imports of all files, params and globals that the shader's own file
+    /// declares.
+    pub(crate) fn unused(&self) -> Vec<Unused> {
+        let mut unused = imports(&self.source);
+        unused.extend(self.unused_params());
+        unused.extend(self.unused_globals());
+        unused
+    }
+
+    /// Members of the uniform `params` that no function reads.
+    fn unused_params(&self) -> Vec<Unused> {
+        let module = self.module();
+        let mut globals = module.global_variables.iter();
+        let params = globals.find(|(_, global)| global.name.as_deref() == Some("params"));
+        let Some((params, global)) = params else {
+            return Vec::new();
+        };
+        let TypeInner::Struct { members, .. } = &module.types[global.ty].inner else {
+            return Vec::new();
+        };
+        let mut read = vec![false; members.len()];
+        for function in functions(module) {
+            for (handle, expression) in function.expressions.iter() {
+                if !matches!(expression, Expression::GlobalVariable(known) if *known == params) {
+                    continue;
+                }
+                let mut indices = 0;
+                for (_, user) in function.expressions.iter() {
+                    match user {
+                        Expression::AccessIndex { base, index } if *base == handle => {
+                            read[*index as usize] = true;
+                            indices += 1;
+                        }
+                        Expression::Load { pointer } if *pointer == handle => read.fill(true),
+                        _ => {}
+                    }
+                }
+                // Handed on whole.
+                if indices == 0 {
+                    read.fill(true);
+                }
+            }
+        }
+        let names = members.iter().zip(read).filter(|(_, read)| !read);
+        let names = names.filter_map(|(member, _)| member.name.as_deref());
+        names.filter_map(|name| self.own(name, "param")).collect()
+    }
+
+    /// Globals that no entry point uses.
+    fn unused_globals(&self) -> Vec<Unused> {
+        let module = self.module();
+        let entries: Vec<usize> = (0..module.entry_points.len()).collect();
+        let is_used = |handle| entries.iter().any(|entry| self.uses(*entry, handle));
+        let globals = module.global_variables.iter();
+        let unused = globals.filter(|(handle, global)| {
+            global.binding.is_some()
+                && global.name.as_deref() != Some("params")
+                && !is_used(*handle)
+        });
+        let names = unused.filter_map(|(_, global)| global.name.as_deref());
+        names.filter_map(|name| self.own(name, "global")).collect()
+    }
+
+    /// A name that the shader's own file declares.
+    fn own(&self, name: &str, what: &'static str) -> Option<Unused> {
+        let at = super::text::words(&self.source.text, name).find(|at| {
+            self.source.text[at + name.len()..]
+                .trim_start()
+                .starts_with(':')
+        })?;
+        let span = self.source.locate(at..at + name.len());
+        let name = Located::new(name.to_owned(), span);
+        (name.span.file == self.source.file).then_some(Unused { what, name })
+    }
+}
+
+fn functions(module: &naga::Module) -> impl Iterator<Item = &naga::Function> {
+    let functions = module.functions.iter().map(|(_, function)| function);
+    functions.chain(module.entry_points.iter().map(|entry| &entry.function))
+}
+
+/// Imports from which no file takes a name, and to which none gives one.
+fn imports(source: &Expanded) -> Vec<Unused> {
+    let mut files: BTreeMap<&str, &SourceFile> = BTreeMap::new();
+    files.insert(&source.file.name, &source.file);
+    for line in &source.imports {
+        files.insert(&line.file.name, &line.file);
+    }
+    let words: BTreeMap<&str, Words<'_>> = files
+        .iter()
+        .map(|(name, file)| (*name, Words::of(&file.text)))
+        .collect();
+    let is_used = |line: &ImportLine| {
+        let imported = reached(source, &line.file.name);
+        let from = &*line.place.file.name;
+        let mut own = imported.iter().filter_map(|file| words.get(file));
+        if line.replaces || own.clone().any(|own| own.has_entry_point) {
+            return true;
+        }
+        let declared: BTreeSet<&str> = own.clone().flat_map(|own| own.declared.clone()).collect();
+        // A module may ask for a function of the file that imports it.
+        let gives = &words[from].declared;
+        if own.any(|own| !own.mentioned.is_disjoint(gives)) {
+            return true;
+        }
+        // Or another one takes what this file imports for it.
+        let mut takers = words.iter().filter(|(file, _)| {
+            **file == from || !reached(source, file).contains(&*line.file.name)
+        });
+        takers.any(|(_, taker)| !taker.mentioned.is_disjoint(&declared))
+    };
+    let unused = source.imports.iter().filter(|line| !is_used(line));
+    unused
+        .map(|line| Unused {
+            what: "import",
+            name: Located::new(line.asked.clone(), line.place.clone()),
+        })
+        .collect()
+}
+
+/// The file and those that it imports, directly or not.
+fn reached<'s>(source: &'s Expanded, file: &'s str) -> BTreeSet<&'s str> {
+    let (mut found, mut open) = (BTreeSet::new(), vec![file]);
+    while let Some(file) = open.pop() {
+        if found.insert(file) {
+            let lines = source
+                .imports
+                .iter()
+                .filter(|line| *line.place.file.name == *file);
+            open.extend(lines.map(|line| &*line.file.name));
+        }
+    }
+    found
+}

@@ -87,16 +87,6 @@ fn fragment(vertex: Vertex) -> Texel {
     return Texel(nearest(vertex));
 }
 
-struct TexelOfPrimitive {
-    @builtin(frag_depth) depth: f32,
-    @location(0) primitive: u32,
-}
-
-@fragment
-fn fragment_with_primitive(vertex: Vertex) -> TexelOfPrimitive {
-    return TexelOfPrimitive(nearest(vertex), vertex.primitive);
-}
-
 fn nearest(vertex: Vertex) -> f32 {
     let centre = vertex.clip.xy;
     let ab = vertex.b.xy - vertex.a.xy;

@@ -4,6 +4,7 @@
 
 #import "shared/camera.wgsl"
 #import "shared/geometry.wgsl"
+#import "shared/ids.wgsl"
 #import "shared/pixel_weights.wgsl"
 #import "shared/solid.wgsl"
 

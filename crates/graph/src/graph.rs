@@ -343,6 +343,12 @@ impl Graph {
     /// the shader.
     fn unused_in_shaders(&self) -> Vec<(Unused, String)> {
         let mut found: Vec<(Unused, String)> = Vec::new();
+        let mut constants = BTreeSet::new();
+        self.document.visit(&mut |leaf| {
+            if let Leaf::Constant(name) = leaf {
+                constants.insert(name);
+            }
+        });
         each_entry(&self.document.entries, &mut |entry| {
             let What::Pass(pass) = &entry.what else {
                 return;
@@ -352,9 +358,9 @@ impl Graph {
                 let Some(first) = variants.next() else {
                     continue;
                 };
-                let mut unused = first.unused();
+                let mut unused = first.unused(&constants);
                 for other in variants {
-                    let other = other.unused();
+                    let other = other.unused(&constants);
                     unused.retain(|unused| other.contains(unused));
                 }
                 unused.retain(|unused| found.iter().all(|(known, _)| known != unused));
@@ -384,7 +390,7 @@ impl Used {
             Leaf::Param(name) => drop(used.params.insert(name.to_owned())),
             Leaf::Word(name) => drop(used.params.insert(name.to_string())),
             Leaf::Material(of) => drop(used.materials.insert(of.segments[0].name.to_string())),
-            Leaf::Constant | Leaf::Has(_) => {}
+            Leaf::Constant(_) | Leaf::Has(_) => {}
         });
         each_entry(&document.entries, &mut |entry| match &entry.what {
             What::Pass(pass) => {

@@ -247,7 +247,8 @@ pub(crate) enum Leaf<'a> {
     Param(&'a str),
     Word(&'a Name),
     Material(&'a Reference),
-    Constant,
+    /// A constant of the pass's shader.
+    Constant(&'a str),
     Has(wgt::Features),
 }
 
@@ -291,7 +292,7 @@ impl Expr {
         match &self.kind {
             ExprKind::Param(name) => each(Leaf::Param(name)),
             ExprKind::Word(word) => each(Leaf::Word(word)),
-            ExprKind::Constant(_) => each(Leaf::Constant),
+            ExprKind::Constant(name) => each(Leaf::Constant(name)),
             ExprKind::Has(feature) => each(Leaf::Has(*feature)),
             ExprKind::Attribute(Subject::Material(of), _) => {
                 each(Leaf::Material(of));

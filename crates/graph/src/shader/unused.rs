@@ -61,9 +61,9 @@ impl<'t> Words<'t> {
 
 impl Shader {
     /// What nothing uses: imports of all files, params and globals that the shader's own file
-    /// declares.
-    pub(crate) fn unused(&self) -> Vec<Unused> {
-        let mut unused = imports(&self.source);
+    /// declares. `constants` of it are named by the document.
+    pub(crate) fn unused(&self, constants: &BTreeSet<&str>) -> Vec<Unused> {
+        let mut unused = imports(&self.source, constants);
         unused.extend(self.unused_params());
         unused.extend(self.unused_globals());
         unused
@@ -142,16 +142,18 @@ fn functions(module: &naga::Module) -> impl Iterator<Item = &naga::Function> {
 }
 
 /// Imports from which no file takes a name, and to which none gives one.
-fn imports(source: &Expanded) -> Vec<Unused> {
+fn imports(source: &Expanded, constants: &BTreeSet<&str>) -> Vec<Unused> {
     let mut files: BTreeMap<&str, &SourceFile> = BTreeMap::new();
     files.insert(&source.file.name, &source.file);
     for line in &source.imports {
         files.insert(&line.file.name, &line.file);
     }
-    let words: BTreeMap<&str, Words<'_>> = files
+    let mut words: BTreeMap<&str, Words<'_>> = files
         .iter()
         .map(|(name, file)| (*name, Words::of(&file.text)))
         .collect();
+    let own = words.entry(&source.file.name).or_default();
+    own.mentioned.extend(constants);
     let is_used = |line: &ImportLine| {
         let imported = reached(source, &line.file.name);
         let from = &*line.place.file.name;

@@ -366,6 +366,8 @@ pub(crate) enum TextureMisfit {
     Layers(usize),
     #[error("it has {0} layers, a cube has six")]
     Cube(usize),
+    #[error("its layers become more, a cube has six")]
+    Grows,
 }
 
 fn scalars(reads: ScalarClass, holds: Option<ScalarClass>, depth: bool) -> String {
@@ -379,9 +381,12 @@ fn scalars(reads: ScalarClass, holds: Option<ScalarClass>, depth: bool) -> Strin
 impl TextureMisfit {
     fn code(&self) -> Code {
         match self {
-            Self::Flat | Self::Solid | Self::Slice | Self::Layers(_) | Self::Cube(_) => {
-                Code::ResourceKind
-            }
+            Self::Flat
+            | Self::Solid
+            | Self::Slice
+            | Self::Layers(_)
+            | Self::Cube(_)
+            | Self::Grows => Code::ResourceKind,
             Self::StorageMips | Self::StorageSamples(_) | Self::Samples(_) => Code::ResourceKind,
             _ => Code::FormatMismatch,
         }
@@ -406,6 +411,7 @@ impl TextureMisfit {
             Self::StorageSamples(_) => {
                 Some("write a texture without `samples`, or draw to this one")
             }
+            Self::Grows => Some("declare a texture_2d_array"),
             Self::StorageMips => Some("bind one of them: `x.mip[0]`"),
             _ => None,
         }

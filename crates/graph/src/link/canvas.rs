@@ -78,6 +78,7 @@ impl Linker<'_, '_> {
                 picture: None,
             }),
             origin: Origin::Own,
+            growth: None,
         });
         let target = self.symbols.whole(id);
         // It is no content: nothing is written, and nothing of before is needed.

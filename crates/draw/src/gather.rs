@@ -141,7 +141,9 @@ fn material(resource: &Resource) -> Material {
 /// What a pass reads and writes, with one entry for each part.
 fn accesses(pass: &LinkedPass, plan: &Plan) -> Vec<Access> {
     let mut drawn: Vec<Access> = Vec::new();
-    for access in &pass.accesses {
+    // In the place of attachments there is what is neither read nor written.
+    let uses = pass.accesses.iter();
+    for access in uses.filter(|access| access.reads || access.writes) {
         let resource = plan.resource(access.resource);
         let part = part(&access.part, &resource.kind);
         let known = drawn

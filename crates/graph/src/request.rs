@@ -42,8 +42,9 @@ pub struct PlanRequest<'a> {
     pub memory_limit: Option<u64>,
     /// What the host will import for the inputs of the root document, by name.
     pub imports: BTreeMap<String, Import>,
-    /// Items that buffers with `grow` are known to need, by full name: they are made as large, up
-    /// to their `max`. A graph that was loaded again goes on with what [`Plan::grown`] says.
+    /// Items that buffers with `grow`, and layers that textures with it, are known to need, by full
+    /// name: they are made as large, up to their `max`. A graph that was loaded again goes on with
+    /// what [`Plan::grown`] says.
     ///
     /// [`Plan::grown`]: crate::Plan::grown
     pub grown: BTreeMap<String, u64>,

@@ -29,6 +29,8 @@ pub struct Resource {
     pub kind: ResourceKind,
     /// Whose content it holds.
     pub origin: Origin,
+    /// How it grows between frames.
+    pub growth: Option<Growth>,
 }
 
 /// Whose content a resource holds.
@@ -166,17 +168,15 @@ pub struct Buffer {
     pub data: Option<Arc<Vec<Vec<f64>>>>,
     /// The bytes of `data`.
     pub content: Option<Arc<[u8]>>,
-    /// How it grows between frames.
-    pub growth: Option<Growth>,
 }
 
-/// How a buffer grows between frames.
+/// How the items of a buffer or the layers of a texture become more between frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Growth {
-    /// The buffer, or the item of one, whose first `u32` says how many items the frame would have
-    /// needed.
+    /// The buffer, or the item of one, whose first `u32` says how many items or layers the frame
+    /// would have needed.
     pub counter: Target,
-    /// Most items that the document lets it have.
+    /// Most items or layers that the document lets it have.
     pub max: u64,
 }
 

@@ -59,8 +59,9 @@ pub enum Command {
             # two machines in one page\n\n\
         `compare` writes the page into its folder by itself.")]
     Report(ReportArgs),
-    /// Render one frame with one graph and save any of its materials. Buffers that grow have room
-    /// for all that the frame needs: frames before it, which it counts, find out how much that is.
+    /// Render one frame with one graph and save any of its materials. Buffers and textures that
+    /// grow have room for all that the frame needs: frames before it, which it counts, find out how
+    /// much that is.
     #[command(
         after_help = "Examples:\n  skiagraph run nsm --save visibility=shadow.png\n  \
         skiagraph run nsm --save shadow_map@create_shadow_map.draw[0]=map.png --map-size 512\n  \

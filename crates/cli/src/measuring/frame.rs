@@ -93,16 +93,16 @@ const GROWING: u32 = 8;
 /// Frames that it took to give buffers room for all that a frame needs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Growth {
-    /// Frames that were run for it; 0 where no buffer grows.
+    /// Frames that were run for it; 0 where nothing grows.
     pub frames: u32,
-    /// The buffers that may grow, by their full names.
+    /// The buffers and textures that may grow, by their full names.
     pub buffers: Vec<String>,
     /// Whether the last of the frames asked for no more.
     pub is_settled: bool,
 }
 
 impl Growth {
-    /// A line of what `run` says; nothing where no buffer grows.
+    /// A line of what `run` says; nothing where nothing grows.
     pub fn text(&self) -> String {
         let (frames, buffers) = (frames(self.frames), self.buffers.join(", "));
         match (self.frames, self.is_settled) {
@@ -119,7 +119,7 @@ impl Growth {
     }
 }
 
-/// Runs frames until the buffers that grow have room for all that a frame needs.
+/// Runs frames until what grows has room for all that a frame needs.
 ///
 /// # Errors
 /// Those of the executor.

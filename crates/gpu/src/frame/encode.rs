@@ -199,6 +199,13 @@ fn end(
     }
 }
 
+/// The place of the attachments in a draw without any: it is never read.
+fn canvas_attachment(canvas: &GpuAttachment) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    let mut attachment = color_attachment(canvas, None, Some([0.0; 4]))?;
+    attachment.ops.store = wgpu::StoreOp::Discard;
+    Some(attachment)
+}
+
 fn color_attachment<'v>(
     target: &'v GpuAttachment,
     resolve: Option<&'v GpuAttachment>,
@@ -285,6 +292,7 @@ fn encode_draw(
         .colors
         .iter()
         .map(|color| color_attachment(&color.target, color.resolve.as_ref(), color.clear))
+        .chain(draw.canvas.iter().map(canvas_attachment))
         .collect();
     let depth = draw.depth.as_ref();
     let stencil = draw.stencil.as_ref();

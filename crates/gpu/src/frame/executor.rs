@@ -92,8 +92,8 @@ impl Executor {
     }
 
     /// Encodes a frame, which the host submits; returns its number. It never waits: any number of
-    /// frames may be under way. Buffers with `grow` that were too small for a frame of before, as
-    /// submissions have told since, are larger from this frame on: see [`Plan::grown`].
+    /// frames may be under way. What has `grow` and was too small for a frame of before, as
+    /// submissions have told since, is larger from this frame on: see [`Plan::grown`].
     ///
     /// # Errors
     /// If an output is asked for that the plan does not have, an import or something of the

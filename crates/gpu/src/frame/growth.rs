@@ -1,4 +1,5 @@
-//! Buffers that grow: after a frame the counter says how many items it would have needed.
+//! Buffers and textures that grow: after a frame the counter says how many items or layers it would
+//! have needed.
 
 use super::{executor::Executor, growth_readback::GrowthReadback, replan::ReplanReport};
 use crate::{
@@ -13,11 +14,11 @@ use std::collections::BTreeMap;
 struct Unchanged(BTreeMap<String, Result<u64, String>>);
 
 impl Executor {
-    /// Makes buffers with `grow` larger that were too small for a frame that is done, as the next
-    /// [`encode`](Self::encode) would do; for a host that wants the new plan at a time of its own,
-    /// or to know of it. It never waits: a counter that has not arrived is looked at the next time.
-    /// `None` if there was nothing to do. Where the memory limit or the device refuses larger
-    /// buffers, what the document does for items that have no room holds, and nothing is tried
+    /// Makes buffers and textures larger that have `grow` and were too small for a frame that is
+    /// done, as the next [`encode`](Self::encode) would do; for a host that wants the new plan at a
+    /// time of its own, or to know of it. It never waits: a counter that has not arrived is looked
+    /// at the next time. `None` if there was nothing to do. Where the memory limit or the device
+    /// refuses more, what the document does for items that have no room holds, and nothing is tried
     /// until the plan changes otherwise.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
-//! Counters of buffers that grow, on their way to the host: copied behind a frame, mapped when it
-//! is submitted, looked at when they have arrived. One at a time: what frames need meanwhile, the
-//! next one that is counted needs too, or it is no longer needed.
+//! Counters of buffers and textures that grow, on their way to the host: copied behind a frame,
+//! mapped when it is submitted, looked at when they have arrived. One at a time: what frames need
+//! meanwhile, the next one that is counted needs too, or it is no longer needed.
 
 use crate::{
     error::{ExecuteError, scoped},
@@ -15,10 +15,11 @@ use skiagraph_graph::{Growth, Plan, ResourceId, ResourceKind};
 /// Bytes of a counter.
 const COUNTER: u64 = 4;
 
-/// A buffer that may grow, and its counter on the way to the host.
+/// A buffer or texture that may grow, and its counter on the way to the host.
 pub(super) struct GrowthReadback {
-    /// Full name of the buffer.
+    /// Full name of the buffer or texture.
     pub name: String,
+    /// Its items or layers.
     count: u64,
     growth: Growth,
     staging: wgpu::Buffer,
@@ -32,10 +33,14 @@ impl GrowthReadback {
     pub fn all(plan: &Plan, device: &wgpu::Device) -> Result<Vec<Self>, ExecuteError> {
         let readback = |(id, growth): (ResourceId, Growth)| {
             let resource = plan.resource(id);
-            let ResourceKind::Buffer(buffer) = &resource.kind else {
-                return None;
+            let count = match &resource.kind {
+                ResourceKind::Buffer(buffer) => buffer.count?,
+                ResourceKind::Texture(texture) => u64::from(texture.layers),
+                _ => return None,
             };
-            let count = buffer.count.filter(|count| *count < growth.max)?;
+            if count >= growth.max {
+                return None;
+            }
             let staging = scoped(device, &resource.name, || {
                 device.create_buffer(&wgpu::BufferDescriptor {
                     label: Some("counter"),
@@ -56,7 +61,7 @@ impl GrowthReadback {
         plan.growing().into_iter().filter_map(readback).collect()
     }
 
-    /// Goes on with what a plan before had under way for the same buffers: a host that changes its
+    /// Goes on with what a plan before had under way for the same names: a host that changes its
     /// plan in every frame would lose each counter otherwise.
     pub fn take_over(growth_readbacks: &mut [Self], before: Vec<Self>) {
         for old in before {
@@ -98,7 +103,7 @@ impl GrowthReadback {
         self.is_asked
     }
 
-    /// How many items the buffer should have, if it has too few and the counter has arrived.
+    /// How many items or layers it should have, if it has too few and the counter has arrived.
     pub fn wanted(&mut self) -> Option<u64> {
         let progress = self.mapped.progress();
         if !self.is_asked || progress == Progress::UnderWay {

@@ -29,7 +29,7 @@ pub(super) struct State {
     pub passes: Vec<GpuPass>,
     pub contents: Contents,
     pub poison: Option<Poison>,
-    /// Buffers that may grow.
+    /// Buffers and textures that may grow.
     pub growth_readbacks: Vec<GrowthReadback>,
     /// What can be read back.
     pub readables: Vec<Arc<Readable>>,

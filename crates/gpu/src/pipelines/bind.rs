@@ -194,6 +194,7 @@ impl Binder<'_> {
                 .collect::<Result<_, ExecuteError>>()?,
             depth: draw.depth.as_ref().map(depth).transpose()?,
             stencil: draw.stencil.as_ref().map(stencil).transpose()?,
+            canvas: draw.canvas.as_ref().map(attachment).transpose()?,
             area: draw.area,
             call: match &draw.call {
                 DrawCall::Direct {

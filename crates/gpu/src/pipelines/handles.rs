@@ -13,6 +13,7 @@ impl Stage for Handles {
     type Arguments = (wgpu::Buffer, u64);
     type Program = GpuProgram;
     type Size = [u32; 3];
+    type Canvas = GpuAttachment;
 }
 
 /// What is drawn to: a view, and the slice of it that a 3D texture has.

@@ -124,6 +124,7 @@ pub(crate) fn same_pipeline(a: &Step<Ids>, b: &Step<Ids>) -> bool {
                 && a.fullscreen == b.fullscreen
                 && a.primitive == b.primitive
                 && targets(a) == targets(b)
+                && a.canvas.is_some() == b.canvas.is_some()
                 && depth_stencil(a) == depth_stencil(b)
                 && samples(a) == samples(b)
         }
@@ -214,17 +215,17 @@ fn render_pipeline(
             buffers: &[],
         },
     };
-    let targets: Vec<Option<wgpu::ColorTargetState>> = draw
-        .colors
-        .iter()
-        .map(|color| {
-            Some(wgpu::ColorTargetState {
-                format: color.target.format,
-                blend: color.blend,
-                write_mask: color.write,
-            })
-        })
-        .collect();
+    let colors = draw.colors.iter().map(|color| wgpu::ColorTargetState {
+        format: color.target.format,
+        blend: color.blend,
+        write_mask: color.write,
+    });
+    let canvas = draw.canvas.iter().map(|canvas| wgpu::ColorTargetState {
+        format: canvas.format,
+        blend: None,
+        write_mask: wgpu::ColorWrites::empty(),
+    });
+    let targets: Vec<Option<wgpu::ColorTargetState>> = colors.chain(canvas).map(Some).collect();
     let fragment = entry(ShaderStage::Fragment).map(|name| wgpu::FragmentState {
         module,
         entry_point: Some(name),

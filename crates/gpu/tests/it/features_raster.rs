@@ -395,3 +395,84 @@ fn an_area_and_a_resolve_may_be_of_a_mip() {
     let maps = [&[4.0; 36][..], &[4.0, 4.0, 4.0, 7.0]].concat();
     assert_eq!(running.floats("maps"), maps);
 }
+
+/// A triangle that covers some of 37×23 texels, and what its fragment shader does.
+fn triangle(globals: &str, fragment: &str) -> String {
+    format!(
+        "{globals}
+        @vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {{
+            let corners = array(vec2(-0.9, -0.7), vec2(0.8, -0.3), vec2(-0.1, 0.95));
+            return vec4(corners[index], 0.5, 1.0);
+        }}
+        {fragment}"
+    )
+}
+
+const TOUCHED: &str = "var<storage, read_write> total: atomic<u32>;
+    var marks: texture_storage_2d<r32uint, write>;";
+
+/// Two passes without a target: one counts by atomics, one writes a storage texture, and each
+/// touches the texels that the triangle fills in a target of that size.
+#[test]
+fn a_pass_without_a_target_touches_what_a_target_of_its_size_would_show() {
+    let files = Files::graph(
+        r#"
+        params: [U32(name: "width", default: 37)],
+        materials: [
+            Texture(name: "image", format: R32Uint, size: ("width", 23)),
+            Texture(name: "marks", format: R32Uint, size: "image.size"),
+            Buffer(name: "total"),
+            Buffer(name: "part"),
+        ],
+        passes: [
+            Raster(name: "fill", draw: 3, color: ["image"]),
+            Clear(name: "reset", target: "total"),
+            Clear(name: "unmark", target: "marks"),
+            Clear(name: "none", target: "part"),
+            Raster(name: "touch", draw: 3, size: "image.size"),
+            Raster(name: "touch_part", shader: "touch", fragment: "counted", draw: 3,
+                size: "image.size", area: (9, 4, 20, 11), bind: {"total": "part"}),
+        ],
+        outputs: ["image", "marks", "total", "part"],
+        "#,
+    )
+    .with(
+        "fill.wgsl",
+        triangle(
+            "",
+            "@fragment fn fragment() -> @location(0) u32 { return 1u; }",
+        ),
+    )
+    .with(
+        "touch.wgsl",
+        triangle(
+            TOUCHED,
+            "@fragment fn fragment(@builtin(position) at: vec4<f32>) {
+                atomicAdd(&total, 1u);
+                textureStore(marks, vec2<u32>(at.xy), vec4(1u));
+            }
+            @fragment fn counted() { atomicAdd(&total, 1u); }",
+        ),
+    )
+    .edited(
+        "graph.ron",
+        r#"name: "touch", draw"#,
+        r#"name: "touch", fragment: "fragment", draw"#,
+    );
+    for width in [37, 64] {
+        let mut running = Running::with(&files, &[("width", ParamValue::U32(width))]);
+        let image = running.words("image");
+        assert_eq!(image.len(), width as usize * 23);
+        let filled: u32 = image.iter().sum();
+        assert!(
+            filled > 100 && (filled as usize) < image.len() / 2,
+            "{filled}"
+        );
+        assert_eq!(running.words("marks"), image);
+        // Every frame alike: the content of before is of no account.
+        assert_eq!([0; 2].map(|_| running.words("total")[0]), [filled; 2]);
+        // The viewport is the area, so the triangle is as much smaller.
+        let part = running.words("part")[0];
+        assert!((40..filled).contains(&part), "{part} of {filled}");
+    }
+}

@@ -1,4 +1,4 @@
-//! Buffers that grow between frames.
+//! Buffers and textures that grow between frames.
 
 use crate::host::{self, GPU, encoder, executor, frame, planned, request, set, submit, words};
 use crate::support::Files;
@@ -337,6 +337,98 @@ fn a_counter_may_be_an_item() {
     let report = frame(&mut executor, &["few", "many"]);
     assert_eq!(words(&report, 0), [0, 0, 0, 1]);
     assert_eq!((words(&report, 1).len(), words(&report, 1)[24]), (25, 2));
+    assert_eq!(grow(&mut executor), None);
+}
+
+/// As many layers of four texels as are wanted, while there is room; `sums` has one number per
+/// layer.
+fn layered() -> Files {
+    filled()
+        .edited(
+            "graph.ron",
+            r#"Buffer(name: "items", count: 4,"#,
+            r#"Buffer(name: "sums", count: "items.layers"),
+        Texture(name: "items", format: R32Uint, size: 2, layers: 4,"#,
+        )
+        .edited(
+            "graph.ron",
+            r#"dispatch: Over("wanted")),"#,
+            r#"dispatch: Over("wanted")),
+        Compute(name: "add", dispatch: Over("sums.count")),"#,
+        )
+        .edited("graph.ron", r#"["items", "#, r#"["items", "sums", "#)
+        .edited(
+            "fill.wgsl",
+            "var<storage, read_write> items: array<u32>;",
+            "var items: texture_storage_2d_array<r32uint, write>;",
+        )
+        .edited(
+            "fill.wgsl",
+            "arrayLength(&items)",
+            "textureNumLayers(items)",
+        )
+        .edited(
+            "fill.wgsl",
+            "items[id.x] = 100u + id.x;",
+            "for (var texel = 0u; texel < 4u; texel++) {
+                textureStore(items, vec2(texel & 1u, texel >> 1u), id.x, vec4(100u + id.x));
+            }",
+        )
+        .with(
+            "add.wgsl",
+            "var items: texture_2d_array<u32>;
+             var<storage, read_write> sums: array<u32>;
+             @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+                 if id.x < textureNumLayers(items) {
+                     sums[id.x] = textureLoad(items, vec2(0u), id.x, 0).x
+                         + textureLoad(items, vec2(1u), id.x, 0).x;
+                 }
+             }",
+        )
+}
+
+#[track_caller]
+fn shows_layers(executor: &mut Executor, wanted: u32, layers: u32) {
+    let report = frame(executor, &["items", "sums", "needed"]);
+    let expected = numbered(wanted, layers);
+    let texels = expected.iter().flat_map(|number| [*number; 4]);
+    assert_eq!(words(&report, 0), texels.collect::<Vec<_>>());
+    let sums = expected.iter().map(|number| 2 * number);
+    assert_eq!(words(&report, 1), sums.collect::<Vec<_>>());
+    assert_eq!(words(&report, 2), [wanted]);
+}
+
+#[test]
+fn the_layers_of_a_texture_grow_as_items_do() {
+    let mut executor = executor(&layered(), &request(&NoProvider));
+    shows_layers(&mut executor, 4, 4);
+    assert_eq!(grow(&mut executor), None, "there is room");
+    set(&mut executor, "wanted", ParamValue::U32(10));
+    shows_layers(&mut executor, 10, 4);
+    let report = grown(&mut executor);
+    // What is counted by its layers follows; pipelines stay.
+    assert_eq!(report.pipelines, [""; 0]);
+    assert_eq!(report.resources, ["sums", "items"]);
+    for _ in 0..3 {
+        // A quarter more than the frame needed.
+        shows_layers(&mut executor, 10, 12);
+        assert_eq!(grow(&mut executor), None, "there is room now");
+    }
+    assert_eq!(executor.plan().grown()["items"], 12);
+    // Frames do it by themselves, as far as the document lets them.
+    set(&mut executor, "wanted", ParamValue::U32(1000));
+    shows_layers(&mut executor, 1000, 12);
+    shows_layers(&mut executor, 1000, 64);
+    assert_eq!(grow(&mut executor), None);
+    // The adapter's limit bounds it where the document's would not; patterns change nothing.
+    let mut request = request(&NoProvider);
+    request.limits.max_texture_array_layers = 9;
+    request.poison = Some(0xff);
+    let mut executor = host::executor(&layered(), &request);
+    set(&mut executor, "wanted", ParamValue::U32(1000));
+    frame(&mut executor, &[]);
+    grown(&mut executor);
+    shows_layers(&mut executor, 1000, 9);
     assert_eq!(grow(&mut executor), None);
 }
 

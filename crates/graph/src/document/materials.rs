@@ -34,6 +34,15 @@ impl Material {
 
     /// Calls `each` with everything that its size and format are made of.
     pub fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
+        let grow = match self {
+            Self::Texture(texture) => texture.grow.as_deref(),
+            Self::Buffer(buffer) => buffer.grow.as_ref(),
+            Self::Sampler(_) => None,
+        };
+        if let Some(grow) = grow {
+            each(Leaf::Material(&grow.counter));
+            grow.max.visit(each);
+        }
         let exprs = match self {
             Self::Texture(texture) => {
                 let format = match &texture.format {
@@ -47,13 +56,7 @@ impl Material {
                 let (size, layers) = (texture.size.as_ref(), texture.layers.as_ref());
                 [format, mips, size, layers, texture.samples.as_ref()]
             }
-            Self::Buffer(buffer) => {
-                if let Some(grow) = &buffer.grow {
-                    each(Leaf::Material(&grow.counter));
-                }
-                let max = buffer.grow.as_ref().map(|grow| &grow.max);
-                [buffer.count.as_ref(), max, None, None, None]
-            }
+            Self::Buffer(buffer) => [buffer.count.as_ref(), None, None, None, None],
             Self::Sampler(_) => [None; 5],
         };
         exprs
@@ -82,6 +85,9 @@ pub(crate) struct TextureEntry {
     /// Number of layers; with it the texture is an array.
     #[serde(default)]
     pub layers: Option<Expr>,
+    /// How its layers become more between frames.
+    #[serde(default)]
+    pub grow: Option<Box<GrowEntry>>,
     /// Samples of a texel, one without it.
     #[serde(default)]
     pub samples: Option<Expr>,
@@ -150,7 +156,7 @@ pub(crate) struct BufferEntry {
     pub grow: Option<GrowEntry>,
 }
 
-/// How a buffer grows between frames.
+/// How the items of a buffer or the layers of a texture become more between frames.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(
     feature = "schema",
@@ -159,9 +165,10 @@ pub(crate) struct BufferEntry {
 )]
 #[serde(deny_unknown_fields)]
 pub(crate) struct GrowEntry {
-    /// The buffer, or item of one, whose first u32 says how many items a frame would have needed.
+    /// The buffer, or item of one, whose first u32 says how many items or layers a frame would have
+    /// needed.
     pub counter: Reference,
-    /// Most items.
+    /// Most items or layers.
     pub max: Expr,
 }
 

@@ -77,6 +77,8 @@ pub(crate) enum DocumentError {
     WriteMask(Span),
     #[error("an area is four whole numbers: `(x, y, width, height)`")]
     Area(Span),
+    #[error("the size of a pass is one number or two: `(width, height)`")]
+    Canvas(Span),
     #[error("clearing knows no area")]
     ClearInArea { clear: Span, area: Span },
     #[error("this is no list of items")]
@@ -221,7 +223,7 @@ impl DocumentError {
             Self::WriteMask(span) => diagnostic
                 .at(span, "")
                 .help("write `rgb`, `true` or `false`"),
-            Self::Area(span) => diagnostic.at(span, ""),
+            Self::Area(span) | Self::Canvas(span) => diagnostic.at(span, ""),
             Self::ClearInArea { clear, area } => diagnostic
                 .at(clear, "this would clear the whole target")
                 .at(area, "and this is a part of it")

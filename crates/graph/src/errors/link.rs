@@ -294,8 +294,25 @@ pub(crate) enum LinkError {
     },
     #[error("`{}` has several mips or layers", **.0)]
     SeveralLayers(Located<String>),
-    #[error("pass `{}` draws to nothing", **.0)]
-    NoTargets(Located<String>),
+    #[error("pass `{}` draws to nothing", **pass)]
+    NoTargets {
+        pass: Located<String>,
+        fullscreen: bool,
+    },
+    #[error("pass `{pass}` has a target and a `size`")]
+    CanvasBeside {
+        pass: String,
+        size: Span,
+        target: Located<String>,
+    },
+    #[error("pass `{}` has neither a target nor a fragment shader", **pass)]
+    CanvasWithoutFragment { pass: Located<String>, size: Span },
+    #[error("the fragment shader of pass `{pass}` returns a value, but the pass has no target")]
+    CanvasOutput {
+        pass: String,
+        size: Span,
+        entry: Span,
+    },
     #[error("depth and stencil of pass `{}` are two textures", **.0)]
     TwoDepthStencils(Located<String>),
     #[error("the targets of pass `{}` differ in size", **pass)]
@@ -310,7 +327,7 @@ pub(crate) enum LinkError {
         names: [String; 2],
         samples: [u32; 2],
     },
-    #[error("the area of pass `{}` does not lie in its targets", **pass)]
+    #[error("the area of pass `{}` does not lie in what it draws to", **pass)]
     AreaOutside {
         pass: Located<String>,
         area: [u32; 4],
@@ -349,6 +366,8 @@ pub(crate) enum TextureMisfit {
     Layers(usize),
     #[error("it has {0} layers, a cube has six")]
     Cube(usize),
+    #[error("its layers become more, a cube has six")]
+    Grows,
 }
 
 fn scalars(reads: ScalarClass, holds: Option<ScalarClass>, depth: bool) -> String {
@@ -362,9 +381,12 @@ fn scalars(reads: ScalarClass, holds: Option<ScalarClass>, depth: bool) -> Strin
 impl TextureMisfit {
     fn code(&self) -> Code {
         match self {
-            Self::Flat | Self::Solid | Self::Slice | Self::Layers(_) | Self::Cube(_) => {
-                Code::ResourceKind
-            }
+            Self::Flat
+            | Self::Solid
+            | Self::Slice
+            | Self::Layers(_)
+            | Self::Cube(_)
+            | Self::Grows => Code::ResourceKind,
             Self::StorageMips | Self::StorageSamples(_) | Self::Samples(_) => Code::ResourceKind,
             _ => Code::FormatMismatch,
         }
@@ -389,6 +411,7 @@ impl TextureMisfit {
             Self::StorageSamples(_) => {
                 Some("write a texture without `samples`, or draw to this one")
             }
+            Self::Grows => Some("declare a texture_2d_array"),
             Self::StorageMips => Some("bind one of them: `x.mip[0]`"),
             _ => None,
         }
@@ -427,13 +450,15 @@ impl LinkError {
             | Self::NotDrawable { .. }
             | Self::NotBlendable { .. }
             | Self::NoFragmentOutput { .. }
+            | Self::CanvasOutput { .. }
             | Self::FragmentOutput { .. }
             | Self::NoDepth { .. }
             | Self::NoStencil { .. } => Code::FormatMismatch,
-            Self::NoTargets(_) => Code::MissingField,
-            Self::TargetSizes { .. } | Self::TargetSamples { .. } | Self::AreaOutside { .. } => {
-                Code::Size
-            }
+            Self::NoTargets { .. } | Self::CanvasWithoutFragment { .. } => Code::MissingField,
+            Self::TargetSizes { .. }
+            | Self::TargetSamples { .. }
+            | Self::AreaOutside { .. }
+            | Self::CanvasBeside { .. } => Code::Size,
             _ => Code::ResourceKind,
         }
     }
@@ -739,10 +764,6 @@ impl LinkError {
                     "name one: `{0}[0]`, `{0}.mip[0]`, `{0}[0].mip[0]`",
                     name.value
                 )),
-            Self::NoTargets(pass) => diagnostic.at(
-                pass.span,
-                "give it `color: […]`, `depth: …` or `stencil: (…)`",
-            ),
             Self::TwoDepthStencils(pass) => diagnostic
                 .at(pass.span, "")
                 .help("a stencil is that of the depth: one texture with both"),
@@ -771,6 +792,36 @@ impl LinkError {
                     area[2], area[3], area[0], area[1], whole[0], whole[1]
                 ),
             ),
+            other => other.explain_canvas(diagnostic),
+        }
+    }
+
+    fn explain_canvas(self, diagnostic: Diagnostic) -> Diagnostic {
+        match self {
+            Self::NoTargets {
+                pass,
+                fullscreen: true,
+            } => diagnostic.at(pass.span, "give it `color: […]` or `stencil: (…)`"),
+            Self::NoTargets { pass, .. } => diagnostic
+                .at(
+                    pass.span,
+                    "give it `color: […]`, `depth: …` or `stencil: (…)`",
+                )
+                .help(
+                    "or `size: (width, height)`, if its fragment shader writes buffers or storage \
+                     textures alone",
+                ),
+            Self::CanvasBeside { size, target, .. } => diagnostic
+                .at(size, "this is the size of a pass without targets")
+                .at(target.span, "the pass is as large as this")
+                .help("leave `size` out"),
+            Self::CanvasWithoutFragment { pass, size } => diagnostic
+                .at(pass.span, "")
+                .at(size, "a pass without targets")
+                .help("give it a fragment shader that writes buffers or storage textures"),
+            Self::CanvasOutput { size, entry, .. } => diagnostic
+                .at(entry, "have it return nothing")
+                .at(size, "or give the pass `color: […]` in the place of `size`"),
             _ => diagnostic,
         }
     }

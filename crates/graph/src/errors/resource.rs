@@ -73,6 +73,12 @@ pub(crate) enum SizeError {
     NoItems(Located<String>),
     #[error("`{}` grows, but from which `count`?", **.0)]
     GrowWithoutCount(Located<String>),
+    #[error("`{}` grows, but from which `layers`?", **.0)]
+    GrowWithoutLayers(Located<String>),
+    #[error("`{}` grows from one layer", **.0)]
+    GrowFromOne(Located<String>),
+    #[error("`{}` grows to nothing: its `max` is 0", **.0)]
+    GrowToNothing(Located<String>),
     #[error("`{}` is {what}: it cannot count items", **name)]
     Counter {
         name: Located<String>,
@@ -93,7 +99,7 @@ impl IntoDiagnostic for SizeError {
     fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
             Self::Absurd { name } => diagnostic.at(name.span, ""),
-            Self::NoTexels { name, .. } | Self::NoItems(name) => {
+            Self::NoTexels { name, .. } | Self::NoItems(name) | Self::GrowToNothing(name) => {
                 diagnostic.at(name.span, "").help("give it one at least")
             }
             Self::Texels { name, most, .. } => diagnostic
@@ -134,6 +140,14 @@ impl IntoDiagnostic for SizeError {
             Self::GrowWithoutCount(name) => diagnostic
                 .at(name.span, "")
                 .help("give it a `count` to begin with; `data` does not grow"),
+            Self::GrowWithoutLayers(name) => diagnostic.at(name.span, "").help(
+                "give it `layers` to begin with, two or more; a picture and a 3D texture do not \
+                 grow",
+            ),
+            Self::GrowFromOne(name) => diagnostic.at(name.span, "").help(
+                "begin with two `layers`, and let `max` be two or more: one layer can be bound and \
+                 drawn to as a texture without layers, several cannot",
+            ),
             Self::Counter { name, .. } => diagnostic
                 .at(name.span, "")
                 .help("name a buffer whose first u32 a pass makes the number of items needed"),

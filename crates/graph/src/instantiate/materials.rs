@@ -7,9 +7,7 @@ use super::{
 };
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
-    document::materials::{
-        BufferEntry, FormatEntry, GrowEntry, Material, Mips, SamplerEntry, TextureEntry,
-    },
+    document::materials::{BufferEntry, FormatEntry, Material, Mips, SamplerEntry, TextureEntry},
     errors::{evaluation::EvaluationError, resource::SizeError},
     language::{
         syntax::{Expr, Leaf},
@@ -115,7 +113,7 @@ impl SymbolTable<'_> {
         let kind = self.kind(&declared, &full_name, reports);
         self.evaluating.pop();
         self.states[id.index()] = match kind {
-            Ok(kind) => {
+            Ok((kind, growth)) => {
                 let is_constant = match &kind {
                     ResourceKind::Texture(texture) => texture.picture.is_some(),
                     ResourceKind::Buffer(buffer) => buffer.data.is_some(),
@@ -125,6 +123,7 @@ impl SymbolTable<'_> {
                     self.resources[id.index()].origin = Origin::Constant;
                 }
                 self.resources[id.index()].kind = kind;
+                self.resources[id.index()].growth = growth;
                 State::Known
             }
             Err(reported) => State::Invalid(reported),
@@ -136,19 +135,25 @@ impl SymbolTable<'_> {
         declared: &Declared,
         full_name: &str,
         reports: &mut Reports,
-    ) -> Result<ResourceKind, ErrorGuaranteed> {
+    ) -> Result<(ResourceKind, Option<Growth>), ErrorGuaranteed> {
         let position = Position {
             scope: declared.scope,
             index: None,
         };
         match declared.material() {
             Material::Texture(entry) => {
-                let texture = self.texture(entry, declared, position, reports)?;
+                let mut texture = self.texture(entry, declared, position, reports)?;
+                let growth =
+                    self.grow_texture(entry, &mut texture, full_name, position, reports)?;
                 self.check_texture(entry, &texture, reports)?;
-                Ok(ResourceKind::Texture(texture))
+                Ok((ResourceKind::Texture(texture), growth))
             }
-            Material::Buffer(entry) => self.buffer(entry, full_name, position, reports),
-            Material::Sampler(entry) => Ok(ResourceKind::Sampler(sampler(entry))),
+            Material::Buffer(entry) => {
+                let mut buffer = self.buffer(entry, position, reports)?;
+                let growth = self.grow_buffer(entry, &mut buffer, full_name, position, reports)?;
+                Ok((ResourceKind::Buffer(buffer), growth))
+            }
+            Material::Sampler(entry) => Ok((ResourceKind::Sampler(sampler(entry)), None)),
         }
     }
 
@@ -255,10 +260,9 @@ impl SymbolTable<'_> {
     fn buffer(
         &mut self,
         entry: &BufferEntry,
-        full_name: &str,
         position: Position,
         reports: &mut Reports,
-    ) -> Result<ResourceKind, ErrorGuaranteed> {
+    ) -> Result<Buffer, ErrorGuaranteed> {
         let name = |span: &Span| Located::new(entry.name.value.to_string(), span.clone());
         let count = match (&entry.count, &entry.data) {
             (Some(count), Some(_)) => {
@@ -277,51 +281,11 @@ impl SymbolTable<'_> {
             },
         };
         let data = entry.data.as_ref().map(|data| Arc::new(data.0.clone()));
-        let mut buffer = Buffer {
+        Ok(Buffer {
             count,
             data,
             ..Buffer::default()
-        };
-        if let Some(grow) = &entry.grow {
-            let Some(count) = buffer.count.filter(|_| entry.count.is_some()) else {
-                return Err(reports.report(SizeError::GrowWithoutCount(name(&entry.name.span))));
-            };
-            let growth = self.growth(grow, position, reports)?;
-            let grown = self.request.grown.get(full_name).copied().unwrap_or(0);
-            buffer.count = Some(count.max(grown).min(growth.max));
-            buffer.growth = Some(growth);
-        }
-        Ok(ResourceKind::Buffer(buffer))
-    }
-
-    fn growth(
-        &mut self,
-        grow: &GrowEntry,
-        position: Position,
-        reports: &mut Reports,
-    ) -> Result<Growth, ErrorGuaranteed> {
-        let counter = self.resolve(&grow.counter, position, reports)?;
-        let resource = self.get(counter.id);
-        let is_own = resource.origin == Origin::Own;
-        if !(is_own && matches!(resource.kind, ResourceKind::Buffer(_))) {
-            let what = if is_own {
-                resource.kind.describe()
-            } else {
-                "not made by this graph"
-            };
-            let text = grow.counter.text().to_owned();
-            let name = Located::new(text, grow.counter.span.clone());
-            return Err(reports.report(SizeError::Counter { name, what }));
-        }
-        let max = match grow.max.count(&mut self.at(position, None, reports))? {
-            0 if grow.max.is_taken() => 1,
-            0 => {
-                let name = Located::new("max".to_owned(), grow.max.span.clone());
-                return Err(reports.report(SizeError::NoItems(name)));
-            }
-            max => max,
-        };
-        Ok(Growth { counter, max })
+        })
     }
 
     fn check_texture(

@@ -5,6 +5,7 @@
 
 pub(crate) mod build;
 pub(crate) mod flat;
+mod growth;
 pub(crate) mod include;
 pub(crate) mod lower;
 pub(crate) mod materials;

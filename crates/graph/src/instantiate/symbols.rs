@@ -92,6 +92,7 @@ impl<'a> SymbolTable<'a> {
             declared: Some(declared.span.clone()),
             kind: ResourceKind::Buffer(crate::resource::Buffer::default()),
             origin: Origin::Own,
+            growth: None,
         });
         self.states.push(State::Declared(declared));
         ResourceId(self.resources.len() - 1)
@@ -435,6 +436,7 @@ impl<'a> SymbolTable<'a> {
                     declared: None,
                     kind,
                     origin: Origin::Host,
+                    growth: None,
                 });
                 self.scene.insert(name.to_owned(), id);
                 id

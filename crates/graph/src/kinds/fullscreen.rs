@@ -46,6 +46,7 @@ impl PassKind for Fullscreen {
                 .stencil
                 .as_ref()
                 .map(|entry| targets::stencil(entry, area, pass)),
+            canvas: None,
             area: area.and_then(|area| targets::area(area, pass)),
             call: DrawCall::Direct {
                 vertices: 3,

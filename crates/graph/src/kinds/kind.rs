@@ -201,6 +201,12 @@ impl<'a> Lowering<'a> {
         })
     }
 
+    /// Two or three edges, two equal ones of one number; of one texel where the document is only
+    /// read.
+    pub(crate) fn edges(&mut self, expr: &Expr) -> Vec<u64> {
+        self.evaluate(vec![1, 1], |environment| expr.edges(environment))
+    }
+
     /// A thread for each texel of a texture; one where the document is only read.
     pub fn texels(&mut self, texture: &Reference) -> Threads {
         let of = Subject::Material(Box::new(texture.clone()));

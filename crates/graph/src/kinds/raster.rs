@@ -34,6 +34,10 @@ pub(super) struct Raster {
     /// Stencil attachment.
     #[serde(default)]
     stencil: Option<StencilEntry>,
+    /// Width and height in texels, one number for a square, of a pass without attachments, whose
+    /// fragment shader writes buffers or storage textures.
+    #[serde(default)]
+    size: Option<Expr>,
     /// The texels that are drawn, `(x, y, width, height)`; all without it.
     #[serde(default)]
     area: Option<Expr>,
@@ -192,6 +196,7 @@ impl PassKind for Raster {
                 .stencil
                 .as_ref()
                 .map(|entry| targets::stencil(entry, area, pass)),
+            canvas: self.size.as_ref().map(|size| targets::canvas(size, pass)),
             area: area.and_then(|area| targets::area(area, pass)),
             call,
             primitive,

@@ -16,6 +16,8 @@ pub trait Stage: Clone + Debug + PartialEq {
     type Program: Clone + Debug + PartialEq;
     /// How many workgroups are dispatched.
     type Size: Clone + Debug + PartialEq;
+    /// The place of the attachments in a draw that has none.
+    type Canvas: Clone + Debug + PartialEq;
 }
 
 /// The stage in which everything is a name of the document.
@@ -28,6 +30,7 @@ impl Stage for Names {
     type Arguments = Operand;
     type Program = Program;
     type Size = Threads;
+    type Canvas = Located<[u64; 2]>;
 }
 
 /// A texture or buffer by name, or a pass's own buffer.
@@ -154,6 +157,9 @@ pub struct Draw<S: Stage> {
     pub depth: Option<DepthTarget<S>>,
     /// Stencil attachment: the same texture where there are both.
     pub stencil: Option<StencilTarget<S>>,
+    /// Width and height in texels of a draw without attachments, whose fragment shader writes
+    /// buffers or storage textures; linked, a texture of that size that is never read.
+    pub canvas: Option<S::Canvas>,
     /// Viewport and scissor rectangle in texels: x, y, width, height. `None`: the whole target.
     pub area: Option<[u32; 4]>,
     /// What is drawn.

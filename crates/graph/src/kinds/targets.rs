@@ -15,6 +15,7 @@ use crate::{
         syntax::{Expr, Reference},
         value::Scalar,
     },
+    source::span::Located,
 };
 use serde::{Deserialize, Deserializer};
 
@@ -411,6 +412,16 @@ pub(super) fn stencil(
         },
         reference: reference.map_or(0, |reference| pass.count32(reference)),
     }
+}
+
+/// The width and height of a draw without attachments.
+pub(super) fn canvas(size: &Expr, pass: &mut Lowering<'_>) -> Located<[u64; 2]> {
+    let edges = pass.edges(size);
+    let canvas = <[u64; 2]>::try_from(edges).unwrap_or_else(|_| {
+        pass.report(DocumentError::Canvas(size.span.clone()).into_diagnostic());
+        [1, 1]
+    });
+    Located::new(canvas, size.span.clone())
 }
 
 /// A rectangle of texels: `(x, y, width, height)`.

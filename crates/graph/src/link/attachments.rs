@@ -15,10 +15,9 @@ use crate::{
     shader::class::ScalarClass,
     source::span::{Located, Span},
 };
-use naga::ShaderStage;
 use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags, TextureUsages};
 
-const ATTACHMENT: Usage = Usage::Texture(TextureUsages::RENDER_ATTACHMENT);
+pub(super) const ATTACHMENT: Usage = Usage::Texture(TextureUsages::RENDER_ATTACHMENT);
 
 impl Linker<'_, '_> {
     pub(super) fn draw(
@@ -26,21 +25,8 @@ impl Linker<'_, '_> {
         draw: &Draw<Names>,
         pass: &mut LinkedPass,
     ) -> Result<Draw<Ids>, ErrorGuaranteed> {
-        // Without colours, a fragment shader that yields none may still discard and set depths.
-        let mut colourless = || {
-            let shader = self.shader(&draw.program);
-            shader.is_ok_and(|shader| shader.colourless_fragments().next().is_some())
-        };
-        let fragment = !draw.colors.is_empty()
-            || draw.fullscreen
-            || draw.program.fragment.is_some()
-            || !draw.program.no_fragment && colourless();
-        let stages: &[ShaderStage] = match (draw.fullscreen, fragment) {
-            (true, _) => &[ShaderStage::Fragment],
-            (false, true) => &[ShaderStage::Vertex, ShaderStage::Fragment],
-            (false, false) => &[ShaderStage::Vertex],
-        };
-        let mut program = self.program(&draw.program, stages, draw.colors.is_empty(), pass);
+        let (stages, depth_only) = self.stages_of(draw);
+        let mut program = self.program(&draw.program, stages, depth_only, pass);
         if let Ok(linked) = &program
             && let Err(reported) = self.stages(linked, draw)
         {
@@ -57,6 +43,7 @@ impl Linker<'_, '_> {
             .as_ref()
             .map(|entry| self.stencil(entry, pass))
             .transpose();
+        let canvas = self.canvas(draw, program.as_ref().ok(), pass);
         let call = match &draw.call {
             DrawCall::Direct {
                 vertices,
@@ -74,6 +61,7 @@ impl Linker<'_, '_> {
             colors: colors?,
             depth: depth?,
             stencil: stencil?,
+            canvas: canvas?,
             area: draw.area,
             call: call?,
             primitive: draw.primitive,
@@ -418,9 +406,13 @@ impl Linker<'_, '_> {
             .filter_map(|color| color.resolve.as_ref());
         let depth = draw.depth.as_ref().map(|depth| &depth.target);
         let stencil = draw.stencil.as_ref().map(|stencil| &stencil.target);
-        let drawn: Vec<&Attachment> = colors.chain(depth).chain(stencil).collect();
+        let drawn = colors.chain(depth).chain(stencil).chain(&draw.canvas);
+        let drawn: Vec<&Attachment> = drawn.collect();
         let Some(first) = drawn.first() else {
-            return Err(self.report(LinkError::NoTargets(pass.name.clone())));
+            return Err(self.report(LinkError::NoTargets {
+                pass: pass.name.clone(),
+                fullscreen: draw.fullscreen,
+            }));
         };
         if let (Some(depth), Some(stencil)) = (depth, stencil)
             && depth.target != stencil.target
@@ -467,7 +459,7 @@ impl Linker<'_, '_> {
     }
 }
 
-fn located(reference: &Reference) -> Located<String> {
+pub(super) fn located(reference: &Reference) -> Located<String> {
     Located::new(reference.text().to_owned(), reference.span.clone())
 }
 

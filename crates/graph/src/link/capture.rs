@@ -43,6 +43,7 @@ impl Linker<'_, '_> {
             declared: None,
             kind,
             origin: Origin::Own,
+            growth: None,
         });
         // Both ends are known by number: neither is a name of a document.
         let whole = self.symbols.whole(copy);

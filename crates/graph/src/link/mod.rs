@@ -3,6 +3,7 @@
 
 mod attachments;
 mod bindings;
+mod canvas;
 mod capture;
 mod covered;
 mod dispatch;

@@ -90,6 +90,7 @@ impl Stage for Ids {
     type Arguments = Target;
     type Program = LinkedProgram;
     type Size = [u32; 3];
+    type Canvas = Attachment;
 }
 
 /// An attachment.

@@ -36,7 +36,8 @@ impl Linker<'_, '_> {
     ) -> Result<Bound, ErrorGuaranteed> {
         let misfit = match class {
             TextureClass::Sampled { dimension, .. } | TextureClass::Storage { dimension, .. } => {
-                wrong_shape(*dimension, texture, target)
+                let grows = self.symbols.get(target.id).growth.is_some();
+                wrong_shape(*dimension, texture, target, grows)
             }
         };
         let bound = match (misfit, class) {
@@ -205,6 +206,7 @@ fn wrong_shape(
     dimension: wgt::TextureViewDimension,
     texture: &Texture,
     target: &Target,
+    grows: bool,
 ) -> Option<TextureMisfit> {
     use wgt::TextureViewDimension as D;
     let layers = target.part.layers.len();
@@ -216,6 +218,9 @@ fn wrong_shape(
         D::D3 => None,
         _ if texture.is_3d => Some(TextureMisfit::Solid),
         D::D2 if layers > 1 => Some(TextureMisfit::Layers(layers)),
+        D::Cube | D::CubeArray if grows && target.part.layers == (0..texture.layers) => {
+            Some(TextureMisfit::Grows)
+        }
         D::Cube if layers != 6 => Some(TextureMisfit::Cube(layers)),
         D::CubeArray if !layers.is_multiple_of(6) => Some(TextureMisfit::Cube(layers)),
         _ => None,

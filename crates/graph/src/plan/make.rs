@@ -288,15 +288,12 @@ fn live(view: GraphView<'_>, readable: &[(String, Target)], order: &Order) -> Ve
     cull::live(order, roots, |pass| {
         let of = |access: &Access| {
             let resource = view.resource(access.resource);
-            match (&resource.origin, &resource.kind) {
+            match (&resource.origin, &resource.growth) {
                 (Origin::Previous(id), _) => order.final_writers(&Target {
                     id: *id,
                     part: access.part.clone(),
                 }),
-                (_, ResourceKind::Buffer(buffer)) => {
-                    let counter = buffer.growth.as_ref().map(|growth| &growth.counter);
-                    counter.map_or_else(BTreeSet::new, |counter| order.final_writers(counter))
-                }
+                (_, Some(growth)) => order.final_writers(&growth.counter),
                 _ => BTreeSet::new(),
             }
         };
@@ -308,17 +305,17 @@ fn live(view: GraphView<'_>, readable: &[(String, Target)], order: &Order) -> Ve
     })
 }
 
-/// Those of some resources that are buffers and grow; last frame's version of one is no other.
+/// Those of some resources that grow; last frame's version of one is no other.
 pub(super) fn growing<'a>(
     ids: impl Iterator<Item = &'a ResourceId>,
     resources: &'a [Resource],
 ) -> impl Iterator<Item = (ResourceId, &'a Growth)> {
     ids.filter_map(|id| match &resources[id.index()] {
         Resource {
-            kind: ResourceKind::Buffer(buffer),
             origin: Origin::Own,
+            growth: Some(growth),
             ..
-        } => Some((*id, buffer.growth.as_ref()?)),
+        } => Some((*id, growth)),
         _ => None,
     })
 }
@@ -414,7 +411,7 @@ fn never_written(view: GraphView<'_>, order: &Order, reports: &mut Reports) {
     }
 }
 
-/// Buffers that grow by what no pass counts, or by items of a size that cannot be copied.
+/// Resources that grow by what no pass counts, or by items of a size that cannot be copied.
 fn check_counters(view: GraphView<'_>, order: &Order, reports: &mut Reports) {
     let ids: Vec<ResourceId> = (0..view.resources.len()).map(ResourceId).collect();
     for (id, Growth { counter, .. }) in growing(ids.iter(), view.resources) {

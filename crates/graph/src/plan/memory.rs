@@ -69,8 +69,9 @@ impl Plan {
         self.schedule().lifetimes.keys().filter_map(entry).collect()
     }
 
-    /// The live buffers that may grow, each with where its frame counts the items that it would
-    /// have needed, and the most that it may have: by the document, and by the device's limits.
+    /// The live buffers and textures that may grow, each with where its frame counts the items or
+    /// layers that it would have needed, and the most that it may have: by the document, and by the
+    /// device's limits.
     pub fn growing(&self) -> Vec<(ResourceId, Growth)> {
         let limits = &self.request.limits;
         let largest = limits
@@ -78,12 +79,14 @@ impl Plan {
             .min(limits.max_storage_buffer_binding_size);
         let live = growing(self.schedule().lifetimes.keys(), &self.resources);
         let bounded = |(id, growth): (ResourceId, &Growth)| {
-            let ResourceKind::Buffer(buffer) = &self.resource(id).kind else {
-                return None;
+            let fits = match &self.resource(id).kind {
+                ResourceKind::Buffer(buffer) => {
+                    let items = buffer.stride.saturating_mul(buffer.count?);
+                    let fixed = buffer.bytes.saturating_sub(items);
+                    largest.saturating_sub(fixed).checked_div(buffer.stride)?
+                }
+                _ => u64::from(limits.max_texture_array_layers),
             };
-            let items = buffer.stride.saturating_mul(buffer.count?);
-            let fixed = buffer.bytes.saturating_sub(items);
-            let fits = largest.saturating_sub(fixed).checked_div(buffer.stride)?;
             let max = growth.max.min(fits);
             let counter = growth.counter.clone();
             Some((id, Growth { counter, max }))

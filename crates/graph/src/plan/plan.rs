@@ -102,7 +102,8 @@ impl Plan {
         &self.request.imports
     }
 
-    /// Items that growing buffers were known to need when the plan was made, by full name.
+    /// Items of growing buffers, and layers of growing textures, that were known to be needed when
+    /// the plan was made, by full name.
     pub fn grown(&self) -> &BTreeMap<String, u64> {
         &self.request.grown
     }

@@ -2,7 +2,7 @@
 
 use crate::support::{Files, Triangle, checked, codes, load, names, right};
 use skiagraph_graph::{
-    Code, Ids, PartialBackend, Plan, PlanRequest,
+    Code, Ids, ParamValue, PartialBackend, Plan, PlanRequest,
     step::{Draw, DrawCall, Step},
 };
 use wgt::{ColorWrites, TextureAspect};
@@ -405,4 +405,51 @@ fn a_backend_that_gives_less_runs_what_is_proven_on_it() {
         .document("base.ron", &backend_sections("proven_on: [gl]"))
         .with("draw.wgsl", DRAW);
     assert!(right(load(&extended)).plan(&request).is_err());
+}
+
+/// Counts the texels of a triangle, which no pass draws to.
+const TOUCH: &str = "var<storage, read_write> total: atomic<u32>;
+    @vertex fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+        return vec4(f32(index));
+    }
+    @fragment fn count() { atomicAdd(&total, 1u); }
+    @fragment fn nothing() { }";
+
+#[test]
+fn a_pass_without_targets_has_memory_of_its_size() {
+    let files = Files::graph(
+        r#"
+        params: [U32(name: "edge", default: 16)],
+        materials: [Buffer(name: "total")],
+        passes: [
+            Clear(name: "reset", target: "total"),
+            Raster(name: "first", fragment: "count", draw: 3, size: ("edge", 4)),
+            Raster(name: "second", fragment: "count", draw: 3, size: ("edge", 4)),
+            Raster(name: "third", fragment: "count", draw: 3, size: "viewport.size"),
+            Raster(name: "idle", fragment: "nothing", draw: 3, size: 8),
+        ],
+        outputs: ["total"],
+        "#,
+    );
+    let files = ["first", "second", "third", "idle"]
+        .iter()
+        .fold(files, |files, name| {
+            files.with(&format!("{name}.wgsl"), TOUCH)
+        });
+    let plan = planned(&files);
+    assert_eq!(names(&plan), ["reset", "first", "second", "third"]);
+    let culled = plan.culled();
+    assert_eq!(culled[0].reason, "it writes nothing");
+    // The first and second take turns in one byte per texel; four bytes are the counter's.
+    assert_eq!((plan.memory_bytes(), plan.saved_bytes()), (64 + 64 + 4, 64));
+    let memory = plan.memory();
+    let canvas = memory.iter().find(|entry| entry.name == "first/canvas");
+    let canvas = canvas.expect("it takes memory");
+    assert_eq!((canvas.size, canvas.bytes), ([16, 4], 64));
+    assert_eq!(canvas.shared_with, ["second/canvas"]);
+    let wider = right(plan.with_param("edge", ParamValue::U32(32)));
+    assert_eq!(wider.memory_bytes(), 128 + 64 + 4);
+    let tight = wider.with(|request| request.memory_limit = Some(195));
+    let told = tight.expect_err("it is too much").to_string();
+    assert!(told.contains("first/canvas"), "{told}");
 }

@@ -1,4 +1,4 @@
-//! Buffers that grow between frames, and defaults of params that ask for the viewport.
+//! Buffers and textures that grow between frames, and defaults of params that ask for the viewport.
 
 use crate::support::{Files, load, names, plan, right, wrong};
 use skiagraph_graph::{NoProvider, ParamValue, Plan, PlanRequest, ResourceKind};
@@ -42,16 +42,18 @@ fn counted() -> Files {
     )
 }
 
+/// Items of a buffer, layers of a texture.
 fn count(plan: &Plan, name: &str) -> u64 {
     let mut resources = plan.resources().iter();
     let found = resources.find(|resource| resource.name == name);
     match &found.expect("it is there").kind {
         ResourceKind::Buffer(buffer) => buffer.count.expect("it has a count"),
+        ResourceKind::Texture(texture) => texture.layers.into(),
         other => panic!("{name} is {other:?}"),
     }
 }
 
-/// Names of the buffers that may grow, with the most items of each.
+/// Names of what may grow, with the most items or layers of each.
 fn growing(plan: &Plan) -> Vec<(String, u64)> {
     let growing = plan.growing().into_iter();
     growing
@@ -113,6 +115,73 @@ fn last_frames_version_does_not_grow_by_itself() {
         .map(|error| error.message.clone())
         .collect();
     assert_eq!(errors, ["`items` grows by `other`, which no pass writes"]);
+}
+
+/// A texture whose layers are counted, and as many numbers.
+fn layered() -> Files {
+    let files = counted().edited(
+        "graph.ron",
+        r#"Buffer(name: "items", count: 4, grow: (counter: "needed", max: "most")),"#,
+        r#"Texture(name: "maps", format: R32Uint, size: 8, layers: 2,
+            grow: (counter: "needed", max: "most")),
+        Buffer(name: "items", count: "maps.layers"),"#,
+    );
+    files
+        .edited(
+            "graph.ron",
+            r#"outputs: ["copies"]"#,
+            r#"outputs: ["copies", "maps"]"#,
+        )
+        .edited(
+            "fill.wgsl",
+            "@compute",
+            "var maps: texture_storage_2d_array<r32uint, write>;\n@compute",
+        )
+        .edited(
+            "fill.wgsl",
+            "if id.x < arrayLength(&items) {",
+            "if id.x < textureNumLayers(maps) { textureStore(maps, id.xy, id.x, id.xxxx);",
+        )
+}
+
+#[test]
+fn layers_grow_as_items_do() {
+    let first = right(plan(&layered()));
+    assert_eq!(names(&first), ["reset", "count", "fill", "copy"]);
+    assert_eq!(growing(&first), [("maps".to_owned(), 64)]);
+    assert_eq!(
+        ["maps", "items", "copies"].map(|name| count(&first, name)),
+        [2; 3]
+    );
+    let larger = grown(&first, [("maps", 9)]);
+    assert_eq!(
+        ["maps", "items", "copies"].map(|name| count(&larger, name)),
+        [9; 3]
+    );
+    let texels = 8 * 8 * 4;
+    assert_eq!(
+        larger.memory_bytes() - first.memory_bytes(),
+        7 * (texels + 4 + 4)
+    );
+    assert_eq!(count(&right(larger.with_viewport([5, 5])), "maps"), 9);
+    let bounded = right(larger.with_param("most", ParamValue::U32(6)));
+    assert_eq!(count(&bounded, "maps"), 6);
+    assert_eq!(count(&grown(&first, [("maps", 1)]), "maps"), 2);
+    // Nothing grows beyond what the adapter has, whatever frames have counted.
+    let small = right(first.with(|request| request.limits.max_texture_array_layers = 5));
+    assert_eq!(growing(&small), [("maps".to_owned(), 5)]);
+    assert_eq!(count(&grown(&small, [("maps", 1 << 40)]), "maps"), 5);
+    // A picture brings its layers.
+    let picture = layered().edited(
+        "graph.ron",
+        "format: R32Uint, size: 8, layers: 2",
+        r#"format: R8Unorm, file: "noise.png""#,
+    );
+    let error = wrong(plan(&picture.picture("noise.png", 2, &[0; 4]))).to_string();
+    assert!(
+        error.contains("`maps` grows, but from which `layers`?"),
+        "{error}"
+    );
 }
 
 /// Each instance grows by its own counter, under its full name.

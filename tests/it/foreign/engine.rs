@@ -15,6 +15,8 @@ use std::sync::Arc;
 
 const VIEWPORT: [u32; 2] = [128, 128];
 
+type Params<'a> = &'a [(&'a str, ParamValue)];
+
 /// A view of a scene under one of its lights.
 struct Bench {
     scene: Arc<Scene>,
@@ -56,13 +58,7 @@ impl Bench {
     }
 
     /// What the last of some frames shows.
-    fn frames(
-        &self,
-        path: &str,
-        params: &[(&str, ParamValue)],
-        frames: usize,
-        outputs: &[&str],
-    ) -> FrameReport {
+    fn frames(&self, path: &str, params: Params, frames: usize, outputs: &[&str]) -> FrameReport {
         let mut provider = self.provider();
         let plan = plan(path, &provider, VIEWPORT, |request| {
             request.outputs = Some(outputs.iter().map(|&name| name.into()).collect());
@@ -81,7 +77,7 @@ impl Bench {
     }
 }
 
-const MAP: &[(&str, ParamValue)] = &[("map_size", ParamValue::U32(512))];
+const MAP: Params = &[("map_size", ParamValue::U32(512))];
 
 /// Pixels that are wrong, percent, once buffers that grow have room.
 fn are_wrong(bench: &Bench, methods: &[(&str, f64)]) {
@@ -99,7 +95,7 @@ fn are_wrong(bench: &Bench, methods: &[(&str, f64)]) {
 }
 
 /// Root mean square errors of methods with these params, after some frames.
-fn are_off(methods: &[(&str, &[(&str, ParamValue)], f64)], frames: usize) {
+fn are_off(methods: &[(&str, Params, f64)], frames: usize) {
     let bench = Bench::soft();
     let right = bench.right();
     for &(method, params, rmse) in methods {

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Checks that presets can be read: `scripts/presets.py`, exit 0 fine, 1 not.
 
+The methods of `tests/foreign/engine`, too, but for the numbers of lines.
 No line over 120 columns; a line begins one pass, param or material at most; every param has a
 description; no expression of more than 30 characters stands twice in a document; no two `Change`
 edit entries of one name; no shader is another one for masked scenes. `nsm` is read in four
@@ -14,6 +15,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PIPELINES = ROOT / "pipelines"
+ENGINE = ROOT / "tests" / "foreign" / "engine"
 COLUMNS, LONG = 120, 30
 LINES, NSM_LINES, NSM_DOCUMENTS, LIGHT_BUFFER_LINES = 950, 140, 4, 110
 ENTRY = re.compile(r"\b[A-Z]\w*\((?:name|graph|pass|after|before|instead):")
@@ -35,9 +37,8 @@ def documents(name, seen):
     return seen
 
 
-def faults():
-    files = sorted(PIPELINES.rglob("*.ron"))
-    texts = {file: file.read_text() for file in files}
+def faults_of(texts):
+    """What cannot be read in documents, file by file."""
     for file, text in texts.items():
         name = file.relative_to(ROOT)
         for number, line in enumerate(text.splitlines(), 1):
@@ -56,6 +57,12 @@ def faults():
         for entry, count in collections.Counter(changed).items():
             if count > 1:
                 yield f"{name}: {count} entries called `{entry}` are changed"
+
+
+def faults():
+    texts = {file: file.read_text() for file in sorted(PIPELINES.rglob("*.ron"))}
+    yield from faults_of(texts)
+    yield from faults_of({file: file.read_text() for file in sorted(ENGINE.glob("*.ron"))})
     lines = {file: len(text.splitlines()) for file, text in texts.items()}
     nsm = documents("nsm.ron", [])
     for what, found, most in [

@@ -1,5 +1,7 @@
-//! The methods of an outside author (`tests/foreign`), first written in format 1: all of it can be
-//! said in format 2, and is as wrong on `park` as its author has measured.
+//! The methods of outside authors (`tests/foreign`), first written in format 1 and format 2: all of
+//! it can be said in format 3, and is as wrong on `park` as its author has measured.
+
+mod engine;
 
 use crate::support;
 use crate::support::{
@@ -15,7 +17,7 @@ use skiagraph_graph::{
 };
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
 use skiagraph_reference::{Oracle, OracleMode, Progress, Reference, Statistics};
-use skiagraph_scene::{DirectionalLight, Scene, View};
+use skiagraph_scene::{DirectionalLight, LightKind, PointLight, Scene, View};
 use std::{path::Path, sync::Arc};
 use wgpu::util::DeviceExt;
 
@@ -82,9 +84,15 @@ fn documents() -> Vec<String> {
 
 #[test]
 fn every_document_is_checked_without_a_fault_or_a_warning() {
-    let provider = SceneProvider::new(one());
-    assert_eq!(documents().len(), 24);
+    assert_eq!(documents().len(), 38);
     for path in documents() {
+        let mut provider = SceneProvider::new(one());
+        let loaded = Graph::load(&path, &registry(), &sources());
+        let lights = loaded.map(|graph| graph.lights().map(|word| word.to_string()).collect());
+        if lights.is_ok_and(|lights: Vec<String>| lights == ["point"]) {
+            let (position, radius) = (DVec3::Z, 0.0);
+            provider.set_light(LightKind::Point(PointLight { position, radius }));
+        }
         let mut request = PlanRequest::new([1024, 1024], &provider);
         request.features = wgpu::Features::all();
         request.any_adapter = true;

@@ -51,14 +51,17 @@ fn sources() -> LayeredSources {
     LayeredSources(vec![Box::new(foreign), Box::new(EmbeddedSources)])
 }
 
-/// Plans a method after `adjust` has had its say.
+/// Plans a method after `adjust` has had its say; `a.ron@over=b.ron` with another document in its
+/// open include.
 fn plan(
     path: &str,
     provider: &SceneProvider,
     viewport: [u32; 2],
     adjust: impl FnOnce(&mut PlanRequest<'_>),
 ) -> Plan {
-    let graph = Graph::load(path, &registry(), &sources())
+    let (own, over) = path.split_once("@over=").unwrap_or((path, ""));
+    let over = (!over.is_empty()).then(|| ("over".to_owned(), over.to_owned()));
+    let graph = Graph::load_over(own, &registry(), &sources(), &over.into_iter().collect())
         .unwrap_or_else(|errors| panic!("{path}: {errors}"));
     let mut request = PlanRequest::new(viewport, provider);
     request.features = wgpu::Features::FLOAT32_FILTERABLE;

@@ -9,19 +9,26 @@
 struct Params { reach: f32, steps: u32, thickness: f32 }
 var<uniform> params: Params;
 
-struct Answer {
-    @location(0) visibility: u32,
-    @location(1) status: u32,
+// Over a method that answers lit or in shadow.
+@fragment
+fn hard(@builtin(position) centre: vec4<f32>) -> @location(0) u32 {
+    leave_unless_in_contact(centre.xy);
+    return 0u;
 }
 
+// Over one that answers with a share of the light.
 @fragment
-fn fragment(@builtin(position) centre: vec4<f32>) -> Answer {
-    let pixel = vec2<u32>(centre.xy);
+fn graded(@builtin(position) centre: vec4<f32>) -> @location(0) f32 {
+    leave_unless_in_contact(centre.xy);
+    return 0.0;
+}
+
+fn leave_unless_in_contact(centre: vec2<f32>) {
+    let pixel = vec2<u32>(centre);
     let receiver = textureLoad(position, pixel, 0);
     if initial_status(pixel, receiver) != STATUS_UNCERTAIN || !is_in_contact(pixel, receiver.xyz) {
         discard;
     }
-    return Answer(0u, STATUS_SHADOW);
 }
 
 fn is_in_contact(pixel: vec2<u32>, receiver: vec3<f32>) -> bool {

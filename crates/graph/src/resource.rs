@@ -57,12 +57,17 @@ pub enum ResourceKind {
     Provided(Provided),
     /// An acceleration structure of the host's.
     AccelerationStructure,
-    /// The graph's own uniform `frame`: number and seconds of the frame (`shared/frame.wgsl`).
+    /// The graph's own uniform `frame`: number, seconds and flags of the frame
+    /// (`shared/frame.wgsl`).
     Frame,
 }
 
-/// Bytes of the uniform `frame`: index `u32`, seconds `f32`, and padding.
+/// Bytes of the uniform `frame`: index `u32`, seconds `f32`, and the flags `changed_scene` and
+/// `changed_light`, each a `u32`.
 pub const FRAME_BYTES: u64 = 16;
+
+/// Bytes of its index and seconds, which stand in front of the flags.
+pub(crate) const CLOCK_BYTES: u32 = 8;
 
 /// The name under which shaders find the uniform `frame`.
 pub(crate) const FRAME: &str = "frame";

@@ -212,7 +212,7 @@ fn inputs(plan: &Plan, at: usize) -> Vec<ResourceId> {
     let group = Some(conditions.group[at]);
     let accesses = plan.pass(plan.schedule().passes[at]).accesses.iter();
     let mut inputs: Vec<ResourceId> = accesses
-        .filter(|access| access.reads || !access.fully_overwrites)
+        .filter(|access| access.triggers && (access.reads || !access.fully_overwrites))
         .map(|access| access.resource)
         .filter(|id| conditions.writers[id.index()] != group)
         .collect();

@@ -115,6 +115,17 @@ impl Executor {
         plan: Plan,
         provider: &mut dyn Provider,
     ) -> Result<ReplanReport, ExecuteError> {
+        let report = self.put_in(plan, provider)?;
+        self.note_changes(provider);
+        Ok(report)
+    }
+
+    /// [`replace_graph`](Self::replace_graph), but for the flags of the uniform `frame`.
+    pub(super) fn put_in(
+        &mut self,
+        plan: Plan,
+        provider: &mut dyn Provider,
+    ) -> Result<ReplanReport, ExecuteError> {
         self.presence.check()?;
         check_backend(&self.device, &plan)?;
         let mut factory = ResourceFactory {
@@ -137,6 +148,7 @@ impl Executor {
             ..ReplanReport::default()
         };
         let contents = reused.contents();
+        let is_fresh = reused.is_fresh();
         let bound: Vec<Option<usize>> = (0..passes.len()).map(|at| reused.bound(at)).collect();
         let positions = reused.positions;
         let poison = Poison::new(&plan, &memory, &self.device);
@@ -171,6 +183,9 @@ impl Executor {
             &mut self.state.growth_readbacks,
             std::mem::take(&mut before.growth_readbacks),
         );
+        if is_fresh {
+            self.host_changes.touch_all();
+        }
         self.ping_pong = self.state.ping_pong(false);
         self.frames_in_flight.staging.clear();
         report.uploads = self.note_params(&before.plan, &positions);
@@ -312,6 +327,12 @@ impl<'a> Reused<'a> {
         let made = schedule.lifetimes.keys().filter(own);
         made.map(|id| self.plan.resource(*id).name.clone())
             .collect()
+    }
+
+    /// Whether something that stays from frame to frame is in new memory.
+    fn is_fresh(&self) -> bool {
+        let mut lasting = self.plan.schedule().ping_pong.iter();
+        lasting.any(|id| !self.same.contains_key(id))
     }
 
     fn contents(&self) -> Contents {

@@ -23,6 +23,7 @@ mod features;
 mod features_depth;
 mod features_materials;
 mod features_raster;
+mod flags;
 mod flight;
 mod frames;
 mod gpu;

@@ -86,6 +86,7 @@ fn case(uses: &[Vec<Use>]) -> Case {
             reads: matches!(how, Read | Change),
             writes: *how != Read,
             fully_overwrites: *how == Write,
+            triggers: true,
             usage: Usage::None,
             span: span.clone(),
             step: 0,

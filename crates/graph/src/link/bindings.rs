@@ -2,7 +2,7 @@
 
 use super::{
     linker::{Linker, access},
-    pass::{BindTarget, Block, LinkedBinding, LinkedPass, LinkedProgram, Usage},
+    pass::{Access, BindTarget, Block, LinkedBinding, LinkedPass, LinkedProgram, Usage},
 };
 use crate::{
     diagnostics::reports::ErrorGuaranteed,
@@ -11,7 +11,7 @@ use crate::{
     kinds::step::Program,
     language::name::wgsl_identifier,
     provider::ProvidedBinding,
-    resource::{FRAME_BYTES, ResourceKind, Sampler, SubresourceRange, Target},
+    resource::{CLOCK_BYTES, FRAME_BYTES, ResourceKind, Sampler, SubresourceRange, Target},
     shader::{
         class::{Class, Member, TextureClass},
         reflect::Global,
@@ -58,8 +58,11 @@ impl Linker<'_, '_> {
                     self.stage_may_write(global)?;
                 }
                 let used = (global.reads, global.writes, false);
-                pass.accesses
-                    .push(access(&target, used, usage, &global.span));
+                let is_frame = self.symbols.get(target.id).kind == ResourceKind::Frame;
+                pass.accesses.push(Access {
+                    triggers: !is_frame || reads_clock(linked, global),
+                    ..access(&target, used, usage, &global.span)
+                });
                 (bound, ty)
             }
         };
@@ -320,6 +323,16 @@ impl Linker<'_, '_> {
             Usage::Buffer(wgt::BufferUsages::STORAGE),
         ))
     }
+}
+
+/// Whether a program reads number or time of the uniform `frame`, which are others in every frame.
+fn reads_clock(linked: &LinkedProgram, global: &Global) -> bool {
+    let mut entries = linked.entries.iter();
+    entries.any(|entry| {
+        linked
+            .shader
+            .reads_below(*entry, global.handle, CLOCK_BYTES)
+    })
 }
 
 /// How a sampler is bound, or what the shader needs instead.

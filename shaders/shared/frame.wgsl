@@ -9,6 +9,8 @@ struct Frame {
     changed_scene: u32,
     // 1 if something of the light, or of another one of the scene, has changed.
     changed_light: u32,
+    // 1 if something that stays from frame to frame is in new memory, and zero.
+    fresh: u32,
 }
 
 var<uniform> frame: Frame;

@@ -29,6 +29,8 @@ pub struct Resource {
     pub kind: ResourceKind,
     /// Whose content it holds.
     pub origin: Origin,
+    /// Whether its content stays from frame to frame until a pass overwrites it.
+    pub keep: bool,
 }
 
 /// Whose content a resource holds.
@@ -62,9 +64,9 @@ pub enum ResourceKind {
     Frame,
 }
 
-/// Bytes of the uniform `frame`: index `u32`, seconds `f32`, and the flags `changed_scene` and
-/// `changed_light`, each a `u32`.
-pub const FRAME_BYTES: u64 = 16;
+/// Bytes of the uniform `frame`: index `u32`, seconds `f32`, the flags `changed_scene`,
+/// `changed_light` and `fresh`, each a `u32`, and padding.
+pub const FRAME_BYTES: u64 = 32;
 
 /// Bytes of its index and seconds, which stand in front of the flags.
 pub(crate) const CLOCK_BYTES: u32 = 8;

@@ -167,6 +167,7 @@ impl Executor {
         {
             copy.copy(uniform, encoder);
         }
+        state.copy_grown(encoder);
         let memory = &state.memory;
         let mut copy_host = |copy| State::copy_host(memory, copy, encoder);
         state.contents.first_copies(&mut copy_host);

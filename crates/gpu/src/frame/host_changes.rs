@@ -1,24 +1,28 @@
-//! Whether the scene or its lights are others than in the frame before: the flags of the uniform
-//! `frame`.
+//! Whether the scene, its lights or the memory are others than in the frame before: the flags of
+//! the uniform `frame`.
 
 use crate::provider::Provider;
 use std::collections::BTreeMap;
 
-/// Of each of the two whether something of it has changed.
+/// Of each whether something of it has changed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Changed {
     pub scene: bool,
     pub light: bool,
+    /// Whether something that stays from frame to frame is in new memory.
+    pub memory: bool,
 }
 
 impl Changed {
     const ALL: Self = Self {
         scene: true,
         light: true,
+        memory: true,
     };
     const NONE: Self = Self {
         scene: false,
         light: false,
+        memory: false,
     };
 
     /// Notes a change of what stands behind a name.
@@ -31,7 +35,7 @@ impl Changed {
     }
 }
 
-/// What of the provider's has changed since the frame that was encoded last.
+/// What has changed since the frame that was encoded last.
 #[derive(Debug)]
 pub(super) struct HostChanges {
     /// Versions of all that the provider lists; `None` while no live pass reads `frame`.
@@ -64,8 +68,14 @@ impl HostChanges {
         self.changed.note(name);
     }
 
-    /// Notes that anything may have changed.
+    /// Notes that anything of the provider's may have changed.
     pub fn touch_all(&mut self) {
+        self.changed.scene = true;
+        self.changed.light = true;
+    }
+
+    /// Notes that something that stays from frame to frame is in new memory.
+    pub fn note_new_memory(&mut self) {
         self.changed = Changed::ALL;
     }
 
@@ -83,7 +93,7 @@ impl HostChanges {
                 let names = known.keys().chain(now.keys()).filter(differs);
                 names.for_each(|name| self.changed.note(name));
             }
-            _ => self.changed = Changed::ALL,
+            _ => self.touch_all(),
         }
         self.known = now;
     }

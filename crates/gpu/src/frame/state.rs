@@ -12,7 +12,7 @@ use super::{
 use crate::{
     error::{ExecuteError, with_table},
     memory::{
-        memory::{Memory, ResourceFactory},
+        memory::{GrownBuffer, Memory, ResourceFactory},
         physical::PingPong,
     },
     pipelines::pipelines::Pipelines,
@@ -35,6 +35,8 @@ pub(super) struct State {
     pub readables: Vec<Arc<Readable>>,
     /// The uniform `frame`, if a live pass reads it.
     pub uniform: Option<ResourceId>,
+    /// Contents to be copied before the next frame's passes, in this order.
+    pub grown: Vec<GrownBuffer>,
 }
 
 /// What a frame does: made anew for each, in the same memory.
@@ -62,6 +64,7 @@ impl State {
             growth_readbacks: GrowthReadback::all(&plan, factory.device).map_err(refused)?,
             readables: Readable::all(&plan),
             uniform: frame_uniform(&plan),
+            grown: Vec::new(),
             contents: Contents::new(&plan, 0),
             memory,
             passes,
@@ -174,6 +177,13 @@ impl State {
                     .cpu
                     .push((pass.name.clone(), start.elapsed()));
             }
+        }
+    }
+
+    /// Copies contents into the larger buffers that were made since the frame before.
+    pub fn copy_grown(&mut self, encoder: &mut wgpu::CommandEncoder) {
+        for (from, to) in self.grown.drain(..) {
+            encoder.copy_buffer_to_buffer(&from, 0, &to, 0, from.size());
         }
     }
 

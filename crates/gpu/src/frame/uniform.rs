@@ -43,12 +43,8 @@ impl FrameUniform {
             Some(uniform) => uniform,
             None => Self::new(device)?,
         };
-        let words = [
-            index,
-            seconds.to_bits(),
-            changed.scene.into(),
-            changed.light.into(),
-        ];
+        let flags = [changed.scene, changed.light, changed.memory].map(u32::from);
+        let words = [index, seconds.to_bits()].into_iter().chain(flags);
         let mut bytes = [0; FRAME_BYTES as usize];
         for (bytes, word) in bytes.chunks_exact_mut(4).zip(words) {
             bytes.copy_from_slice(&word.to_ne_bytes());

@@ -33,6 +33,9 @@ pub(crate) struct Memory {
     missing: BTreeMap<ResourceId, String>,
 }
 
+/// A buffer, and the larger one that goes on with its content.
+pub(crate) type GrownBuffer = (wgpu::Buffer, wgpu::Buffer);
+
 /// Who makes memory.
 pub(crate) struct ResourceFactory<'a> {
     pub device: &'a wgpu::Device,
@@ -359,6 +362,24 @@ impl Memory {
             }
             _ => false,
         }
+    }
+
+    /// Whether a resource is a larger buffer than before with the same content.
+    pub fn is_grown(&self, id: ResourceId) -> bool {
+        let allocation = self.of.get(&id).map(|at| &self.allocations[*at]);
+        allocation.is_some_and(|allocation| allocation.grown_from.is_some())
+    }
+
+    /// Takes the buffers whose content is to be copied into larger ones, each with that.
+    pub fn take_grown(&mut self) -> Vec<GrownBuffer> {
+        let grown = self.allocations.iter_mut().filter_map(|allocation| {
+            let from = allocation.grown_from.take()?;
+            match allocation.versions.as_slice() {
+                [Physical::Buffer(to)] => Some((from, to.clone())),
+                _ => None,
+            }
+        });
+        grown.collect()
     }
 
     /// Whether a resource has the very memory in two states of an executor, and so its content.

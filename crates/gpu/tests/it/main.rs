@@ -30,6 +30,7 @@ mod gpu;
 mod growth;
 mod history;
 mod imports;
+mod keep;
 mod memory;
 mod provided;
 mod readback;

@@ -59,6 +59,7 @@ fn resources() -> Vec<Resource> {
         declared: None,
         kind: ResourceKind::Buffer(Buffer::default()),
         origin: Origin::Own,
+        keep: false,
     };
     (0..RESOURCES).map(buffer).collect()
 }

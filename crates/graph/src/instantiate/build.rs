@@ -156,6 +156,7 @@ impl<'a> Builder<'a, '_> {
                         declared: Some(name.span.clone()),
                         kind,
                         origin: Origin::Host,
+                        keep: false,
                     });
                     Symbol::Target(self.symbols.whole(id))
                 }

@@ -95,6 +95,7 @@ fn lower_pass<'a>(
                 ..Buffer::default()
             }),
             origin: Origin::Own,
+            keep: false,
         })
     });
     LoweredPass {

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     diagnostics::reports::ErrorGuaranteed,
     document::materials::Filter,
-    errors::link::LinkError,
+    errors::{instantiate::InterfaceError, link::LinkError},
     kinds::step::Program,
     language::name::wgsl_identifier,
     provider::ProvidedBinding,
@@ -139,6 +139,17 @@ impl Linker<'_, '_> {
         }
         if let Some(reported) = self.symbols.scopes.document(position.scope).incomplete {
             return Err(reported);
+        }
+        if let Some(name) = global.name.strip_suffix("_previous")
+            && let Some(base) = self.symbols.find_global(name, position.scope, self.reports)
+            && let Some(kept) = self.symbols.kept(base?.id)
+        {
+            return Err(self.reports.report(InterfaceError::NoPrevious {
+                name: global.name.clone(),
+                span: global.span.clone(),
+                what: "kept".to_owned(),
+                kept: Some(kept),
+            }));
         }
         let known = self.symbols.known(position.scope);
         let known = known.iter().map(|name| wgsl_identifier(name));

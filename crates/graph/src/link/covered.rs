@@ -61,6 +61,7 @@ mod tests {
             declared: None,
             kind,
             origin: Origin::Own,
+            keep: false,
         }
     }
 

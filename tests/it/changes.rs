@@ -4,7 +4,7 @@
 use crate::support::graphs::{self, open};
 use glam::{DAffine3, DMat3, DVec3};
 use skiagraph_gpu::{Executor, FrameReport, device::Gpu};
-use skiagraph_graph::{Graph, PlanRequest};
+use skiagraph_graph::{Graph, LayeredSources, PlanRequest, Sources};
 use skiagraph_passes::{EmbeddedSources, How, SceneProvider, registry};
 use skiagraph_scene::{DirectionalLight, Movable, Scene, SceneLibrary, SceneRequest, View};
 use std::sync::Arc;
@@ -297,4 +297,63 @@ fn what_does_not_fit_the_mesh_or_the_plan_is_refused() {
         unknown.contains("\"tree 3\"") && unknown.contains("tree 2"),
         "{unknown}"
     );
+}
+
+/// A document that writes down the flags of `frame`, and reads nothing of the scene.
+struct Flags;
+
+impl Sources for Flags {
+    fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
+        let text = match path {
+            "flags.ron" => {
+                r#"(
+                    format: 3,
+                    materials: [Buffer(name: "flags", count: 2)],
+                    passes: [Compute(name: "tell", dispatch: Groups(1, 1, 1))],
+                    outputs: ["flags"],
+                )"#
+            }
+            "tell.wgsl" => {
+                r#"
+                #import "shared/frame.wgsl"
+                var<storage, read_write> flags: array<u32>;
+                @compute @workgroup_size(1) fn main() {
+                    flags[0] = frame.changed_scene;
+                    flags[1] = frame.changed_light;
+                }"#
+            }
+            _ => return Ok(None),
+        };
+        Ok(Some(text.into()))
+    }
+
+    fn list(&self, _: &str) -> Vec<String> {
+        Vec::new()
+    }
+}
+
+/// The light is laid around the mesh, so it changes with it.
+#[test]
+fn shaders_are_told_what_has_changed_though_no_pass_reads_it() {
+    let (gpu, park) = (open(), Park::new());
+    let sources = LayeredSources(vec![Box::new(Flags), Box::new(EmbeddedSources)]);
+    let graph =
+        Graph::load("flags.ron", &registry(), &sources).unwrap_or_else(|errors| panic!("{errors}"));
+    let mut provider = park.provider();
+    let mut executor = start(&gpu, &graph, &mut provider);
+    let mut expect = |provider: &mut SceneProvider, flags: [u32; 2], when: &str| {
+        executor.refresh(provider).unwrap();
+        let report = graphs::frame(&gpu, &mut executor, &["flags"]);
+        let found = report.readbacks[0].content.as_u32().unwrap();
+        assert_eq!(found, flags, "{when}");
+    };
+    expect(&mut provider, [1, 1], "the first frame");
+    expect(&mut provider, [0, 0], "nothing changed");
+    provider.set_camera(&park.scene.views[1].camera(VIEWPORT));
+    expect(&mut provider, [0, 0], "the camera");
+    provider.set_light(DirectionalLight::new(DVec3::new(0.3, -0.6, 0.6)).into());
+    expect(&mut provider, [0, 1], "the light");
+    provider.set_transforms(&park.lean(2.0)).unwrap();
+    expect(&mut provider, [1, 1], "the mesh");
+    expect(&mut provider, [0, 0], "nothing changed");
 }

@@ -121,7 +121,7 @@ fn the_rust_of_the_documents_is_code_that_runs() {
 }
 
 /// The documents of the authoring guide in their order, as it calls them, with their passes.
-const DOCUMENTS: [(&str, usize); 11] = [
+const DOCUMENTS: [(&str, usize); 13] = [
     ("depth.ron", 2),
     ("blur.ron", 2),
     ("cascades.ron", 5),
@@ -130,6 +130,8 @@ const DOCUMENTS: [(&str, usize); 11] = [
     ("extended.ron", 4),
     ("history.ron", 1),
     ("age.ron", 3),
+    ("kept.ron", 1),
+    ("settled.ron", 1),
     ("filtered.ron", 5),
     ("every_light.ron", 8),
     ("claims.ron", 5),

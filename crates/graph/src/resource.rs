@@ -31,6 +31,8 @@ pub struct Resource {
     pub origin: Origin,
     /// How it grows between frames.
     pub growth: Option<Growth>,
+    /// Whether its content stays from frame to frame until a pass overwrites it.
+    pub keep: bool,
 }
 
 /// Whose content a resource holds.
@@ -59,12 +61,17 @@ pub enum ResourceKind {
     Provided(Provided),
     /// An acceleration structure of the host's.
     AccelerationStructure,
-    /// The graph's own uniform `frame`: number and seconds of the frame (`shared/frame.wgsl`).
+    /// The graph's own uniform `frame`: number, seconds and flags of the frame
+    /// (`shared/frame.wgsl`).
     Frame,
 }
 
-/// Bytes of the uniform `frame`: index `u32`, seconds `f32`, and padding.
-pub const FRAME_BYTES: u64 = 16;
+/// Bytes of the uniform `frame`: index `u32`, seconds `f32`, the flags `changed_scene`,
+/// `changed_light` and `fresh`, each a `u32`, and padding.
+pub const FRAME_BYTES: u64 = 32;
+
+/// Bytes of its index and seconds, which stand in front of the flags.
+pub(crate) const CLOCK_BYTES: u32 = 8;
 
 /// The name under which shaders find the uniform `frame`.
 pub(crate) const FRAME: &str = "frame";

@@ -71,32 +71,59 @@ fn it_is_right_where_the_camera_stands_and_late_where_it_moves() {
     assert!(frames.iter().filter(late).count() > 12, "{frames:?}");
 }
 
+/// What counts frames: the graph's number of them, or a buffer that stays.
+const COUNTERS: [[&str; 3]; 2] = [
+    [
+        "",
+        "",
+        "#import \"shared/frame.wgsl\"\nfn count() -> u32 { return frame.index; }",
+    ],
+    [
+        r#"Buffer(name: "counter", keep: true),"#,
+        r#"Compute(name: "count_up", dispatch: Groups(1, 1, 1)),"#,
+        "var<storage, read> counter: u32; fn count() -> u32 { return counter; }",
+    ],
+];
+
 #[test]
 fn a_picture_that_cycles_is_judged_by_its_worst_and_its_mean() {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(
-        folder.path().join("blink.ron"),
-        r#"(
+    for [material, pass, count] in COUNTERS {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: String| {
+            std::fs::write(folder.path().join(name), text).unwrap();
+        };
+        write(
+            "blink.ron",
+            format!(
+                r#"(
             format: 3,
             description: "All in shadow in two frames of three, and all in light in the third.",
-            materials: [Texture(name: "visibility", format: R32Uint)],
-            passes: [Fullscreen(name: "blink", color: ["visibility"])],
+            materials: [{material} Texture(name: "visibility", format: R32Uint)],
+            passes: [Fullscreen(name: "blink", color: ["visibility"]), {pass}],
             outputs: ["visibility"],
-        )"#,
-    )
-    .unwrap();
-    std::fs::write(
-        folder.path().join("blink.wgsl"),
-        r#"
-        #import "shared/frame.wgsl"
-        @fragment fn fragment(@builtin(position) centre: vec4<f32>) -> @location(0) u32 {
-            return u32(frame.index % 3u == 0u);
-        }
-        "#,
-    )
-    .unwrap();
+        )"#
+            ),
+        );
+        write(
+            "blink.wgsl",
+            format!(
+                "{count}
+                @fragment fn fragment() -> @location(0) u32 {{ return u32(count() % 3u == 0u); }}"
+            ),
+        );
+        write(
+            "count_up.wgsl",
+            "var<storage, read_write> counter: u32;
+            @compute @workgroup_size(1) fn main() { counter++; }"
+                .to_owned(),
+        );
+        blinks(folder.path());
+    }
+}
+
+fn blinks(folder: &Path) {
     let line = "compare blink.ron --size 48x48 --images none --frames 1 --out out";
-    let (runs, table) = results(folder.path(), line);
+    let (runs, table) = results(folder, line);
     let run = &runs[0];
     let [lit, shadow] = ["lit", "shadow"].map(|name| run["pixels"][name].as_u64().unwrap());
     assert!(lit > 0 && shadow > 0);

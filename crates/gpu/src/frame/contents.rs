@@ -107,8 +107,8 @@ impl Contents {
                 let inputs = pass.input_versions.inputs.iter().zip(seen);
                 let mut changed = inputs.map(|(id, seen)| {
                     let now = self.versions[counted(plan, *id).unwrap_or(*id).index()];
-                    let writer = conditions.writers[id.index()];
-                    now != *seen || writer.is_some_and(|group| runs[group])
+                    let resource = (*id, plan.resource(*id).keep);
+                    now != *seen || conditions.is_written_before(resource, at, runs)
                 });
                 pass.input_versions.stale || changed.any(|changed| changed)
             }
@@ -138,12 +138,18 @@ impl Contents {
     ) {
         self.before.clone_from(&self.versions);
         let conditions = &plan.schedule().conditions;
-        for (_, id) in conditions.written.iter().filter(|(at, _)| runs[*at]) {
-            self.touch(*id);
+        let is_kept = |id: ResourceId| plan.resource(id).keep;
+        let written = conditions.written.iter().filter(|(at, _)| runs[*at]);
+        for &(_, id) in written.clone().filter(|(_, id)| !is_kept(*id)) {
+            self.touch(id);
         }
         // Only now: what a pass has read and another writes below is another part of the same
-        // resource, else they were one group.
+        // resource, else they were one group. What is kept it has read as it was in its place.
+        let mut kept = written.filter(|(_, id)| is_kept(*id)).peekable();
         for (at, pass) in passes.iter_mut().enumerate() {
+            while let Some(&(_, id)) = kept.next_if(|(by, _)| *by <= at) {
+                self.touch(id);
+            }
             let remembers = matches!(conditions.when[at], When::Once | When::OnChange);
             if !(runs[at] && remembers) {
                 continue;

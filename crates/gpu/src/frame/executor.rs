@@ -2,6 +2,7 @@
 
 use super::{
     fetch::Fetch,
+    host_changes::HostChanges,
     in_flight::{FrameInFlight, FramesInFlight, names},
     report::{Frame, FrameReport},
     state::{FrameDecision, State},
@@ -40,6 +41,7 @@ pub struct Executor {
     /// Whose turn it was in the frame that was encoded last.
     pub(super) ping_pong: PingPong,
     decision: FrameDecision,
+    pub(super) host_changes: HostChanges,
     /// Frames that were encoded.
     frames: u32,
     pub(super) frames_in_flight: FramesInFlight,
@@ -78,11 +80,13 @@ impl Executor {
             ping_pong: state.ping_pong(true),
             state,
             decision: FrameDecision::default(),
+            host_changes: HostChanges::default(),
             frames: 0,
             frames_in_flight: FramesInFlight::default(),
             skipped: Vec::new(),
         };
         executor.state.bind_what_can_be(device)?;
+        executor.note_changes(provider);
         Ok(executor)
     }
 
@@ -118,6 +122,7 @@ impl Executor {
         // From here on nothing can fail.
         self.record(&mut frame_in_flight, encoder);
         let index = frame_in_flight.index;
+        self.host_changes.clear();
         self.skipped.clone_from(&frame_in_flight.skipped);
         self.frames_in_flight.submit(frame_in_flight, encoder);
         std::mem::swap(&mut self.ping_pong, &mut self.decision.ping_pong);
@@ -134,7 +139,7 @@ impl Executor {
         let (state, device) = (&self.state, &self.device);
         frame_in_flight.index = self.frames;
         if state.uniform.is_some() {
-            let values = (self.frames, frame.seconds);
+            let values = (self.frames, frame.seconds, self.host_changes.changed());
             FrameUniform::write(&mut frame_in_flight.uniform, values, device)?;
         }
         for name in frame.read {
@@ -162,6 +167,7 @@ impl Executor {
         {
             copy.copy(uniform, encoder);
         }
+        state.copy_grown(encoder);
         let memory = &state.memory;
         let mut copy_host = |copy| State::copy_host(memory, copy, encoder);
         state.contents.first_copies(&mut copy_host);

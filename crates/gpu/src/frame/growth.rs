@@ -37,10 +37,14 @@ impl Executor {
             return Ok(None);
         }
         poll(&self.device, wgpu::PollType::Poll)?;
-        match self.larger() {
-            Some(plan) => self.grow_to(plan, provider),
-            None => Ok(None),
+        let Some(plan) = self.larger() else {
+            return Ok(None);
+        };
+        let report = self.grow_to(plan, provider)?;
+        if report.is_some() {
+            self.note_changes(provider);
         }
+        Ok(report)
     }
 
     /// The same with what the executor has of the provider, by the counters that submissions have
@@ -84,7 +88,7 @@ impl Executor {
         plan: Result<Plan, ExecuteError>,
         provider: &mut dyn Provider,
     ) -> Result<Option<ReplanReport>, ExecuteError> {
-        match plan.and_then(|plan| self.replace_graph(plan, provider)) {
+        match plan.and_then(|plan| self.put_in(plan, provider)) {
             Err(
                 ExecuteError::Plan(_)
                 | ExecuteError::OutOfMemory { .. }

@@ -89,6 +89,9 @@ impl Executor {
     /// If the plan has nothing of the host's under this name. (One that no live pass uses is fine.)
     pub fn touch(&mut self, name: &str) -> Result<(), ExecuteError> {
         let of_host = |resource: &Resource| resource.origin == Origin::Host;
+        if !self.plan().imports().contains_key(name) {
+            self.host_changes.touch(name);
+        }
         let live = self.state.live(name);
         if let Some(id) = live.filter(|id| of_host(self.plan().resource(*id))) {
             self.state.contents.touch(id);
@@ -115,6 +118,24 @@ impl Executor {
     /// items, say, or a light of another kind: [`ExecuteError::OtherThanPlanned`]), or the device
     /// is lost. The rest stays as it was and is asked for again the next time.
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
+        let refreshed = self.refresh_live(provider);
+        if refreshed.is_ok() {
+            self.note_changes(provider);
+        } else {
+            self.host_changes.touch_all();
+        }
+        refreshed
+    }
+
+    /// Notes what of the provider's has changed, after live passes have what they bind of it.
+    pub(super) fn note_changes(&mut self, provider: &dyn Provider) {
+        match self.state.uniform {
+            Some(_) => self.host_changes.compare(provider),
+            None => self.host_changes.forget(),
+        }
+    }
+
+    fn refresh_live(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
         let known: Vec<(ResourceId, Option<u64>)> = self.state.memory.provided().collect();
         for (id, version) in known {
             let state = &mut self.state;
@@ -131,6 +152,9 @@ impl Executor {
             state.memory.refresh(id, &state.plan, None, &mut factory)?;
             state.contents.touch(id);
             let now = state.memory.host(id);
+            if now.is_some() {
+                self.host_changes.touch(&state.plan.resource(id).name);
+            }
             if now == before.as_ref() {
                 continue;
             }

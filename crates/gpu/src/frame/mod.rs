@@ -7,6 +7,7 @@ mod fetch;
 mod growth;
 mod growth_readback;
 mod host;
+mod host_changes;
 mod in_flight;
 mod pass;
 mod poison;

@@ -209,12 +209,12 @@ fn two_versions(plan: &Plan, pass: &LinkedPass) -> Vec<ResourceId> {
 /// What a pass reads that neither it nor the passes that run together with it write.
 fn inputs(plan: &Plan, at: usize) -> Vec<ResourceId> {
     let conditions = &plan.schedule().conditions;
-    let group = Some(conditions.group[at]);
+    let group = conditions.group[at];
     let accesses = plan.pass(plan.schedule().passes[at]).accesses.iter();
     let mut inputs: Vec<ResourceId> = accesses
-        .filter(|access| access.reads || !access.fully_overwrites)
+        .filter(|access| access.triggers && (access.reads || !access.fully_overwrites))
         .map(|access| access.resource)
-        .filter(|id| conditions.writers[id.index()] != group)
+        .filter(|id| !conditions.is_written_by(group, *id))
         .collect();
     inputs.sort();
     inputs.dedup();

@@ -115,6 +115,17 @@ impl Executor {
         plan: Plan,
         provider: &mut dyn Provider,
     ) -> Result<ReplanReport, ExecuteError> {
+        let report = self.put_in(plan, provider)?;
+        self.note_changes(provider);
+        Ok(report)
+    }
+
+    /// [`replace_graph`](Self::replace_graph), but for the flags of the uniform `frame`.
+    pub(super) fn put_in(
+        &mut self,
+        plan: Plan,
+        provider: &mut dyn Provider,
+    ) -> Result<ReplanReport, ExecuteError> {
         self.presence.check()?;
         check_backend(&self.device, &plan)?;
         let mut factory = ResourceFactory {
@@ -127,7 +138,7 @@ impl Executor {
             Some((&self.state.plan, &self.state.memory)),
             &mut factory,
         );
-        let memory = memory.map_err(|error| with_table(error, &plan))?;
+        let mut memory = memory.map_err(|error| with_table(error, &plan))?;
         let reused = Reused::new(&self.state, &plan, &memory);
         let made = reused.passes(&mut self.pipelines, &self.device);
         let passes = made.map_err(|error| with_table(error, &plan))?;
@@ -137,6 +148,7 @@ impl Executor {
             ..ReplanReport::default()
         };
         let contents = reused.contents();
+        let has_new_memory = reused.has_new_memory();
         let bound: Vec<Option<usize>> = (0..passes.len()).map(|at| reused.bound(at)).collect();
         let positions = reused.positions;
         let poison = Poison::new(&plan, &memory, &self.device);
@@ -146,6 +158,7 @@ impl Executor {
             poison: poison.map_err(|error| with_table(error, &plan))?,
             readables: Readable::all(&plan),
             uniform: frame_uniform(&plan),
+            grown: memory.take_grown(),
             plan,
             memory,
             passes,
@@ -171,6 +184,11 @@ impl Executor {
             &mut self.state.growth_readbacks,
             std::mem::take(&mut before.growth_readbacks),
         );
+        // What was to be copied into a buffer that has grown again is copied on from there.
+        self.state.grown.splice(..0, before.grown);
+        if has_new_memory {
+            self.host_changes.note_new_memory();
+        }
         self.ping_pong = self.state.ping_pong(false);
         self.frames_in_flight.staging.clear();
         report.uploads = self.note_params(&before.plan, &positions);
@@ -217,8 +235,8 @@ struct Reused<'a> {
     memory: &'a Memory,
     /// Of each pass of the plan: its position before.
     positions: Vec<Option<usize>>,
-    /// The resources that are in the memory that they were in before, or are the provider's and as
-    /// large as before; and what they were then.
+    /// The resources that are in the memory that they were in before, or go on with its content in
+    /// a larger buffer, or are the provider's and as large as before; and what they were then.
     same: BTreeMap<ResourceId, ResourceId>,
 }
 
@@ -248,7 +266,7 @@ impl<'a> Reused<'a> {
                 {
                     true
                 }
-                _ => memory.same(id, &old.memory, former),
+                _ => memory.same(id, &old.memory, former) || memory.is_grown(id),
             };
             is_same.then_some((id, former))
         });
@@ -312,6 +330,15 @@ impl<'a> Reused<'a> {
         let made = schedule.lifetimes.keys().filter(own);
         made.map(|id| self.plan.resource(*id).name.clone())
             .collect()
+    }
+
+    /// Whether something that stays from frame to frame is in new memory.
+    fn has_new_memory(&self) -> bool {
+        let schedule = self.plan.schedule();
+        let is_lasting =
+            |id: &&ResourceId| self.plan.resource(**id).keep || schedule.ping_pong.contains(*id);
+        let mut lasting = schedule.lifetimes.keys().filter(is_lasting);
+        lasting.any(|id| !self.same.contains_key(id))
     }
 
     fn contents(&self) -> Contents {
@@ -384,7 +411,9 @@ impl<'a> Reused<'a> {
         let mut numbers = pass.accesses.iter().zip(&old.accesses);
         let same_numbers = numbers.all(|(new, old)| {
             let (id, former) = (new.resource, old.resource);
-            id == former && self.memory.host(id) == self.old.memory.host(former)
+            id == former
+                && !self.memory.is_grown(id)
+                && self.memory.host(id) == self.old.memory.host(former)
         });
         let same_steps = pass.steps == old.steps && has_same_params(old, pass);
         self.positions[at].filter(|_| same_steps && same_numbers)

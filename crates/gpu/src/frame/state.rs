@@ -12,8 +12,8 @@ use super::{
 use crate::{
     error::{ExecuteError, with_table},
     memory::{
-        memory::{Memory, ResourceFactory},
-        physical::PingPong,
+        memory::{Grown, Memory, ResourceFactory},
+        physical::{Physical, PingPong},
     },
     pipelines::pipelines::Pipelines,
     timing::statistics::Counters,
@@ -35,6 +35,8 @@ pub(super) struct State {
     pub readables: Vec<Arc<Readable>>,
     /// The uniform `frame`, if a live pass reads it.
     pub uniform: Option<ResourceId>,
+    /// Contents to be copied before the next frame's passes, in this order.
+    pub grown: Vec<Grown>,
 }
 
 /// What a frame does: made anew for each, in the same memory.
@@ -62,6 +64,7 @@ impl State {
             growth_readbacks: GrowthReadback::all(&plan, factory.device).map_err(refused)?,
             readables: Readable::all(&plan),
             uniform: frame_uniform(&plan),
+            grown: Vec::new(),
             contents: Contents::new(&plan, 0),
             memory,
             passes,
@@ -173,6 +176,32 @@ impl State {
                 frame_in_flight
                     .cpu
                     .push((pass.name.clone(), start.elapsed()));
+            }
+        }
+    }
+
+    /// Copies contents into the larger buffers and textures that were made since the frame before.
+    pub fn copy_grown(&mut self, encoder: &mut wgpu::CommandEncoder) {
+        for pair in self.grown.drain(..) {
+            match &pair {
+                (Physical::Buffer(from), Physical::Buffer(to)) => {
+                    encoder.copy_buffer_to_buffer(from, 0, to, 0, from.size());
+                }
+                (Physical::Texture(from), Physical::Texture(to)) => {
+                    for mip_level in 0..from.mip_level_count() {
+                        let of = |texture| wgpu::TexelCopyTextureInfo {
+                            mip_level,
+                            ..wgpu::Texture::as_image_copy(texture)
+                        };
+                        let size = wgpu::Extent3d {
+                            width: (from.width() >> mip_level).max(1),
+                            height: (from.height() >> mip_level).max(1),
+                            depth_or_array_layers: from.depth_or_array_layers(),
+                        };
+                        encoder.copy_texture_to_texture(of(from), of(to), size);
+                    }
+                }
+                _ => {}
             }
         }
     }

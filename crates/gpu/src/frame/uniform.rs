@@ -1,7 +1,8 @@
-//! The uniform `frame`: number and time. The host may encode several frames before it submits the
-//! first, so each frame under way has a copy of its own, from which the uniform is written in the
-//! frame's own commands.
+//! The uniform `frame`: number, time and flags. The host may encode several frames before it
+//! submits the first, so each frame under way has a copy of its own, from which the uniform is
+//! written in the frame's own commands.
 
+use super::host_changes::Changed;
 use crate::{
     error::{ExecuteError, scoped},
     signal::{Progress, Signal},
@@ -31,10 +32,10 @@ impl FrameUniform {
         })
     }
 
-    /// Writes number and time into the copy of a frame that is over, or into a new one.
+    /// Writes number, time and flags into the copy of a frame that is over, or into a new one.
     pub fn write(
         used: &mut Option<Self>,
-        (index, seconds): (u32, f32),
+        (index, seconds, changed): (u32, f32, Changed),
         device: &wgpu::Device,
     ) -> Result<(), ExecuteError> {
         let is_mapped = |it: &Self| it.mapped.progress() == Progress::Done;
@@ -42,9 +43,12 @@ impl FrameUniform {
             Some(uniform) => uniform,
             None => Self::new(device)?,
         };
+        let flags = [changed.scene, changed.light, changed.memory].map(u32::from);
+        let words = [index, seconds.to_bits()].into_iter().chain(flags);
         let mut bytes = [0; FRAME_BYTES as usize];
-        bytes[..4].copy_from_slice(&index.to_ne_bytes());
-        bytes[4..8].copy_from_slice(&seconds.to_ne_bytes());
+        for (bytes, word) in bytes.chunks_exact_mut(4).zip(words) {
+            bytes.copy_from_slice(&word.to_ne_bytes());
+        }
         match uniform.staging.get_mapped_range_mut(..) {
             Ok(mut mapped) => mapped.copy_from_slice(&bytes),
             Err(_) => return Err(ExecuteError::Internal("the uniform `frame` was not mapped")),

@@ -11,6 +11,8 @@ pub(crate) struct GpuAllocation {
     pub label: String,
     usage: (wgpu::TextureUsages, wgpu::BufferUsages),
     pub versions: Vec<Physical>,
+    /// The smaller buffer or texture that holds the content until the next frame copies it.
+    pub grown_from: Option<Physical>,
 }
 
 /// Allocations of another plan by their labels.
@@ -35,21 +37,23 @@ impl GpuAllocation {
         let label = names.join(" / ");
         let usage = (lifetime.textures, lifetime.buffers);
         let count = plan.versions(id);
-        let kept = known.remove(label.as_str()).filter(|(of, allocation)| {
+        let known = known.remove(label.as_str()).filter(|(of, allocation)| {
             allocation.usage == usage
                 && allocation.versions.len() == count
-                && allocation
-                    .versions
-                    .iter()
-                    .all(|version| is_made(version, resource))
+                && (!resource.keep || was(of, resource).is_some_and(|it| it.keep))
+        });
+        let reused = known.filter(|(of, allocation)| {
+            let mut versions = allocation.versions.iter();
+            versions.all(|version| is_made(version, resource))
                 && (resource.origin != Origin::Constant || holds_the_same(of, resource))
         });
-        if let Some((_, allocation)) = kept {
+        if let Some((_, allocation)) = reused {
             let versions = allocation.versions.clone();
             return Ok(Self {
                 label,
                 usage,
                 versions,
+                grown_from: None,
             });
         }
         let make = || make(resource, &label, usage, device);
@@ -63,6 +67,7 @@ impl GpuAllocation {
             label,
             usage,
             versions,
+            grown_from: known.and_then(|(of, allocation)| grown(of, allocation, resource)),
         })
     }
 }
@@ -141,12 +146,39 @@ fn fill(version: &Physical, resource: &Resource, queue: &wgpu::Queue) {
     }
 }
 
+/// What of another plan a larger one goes on with: one with `keep` that grows.
+fn grown(of: &Plan, allocation: &GpuAllocation, resource: &Resource) -> Option<Physical> {
+    let goes_on = |it: &Resource| it.keep && it.growth.is_some();
+    let known = was(of, resource).filter(|known| goes_on(known) && goes_on(resource))?;
+    let [made] = allocation.versions.as_slice() else {
+        return None;
+    };
+    let is_smaller = match (&known.kind, &resource.kind) {
+        (ResourceKind::Buffer(known), ResourceKind::Buffer(wanted)) => {
+            known.stride == wanted.stride && known.bytes < wanted.bytes
+        }
+        (ResourceKind::Texture(known), ResourceKind::Texture(wanted)) => {
+            let layers = wanted.layers;
+            let with_more = Texture {
+                layers,
+                ..known.clone()
+            };
+            with_more == *wanted && known.layers < layers
+        }
+        _ => false,
+    };
+    is_smaller.then(|| made.clone())
+}
+
+/// Another plan's resource of the same name.
+fn was<'p>(of: &'p Plan, resource: &Resource) -> Option<&'p Resource> {
+    let mut resources = of.resources().iter();
+    resources.find(|known| known.name == resource.name)
+}
+
 /// Whether another plan's resource of the same name holds the same content.
 fn holds_the_same(of: &Plan, resource: &Resource) -> bool {
-    let known = of
-        .resources()
-        .iter()
-        .find(|known| known.name == resource.name);
+    let known = was(of, resource);
     match known.map(|known| (&known.kind, &resource.kind)) {
         Some((ResourceKind::Texture(a), ResourceKind::Texture(b))) => a == b,
         Some((ResourceKind::Buffer(a), ResourceKind::Buffer(b))) => a == b,

@@ -33,6 +33,9 @@ pub(crate) struct Memory {
     missing: BTreeMap<ResourceId, String>,
 }
 
+/// A buffer or texture, and the larger one that goes on with its content.
+pub(crate) type Grown = (Physical, Physical);
+
 /// Who makes memory.
 pub(crate) struct ResourceFactory<'a> {
     pub device: &'a wgpu::Device,
@@ -359,6 +362,21 @@ impl Memory {
             }
             _ => false,
         }
+    }
+
+    /// Whether a resource is larger than before, with the same content.
+    pub fn is_grown(&self, id: ResourceId) -> bool {
+        let allocation = self.of.get(&id).map(|at| &self.allocations[*at]);
+        allocation.is_some_and(|allocation| allocation.grown_from.is_some())
+    }
+
+    /// Takes what is to be copied into larger buffers and textures, each with that.
+    pub fn take_grown(&mut self) -> Vec<Grown> {
+        let grown = self.allocations.iter_mut().filter_map(|allocation| {
+            let from = allocation.grown_from.take()?;
+            Some((from, allocation.versions.first()?.clone()))
+        });
+        grown.collect()
     }
 
     /// Whether a resource has the very memory in two states of an executor, and so its content.

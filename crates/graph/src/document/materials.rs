@@ -32,6 +32,15 @@ impl Material {
         }
     }
 
+    /// Whether its content stays from frame to frame.
+    pub fn keeps(&self) -> bool {
+        match self {
+            Self::Texture(texture) => texture.keep,
+            Self::Buffer(buffer) => buffer.keep,
+            Self::Sampler(_) => false,
+        }
+    }
+
     /// Calls `each` with everything that its size and format are made of.
     pub fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
         let grow = match self {
@@ -94,6 +103,10 @@ pub(crate) struct TextureEntry {
     /// The picture that the texture holds; it is never written then.
     #[serde(default)]
     pub file: Option<Located<String>>,
+    /// Whether its content stays from frame to frame until a pass overwrites it; `false` without
+    /// it.
+    #[serde(default)]
+    pub keep: bool,
 }
 
 /// Number of mips.
@@ -154,6 +167,10 @@ pub(crate) struct BufferEntry {
     /// How it grows between frames.
     #[serde(default)]
     pub grow: Option<GrowEntry>,
+    /// Whether its content stays from frame to frame until a pass overwrites it; `false` without
+    /// it.
+    #[serde(default)]
+    pub keep: bool,
 }
 
 /// How the items of a buffer or the layers of a texture become more between frames.

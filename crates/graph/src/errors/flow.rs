@@ -111,9 +111,9 @@ impl IntoDiagnostic for OrderError {
                 if changes {
                     diagnostic.help(format!(
                         "put `Clear(name: \"clear\", target: \"{name}\")` above it, if it \
-                         starts anew in each frame; bind `\"{name}.previous\"` and read that, if \
-                         it goes on from the frame before; say `overwrites: [\"{name}\"]`, if the \
-                         pass itself writes all that it reads"
+                         starts anew in each frame; if it goes on from the frame before, give it \
+                         `keep: true`, or bind `\"{name}.previous\"` and read that; say \
+                         `overwrites: [\"{name}\"]`, if the pass itself writes all that it reads"
                     ))
                 } else {
                     diagnostic.help("let a pass above write it, or name another material")
@@ -131,13 +131,17 @@ impl IntoDiagnostic for OrderError {
                     "break the cycle: write a second material, or move the read into a pass below",
                 ),
             Self::WrittenBelow {
-                pass, read, writer, ..
+                name,
+                pass,
+                read,
+                writer,
             } => diagnostic
                 .at(read, "read here")
                 .at(pass.span, "by this pass")
                 .at(writer.span.clone(), "written only here, below")
                 .help(format!(
-                    "move `{}` above `{}`: the file reads as a sequential program",
+                    "move `{}` above `{}`: the file reads as a sequential program; give `{name}` \
+                     `keep: true` to read here what the frame before left",
                     *writer, pass.value
                 )),
             Self::NeverWritten { name, pass, read } => diagnostic

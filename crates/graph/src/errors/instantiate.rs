@@ -200,6 +200,8 @@ pub(crate) enum InterfaceError {
         name: String,
         span: Span,
         what: String,
+        /// The material, if it is one with `keep: true`.
+        kept: Option<String>,
     },
     #[error("the graph has more than {most} {what}")]
     TooMany {
@@ -336,9 +338,18 @@ impl InterfaceError {
             Self::NotOfMaterial { of, name } => diagnostic.at(name.span, "not a part of it").help(
                 format!("its parts are `{of}[0]`, `{of}.mip[0]`, `{of}.previous`"),
             ),
-            Self::NoPrevious { span, what, .. } => diagnostic
+            Self::NoPrevious {
+                span, what, kept, ..
+            } => diagnostic
                 .at(span, format!("it is {what}"))
-                .help("textures and buffers that the graph writes have one; copy it into one"),
+                .help(match kept {
+                    Some(name) => format!(
+                        "read `{name}` above the passes that write it: there it holds what the \
+                         frame before left; or leave `keep` out"
+                    ),
+                    None => "textures and buffers that the graph writes have one; copy it into one"
+                        .to_owned(),
+                }),
             _ => diagnostic,
         }
     }

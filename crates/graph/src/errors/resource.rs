@@ -71,6 +71,8 @@ pub(crate) enum SizeError {
     DataHas(Located<String>),
     #[error("`{}`: a buffer of no items", **.0)]
     NoItems(Located<String>),
+    #[error("`{}` holds what stands in the document, and stays as it is anyway", **.0)]
+    KeepsConstant(Located<String>),
     #[error("`{}` grows, but from which `count`?", **.0)]
     GrowWithoutCount(Located<String>),
     #[error("`{}` grows, but from which `layers`?", **.0)]
@@ -151,6 +153,7 @@ impl IntoDiagnostic for SizeError {
             Self::Counter { name, .. } => diagnostic
                 .at(name.span, "")
                 .help("name a buffer whose first u32 a pass makes the number of items needed"),
+            Self::KeepsConstant(name) => diagnostic.at(name.span, "").help("leave `keep` out"),
             Self::DataHas(name) => diagnostic.at(name.span, "").help("leave `count` out"),
         }
     }

@@ -35,15 +35,40 @@ pub struct Conditions {
     pub when: Vec<When>,
     /// Every position in the schedule with every resource that is written there.
     pub written: Vec<(usize, ResourceId)>,
-    /// For every resource, by id, the group of the passes that write it.
+    /// For every resource, by id, the group of the passes that write it; of one with `keep`, which
+    /// may have several, that of the first.
     pub writers: Vec<Option<usize>>,
-    /// The resources that must outlive the frame because a pass that writes them may be skipped.
+    /// The resources that must outlive the frame: those with `keep`, and those that a pass writes
+    /// which may be skipped.
     pub kept: BTreeSet<ResourceId>,
 }
 
-/// Joins all writers of one resource, and with them whoever reads a version that is overwritten
-/// later in the frame: were the writers skipped, only the last version would be there. A group of
-/// several conditions is reported.
+impl Conditions {
+    /// Whether a pass of a group writes a resource.
+    pub fn is_written_by(&self, group: usize, id: ResourceId) -> bool {
+        let mut written = self.written.iter();
+        written.any(|(at, of)| *of == id && self.group[*at] == group)
+    }
+
+    /// Whether, of the groups that run, a pass writes a resource before the pass at `at` reads it.
+    pub fn is_written_before(
+        &self,
+        (id, keep): (ResourceId, bool),
+        at: usize,
+        runs: &[bool],
+    ) -> bool {
+        if !keep {
+            return self.writers[id.index()].is_some_and(|group| runs[group]);
+        }
+        let mut above = self.written.iter().take_while(|(by, _)| *by < at);
+        above.any(|(by, of)| *of == id && runs[self.group[*by]])
+    }
+}
+
+/// Joins all writers of one resource, and with them each pass that reads a version that is
+/// overwritten later in the frame: were the writers skipped, only the last version would be there.
+/// A group of several conditions is reported. A resource with `keep` joins only writers of one
+/// condition: a pass that runs finds what was left by those that ran before it.
 pub(crate) fn conditions(
     view: GraphView<'_>,
     schedule: &[PassId],
@@ -61,6 +86,10 @@ pub(crate) fn conditions(
             continue;
         }
         let writers: Vec<_> = uses.iter().filter(|(_, access)| access.writes).collect();
+        if view.resource(*id).keep {
+            join_by_condition(&mut group, &writers, |at| &view.pass(schedule[at]).run);
+            continue;
+        }
         let is_overwritten = |(at, access): &&(usize, &Access)| {
             access.writes
                 || writers
@@ -86,14 +115,6 @@ pub(crate) fn conditions(
         let writer = uses.iter().find(|(_, access)| access.writes);
         writers[id.index()] = writer.map(|(at, _)| group[*at]);
     }
-    let kept = uses
-        .iter()
-        .filter(|(_, uses)| {
-            uses.iter()
-                .any(|(at, access)| access.writes && view.pass(schedule[*at]).run != Run::Always)
-        })
-        .map(|(id, _)| *id)
-        .collect();
     let mut leads = vec![false; schedule.len()];
     for (&group, &pass) in group.iter().zip(schedule) {
         leads[group] |= !view.pass(pass).is_capture();
@@ -118,7 +139,35 @@ pub(crate) fn conditions(
         when,
         written,
         writers,
-        kept,
+        kept: outliving(view, schedule, &uses),
+    }
+}
+
+/// The resources that must outlive the frame.
+fn outliving(
+    view: GraphView<'_>,
+    schedule: &[PassId],
+    uses: &BTreeMap<ResourceId, Vec<(usize, &Access)>>,
+) -> BTreeSet<ResourceId> {
+    let may_be_skipped = |(at, access): &(usize, &Access)| {
+        access.writes && view.pass(schedule[*at]).run != Run::Always
+    };
+    let outlives = |id: ResourceId, uses: &[(usize, &Access)]| {
+        view.resource(id).keep || uses.iter().any(may_be_skipped)
+    };
+    let outliving = uses.iter().filter(|(id, uses)| outlives(**id, uses));
+    outliving.map(|(id, _)| *id).collect()
+}
+
+/// Joins the positions of writers that have one run condition.
+fn join_by_condition<'r>(
+    group: &mut [usize],
+    writers: &[&(usize, &Access)],
+    run: impl Fn(usize) -> &'r Run,
+) {
+    for (at, _) in writers {
+        let first = writers.iter().find(|(first, _)| run(*first) == run(*at));
+        join(group, first.map_or(*at, |(first, _)| *first), *at);
     }
 }
 

@@ -95,8 +95,9 @@ fn walk<'p>(
     for (index, pass) in view.ids().filter(|(index, _)| runs(*index)) {
         for access in &pass.accesses {
             let resource = view.resource(access.resource);
-            let has_content =
-                resource.origin != Origin::Own || matches!(resource.kind, ResourceKind::Sampler(_));
+            let has_content = resource.keep
+                || resource.origin != Origin::Own
+                || matches!(resource.kind, ResourceKind::Sampler(_));
             for part in subresources.of(access.resource, &access.part) {
                 let state = states.entry((access.resource, part)).or_default();
                 let mut edge = |from: PassId, hazard| {

@@ -60,6 +60,7 @@ fn resources() -> Vec<Resource> {
         kind: ResourceKind::Buffer(Buffer::default()),
         origin: Origin::Own,
         growth: None,
+        keep: false,
     };
     (0..RESOURCES).map(buffer).collect()
 }
@@ -87,6 +88,7 @@ fn case(uses: &[Vec<Use>]) -> Case {
             reads: matches!(how, Read | Change),
             writes: *how != Read,
             fully_overwrites: *how == Write,
+            triggers: true,
             usage: Usage::None,
             span: span.clone(),
             step: 0,

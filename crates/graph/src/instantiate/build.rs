@@ -157,6 +157,7 @@ impl<'a> Builder<'a, '_> {
                         kind,
                         origin: Origin::Host,
                         growth: None,
+                        keep: false,
                     });
                     Symbol::Target(self.symbols.whole(id))
                 }

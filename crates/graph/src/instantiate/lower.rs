@@ -96,6 +96,7 @@ fn lower_pass<'a>(
             }),
             origin: Origin::Own,
             growth: None,
+            keep: false,
         })
     });
     LoweredPass {

@@ -140,7 +140,17 @@ impl SymbolTable<'_> {
             scope: declared.scope,
             index: None,
         };
-        match declared.material() {
+        let (material, is_constant) = match declared.material() {
+            material @ Material::Texture(entry) => (material, entry.file.is_some()),
+            material @ Material::Buffer(entry) => (material, entry.data.is_some()),
+            material @ Material::Sampler(_) => (material, false),
+        };
+        if material.keeps() && is_constant {
+            let name = material.name();
+            let name = Located::new(name.value.to_string(), name.span.clone());
+            return Err(reports.report(SizeError::KeepsConstant(name)));
+        }
+        match material {
             Material::Texture(entry) => {
                 let mut texture = self.texture(entry, declared, position, reports)?;
                 let growth =

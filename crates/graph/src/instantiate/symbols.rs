@@ -93,6 +93,7 @@ impl<'a> SymbolTable<'a> {
             kind: ResourceKind::Buffer(crate::resource::Buffer::default()),
             origin: Origin::Own,
             growth: None,
+            keep: declared.material().keeps(),
         });
         self.states.push(State::Declared(declared));
         ResourceId(self.resources.len() - 1)
@@ -252,12 +253,14 @@ impl<'a> SymbolTable<'a> {
             self.select_layers(&mut target, selection, reference, position, reports)?;
         }
         if reference.previous {
+            let kept = self.kept(target.id);
             let id = self.previous(target.id);
             target.id = id.map_err(|what| {
                 reports.report(InterfaceError::NoPrevious {
                     name: reference.text().to_owned(),
                     span: reference.span.clone(),
                     what,
+                    kept,
                 })
             })?;
         }
@@ -437,6 +440,7 @@ impl<'a> SymbolTable<'a> {
                     kind,
                     origin: Origin::Host,
                     growth: None,
+                    keep: false,
                 });
                 self.scene.insert(name.to_owned(), id);
                 id
@@ -562,6 +566,12 @@ impl<'a> SymbolTable<'a> {
         known
     }
 
+    /// The name of a material with `keep: true`.
+    pub fn kept(&self, id: ResourceId) -> Option<String> {
+        let resource = self.get(id);
+        resource.keep.then(|| resource.name.clone())
+    }
+
     /// The resource that is last frame's version of another one; what that one is if there is none.
     fn previous(&mut self, base: ResourceId) -> Result<ResourceId, String> {
         if let Some(id) = self.previous.get(&base) {
@@ -569,6 +579,7 @@ impl<'a> SymbolTable<'a> {
         }
         let resource = self.get(base);
         let what = match (&resource.kind, resource.origin) {
+            _ if resource.keep => Some("kept".to_owned()),
             (ResourceKind::Texture(_) | ResourceKind::Buffer(_), Origin::Own) => None,
             (ResourceKind::Provided(_), _) => None,
             (_, Origin::Host) => Some("the host's".to_owned()),

@@ -2,16 +2,16 @@
 
 use super::{
     linker::{Linker, access},
-    pass::{BindTarget, Block, LinkedBinding, LinkedPass, LinkedProgram, Usage},
+    pass::{Access, BindTarget, Block, LinkedBinding, LinkedPass, LinkedProgram, Usage},
 };
 use crate::{
     diagnostics::reports::ErrorGuaranteed,
     document::materials::Filter,
-    errors::link::LinkError,
+    errors::{instantiate::InterfaceError, link::LinkError},
     kinds::step::Program,
     language::name::wgsl_identifier,
     provider::ProvidedBinding,
-    resource::{FRAME_BYTES, ResourceKind, Sampler, SubresourceRange, Target},
+    resource::{CLOCK_BYTES, FRAME_BYTES, ResourceKind, Sampler, SubresourceRange, Target},
     shader::{
         class::{Class, Member, TextureClass},
         reflect::Global,
@@ -58,8 +58,11 @@ impl Linker<'_, '_> {
                     self.stage_may_write(global)?;
                 }
                 let used = (global.reads, global.writes, false);
-                pass.accesses
-                    .push(access(&target, used, usage, &global.span));
+                let is_frame = self.symbols.get(target.id).kind == ResourceKind::Frame;
+                pass.accesses.push(Access {
+                    triggers: !is_frame || reads_clock(linked, global),
+                    ..access(&target, used, usage, &global.span)
+                });
                 (bound, ty)
             }
         };
@@ -136,6 +139,17 @@ impl Linker<'_, '_> {
         }
         if let Some(reported) = self.symbols.scopes.document(position.scope).incomplete {
             return Err(reported);
+        }
+        if let Some(name) = global.name.strip_suffix("_previous")
+            && let Some(base) = self.symbols.find_global(name, position.scope, self.reports)
+            && let Some(kept) = self.symbols.kept(base?.id)
+        {
+            return Err(self.reports.report(InterfaceError::NoPrevious {
+                name: global.name.clone(),
+                span: global.span.clone(),
+                what: "kept".to_owned(),
+                kept: Some(kept),
+            }));
         }
         let known = self.symbols.known(position.scope);
         let known = known.iter().map(|name| wgsl_identifier(name));
@@ -320,6 +334,16 @@ impl Linker<'_, '_> {
             Usage::Buffer(wgt::BufferUsages::STORAGE),
         ))
     }
+}
+
+/// Whether a program reads number or time of the uniform `frame`, which are others in every frame.
+fn reads_clock(linked: &LinkedProgram, global: &Global) -> bool {
+    let mut entries = linked.entries.iter();
+    entries.any(|entry| {
+        linked
+            .shader
+            .reads_below(*entry, global.handle, CLOCK_BYTES)
+    })
 }
 
 /// How a sampler is bound, or what the shader needs instead.

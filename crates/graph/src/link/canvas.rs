@@ -78,6 +78,7 @@ impl Linker<'_, '_> {
                 picture: None,
             }),
             origin: Origin::Own,
+            keep: false,
             growth: None,
         });
         let target = self.symbols.whole(id);

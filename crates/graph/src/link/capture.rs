@@ -44,6 +44,7 @@ impl Linker<'_, '_> {
             kind,
             origin: Origin::Own,
             growth: None,
+            keep: false,
         });
         // Both ends are known by number: neither is a name of a document.
         let whole = self.symbols.whole(copy);
@@ -104,8 +105,8 @@ fn written_part(
     target: &Target,
     passes: &[LinkedPass],
 ) -> Option<SubresourceRange> {
-    // What others give has content before the first pass.
-    if resource.origin != Origin::Own {
+    // What others give, and what is kept, has content before the first pass.
+    if resource.origin != Origin::Own || resource.keep {
         return None;
     }
     let written = |passes: &[LinkedPass]| -> Vec<SubresourceRange> {

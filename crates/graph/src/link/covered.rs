@@ -62,6 +62,7 @@ mod tests {
             kind,
             origin: Origin::Own,
             growth: None,
+            keep: false,
         }
     }
 

@@ -406,6 +406,7 @@ pub(super) fn access(
         reads,
         writes,
         fully_overwrites,
+        triggers: true,
         usage,
         span: span.clone(),
         step: 0,

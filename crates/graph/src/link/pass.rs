@@ -61,6 +61,9 @@ pub struct Access {
     pub writes: bool,
     /// Everything in the part is overwritten.
     pub fully_overwrites: bool,
+    /// Whether another content is a change for [`Run::OnChange`]; flags of the uniform `frame` are
+    /// none.
+    pub triggers: bool,
     /// What the resource must be made for.
     pub usage: Usage,
     /// Place in the document or the shader that causes it.

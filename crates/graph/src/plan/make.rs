@@ -280,22 +280,34 @@ fn live(view: GraphView<'_>, readable: &[(String, Target)], order: &Order) -> Ve
     let imports = view
         .ids()
         .filter(|(_, pass)| pass.accesses.iter().any(of_host));
+    let final_writers = |target: &Target| {
+        if view.resource(target.id).keep {
+            writers(view, target)
+        } else {
+            order.final_writers(target)
+        }
+    };
     let roots: BTreeSet<PassId> = readable
         .iter()
-        .flat_map(|(_, target)| order.final_writers(target))
+        .flat_map(|(_, target)| final_writers(target))
         .chain(imports.map(|(id, _)| id))
         .collect();
     cull::live(order, roots, |pass| {
         let of = |access: &Access| {
             let resource = view.resource(access.resource);
-            match (&resource.origin, &resource.growth) {
-                (Origin::Previous(id), _) => order.final_writers(&Target {
-                    id: *id,
-                    part: access.part.clone(),
-                }),
-                (_, Some(growth)) => order.final_writers(&growth.counter),
+            let part = |id| Target {
+                id,
+                part: access.part.clone(),
+            };
+            let mut needed = match resource.origin {
+                Origin::Previous(id) => return order.final_writers(&part(id)),
+                _ if resource.keep && access.reads => writers(view, &part(access.resource)),
                 _ => BTreeSet::new(),
+            };
+            if let Some(growth) = &resource.growth {
+                needed.extend(final_writers(&growth.counter));
             }
+            needed
         };
         view.pass(pass)
             .accesses
@@ -303,6 +315,16 @@ fn live(view: GraphView<'_>, readable: &[(String, Target)], order: &Order) -> Ve
             .flat_map(of)
             .collect::<Vec<_>>()
     })
+}
+
+/// The passes that write a part of a resource, in whichever frame.
+fn writers(view: GraphView<'_>, target: &Target) -> BTreeSet<PassId> {
+    let writes = |access: &Access| {
+        access.writes && access.resource == target.id && access.part.overlaps(&target.part)
+    };
+    let passes = view.ids();
+    let writers = passes.filter(|(_, pass)| pass.accesses.iter().any(writes));
+    writers.map(|(id, _)| id).collect()
 }
 
 /// Those of some resources that grow; last frame's version of one is no other.
@@ -351,6 +373,11 @@ fn further_uses(
         if request.poison.is_some() || is_constant {
             fillable(&resource.kind, lifetime);
         }
+        // Its content is copied when it grows.
+        if resource.keep && resource.growth.is_some() {
+            lifetime.buffers |= wgt::BufferUsages::COPY_SRC | wgt::BufferUsages::COPY_DST;
+            lifetime.textures |= wgt::TextureUsages::COPY_SRC | wgt::TextureUsages::COPY_DST;
+        }
     }
     // Two versions of one resource are made alike, and a version can be read although nobody asks
     // for the other.
@@ -390,12 +417,17 @@ fn unsized_buffers(lifetimes: &Lifetimes, view: GraphView<'_>, reports: &mut Rep
     }
 }
 
-/// Reads of last frame's version of what no frame writes.
+/// Reads of what is left of the frame before, where no frame writes it.
 fn never_written(view: GraphView<'_>, order: &Order, reports: &mut Reports) {
     for pass in view.passes {
         for access in &pass.accesses {
-            let Origin::Previous(id) = view.resource(access.resource).origin else {
-                continue;
+            let id = match view.resource(access.resource) {
+                resource if resource.keep => access.resource,
+                Resource {
+                    origin: Origin::Previous(id),
+                    ..
+                } => *id,
+                _ => continue,
             };
             let part = access.part.clone();
             let is_host = view.resource(id).origin == Origin::Host;

@@ -71,6 +71,7 @@ impl Plan {
         let used = self.schedule().lifetimes.keys();
         used.map(|id| self.resource(*id))
             .any(|resource| match (&resource.kind, resource.origin) {
+                _ if resource.keep => true,
                 (ResourceKind::Frame, _) => true,
                 (ResourceKind::Provided(_), _) => false,
                 (_, origin) => matches!(origin, Origin::Previous(_)),

@@ -4,7 +4,8 @@
 use super::{compiled::Specialised, expand::Expanded};
 use crate::source::span::{Located, Span};
 use naga::{
-    AddressSpace, Block, Function, Handle, ShaderStage, Statement, TypeInner, valid::FunctionInfo,
+    AddressSpace, Block, Function, Handle, Module, ShaderStage, Statement, TypeInner,
+    valid::FunctionInfo,
 };
 use std::collections::BTreeSet;
 
@@ -59,7 +60,7 @@ impl Footprint {
         let info = of.info.get_entry_point(index);
         footprint.globals(of, info, source);
         footprint.function(of, (&point.function, info), name, source);
-        for handle in called(of, &point.function) {
+        for handle in called(module, &point.function) {
             let function = &module.functions[handle];
             let name = function.name.as_deref().unwrap_or_default();
             footprint.function(of, (function, &of.info[handle]), name, source);
@@ -122,7 +123,7 @@ fn located(name: Option<&str>, span: naga::Span, source: &Expanded) -> Located<S
 }
 
 /// The functions that one calls, and those that these call, each once.
-fn called(of: &Specialised<'_>, first: &Function) -> BTreeSet<Handle<Function>> {
+pub(super) fn called(module: &Module, first: &Function) -> BTreeSet<Handle<Function>> {
     let mut found = BTreeSet::new();
     let mut open: Vec<&Block> = vec![&first.body];
     while let Some(block) = open.pop() {
@@ -137,7 +138,7 @@ fn called(of: &Specialised<'_>, first: &Function) -> BTreeSet<Handle<Function>> 
                     body, continuing, ..
                 } => open.extend([body, continuing]),
                 Statement::Call { function, .. } if found.insert(*function) => {
-                    open.push(&of.module.functions[*function].body);
+                    open.push(&module.functions[*function].body);
                 }
                 _ => {}
             }

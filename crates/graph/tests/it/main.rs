@@ -24,6 +24,7 @@ mod hostile;
 mod hostile_shaders;
 mod includes;
 mod inlining;
+mod keep;
 mod mistakes;
 mod names;
 mod origin;

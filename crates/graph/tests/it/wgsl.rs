@@ -417,3 +417,43 @@ fn params_and_overrides_are_laid_out() {
     );
     assert_eq!(constants, overrides(8.0, 1.0));
 }
+
+/// Number and time of the uniform `frame` are a reason to run for `OnChange`, its flags are none:
+/// whoever reads which of them, and under which name it is bound.
+#[test]
+fn flags_of_the_frame_trigger_nothing() {
+    let frame = "struct Frame { index: u32, seconds: f32, changed_scene: u32, changed_light: u32 }
+        var<uniform> FRAME: Frame;
+        fn flag() -> u32 { return FRAME.changed_light; }
+        fn time() -> f32 { return FRAME.seconds; }";
+    for (value, triggers) in [
+        ("f32(FRAME.changed_scene)", false),
+        ("f32(flag())", false),
+        ("time()", true),
+        ("f32(FRAME.index + flag())", true),
+        ("f32(copy().changed_scene)", true),
+    ] {
+        for name in ["frame", "other"] {
+            let shader = format!(
+                "{frame} fn copy() -> Frame {{ return FRAME; }}
+                 @fragment fn fragment() -> @location(0) f32 {{ return {value}; }}"
+            );
+            let files = one_pass(&shader.replace("FRAME", name));
+            let bind = [
+                r#"color: ["image"]"#,
+                r#"color: ["image"], bind: {"other": "frame"}"#,
+            ];
+            let files = match name {
+                "frame" => files,
+                _ => files.edited("graph.ron", bind[0], bind[1]),
+            };
+            let plan = right(plan(&files));
+            let pass = &plan.all_passes()[0];
+            let mut accesses = pass.accesses.iter();
+            let access = accesses.find(|it| plan.resource(it.resource).name == "frame");
+            let access = access.expect("it is bound");
+            assert!(access.reads);
+            assert_eq!(access.triggers, triggers, "{value}");
+        }
+    }
+}

@@ -21,6 +21,10 @@ pub struct Pass {
     /// Written: which material, all of it or its first half.
     target: usize,
     whole: bool,
+    /// Run condition, if the material is kept: its writers need not have the same.
+    run: usize,
+    /// Whether it adds to what is there, if the material is kept.
+    adds: bool,
     /// It is there only while the param `extra` is true.
     optional: bool,
 }
@@ -42,8 +46,9 @@ impl Pass {
     }
 
     /// The entry of the document and the shader: a sum of what is read, times a large number.
-    fn texts(&self, index: usize, run: &str) -> (String, String) {
+    fn texts(&self, index: usize, run: &str, is_kept: bool) -> (String, String) {
         let target = self.target;
+        let adds = is_kept && self.adds;
         let mut bind = format!("\"out\": \"m{target}\"");
         let mut globals = format!("{SEED} {OUT}\n");
         let mut sum = format!("{}u + params.seed", index + 1);
@@ -57,7 +62,10 @@ impl Pass {
             let _ = writeln!(globals, "var<storage, read> r{number}: array<u32>;");
             let _ = write!(sum, " + {}u * r{number}[i]", 2 * number + 3);
         }
-        let overwrites = if self.whole {
+        if adds {
+            sum.push_str(" + 13u * out[i]");
+        }
+        let overwrites = if self.whole && !adds {
             format!("overwrites: [\"m{target}\"],")
         } else {
             String::new()
@@ -85,6 +93,8 @@ pub enum Event {
 pub struct Program {
     /// Run condition of whoever writes a material.
     runs: Vec<usize>,
+    /// Of each material whether it has `keep: true`.
+    kept: Vec<bool>,
     passes: Vec<Pass>,
     pub outputs: Vec<usize>,
     pub events: Vec<Event>,
@@ -94,15 +104,27 @@ pub struct Program {
 const MATERIALS: usize = 4;
 pub const ITEMS: usize = 4;
 const RUNS: [&str; 4] = ["Always", "OnChange", "Once", "When(\"flag\")"];
+/// Those of passes that write what is kept: that `OnChange` saves work is seen there, since what a
+/// pass adds to is no reason to run it.
+const RUNS_OF_KEPT: [usize; 3] = [0, 2, 3];
 
 pub type Value = [u32; ITEMS];
 
 impl Program {
-    /// The document: every material is set to zero before it is first used, so that lifetimes are
-    /// short and memory is shared.
+    /// Run condition of a pass.
+    fn run(&self, pass: &Pass) -> usize {
+        if self.kept[pass.target] {
+            pass.run
+        } else {
+            self.runs[pass.target]
+        }
+    }
+
+    /// The document: every material that is not kept is set to zero before it is first used, so
+    /// that lifetimes are short and memory is shared.
     pub fn files(&self) -> Files {
         let mut passes = String::new();
-        let mut fresh: Vec<usize> = (0..MATERIALS).collect();
+        let mut fresh: Vec<usize> = (0..MATERIALS).filter(|it| !self.kept[*it]).collect();
         let mut zero = |passes: &mut String, used: &dyn Fn(usize) -> bool| {
             for material in fresh.extract_if(.., |material| used(*material)) {
                 let more = format!(
@@ -119,13 +141,16 @@ impl Program {
             zero(&mut passes, &|material| {
                 material == pass.target || pass.reads.contains(&Read::Now(material))
             });
-            let (pass, shader) = pass.texts(index, RUNS[self.runs[pass.target]]);
+            let (pass, shader) = pass.texts(index, RUNS[self.run(pass)], self.kept[pass.target]);
             passes.push_str(&pass);
             files = files.with(&format!("p{index}.wgsl"), shader);
         }
         zero(&mut passes, &|_| true);
         let materials: String = (0..MATERIALS)
-            .map(|material| format!("Buffer(name: \"m{material}\", count: {ITEMS}), "))
+            .map(|material| {
+                let keep = self.kept[material];
+                format!("Buffer(name: \"m{material}\", count: {ITEMS}, keep: {keep}), ")
+            })
             .collect();
         let outputs: Vec<String> = self.outputs.iter().map(|at| format!("m{at}")).collect();
         files.document(
@@ -155,13 +180,13 @@ impl Program {
                 Event::Host(value) => host = value,
                 Event::Nothing | Event::Resize(_) => {}
             }
-            let runs = |material: usize| match self.runs[material] {
+            let runs = |run: usize| match run {
                 2 => number == 0,
                 3 => flag,
                 _ => true,
             };
             for (material, value) in now.iter_mut().enumerate() {
-                if runs(material) {
+                if !self.kept[material] && runs(self.runs[material]) {
                     *value = [0; ITEMS];
                 }
             }
@@ -169,7 +194,7 @@ impl Program {
                 .passes
                 .iter()
                 .enumerate()
-                .filter(|(_, pass)| runs(pass.target) && (extra || !pass.optional))
+                .filter(|(_, pass)| runs(self.run(pass)) && (extra || !pass.optional))
             {
                 let values: Vec<Value> = pass
                     .reads
@@ -180,9 +205,13 @@ impl Program {
                         Read::Host => [host; ITEMS],
                     })
                     .collect();
+                let adds = self.kept[pass.target] && pass.adds;
                 for item in 0..pass.items() {
+                    let before = if adds { now[pass.target][item] } else { 0 };
                     let sum = values.iter().enumerate().fold(
-                        (index as u32 + 1).wrapping_add(seed),
+                        (index as u32 + 1)
+                            .wrapping_add(seed)
+                            .wrapping_add(before.wrapping_mul(13)),
                         |sum, (number, value)| {
                             sum.wrapping_add((2 * number as u32 + 3).wrapping_mul(value[item]))
                         },
@@ -208,8 +237,10 @@ fn any_pass() -> impl Strategy<Value = Pass> {
         0..MATERIALS,
         prop::bool::weighted(0.7),
         prop::bool::weighted(0.2),
+        prop::sample::select(RUNS_OF_KEPT.to_vec()),
+        any::<bool>(),
     )
-        .prop_map(|(mut reads, target, whole, optional)| {
+        .prop_map(|(mut reads, target, whole, optional, run, adds)| {
             // A history begins with the plan in which somebody reads it: neither does a pass that
             // comes and goes, nor are others needed or not because of it.
             let whole = whole && !optional;
@@ -221,6 +252,8 @@ fn any_pass() -> impl Strategy<Value = Pass> {
                 reads,
                 target,
                 whole,
+                run,
+                adds,
                 optional,
             }
         })
@@ -243,37 +276,57 @@ pub fn any_program() -> impl Strategy<Value = Program> {
             prop_oneof![3 => Just(0usize), 3 => Just(1), 1 => Just(2), 1 => Just(3)],
             MATERIALS,
         ),
+        prop::collection::vec(prop::bool::weighted(0.3), MATERIALS),
         prop::collection::vec(any_pass(), 1..7),
         prop::collection::btree_set(0..MATERIALS, 1..3),
         prop::collection::vec(any_event(), 3..7),
         prop_oneof![Just(None), Just(Some(0xa5))],
     )
-        .prop_map(|(runs, mut passes, mut outputs, events, poison)| {
-            for pass in &mut passes {
-                // What ran once stays as it is only while the same passes make it.
-                pass.optional &= RUNS[runs[pass.target]] != "Once";
-            }
-            // A pass that comes may make others needed: a history that one of those reads would
-            // begin with that plan.
-            if passes.iter().any(|pass| {
-                pass.reads
-                    .iter()
-                    .any(|read| matches!(read, Read::Before(_)))
-            }) {
-                for pass in passes.iter_mut().filter(|pass| pass.optional) {
-                    pass.reads.retain(|read| !matches!(read, Read::Now(_)));
+        .prop_map(
+            |(runs, mut kept, mut passes, mut outputs, events, poison)| {
+                // What is read must be written, whichever passes are there.
+                for (material, kept) in kept.iter_mut().enumerate() {
+                    let writes = |pass: &Pass| pass.target == material && !pass.optional;
+                    *kept &= passes.iter().any(writes);
                 }
-            }
-            // What only a pass reads that goes would be lost with it.
-            if passes.iter().any(|pass| pass.optional) {
-                outputs.extend(0..MATERIALS);
-            }
-            Program {
-                runs,
-                passes,
-                outputs: outputs.into_iter().collect(),
-                events,
-                poison,
-            }
-        })
+                for pass in &mut passes {
+                    // What is kept has no version of the frame before but itself.
+                    for read in &mut pass.reads {
+                        if let Read::Before(material) = *read
+                            && kept[material]
+                        {
+                            *read = Read::Now(material);
+                        }
+                    }
+                    let target = pass.target;
+                    pass.reads.retain(|read| *read != Read::Now(target));
+                    // What ran once stays as it is only while the same passes make it.
+                    let run = if kept[target] { pass.run } else { runs[target] };
+                    pass.optional &= RUNS[run] != "Once";
+                }
+                // A pass that comes may make others needed: a history that one of those reads would
+                // begin with that plan.
+                if passes.iter().any(|pass| {
+                    pass.reads
+                        .iter()
+                        .any(|read| matches!(read, Read::Before(_)))
+                }) {
+                    for pass in passes.iter_mut().filter(|pass| pass.optional) {
+                        pass.reads.retain(|read| !matches!(read, Read::Now(_)));
+                    }
+                }
+                // What only a pass reads that goes would be lost with it.
+                if passes.iter().any(|pass| pass.optional) {
+                    outputs.extend(0..MATERIALS);
+                }
+                Program {
+                    runs,
+                    kept,
+                    passes,
+                    outputs: outputs.into_iter().collect(),
+                    events,
+                    poison,
+                }
+            },
+        )
 }

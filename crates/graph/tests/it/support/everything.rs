@@ -19,7 +19,7 @@ pub const DOCUMENT: &str = r#"(
         Texture(name: "same", format: "small.format", size: "small.size"),
         Texture(name: "noise", format: R8Unorm, file: "noise.png"),
         Buffer(name: "items", count: "2 * small.count"),
-        Buffer(name: "kept", count: "items.count"),
+        Buffer(name: "kept", count: "items.count", keep: true),
         Buffer(name: "total"),
         Buffer(name: "kernel", data: [0.25, 0.5, 0.25]),
         Sampler(name: "nearest", filter: Nearest, address: Repeat),

@@ -1,0 +1,50 @@
+//! Which part of a uniform an entry point reads.
+
+use super::{footprint::called, reflect::Shader};
+use naga::{Expression, Function, GlobalVariable, Handle, TypeInner};
+
+impl Shader {
+    /// Whether an entry point reads a member of a uniform that begins in its first `bytes`, or all
+    /// of it at once.
+    pub(crate) fn reads_below(
+        &self,
+        entry: usize,
+        global: Handle<GlobalVariable>,
+        bytes: u32,
+    ) -> bool {
+        let first = &self.module.entry_points[entry].function;
+        let called = called(&self.module, first).into_iter();
+        let called = called.map(|handle| &self.module.functions[handle]);
+        let begins_below = |member: u32| {
+            let global = &self.module.global_variables[global];
+            match &self.module.types[global.ty].inner {
+                TypeInner::Struct { members, .. } => members
+                    .get(member as usize)
+                    .is_none_or(|member| member.offset < bytes),
+                _ => true,
+            }
+        };
+        called
+            .chain([first])
+            .any(|function| reads(function, global, begins_below))
+    }
+}
+
+/// Whether a function reads a global: one of the members, or all of it.
+fn reads(
+    function: &Function,
+    global: Handle<GlobalVariable>,
+    member: impl Fn(u32) -> bool,
+) -> bool {
+    let of = |handle: Handle<Expression>| match function.expressions[handle] {
+        Expression::GlobalVariable(found) => found == global,
+        _ => false,
+    };
+    let mut expressions = function.expressions.iter();
+    expressions.any(|(_, expression)| match *expression {
+        Expression::AccessIndex { base, index } => of(base) && member(index),
+        Expression::Load { pointer } => of(pointer),
+        Expression::Access { base, .. } => of(base),
+        _ => false,
+    })
+}

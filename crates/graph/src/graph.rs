@@ -14,14 +14,18 @@ use crate::{
         params::{Param, ParamFault, ParamValue},
         typed::{Document, What, each_entry},
     },
-    errors::{compose::ComposeError, resource::SizeError, shader::ShaderError},
+    errors::{
+        compose::{ComposeError, Unused},
+        resource::SizeError,
+        shader::ShaderError,
+    },
     kinds::registry::Registry,
     language::{name::Name, syntax::Leaf},
     shader::{
         expand::ShaderFiles,
         reflect::Shader,
         store::{self, Shaders},
-        unused::Unused,
+        unused,
     },
     source::{
         paths::{escapes, include_candidates},
@@ -301,13 +305,14 @@ impl Graph {
     /// includes or extends need not all be of use.
     fn unused(&self, reports: &mut Reports) {
         let document = &self.document;
+        let unused = |what, name| ComposeError::Unused { what, name };
         let is_own = |span: &Span| span.file.name == document.file.name;
         let used = Used::new(document, &self.shaders);
         for material in &document.materials {
             let name = material.name();
             if is_own(&name.span) && !used.materials.contains(name.as_str()) {
                 let name = Located::new(name.value.to_string(), name.span.clone());
-                reports.warn(ComposeError::UnusedMaterial(name));
+                reports.warn(unused(Unused::Material, name));
             }
         }
         for (name, _) in &document.values {
@@ -315,19 +320,19 @@ impl Graph {
                 used.params.contains(name.as_str()) || used.materials.contains(name.as_str());
             if is_own(&name.span) && !is_used {
                 let name = Located::new(name.value.to_string(), name.span.clone());
-                reports.warn(ComposeError::UnusedValue(name));
+                reports.warn(unused(Unused::Value, name));
             }
         }
         for param in &document.params[..document.declared] {
             if is_own(&param.name.span) && !used.params.contains(&param.name.value) {
-                reports.warn(ComposeError::UnusedParam(param.name.clone()));
+                reports.warn(unused(Unused::Param, param.name.clone()));
             }
         }
         let imported = self.shaders.imported();
         for entry in &document.imports {
             let path = self.shaders.module(&entry.of);
             if is_own(&entry.of.span) && path.is_some_and(|path| !imported.contains(&**path)) {
-                reports.warn(ComposeError::UnusedImport(entry.of.clone()));
+                reports.warn(unused(Unused::Import, entry.of.clone()));
             }
         }
         for (unused, shader) in self.unused_in_shaders() {
@@ -339,10 +344,10 @@ impl Graph {
         }
     }
 
-    /// What nothing in a shader of the document's own passes uses, whatever modules it imports, with
-    /// the shader.
-    fn unused_in_shaders(&self) -> Vec<(Unused, String)> {
-        let mut found: Vec<(Unused, String)> = Vec::new();
+    /// What nothing in a shader of the document's own passes uses, whatever modules it imports,
+    /// with the shader.
+    fn unused_in_shaders(&self) -> Vec<(unused::Unused, String)> {
+        let mut found: Vec<(unused::Unused, String)> = Vec::new();
         let mut constants = BTreeSet::new();
         self.document.visit(&mut |leaf| {
             if let Leaf::Constant(name) = leaf {

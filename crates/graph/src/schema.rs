@@ -6,7 +6,7 @@ use crate::{
         extend::PLACES,
         fields::{Chosen, Load},
         materials::{
-            BufferEntry, BufferInput, Data, FORMATS, FormatEntry, Mips, SamplerEntry, SamplerInput,
+            BufferEntry, BufferInput, Data, FormatEntry, Mips, SamplerEntry, SamplerInput,
             TextureEntry, TextureInput,
         },
         params::ParamFields,
@@ -112,7 +112,7 @@ written!(Mips, "Mips", generator => {
 written!(FormatEntry, "Format", _generator => json_schema!({
     "description": "A format by wgpu's name, or another's: `\"image.format\"`.",
     "anyOf": [
-        { "type": "string", "enum": FORMATS },
+        { "type": "string", "enum": crate::language::formats::FORMATS },
         { "type": "string", "not": { "pattern": WORD } },
     ],
 }));

@@ -116,8 +116,8 @@ fn methods_of_the_sun_are_as_wrong_as_in_format_2() {
     are_wrong(&bench, &methods);
 }
 
-/// One document over three methods: over `nsm` as wrong as in format 2, where it was written for that
-/// alone; over others each pixel is dark where it is so over `nsm` and not below, and as it was else.
+/// One document over three methods: over `nsm` as wrong as in format 2, where it was written for
+/// that alone; over others a pixel is dark where it is so over `nsm` and not below, else as it was.
 #[test]
 fn contact_shadows_stand_over_any_method() {
     let bench = Bench::new("park", "bench_side", "");

@@ -1,6 +1,7 @@
 //! From an argument to a graph that can run: presets and params, planning, what a shadow method
 //! must hand out. Nothing here runs on a GPU.
 
+pub mod argument;
 pub mod contract;
 pub mod faults;
 pub mod idle_params;

@@ -3,8 +3,8 @@
 
 use crate::args::values::{Assignment, unique};
 use crate::error::CliError;
+use crate::graphs::argument::MethodArgument;
 use crate::graphs::preset;
-use crate::graphs::variants::MethodArgument;
 use skiagraph_graph::Sources;
 use std::collections::BTreeSet;
 
@@ -108,7 +108,7 @@ mod tests {
         let found = read(&["step", "nsm@bias=1", "step@over=pcf,bias=1"], &[]);
         let expected = [("step", 0), ("nsm", 1), ("step@over=pcf", 1)];
         assert_eq!(found, (named(&expected), 0));
-        // What is set of all holds where nothing else is said; a list is a method for each document.
+        // What is set of all holds where nothing else is said; a list is several methods.
         let found = read(
             &["step", "step@over=pcf", "nsm"],
             &["over=nsm,pcf", "bias=1"],

@@ -4,9 +4,9 @@ use crate::args::values::Assignment;
 use crate::error::CliError;
 use crate::files::fingerprint::{Fingerprint, RecordedSources};
 use crate::files::picture_sources::PictureSources;
+use crate::graphs::argument::MethodArgument;
 use crate::graphs::faults::{GraphFaults, warn};
 use crate::graphs::planning;
-use crate::graphs::variants::MethodArgument;
 use crate::terminal::console::note;
 use crate::wording::did_you_mean;
 use skiagraph_graph::{

@@ -3,56 +3,16 @@
 
 use crate::args::values::Assignment;
 use crate::error::CliError;
+use crate::graphs::argument::MethodArgument;
 use crate::graphs::preset::Preset;
 use crate::wording::did_you_mean;
 use skiagraph_graph::ParamType;
-use std::path::Path;
 
 /// The param that `--map-size` sets.
 pub const MAP_SIZE: &str = "map_size";
 
 /// Most values of one param; who asks for more has written something else than was meant.
 const MOST: usize = 1000;
-
-/// `PRESET[@PARAM=VALUE,…]`: a method as it is named on the command line.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct MethodArgument {
-    /// The preset's name, or the graph's path.
-    pub preset: String,
-    /// What is set of this one alone.
-    pub own: Vec<Assignment>,
-}
-
-impl MethodArgument {
-    /// Of a word of the command line. A comma also stands in the values of vectors, so that what
-    /// has no `=` belongs to the value before it.
-    pub fn new(word: &str) -> Self {
-        // Folders have any name.
-        let split = word.split_once('@').filter(|_| !Path::new(word).is_file());
-        let Some((preset, own)) = split.filter(|(name, own)| !name.is_empty() && own.contains('='))
-        else {
-            return Self {
-                preset: word.to_owned(),
-                own: Vec::new(),
-            };
-        };
-        let mut assignments: Vec<Assignment> = Vec::new();
-        for part in own.split(',') {
-            match (part.parse::<Assignment>(), assignments.last_mut()) {
-                (Ok(assignment), _) => assignments.push(assignment),
-                (Err(_), Some(last)) => last.value += &format!(",{part}"),
-                (Err(_), None) => assignments.push(Assignment {
-                    name: part.to_owned(),
-                    value: String::new(),
-                }),
-            }
-        }
-        Self {
-            preset: preset.to_owned(),
-            own: assignments,
-        }
-    }
-}
 
 /// Presets that arguments name, each once.
 pub fn presets(arguments: &[MethodArgument]) -> Vec<String> {
@@ -187,18 +147,6 @@ mod tests {
     }
 
     #[test]
-    fn a_word_is_a_method_with_what_is_set_of_it_alone() {
-        let plain = MethodArgument::new("crsm");
-        assert_eq!((plain.preset.as_str(), plain.own.len()), ("crsm", 0));
-        let two = MethodArgument::new("crsm@n=1,depth=plane");
-        assert_eq!(two.own, [set("n=1"), set("depth=plane")]);
-        let vector = MethodArgument::new("my.ron@tint=1,0,0,n=2");
-        assert_eq!(vector.own, [set("tint=1,0,0"), set("n=2")]);
-        // A file's name may have the sign.
-        assert_eq!(MethodArgument::new("a@b.ron").preset, "a@b.ron");
-    }
-
-    #[test]
     fn lists_and_ranges_are_settings_each_with_a_label() {
         assert_eq!(labels("crsm", &[]).unwrap(), [""]);
         // One value for all is nothing that tells rows apart.
@@ -223,17 +171,6 @@ mod tests {
             [""],
             "rt has no such param"
         );
-    }
-
-    #[test]
-    fn a_file_below_a_folder_of_any_name_has_no_setting() {
-        let folder = tempfile::tempdir().unwrap();
-        let odd = folder.path().join("dir@a=b");
-        std::fs::create_dir(&odd).unwrap();
-        std::fs::write(odd.join("x.ron"), "").unwrap();
-        let word = odd.join("x.ron").display().to_string();
-        let argument = MethodArgument::new(&word);
-        assert_eq!((argument.preset, argument.own.len()), (word, 0));
     }
 
     #[test]

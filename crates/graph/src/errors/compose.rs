@@ -63,8 +63,6 @@ pub(crate) enum ComposeError {
         declared: Span,
         known: Vec<String>,
     },
-    #[error("nothing uses the value `{}`", **.0)]
-    UnusedValue(Located<String>),
     #[error("the value `{}` is called as a word of the param `{param}`", **name)]
     ValueIsWord {
         name: Located<String>,
@@ -75,12 +73,43 @@ pub(crate) enum ComposeError {
     ExposedDefault(Located<String>),
     #[error("the document has no outputs, so none of its passes is needed")]
     NoOutputs(Span),
-    #[error("nothing uses the material `{}`", **.0)]
-    UnusedMaterial(Located<String>),
-    #[error("nothing uses the param `{}`", **.0)]
-    UnusedParam(Located<String>),
-    #[error("no shader imports `{}`", **.0)]
-    UnusedImport(Located<String>),
+    #[error("nothing uses the {} `{}`", what.word(), **name)]
+    Unused { what: Unused, name: Located<String> },
+}
+
+/// What of a document nothing uses.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Unused {
+    Value,
+    Material,
+    Param,
+    Import,
+}
+
+impl Unused {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Value => "value",
+            Self::Material => "material",
+            Self::Param => "param",
+            Self::Import => "import",
+        }
+    }
+
+    fn way_out(self) -> &'static str {
+        match self {
+            Self::Value => {
+                "remove it, or check the names in expressions, outputs, params and overrides"
+            }
+            Self::Material => {
+                "remove it, or check the names of the shader globals that should be it"
+            }
+            Self::Param => {
+                "remove it, or check the names in `params` of the shaders and in expressions"
+            }
+            Self::Import => "remove the entry, or name the module as the shaders import it",
+        }
+    }
 }
 
 /// What is wrong with two names that are one.
@@ -104,10 +133,7 @@ impl IntoDiagnostic for ComposeError {
             Self::NoOpening { .. } => Code::UnknownParam,
             Self::NoCommonLight { .. } => Code::Light,
             Self::NoOutputs(_) => Code::Output,
-            Self::UnusedMaterial(_)
-            | Self::UnusedParam(_)
-            | Self::UnusedValue(_)
-            | Self::UnusedImport(_) => Code::Unused,
+            Self::Unused { .. } => Code::Unused,
             Self::NarrowWord { .. } | Self::NarrowOfOther { .. } => Code::ParamValue,
             Self::ValueIsWord { .. } => Code::Name,
             _ => Code::MissingFile,
@@ -189,22 +215,11 @@ impl IntoDiagnostic for ComposeError {
                 .at(word.span.clone(), "")
                 .at(declared, "declared here")
                 .suggest(&word, known),
-            Self::UnusedValue(name) => diagnostic.at(name.span, "").help(
-                "remove it, or check the names in expressions, outputs, params and overrides",
-            ),
             Self::ValueIsWord { name, declared, .. } => diagnostic
                 .at(name.span, "")
                 .at(declared, "its words are declared here")
                 .help("rename the value: beside the param its name would be the word"),
-            Self::UnusedMaterial(name) => diagnostic
-                .at(name.span, "")
-                .help("remove it, or check the names of the shader globals that should be it"),
-            Self::UnusedImport(name) => diagnostic
-                .at(name.span, "")
-                .help("remove the entry, or name the module as the shaders import it"),
-            Self::UnusedParam(name) => diagnostic.at(name.span, "").help(
-                "remove it, or check the names in `params` of the shaders and in expressions",
-            ),
+            Self::Unused { what, name } => diagnostic.at(name.span, "").help(what.way_out()),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The two small grammars inside the strings of a document: references and expressions.
 
 pub(crate) mod eval;
+pub(crate) mod formats;
 pub(crate) mod lexer;
 pub(crate) mod name;
 pub(crate) mod parser;

@@ -1,6 +1,7 @@
 //! Tokens become expressions and references: recursive descent, a level of binding at a time.
 
 use super::{
+    formats::format_named,
     lexer::{Token, tokens},
     name::Name,
     syntax::{
@@ -9,7 +10,6 @@ use super::{
     value::{Scalar, Value},
 };
 use crate::{
-    document::materials::format_named,
     errors::language::SyntaxFault,
     source::span::{Located, SourceFile, Span},
 };

@@ -156,7 +156,7 @@ impl Trace {
 
     fn refuse_light(&self, pass: &mut Lowering<'_>, kind: &str) {
         let what = format!("`LightSpace` traces no rays to a {kind} light");
-        let mistake = Diagnostic::error(Code::Unused, what)
+        let mistake = Diagnostic::error(Code::Light, what)
             .at(self.engine_place(pass), "its rays all have one direction")
             .help("take the engine `hierarchy`, or `ray_query` where there is one");
         pass.report(mistake);

@@ -16,7 +16,16 @@ pub fn closest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
         return None;
     }
     let known = known.into_iter().filter(|name| name.len() <= LONGEST);
-    let likeness = known.take(COMPARED).map(|name| {
+    let known: Vec<&str> = known.take(COMPARED).collect();
+    // What a named include exposes has the include's name in front.
+    let mut exposed = known.iter().filter(|name| {
+        let own = name.rsplit_once('.').map(|(_, own)| own);
+        own == Some(word)
+    });
+    if let (Some(name), None) = (exposed.next(), exposed.next()) {
+        return Some(*name);
+    }
+    let likeness = known.into_iter().map(|name| {
         let likeness = strsim::jaro_winkler(word, name);
         // It has no eye for a slip in a short name; the share of letters that stay has.
         let stays = strsim::normalized_damerau_levenshtein(word, name);

@@ -178,9 +178,10 @@ impl IntoDiagnostic for DocumentError {
 /// What changed since format 2, for its authors.
 const FORMAT_2: &str = "this is format 3 (docs/authoring.md): write `format: 3`; `refused` of a \
     param is `narrow` of the document; shadow maps come from `shared/create_shadow_map.ron` and \
-    their place from `shared/fit_map.ron`, which give `map_layers` and `map_is_projective`, too; \
-    the fit `eye` is `camera`, `tighten` is `fit_to_receivers`, `focus` is `warp`; a shader \
-    `x_masked` is `x` with `imports`";
+    their place from `shared/fit_map.ron`, which give `map_layers` and `map_is_projective`, too: \
+    a shader that reads one layer must `narrow` the words pssm and tsm of `fit` away; the fit \
+    `eye` is `camera`, `tighten` is `fit_to_receivers`, `focus` is `warp`; a shader `x_masked` is \
+    `x` with `imports`";
 
 /// What changed since format 1.
 const FORMAT_1: &str = "this is format 3 (docs/authoring.md): a param is `U32(name: …)`, an \

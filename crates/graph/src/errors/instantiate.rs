@@ -273,9 +273,14 @@ impl IntoDiagnostic for InterfaceError {
                 .at(declared, "asked for here"),
             Self::WrongImport { name, .. } => diagnostic.at(name.span, "asked for here"),
             Self::WrittenInput(name, by) => diagnostic
-                .at(name.span, "an input")
+                .at(name.span.clone(), "an input")
                 .at(by, "written here")
-                .help("name it among the `outputs`, so that who includes it knows"),
+                .help(format!(
+                    "name it among the `outputs`, so that who includes it knows; or make it a \
+                     material, and take the input of an extended document out: \
+                     `inputs: [Remove(name: \"{}\")]`",
+                    *name
+                )),
             Self::Unused { name, known, .. } => {
                 diagnostic.at(name.span.clone(), "").suggest(&name, known)
             }

@@ -12,8 +12,9 @@ use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
     document::{
         materials::{Input, InputKind},
+        params::ParamType,
         raw::Invalid,
-        typed::{Document, Entry, Run as RunEntry, What},
+        typed::{Document, Entry, Pass, Run as RunEntry, What},
     },
     errors::instantiate::InterfaceError,
     graph::Graph,
@@ -395,6 +396,20 @@ impl<'a> Builder<'a, '_> {
         wrong.map_or(Ok(()), Err)
     }
 
+    /// Notes the words and switches that decide what a pass is, such as its engine.
+    fn note_choices(&mut self, pass: &Pass, scope: ScopeId) {
+        let roots = pass.mentions.exprs.iter();
+        let roots: BTreeSet<String> = roots
+            .flat_map(|expr| self.symbols.roots(scope, expr))
+            .collect();
+        let params = self.symbols.graph.document.params.iter();
+        let choices = params
+            .filter(|param| matches!(param.ty, ParamType::Choice(_) | ParamType::Bool))
+            .map(|param| &param.name.value)
+            .filter(|name| roots.contains(*name));
+        self.plan_inputs.params.extend(choices.cloned());
+    }
+
     /// One instance of an entry; returns the names that it gives where it is repeated.
     fn instance(
         &mut self,
@@ -411,6 +426,7 @@ impl<'a> Builder<'a, '_> {
         let run = self.run(entry, position, context)?;
         match &entry.what {
             What::Pass(pass) => {
+                self.note_choices(pass, context.scope);
                 let (run, enabled) = run.unwrap_or((Run::Always, true));
                 let pass = FlatPass {
                     name: Located::new(name, entry.name.span.clone()),

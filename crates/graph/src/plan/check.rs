@@ -168,11 +168,12 @@ impl Graph {
             .found
             .into_iter()
             .filter(|found| found.severity == Severity::Error);
-        // A value at the end of a range may well be too large for a device, or for memory.
+        // A value at the end of a range may well be too large for a device, or for memory; and a word
+        // may be for other lights.
         let errors = errors.filter(|found| {
             !matches!(
                 found.code,
-                Code::Limit | Code::Size | Code::Memory | Code::Feature
+                Code::Limit | Code::Size | Code::Memory | Code::Feature | Code::Light
             )
         });
         errors

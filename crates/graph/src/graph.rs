@@ -348,6 +348,7 @@ impl Graph {
     /// with the shader.
     fn unused_in_shaders(&self) -> Vec<(unused::Unused, String)> {
         let mut found: Vec<(unused::Unused, String)> = Vec::new();
+        let mut finder = unused::UnusedFinder::default();
         let mut constants = BTreeSet::new();
         self.document.visit(&mut |leaf| {
             if let Leaf::Constant(name) = leaf {
@@ -363,9 +364,9 @@ impl Graph {
                 let Some(first) = variants.next() else {
                     continue;
                 };
-                let mut unused = first.unused(&constants);
+                let mut unused = finder.of(first, &constants);
                 for other in variants {
-                    let other = other.unused(&constants);
+                    let other = finder.of(other, &constants);
                     unused.retain(|unused| other.contains(unused));
                 }
                 unused.retain(|unused| found.iter().all(|(known, _)| known != unused));

@@ -168,7 +168,7 @@ impl Graph {
             .found
             .into_iter()
             .filter(|found| found.severity == Severity::Error);
-        // A value at the end of a range may well be too large for a device, or for memory; and a word
+        // A value at the end of a range may well be too large for a device, or for memory; a word
         // may be for other lights.
         let errors = errors.filter(|found| {
             !matches!(

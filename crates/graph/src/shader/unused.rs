@@ -59,16 +59,66 @@ impl<'t> Words<'t> {
     }
 }
 
-impl Shader {
-    /// What nothing uses: imports of all files, params and globals that the shader's own file
+/// Looks for what nothing uses; each file is read once.
+#[derive(Default)]
+pub(crate) struct UnusedFinder<'s> {
+    words: BTreeMap<&'s str, Words<'s>>,
+}
+
+impl<'s> UnusedFinder<'s> {
+    /// What nothing in a shader uses: imports of all files, params and globals that its own file
     /// declares. `constants` of it are named by the document.
-    pub(crate) fn unused(&self, constants: &BTreeSet<&str>) -> Vec<Unused> {
-        let mut unused = imports(&self.source, constants);
-        unused.extend(self.unused_params());
-        unused.extend(self.unused_globals());
+    pub fn of(&mut self, shader: &'s Shader, constants: &BTreeSet<&str>) -> Vec<Unused> {
+        let mut unused = self.imports(&shader.source, constants);
+        unused.extend(shader.unused_params());
+        unused.extend(shader.unused_globals());
         unused
     }
 
+    /// Imports from which no file takes a name, and to which none gives one.
+    fn imports(&mut self, source: &'s Expanded, constants: &BTreeSet<&str>) -> Vec<Unused> {
+        let imported = source.imports.iter().map(|line| &line.file);
+        let files: BTreeMap<&str, &SourceFile> = std::iter::once(&source.file)
+            .chain(imported)
+            .map(|file| (&*file.name, file))
+            .collect();
+        for (name, file) in &files {
+            let words = self.words.entry(name);
+            words.or_insert_with(|| Words::of(&file.text));
+        }
+        let words = &self.words;
+        let is_used = |line: &ImportLine| {
+            let imported = reached(source, &line.file.name);
+            let from = &*line.place.file.name;
+            let mut own = imported.iter().filter_map(|file| words.get(file));
+            if line.replaces || own.clone().any(|own| own.has_entry_point) {
+                return true;
+            }
+            let declared: BTreeSet<&str> =
+                own.clone().flat_map(|own| own.declared.clone()).collect();
+            // A module may ask for a function of the file that imports it.
+            let gives = &words[from].declared;
+            if own.any(|own| !own.mentioned.is_disjoint(gives)) || !constants.is_disjoint(&declared)
+            {
+                return true;
+            }
+            // Or another one takes what this file imports for it.
+            let mut takers = files
+                .keys()
+                .filter(|file| **file == from || !reached(source, file).contains(&*line.file.name));
+            takers.any(|file| !words[file].mentioned.is_disjoint(&declared))
+        };
+        let unused = source.imports.iter().filter(|line| !is_used(line));
+        unused
+            .map(|line| Unused {
+                what: "import",
+                name: Located::new(line.asked.clone(), line.place.clone()),
+            })
+            .collect()
+    }
+}
+
+impl Shader {
     /// Members of the uniform `params` that no function reads.
     fn unused_params(&self) -> Vec<Unused> {
         let module = self.module();
@@ -139,47 +189,6 @@ impl Shader {
 fn functions(module: &naga::Module) -> impl Iterator<Item = &naga::Function> {
     let functions = module.functions.iter().map(|(_, function)| function);
     functions.chain(module.entry_points.iter().map(|entry| &entry.function))
-}
-
-/// Imports from which no file takes a name, and to which none gives one.
-fn imports(source: &Expanded, constants: &BTreeSet<&str>) -> Vec<Unused> {
-    let mut files: BTreeMap<&str, &SourceFile> = BTreeMap::new();
-    files.insert(&source.file.name, &source.file);
-    for line in &source.imports {
-        files.insert(&line.file.name, &line.file);
-    }
-    let mut words: BTreeMap<&str, Words<'_>> = files
-        .iter()
-        .map(|(name, file)| (*name, Words::of(&file.text)))
-        .collect();
-    let own = words.entry(&source.file.name).or_default();
-    own.mentioned.extend(constants);
-    let is_used = |line: &ImportLine| {
-        let imported = reached(source, &line.file.name);
-        let from = &*line.place.file.name;
-        let mut own = imported.iter().filter_map(|file| words.get(file));
-        if line.replaces || own.clone().any(|own| own.has_entry_point) {
-            return true;
-        }
-        let declared: BTreeSet<&str> = own.clone().flat_map(|own| own.declared.clone()).collect();
-        // A module may ask for a function of the file that imports it.
-        let gives = &words[from].declared;
-        if own.any(|own| !own.mentioned.is_disjoint(gives)) {
-            return true;
-        }
-        // Or another one takes what this file imports for it.
-        let mut takers = words.iter().filter(|(file, _)| {
-            **file == from || !reached(source, file).contains(&*line.file.name)
-        });
-        takers.any(|(_, taker)| !taker.mentioned.is_disjoint(&declared))
-    };
-    let unused = source.imports.iter().filter(|line| !is_used(line));
-    unused
-        .map(|line| Unused {
-            what: "import",
-            name: Located::new(line.asked.clone(), line.place.clone()),
-        })
-        .collect()
 }
 
 /// The file and those that it imports, directly or not.

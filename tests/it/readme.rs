@@ -4,7 +4,7 @@ use crate::support::graphs::open;
 use skiagraph_gpu::{Executor, Frame};
 use skiagraph_graph::{FolderSources, Graph, LayeredSources, PlanRequest};
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
-use skiagraph_scene::{SceneLibrary, SceneRequest};
+use skiagraph_scene::{SceneFile, SceneLibrary, SceneRequest};
 use std::{collections::VecDeque, fs, path::Path, sync::Arc};
 
 fn root() -> &'static Path {
@@ -26,11 +26,10 @@ fn blocks<const COUNT: usize>(language: &str) -> [String; COUNT] {
 #[test]
 fn the_method_of_the_readme_is_complete_and_runs() {
     let folder = tempfile::tempdir().unwrap();
-    let [facing, variant] = blocks("ron");
+    let [facing] = blocks("ron");
     let [shader] = blocks("wgsl");
     fs::write(folder.path().join("facing.ron"), facing).unwrap();
     fs::write(folder.path().join("facing.wgsl"), shader).unwrap();
-    fs::write(folder.path().join("soft_crsm.ron"), variant).unwrap();
     let own = FolderSources {
         root: folder.path().to_owned(),
     };
@@ -38,10 +37,6 @@ fn the_method_of_the_readme_is_complete_and_runs() {
     let graph =
         Graph::load("facing.ron", &registry(), &sources).unwrap_or_else(|error| panic!("{error}"));
     assert!(graph.warnings().is_empty(), "{:?}", graph.warnings());
-
-    let variant = Graph::load("soft_crsm.ron", &registry(), &sources);
-    let variant = variant.unwrap_or_else(|error| panic!("{error}"));
-    assert!(variant.warnings().is_empty(), "{:?}", variant.warnings());
 
     let request = SceneRequest {
         argument: "park".to_owned(),
@@ -186,4 +181,14 @@ fn the_documents_of_the_authoring_guide_are_right() {
         let planned = plan.passes().len() + plan.culled().len();
         assert_eq!(planned, passes, "{name}");
     }
+}
+
+/// The scene file that the page shows is one.
+#[test]
+fn the_scene_file_of_the_docs_is_right() {
+    let page = fs::read_to_string(root().join("docs/scenes.md")).unwrap();
+    let text = page.split("```ron\n").nth(1).expect("it shows one");
+    let text = text.split("```").next().unwrap();
+    let scene = SceneFile::parse(text, "docs/scenes.md").unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((scene.lights.len(), scene.views.len()), (3, 1));
 }

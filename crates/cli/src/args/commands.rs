@@ -383,7 +383,7 @@ pub struct PresetsArgs {
 pub enum PresetsFormat {
     /// Each with its params.
     Text,
-    /// As the table of the README.
+    /// As the table of docs/presets.md.
     Markdown,
 }
 

@@ -117,16 +117,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_table_of_the_readme_is_the_one_of_the_presets() {
+    fn the_table_of_the_docs_is_the_one_of_the_presets() {
         let sources = skiagraph_passes::EmbeddedSources;
         let presets = preset::load_all(&preset::names(&sources), &sources).unwrap();
         let table = table(&presets).unwrap();
         assert_eq!(table.lines().count(), presets.len() + 2);
-        let readme = concat!(env!("CARGO_MANIFEST_DIR"), "/../../README.md");
-        let readme = std::fs::read_to_string(readme).unwrap();
+        let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/presets.md");
+        let text = std::fs::read_to_string(page).unwrap();
         assert!(
-            readme.contains(&table),
-            "`skiagraph presets --format markdown` belongs into README.md:\n{table}"
+            text.contains(&table),
+            "`skiagraph presets --format markdown` belongs into docs/presets.md:\n{table}"
         );
     }
 }

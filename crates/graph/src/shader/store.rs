@@ -26,7 +26,7 @@ const MOST_CONDITIONS: usize = 6;
 /// The shaders of all documents.
 #[derive(Debug, Default)]
 pub(crate) struct Shaders {
-    shaders: HashMap<ShaderKey, Result<Arc<Shader>, ErrorGuaranteed>>,
+    shaders: HashMap<ShaderKey, Vec<Variant>>,
     /// Paths of modules, by the folder of the document that names one, and its name there.
     modules: HashMap<(String, String), String>,
     /// Some are not read, which was reported.
@@ -34,14 +34,17 @@ pub(crate) struct Shaders {
 }
 
 /// The path of the document whose `Choice` words a shader sees, the folder that it was first looked
-/// for in, its name, the modules that stand in for others.
-type ShaderKey = (Arc<str>, String, String, Replaced);
+/// for in, its name.
+type ShaderKey = (Arc<str>, String, String);
+
+/// A shader with the modules that stand in for others.
+type Variant = (Replaced, Result<Arc<Shader>, ErrorGuaranteed>);
 
 impl Shaders {
-    fn key(document: &Document, name: &Located<String>, replaced: Replaced) -> ShaderKey {
+    fn key(document: &Document, name: &Located<String>) -> ShaderKey {
         let folder = folder_of(&name.span.file.name).to_owned();
         let document = Arc::clone(&document.file.name);
-        (document, folder, name.value.clone(), replaced)
+        (document, folder, name.value.clone())
     }
 
     /// The shader that a pass of a document names, where these modules stand in for others; `None`
@@ -53,8 +56,9 @@ impl Shaders {
         around: &Replaced,
     ) -> Option<&Result<Arc<Shader>, ErrorGuaranteed>> {
         let replaced = self.with_own(around, shader);
-        self.shaders
-            .get(&Self::key(document, &shader.name, replaced))
+        let mut variants = self.shaders.get(&Self::key(document, &shader.name))?.iter();
+        let found = variants.find(|(known, _)| *known == replaced);
+        found.map(|(_, shader)| shader)
     }
 
     /// The shader that a pass of a document names, with any modules.
@@ -63,16 +67,16 @@ impl Shaders {
         document: &Document,
         shader: &ShaderUse,
     ) -> impl Iterator<Item = &Arc<Shader>> {
-        let (document, folder, name, _) = Self::key(document, &shader.name, Replaced::new());
-        let is_it = move |key: &ShaderKey| key.0 == document && key.1 == folder && key.2 == name;
-        let found = self.shaders.iter().filter(move |(key, _)| is_it(key));
-        found.filter_map(|(_, shader)| shader.as_ref().ok())
+        let found = self.shaders.get(&Self::key(document, &shader.name));
+        let variants = found.into_iter().flatten();
+        variants.filter_map(|(_, shader)| shader.as_ref().ok())
     }
 
     /// Paths of the modules that any shader imports.
     pub fn imported(&self) -> BTreeSet<&str> {
         let read = self.shaders.values().flatten();
-        read.flat_map(|shader| &shader.source.imports)
+        read.filter_map(|(_, shader)| shader.as_ref().ok())
+            .flat_map(|shader| &shader.source.imports)
             .map(|line| &*line.path)
             .collect()
     }
@@ -214,15 +218,17 @@ impl Loader<'_> {
             }
         }
         let replaced = self.shaders.with_own(around, shader);
-        let key = Shaders::key(document, &shader.name, replaced);
-        if self.shaders.shaders.contains_key(&key) {
+        let key = Shaders::key(document, &shader.name);
+        let known = self.shaders.shaders.get(&key);
+        if known.is_some_and(|known| known.iter().any(|(of, _)| *of == replaced)) {
             return;
         }
-        let read = match self.files.expand(&shader.name, &key.3) {
+        let read = match self.files.expand(&shader.name, &replaced) {
             Err(error) => Err(self.reports.emit(error)),
             Ok(source) => self.parse(source, constants),
         };
-        self.shaders.shaders.insert(key, read);
+        let variants = self.shaders.shaders.entry(key).or_default();
+        variants.push((replaced, read));
     }
 
     fn parse(

@@ -130,7 +130,7 @@ def main():
     os.chdir(ROOT)
     args.out.mkdir(parents=True, exist_ok=True)
     done, failed = [], []
-    # Small ones first: whoever stops early has seen every scene.
+    # Small ones first: a run that is stopped early has seen every scene.
     for triangles in sorted(args.sizes):
         for scene in args.scenes:
             folder = args.out / f"{scene}-{triangles}"

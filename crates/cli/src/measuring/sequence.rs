@@ -3,13 +3,13 @@
 use crate::error::CliError;
 use crate::graphs::contract::{Judgement, Outputs, judged};
 use crate::graphs::method::Method;
+use crate::measuring::camera_pose::CameraPose;
 use crate::measuring::frame;
+use crate::measuring::mesh_frames::MeshFrames;
 use crate::measuring::reference::{Judge, own_counts};
 use crate::measuring::run::MeasureContext;
-use crate::measuring::shapes::Shapes;
 use crate::measuring::steady;
 use crate::measuring::stop::{Attempt, Stop, attempt};
-use crate::measuring::subject::Shot;
 use crate::measuring::timing;
 use crate::records::results::{Answer, Measured};
 use crate::records::samples::TimedFrame;
@@ -34,9 +34,9 @@ fn ms(time: Duration) -> f64 {
 /// The frames of a path with their right answers.
 pub struct Path<'a> {
     /// From where.
-    pub shots: Vec<Shot>,
+    pub poses: Vec<CameraPose>,
     /// The mesh in each frame, where parts of it move.
-    shapes: Option<&'a Shapes>,
+    mesh_frames: Option<&'a MeshFrames>,
     /// The right answers.
     pub judges: Vec<Judge<'a>>,
     /// Frames per second of the path's own time.
@@ -51,8 +51,8 @@ impl<'a> Path<'a> {
     /// # Errors
     /// Ctrl-C.
     pub fn new(
-        (shots, frames_per_second): (Vec<Shot>, f64),
-        shapes: Option<&'a Shapes>,
+        (poses, frames_per_second): (Vec<CameraPose>, f64),
+        mesh_frames: Option<&'a MeshFrames>,
         judges: Vec<Judge<'a>>,
     ) -> Result<Self, CliError> {
         let progress = Progress {
@@ -64,8 +64,8 @@ impl<'a> Path<'a> {
         let same = same.collect::<Result<_, _>>();
         let same = same.map_err(|_| CliError::interrupted())?;
         Ok(Self {
-            shots,
-            shapes,
+            poses,
+            mesh_frames,
             judges,
             frames_per_second,
             same,
@@ -79,9 +79,9 @@ impl<'a> Path<'a> {
         viewport: [u32; 2],
         provider: &mut SceneProvider,
     ) -> Result<(), CliError> {
-        self.shots[index].show(provider, viewport);
-        match self.shapes {
-            Some(shapes) => shapes.show(index, provider),
+        self.poses[index].show(provider, viewport);
+        match self.mesh_frames {
+            Some(mesh_frames) => mesh_frames.show(index, provider),
             None => Ok(()),
         }
     }
@@ -203,7 +203,7 @@ impl MeasureContext<'_> {
         } = self.begin(plan, path, provider)?;
         let mut account = Account::default();
         let names = method.preset.judged();
-        for index in 0..path.shots.len() {
+        for index in 0..path.poses.len() {
             let done = self.frame(&mut executor, path, index, (&names, false), provider)?;
             self.account(method, path, index, done, &mut account)?;
             step.set_done(u64::from(self.warmup) + index as u64 + 1);
@@ -303,7 +303,7 @@ impl MeasureContext<'_> {
         }
         let mut timed = Vec::new();
         // The first one brings the camera back, and is no frame of the path.
-        for index in std::iter::once(0).chain(0..path.shots.len()) {
+        for index in std::iter::once(0).chain(0..path.poses.len()) {
             let done = self.frame(executor, path, index, (names, true), provider)?;
             timed.push(timed_frame(done.report, done.wall)?);
         }

@@ -1,7 +1,7 @@
 //! The thread of the reference: the oracle's answer to what is shown, of every ninth pixel of each
 //! row and column first, then of every third, then of all. What is traced is exact for its pixels.
 
-use crate::viewer::wanted::Shot;
+use crate::viewer::desired_state::FrameSnapshot;
 use glam::DVec2;
 use skiagraph_reference::{Error, Oracle, OracleMode, Progress, RightAnswer};
 use skiagraph_scene::{Camera, LightKind, Scene};
@@ -35,21 +35,21 @@ pub struct Question {
 
 impl Question {
     /// About a frame.
-    pub fn new(shot: &Shot) -> Self {
+    pub fn new(snapshot: &FrameSnapshot) -> Self {
         Self {
-            scene: shot.scene.clone(),
-            camera: shot.camera,
-            light: shot.light,
-            primitives: shot.primitives.clone(),
+            scene: snapshot.scene.clone(),
+            camera: snapshot.camera,
+            light: snapshot.light,
+            primitives: snapshot.primitives.clone(),
             outdated: Arc::default(),
         }
     }
 
     /// Whether it asks for the same.
-    pub fn is_about(&self, shot: &Shot) -> bool {
-        Arc::ptr_eq(&self.scene, &shot.scene)
-            && (self.camera, self.light) == (shot.camera, shot.light)
-            && self.primitives == shot.primitives
+    pub fn is_about(&self, snapshot: &FrameSnapshot) -> bool {
+        Arc::ptr_eq(&self.scene, &snapshot.scene)
+            && (self.camera, self.light) == (snapshot.camera, snapshot.light)
+            && self.primitives == snapshot.primitives
     }
 }
 
@@ -86,12 +86,16 @@ impl Judge {
     }
 
     /// Asks about a frame, if that was not the last question; what was asked before is given up.
-    pub fn ask(&mut self, shot: &Shot) {
-        if self.last.as_ref().is_some_and(|last| last.is_about(shot)) {
+    pub fn ask(&mut self, snapshot: &FrameSnapshot) {
+        if self
+            .last
+            .as_ref()
+            .is_some_and(|last| last.is_about(snapshot))
+        {
             return;
         }
         self.forget();
-        let question = Question::new(shot);
+        let question = Question::new(snapshot);
         // The thread ends before this only by a panic, which has been printed.
         let _ = self.questions.send(question.clone());
         self.last = Some(question);

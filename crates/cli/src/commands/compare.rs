@@ -13,9 +13,9 @@ use crate::graphs::method::{self, Method};
 use crate::graphs::openings;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::variants;
-use crate::graphs::{contract, preset};
+use crate::graphs::{preset, shadow_method};
 use crate::measuring::comparison::{Comparison, ComparisonSetup};
-use crate::measuring::reference::PrimaryVisibility;
+use crate::measuring::ground_truth::PrimaryVisibility;
 use crate::measuring::scene_selection::{SceneSelection, check_path, under_lights};
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::measuring::{date, device};
@@ -41,7 +41,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let sources = preset::sources();
     let names = preset::named_or_all(&args.presets, &sources);
     let (arguments, params) = openings::arguments(&names, &args.params, &sources)?;
-    let presets = contract::load_all(&variants::presets(&arguments), &sources)?;
+    let presets = shadow_method::load_all(&variants::presets(&arguments), &sources)?;
     let methods = method::methods(&presets, &arguments, &params, &args.map_size)?;
     method::note_without_map(&methods, &args.map_size);
     let primary = PrimaryVisibility::load(&sources)?;
@@ -56,7 +56,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let scene = Arc::new(scene);
     let mut provider = SceneProvider::new(scene.clone());
     let device = Capabilities::new(&gpu);
-    let is_layered = |method: &Method| contract::is_layered(method, &device, &provider);
+    let is_layered = |method: &Method| shadow_method::is_layered(method, &device, &provider);
     let lights = if methods.iter().any(is_layered) {
         every_light(&args.scene)
     } else {
@@ -79,7 +79,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         if !kinds.contains(&kind) {
             kinds.push(kind);
             provider.set_light(light);
-            contract::check_plans(&methods, &viewports, &provider, Some(&device))?;
+            shadow_method::check_plans(&methods, &viewports, &provider, Some(&device))?;
             idle.note(&methods, &device, &provider);
         }
     }
@@ -296,7 +296,7 @@ fn finish(
         }
     }
     if !broken.is_empty() {
-        return Err(CliError::Contract(broken.join("\nerror: ")));
+        return Err(CliError::InvalidOutputs(broken.join("\nerror: ")));
     }
     if results.runs.iter().all(|run| run.measured.is_none()) {
         return Err(CliError::Input(format!(

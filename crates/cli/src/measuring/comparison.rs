@@ -7,8 +7,8 @@ use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::camera_pose::CameraPose;
+use crate::measuring::ground_truth::{GroundTruthView, PrimaryVisibility, Tracing};
 use crate::measuring::mesh_frames::MeshFrames;
-use crate::measuring::reference::{Judge, PrimaryVisibility, Tracing};
 use crate::measuring::results_folder::ResultsFolder;
 use crate::measuring::resume::{Earlier, RunKey, earlier};
 use crate::measuring::run::MeasureContext;
@@ -90,7 +90,7 @@ pub struct Comparison<'a> {
     pub results: Results,
     /// Where they are kept, with what is in the folder besides.
     folder: ResultsFolder,
-    /// Why graphs broke the contract of outputs.
+    /// Why graphs' outputs are not what a shadow method's must be.
     pub broken: Vec<String>,
     /// Counts the runs that are measured now.
     progress: Runs,
@@ -199,13 +199,13 @@ impl<'a> Comparison<'a> {
         if self.states[places.clone()].iter().all(is_done) {
             return Ok(());
         }
-        let judges = self.judges(mesh_frames.as_ref(), &poses, viewport)?;
+        let truth_views = self.truth_views(mesh_frames.as_ref(), &poses, viewport)?;
         let frames = sequence::Path::new(
             (poses, view.frames_per_second()),
             mesh_frames.as_ref(),
-            judges,
+            truth_views,
         )?;
-        let Some(judge) = frames.judges.first() else {
+        let Some(truth_view) = frames.truth_views.first() else {
             return Ok(());
         };
         let own = frames.own_counts();
@@ -218,7 +218,7 @@ impl<'a> Comparison<'a> {
             view: view.name(),
             light: self.provider.light_number(),
             fingerprint: view.fingerprint(self.setup.fingerprint),
-            judge,
+            truth_view,
             own,
             wrong_surfaces: frames.wrong_surfaces(),
             frames: match view {
@@ -248,7 +248,7 @@ impl<'a> Comparison<'a> {
             };
             let run = match run {
                 // The others are worth measuring all the same.
-                Err(CliError::Contract(reason)) => {
+                Err(CliError::InvalidOutputs(reason)) => {
                     let run = context.unavailable(method, reason.clone());
                     self.broken.push(reason);
                     run
@@ -308,20 +308,20 @@ impl<'a> Comparison<'a> {
         self.is_moved = mesh_frames.is_some();
     }
 
-    /// The right answers.
-    fn judges<'m>(
+    /// The ground truth of each frame.
+    fn truth_views<'m>(
         &mut self,
         mesh_frames: Option<&'m MeshFrames>,
         poses: &[CameraPose],
         viewport: [u32; 2],
-    ) -> Result<Vec<Judge<'m>>, CliError>
+    ) -> Result<Vec<GroundTruthView<'m>>, CliError>
     where
         'a: 'm,
     {
         if let ([pose], None) = (poses, mesh_frames) {
             let oracle = self.still_oracle();
-            let judge = self.judge(pose, viewport, &pose.view.name, oracle)?;
-            return Ok(vec![judge]);
+            let truth_view = self.truth_view(pose, viewport, &pose.view.name, oracle)?;
+            return Ok(vec![truth_view]);
         }
         let frames = poses.len();
         let named = |(index, pose): (usize, &CameraPose)| {
@@ -334,7 +334,7 @@ impl<'a> Comparison<'a> {
                 }
                 None => self.still_oracle(),
             };
-            self.judge(pose, viewport, &what, oracle)
+            self.truth_view(pose, viewport, &what, oracle)
         };
         poses.iter().enumerate().map(named).collect()
     }
@@ -351,14 +351,14 @@ impl<'a> Comparison<'a> {
         oracle.clone()
     }
 
-    /// The right answer.
-    fn judge<'m>(
+    /// The ground truth of one frame.
+    fn truth_view<'m>(
         &mut self,
         pose: &CameraPose,
         viewport: [u32; 2],
         name: &str,
         oracle: Rc<Oracle<'m>>,
-    ) -> Result<Judge<'m>, CliError> {
+    ) -> Result<GroundTruthView<'m>, CliError> {
         let primary = self.setup.primary;
         let what = format!("{name} {}", size(viewport));
         let step = Step::begin(format!("visible triangles, {what}"), 1, "frames");
@@ -369,7 +369,7 @@ impl<'a> Comparison<'a> {
             samples: self.args.reference_samples,
         };
         let (camera, light) = (pose.camera(viewport), self.provider.light());
-        Judge::new(oracle, camera, light, ids, tracing, &what)
+        GroundTruthView::new(oracle, camera, light, ids, tracing, &what)
     }
 
     fn done(&mut self, place: usize, mut run: Run) {

@@ -6,7 +6,7 @@ use crate::measuring::frame::Contents;
 use crate::pictures::save::Decoding;
 use skiagraph_gpu::PassStatistics;
 use skiagraph_graph::{Capture, Param, ParamValue};
-use skiagraph_reference::Reference;
+use skiagraph_reference::GroundTruthPixels;
 use skiagraph_scene::{Camera, LightKind, Scene, View};
 use std::{collections::BTreeMap, sync::Arc};
 
@@ -72,7 +72,7 @@ pub struct FrameSnapshot {
     /// The primitive of each pixel.
     pub primitives: Arc<Vec<u32>>,
     /// What faces the light, as if nothing stood in its way.
-    pub facing: Arc<Reference>,
+    pub facing: Arc<GroundTruthPixels>,
     /// One for each method.
     pub methods: Vec<MethodSnapshot>,
 }

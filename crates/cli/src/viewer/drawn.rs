@@ -1,11 +1,12 @@
 //! From a frame to what a pane of the window shows of it: a picture, its legend, and its numbers.
 
-use crate::graphs::contract::{Judgement, Outputs};
+use crate::graphs::ground_truth::Judgement;
 use crate::graphs::preset::{STATUS, VISIBILITY};
+use crate::graphs::shadow_method::Outputs;
 use crate::pictures::buffer_csv;
 use crate::pictures::material::Picture;
 use crate::viewer::desired_state::{FrameSnapshot, MethodSnapshot};
-use crate::viewer::judge::{Answer, thin, thinned_size};
+use crate::viewer::ground_truth::{Answer, thin, thinned_size};
 use crate::viewer::texels::{Histogram, Texels};
 use crate::wording::{percent, thousands};
 use skiagraph_gpu::Content;
@@ -146,26 +147,26 @@ fn difference(
     method: &MethodSnapshot,
     answer: &Answer,
 ) -> Result<Drawn, String> {
-    let right = answer.right.as_ref().map_err(Clone::clone)?;
+    let ground_truth = answer.ground_truth.as_ref().map_err(Clone::clone)?;
     let size = snapshot.facing.viewport;
     let judged = [VISIBILITY, STATUS].into_iter();
     let contents: BTreeMap<String, Content> = judged
         .filter_map(|name| Some((name.to_owned(), method.contents.get(name)?)))
         .map(|(name, content)| (name, thin_content(content, size, answer.stride)))
         .collect();
-    let outputs = Outputs::of_light(contents, snapshot.light_number, &right.reference)?;
+    let outputs = Outputs::of_light(contents, snapshot.light_number, &ground_truth.pixels)?;
     let wrong = |error: skiagraph_reference::Error| error.to_string();
-    let judgement = Judgement::new(&outputs, right).map_err(wrong)?;
-    let reference = &right.reference;
+    let judgement = Judgement::new(&outputs, ground_truth).map_err(wrong)?;
+    let truth = &ground_truth.pixels;
     let image = match judgement.graded {
-        Some(_) => Image::difference(&outputs.shown(), &right.shares(), reference),
-        None => Image::error(&outputs.visibility, &outputs.status, reference),
+        Some(_) => Image::difference(&outputs.shown(), &ground_truth.shares(), truth),
+        None => Image::error(&outputs.visibility, &outputs.status, truth),
     };
     Ok(Drawn {
         image: Some(image.map_err(wrong)?),
         legend: format!(
             "{}; {}",
-            verdict(&judgement, reference),
+            verdict(&judgement, truth),
             of_pixels(answer.stride)
         ),
         ..Drawn::default()
@@ -181,14 +182,14 @@ pub fn of_pixels(stride: u32) -> &'static str {
     }
 }
 
-fn verdict(judgement: &Judgement, reference: &skiagraph_reference::Reference) -> String {
+fn verdict(judgement: &Judgement, truth: &skiagraph_reference::GroundTruthPixels) -> String {
     if let Some(graded) = &judgement.graded {
         return format!(
             "blue too light, red too dark; RMSE {:.4}, mean {:.4}, FLIP {:.4}",
             graded.rmse, graded.mean_absolute_error, graded.flip
         );
     }
-    let facing = reference
+    let facing = truth
         .classes
         .iter()
         .filter(|class: &&Class| class.faces_light());

@@ -4,8 +4,8 @@
 mod desired_state;
 mod drawn;
 mod flight;
+mod ground_truth;
 mod heat;
-mod judge;
 mod saving;
 mod slot;
 mod start;

@@ -10,7 +10,7 @@ use crate::graphs::variants;
 use crate::graphs::{method, preset};
 use crate::measuring::device;
 use crate::viewer::desired_state::{DesiredMethod, DesiredState};
-use crate::viewer::judge::Judge;
+use crate::viewer::ground_truth::GroundTruthThread;
 use crate::viewer::state::{Channels, Choices, Viewer};
 use crate::viewer::worker::{Command, Worker};
 use skiagraph_gpu::timing::Trust;
@@ -58,7 +58,7 @@ pub fn start(
         .spawn(move || worker.work(&command_receiver))
         .map_err(failed)?;
     let (tell, answers) = mpsc::channel();
-    let judge = Judge::start(move |answer| {
+    let ground_truth = GroundTruthThread::start(move |answer| {
         let _ = tell.send(answer);
         wake();
     });
@@ -82,7 +82,7 @@ pub fn start(
     let channels = Channels {
         commands,
         events,
-        judge: judge.map_err(failed)?,
+        ground_truth: ground_truth.map_err(failed)?,
         answers,
     };
     let mut viewer = Viewer::new(channels, choices, desired);

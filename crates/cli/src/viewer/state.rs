@@ -6,7 +6,7 @@ use crate::viewer::desired_state::{
 };
 use crate::viewer::drawn::{Drawn, Reading, Show, draw};
 use crate::viewer::flight;
-use crate::viewer::judge::{Answer, Judge};
+use crate::viewer::ground_truth::{Answer, GroundTruthThread};
 use crate::viewer::worker::Command;
 use glam::DVec3;
 use skiagraph_graph::{Capture, ParamValue};
@@ -68,7 +68,7 @@ pub struct Channels {
     /// From it.
     pub events: mpsc::Receiver<Event>,
     /// To that of the reference.
-    pub judge: Judge,
+    pub ground_truth: GroundTruthThread,
     /// From it.
     pub answers: mpsc::Receiver<Answer>,
 }
@@ -147,7 +147,7 @@ impl Viewer {
                 is_new = true;
             }
         }
-        self.judge();
+        self.request_ground_truth();
         for index in 0..self.panes.len() {
             self.draw(index);
         }
@@ -205,12 +205,14 @@ impl Viewer {
     }
 
     /// Asks for the reference while it is shown.
-    fn judge(&mut self) {
+    fn request_ground_truth(&mut self) {
         let shown = self.panes.iter().take(self.desired.methods.len());
         let is_shown = shown.into_iter().any(|pane| pane.show == Show::Difference);
         match &self.snapshot {
-            Some(snapshot) if self.is_judged || is_shown => self.channels.judge.ask(snapshot),
-            _ => self.channels.judge.forget(),
+            Some(snapshot) if self.is_judged || is_shown => {
+                self.channels.ground_truth.ask(snapshot)
+            }
+            _ => self.channels.ground_truth.forget(),
         }
     }
 

@@ -4,7 +4,7 @@
 use crate::args::shared::{GpuArgs, SceneArgs};
 use crate::error::{CliError, explain, with_causes};
 use crate::measuring::{
-    device, frame, reference::PrimaryVisibility, scene_selection::SceneSelection,
+    device, frame, ground_truth::PrimaryVisibility, scene_selection::SceneSelection,
 };
 use crate::pictures::colours::ClipPlanes;
 use crate::viewer::desired_state::{DesiredState, Event, FrameSnapshot, Loaded};
@@ -285,7 +285,7 @@ impl Stage {
         &self,
         camera: &Camera,
         primitives: &[u32],
-    ) -> Result<skiagraph_reference::Reference, CliError> {
+    ) -> Result<skiagraph_reference::GroundTruthPixels, CliError> {
         let (mesh, light) = (&self.loaded.scene.mesh, self.provider.light());
         unshadowed(mesh, camera, &light, primitives, Progress::default())
             .map_err(|error| CliError::Input(error.to_string()))

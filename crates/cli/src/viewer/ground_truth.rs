@@ -3,7 +3,7 @@
 
 use crate::viewer::desired_state::FrameSnapshot;
 use glam::DVec2;
-use skiagraph_reference::{Error, Oracle, OracleMode, Progress, RightAnswer};
+use skiagraph_reference::{Error, GroundTruth, Oracle, OracleMode, Progress};
 use skiagraph_scene::{Camera, LightKind, Scene};
 use std::{
     ops::ControlFlow,
@@ -60,16 +60,16 @@ pub struct Answer {
     /// It holds for one pixel of so many in each row and column.
     pub stride: u32,
     /// Of those pixels.
-    pub right: Result<RightAnswer, String>,
+    pub ground_truth: Result<GroundTruth, String>,
 }
 
 /// Asks the thread.
-pub struct Judge {
+pub struct GroundTruthThread {
     questions: mpsc::Sender<Question>,
     last: Option<Question>,
 }
 
-impl Judge {
+impl GroundTruthThread {
     /// Starts the thread; it ends with this.
     ///
     /// # Errors
@@ -109,7 +109,7 @@ impl Judge {
     }
 }
 
-impl Drop for Judge {
+impl Drop for GroundTruthThread {
     fn drop(&mut self) {
         self.forget();
     }
@@ -148,15 +148,15 @@ fn answer(oracle: &Oracle, question: &Question, tell: &impl Fn(Answer)) {
             interrupted: &question.outdated,
         };
         let how = (OracleMode::Exact, SAMPLES);
-        let right = oracle.right_answer(&camera, question.light, &primitives, how, progress);
-        if matches!(right, Err(Error::Interrupted)) {
+        let ground_truth = oracle.ground_truth(&camera, question.light, &primitives, how, progress);
+        if matches!(ground_truth, Err(Error::Interrupted)) {
             return ControlFlow::Break(());
         }
         let question = question.clone();
         tell(Answer {
             question,
             stride,
-            right: right.map_err(|error| error.to_string()),
+            ground_truth: ground_truth.map_err(|error| error.to_string()),
         });
         ControlFlow::Continue(())
     });

@@ -134,7 +134,7 @@ impl<'a> Oracle<'a> {
         self.check(&light, mode)?;
         let strata = Strata::new(samples.div_ceil(2).max(2));
         let pixels = per_pixel(camera.viewport, progress, |x, y, stack| {
-            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, [x, y], &light)?;
+            let receiver = Receiver::from_pixel(self.mesh, primitives, camera, [x, y], &light)?;
             let Some(receiver) = receiver else {
                 return Ok((Answer::BACKGROUND, [0.0; 2]));
             };

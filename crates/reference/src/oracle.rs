@@ -159,7 +159,7 @@ impl<'a> Oracle<'a> {
         let light = light.into();
         self.check(&light, mode)?;
         let answers = per_pixel(viewport, progress, |x, y, stack| {
-            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, [x, y], &light)?;
+            let receiver = Receiver::from_pixel(self.mesh, primitives, camera, [x, y], &light)?;
             Ok(match receiver {
                 Some(receiver) => self.answer(&receiver, mode, stack),
                 None => Answer::BACKGROUND,
@@ -326,7 +326,7 @@ pub fn unshadowed(
     check_pixel_count("primitives", camera.viewport, primitives.len())?;
     light.check().map_err(Error::Light)?;
     let answers = per_pixel(camera.viewport, progress, |x, y, _| {
-        let receiver = Receiver::of_pixel(mesh, primitives, camera, [x, y], light)?;
+        let receiver = Receiver::from_pixel(mesh, primitives, camera, [x, y], light)?;
         Ok(receiver.map_or(Answer::BACKGROUND, |receiver| Answer::facing(&receiver)))
     })?;
     let base_colors = base_colors(mesh, camera, primitives);

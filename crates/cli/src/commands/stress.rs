@@ -47,7 +47,7 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let presets = shadow_method::load_all(&variants::presets(&arguments), &sources)?;
     let methods = method::methods(&presets, &arguments, &params, &args.map_size)?;
     for method in &methods {
-        guarantee::of(method, &args.exact)?;
+        guarantee::find(method, &args.exact)?;
     }
     let primary = PrimaryVisibility::load(&sources)?;
     let viewport = args.size.0;

@@ -163,7 +163,7 @@ impl Outputs {
     ///
     /// # Errors
     /// Those of [`decode`](Self::decode).
-    pub fn of_light(
+    pub fn from_contents(
         contents: BTreeMap<String, Content>,
         light: usize,
         truth: &GroundTruthPixels,

@@ -46,7 +46,7 @@ impl<'a> MethodRun<'a> {
     /// Those of [`guarantee::of`].
     pub fn new(method: Method<'a>, exact: &[String]) -> Result<Self, CliError> {
         Ok(Self {
-            guarantee: guarantee::of(&method, exact)?,
+            guarantee: guarantee::find(&method, exact)?,
             without_culling: guarantee::without_culling(&method),
             method,
             unavailable: None,
@@ -261,7 +261,7 @@ impl HardCaseContext<'_> {
         let judge = |contents| {
             judged(
                 preset,
-                Outputs::of_light(contents, light, truth),
+                Outputs::from_contents(contents, light, truth),
                 ground_truth,
             )
         };
@@ -273,7 +273,7 @@ impl HardCaseContext<'_> {
                     let mut steady = steady::settle(self.gpu, &mut executor)?;
                     steady::judge(self.gpu, &mut executor, &names, &mut steady, judge)
                 });
-                worst.map_err(|stop| stop.of(&preset.name))?
+                worst.map_err(|stop| stop.into_error(&preset.name))?
             }
             false => {
                 let (contents, _) = frame::render(self.gpu, &preset.name, plan, provider, &names)?;

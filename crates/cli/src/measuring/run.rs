@@ -188,7 +188,7 @@ impl MeasureContext<'_> {
         contents: Contents,
         truth_view: &GroundTruthView,
     ) -> Result<Outputs, String> {
-        Outputs::of_light(contents, self.light, &truth_view.ground_truth.pixels)
+        Outputs::from_contents(contents, self.light, &truth_view.ground_truth.pixels)
     }
 
     /// Bytes of what the scene gives to the plan.

@@ -11,7 +11,7 @@ use crate::measuring::mesh_frames::MeshFrames;
 use crate::measuring::run::MeasureContext;
 use crate::measuring::steady;
 use crate::measuring::stop::{Attempt, Stop, attempt};
-use crate::measuring::timing;
+use crate::measuring::timing::Times;
 use crate::records::results::{Answer, Measured};
 use crate::records::samples::TimedFrame;
 use crate::records::sequence::{FrameCost, Remade, Sequence, SequenceFrame};
@@ -214,7 +214,7 @@ impl MeasureContext<'_> {
             step.set_done(u64::from(self.warmup) + index as u64 + 1);
         }
         let every_pass = self.every_pass(&mut executor, path, &names, provider, &mut account)?;
-        let times = timing::of(account.timed);
+        let times = Times::new(account.timed);
         let mut times = times.ok_or_else(CliError::interrupted)?;
         if !self.timestamps {
             times.frame.gpu_ms = None;
@@ -319,7 +319,7 @@ impl MeasureContext<'_> {
                 wall_ms: ms(timed.wall),
             });
         }
-        let times = timing::of(timed).ok_or_else(CliError::interrupted)?;
+        let times = Times::new(timed).ok_or_else(CliError::interrupted)?;
         Ok(Some(FrameTimes {
             gpu_ms: times.frame.gpu_ms.filter(|_| self.timestamps),
             ..times.frame

@@ -164,7 +164,7 @@ struct Head {
 }
 
 fn parse<T: DeserializeOwned>(text: &str) -> Result<T, Mistake> {
-    serde_json::from_str(text).map_err(|error| Mistake::of_serde(text, &error))
+    serde_json::from_str(text).map_err(|error| Mistake::from_serde(text, &error))
 }
 
 fn parse_profile(text: &str) -> Result<Profile, Mistake> {

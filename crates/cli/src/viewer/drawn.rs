@@ -98,7 +98,7 @@ pub fn draw(
 fn lit(snapshot: &FrameSnapshot, method: &MethodSnapshot, show: &Show) -> Result<Drawn, String> {
     let facing = &*snapshot.facing;
     let contents = (*method.contents).clone();
-    let outputs = Outputs::of_light(contents, snapshot.light_number, facing)?;
+    let outputs = Outputs::from_contents(contents, snapshot.light_number, facing)?;
     let shown = outputs.shown();
     let image = match show {
         Show::Visibility => Image::visibility(facing.viewport, &shown, &outputs.status),
@@ -154,7 +154,7 @@ fn difference(
         .filter_map(|name| Some((name.to_owned(), method.contents.get(name)?)))
         .map(|(name, content)| (name, thin_content(content, size, answer.stride)))
         .collect();
-    let outputs = Outputs::of_light(contents, snapshot.light_number, &ground_truth.pixels)?;
+    let outputs = Outputs::from_contents(contents, snapshot.light_number, &ground_truth.pixels)?;
     let wrong = |error: skiagraph_reference::Error| error.to_string();
     let judgement = Judgement::new(&outputs, ground_truth).map_err(wrong)?;
     let truth = &ground_truth.pixels;

@@ -265,20 +265,17 @@ impl HardCaseContext<'_> {
                 ground_truth,
             )
         };
-        let (outputs, judgement) = match plan.remembers() {
-            true => {
-                let executor = frame::executor(self.gpu, plan, provider);
-                let worst = executor.map_err(Stop::from).and_then(|mut executor| {
-                    frame::grow(self.gpu, &mut executor, provider)?;
-                    let mut steady = steady::settle(self.gpu, &mut executor)?;
-                    steady::judge(self.gpu, &mut executor, &names, &mut steady, judge)
-                });
-                worst.map_err(|stop| stop.into_error(&preset.name))?
-            }
-            false => {
-                let (contents, _) = frame::render(self.gpu, &preset.name, plan, provider, &names)?;
-                judge(contents)?
-            }
+        let (outputs, judgement) = if plan.remembers() {
+            let executor = frame::executor(self.gpu, plan, provider);
+            let worst = executor.map_err(Stop::from).and_then(|mut executor| {
+                frame::grow(self.gpu, &mut executor, provider)?;
+                let mut steady = steady::settle(self.gpu, &mut executor)?;
+                steady::judge(self.gpu, &mut executor, &names, &mut steady, judge)
+            });
+            worst.map_err(|stop| stop.into_error(&preset.name))?
+        } else {
+            let (contents, _) = frame::render(self.gpu, &preset.name, plan, provider, &names)?;
+            judge(contents)?
         };
         let broken = |error: Error| CliError::InvalidOutputs(error.to_string());
         let (visibility, status) = (strict(&outputs, ground_truth), &outputs.status);

@@ -268,12 +268,11 @@ impl MeasureContext<'_> {
         path.show(0, self.truth_view.ground_truth.pixels.viewport, provider)?;
         let mut executor = frame::executor(self.gpu, plan, provider)?;
         frame::grow(self.gpu, &mut executor, provider)?;
-        let steady = match executor.plan().remembers() {
-            true => Some(steady::settle(self.gpu, &mut executor)?),
-            false => {
-                self.stand(&mut executor, self.warmup)?;
-                None
-            }
+        let steady = if executor.plan().remembers() {
+            Some(steady::settle(self.gpu, &mut executor)?)
+        } else {
+            self.stand(&mut executor, self.warmup)?;
+            None
         };
         let plan = executor.plan();
         Ok(Begun {

@@ -125,12 +125,11 @@ fn parse_stress(text: &str) -> Result<Value, Mistake> {
     let value: Value = parse(text)?;
     check_schema(text, value.get("schema").cloned())?;
     let has = |name: &str| value.get(name).is_some_and(Value::is_array);
-    match has("methods") && has("cases") {
-        true => Ok(value),
-        false => {
-            let what = "there are no \"methods\" in it, or no \"cases\"".into();
-            Err(Mistake::at_field(text, "{", what))
-        }
+    if has("methods") && has("cases") {
+        Ok(value)
+    } else {
+        let what = "there are no \"methods\" in it, or no \"cases\"".into();
+        Err(Mistake::at_field(text, "{", what))
     }
 }
 

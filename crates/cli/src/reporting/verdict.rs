@@ -26,10 +26,12 @@ pub fn verdict(rows: &[Row]) -> Verdict {
         .filter(|(_, row)| row.views() == most && most > 0)
         .filter_map(|(index, row)| Contender::new(index, row, by_wall))
         .collect();
-    match full.iter().all(|of| of.rmse.is_some()) {
-        _ if full.is_empty() => Verdict::default(),
-        true => graded(&full, rows),
-        false => hard(&full),
+    if full.is_empty() {
+        Verdict::default()
+    } else if full.iter().all(|of| of.rmse.is_some()) {
+        graded(&full, rows)
+    } else {
+        hard(&full)
     }
 }
 

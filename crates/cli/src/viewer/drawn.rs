@@ -214,10 +214,11 @@ fn thin_content(content: &Content, size: [u32; 2], stride: u32) -> Content {
     let layers = content.split();
     let thinned = layers.iter().flat_map(|layer| {
         let texels: Vec<&[u8]> = layer.bytes().chunks_exact(texel).collect();
-        match texels.len() == size[0] as usize * size[1] as usize {
-            true => thin(&texels, size, stride).concat(),
+        if texels.len() == size[0] as usize * size[1] as usize {
+            thin(&texels, size, stride).concat()
+        } else {
             // Of another size, which judging refuses by name.
-            false => Vec::new(),
+            Vec::new()
         }
     });
     Content::Texture {

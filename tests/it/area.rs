@@ -4,7 +4,7 @@ use crate::support;
 use crate::support::graphs::{plan_files, provider, run, values};
 use glam::{DVec3, Vec3};
 use skiagraph_graph::PassSummary;
-use skiagraph_reference::{Class, Graded, Oracle, OracleMode, Progress, RightAnswer};
+use skiagraph_reference::{Class, Graded, GroundTruth, Oracle, OracleMode, Progress};
 use skiagraph_scene::{DirectionalLight, LightKind, PointLight, Scene, SpotLight, View};
 use std::sync::Arc;
 
@@ -70,16 +70,16 @@ fn preset(name: &str, set: &str) -> String {
     )
 }
 
-fn right(scene: &Scene) -> RightAnswer {
+fn ground_truth(scene: &Scene) -> GroundTruth {
     let (oracle, camera) = (Oracle::new(&scene.mesh), scene.views[0].camera(VIEWPORT));
     let primitives = oracle.primary(&camera, Progress::default()).unwrap();
     let (how, progress) = ((OracleMode::Exact, 2048), Progress::default());
-    let right = oracle.right_answer(&camera, scene.light(), &primitives, how, progress);
-    right.unwrap()
+    let ground_truth = oracle.ground_truth(&camera, scene.light(), &primitives, how, progress);
+    ground_truth.unwrap()
 }
 
-fn judged(shown: &Shown, right: &RightAnswer) -> Graded {
-    Graded::judged(&shown.shares, &right.shares(), &right.reference).unwrap()
+fn judged(shown: &Shown, ground_truth: &GroundTruth) -> Graded {
+    Graded::judged(&shown.shares, &ground_truth.shares(), &ground_truth.pixels).unwrap()
 }
 
 #[test]
@@ -101,8 +101,8 @@ fn samples_converge_to_the_oracles_shares_under_every_kind_of_light() {
         LightKind::Point(point),
     ] {
         let scene = scene(light);
-        let right = right(&scene);
-        let partial = right
+        let ground_truth = ground_truth(&scene);
+        let partial = ground_truth
             .shares()
             .iter()
             .filter(|share| (0.1..0.9).contains(*share))
@@ -122,15 +122,17 @@ fn samples_converge_to_the_oracles_shares_under_every_kind_of_light() {
             shown
         });
         // At an edge the oracle may see another primitive than the rasteriser.
-        let mut right = right;
-        let classes = right.reference.classes.iter_mut();
-        let shares = right.area.as_ref().unwrap().shares.iter();
+        let mut ground_truth = ground_truth;
+        let classes = ground_truth.pixels.classes.iter_mut();
+        let shares = ground_truth.area.as_ref().unwrap().shares.iter();
         let pixels = classes.zip(shares.zip(&shown[2].shares));
         let others = pixels
-            .filter(|(class, (right, shown))| class.faces_light() && (*right - *shown).abs() > 0.3);
+            .filter(|(class, (share, shown))| class.faces_light() && (*share - *shown).abs() > 0.3);
         let others = others.map(|(class, _)| *class = Class::Background).count();
         assert!(others * 100 < shown[2].shares.len(), "{others} pixels");
-        let rmse = shown.each_ref().map(|shown| judged(shown, &right).rmse);
+        let rmse = shown
+            .each_ref()
+            .map(|shown| judged(shown, &ground_truth).rmse);
         // Strata of a straight edge: better than the square root, by which eight times as many
         // would leave 0.35.
         assert!(
@@ -186,7 +188,7 @@ fn samples_and_pixels_in_turns_show_what_they_show_at_once() {
 #[test]
 fn eight_maps_agree_in_light_and_umbra_and_leave_the_penumbra_to_rays() {
     let scene = scene(sun(12.0));
-    let right = right(&scene);
+    let ground_truth = ground_truth(&scene);
     let set = r#""map_size": 256, "samples": 64"#;
     let hybrid = shown(
         &preset("hybrid_pcf_area", set).replace(", spot, point", ""),
@@ -199,7 +201,7 @@ fn eight_maps_agree_in_light_and_umbra_and_leave_the_penumbra_to_rays() {
         hybrid.rays,
         all.rays
     );
-    let shares = right.shares();
+    let shares = ground_truth.shares();
     for (status, share) in [(2, 1.0), (3, 0.0)] {
         let certain = hybrid
             .status
@@ -225,6 +227,6 @@ fn eight_maps_agree_in_light_and_umbra_and_leave_the_penumbra_to_rays() {
             .filter(|(is, _)| **is == 4)
             .all(|(_, (one, other))| one == other)
     );
-    let [hybrid, all] = [&hybrid, &all].map(|shown| judged(shown, &right).rmse);
+    let [hybrid, all] = [&hybrid, &all].map(|shown| judged(shown, &ground_truth).rmse);
     assert!(hybrid < all + 0.03, "{hybrid} {all}");
 }

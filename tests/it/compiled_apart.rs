@@ -237,7 +237,7 @@ fn judged(scene: &Arc<Scene>, viewport: [u32; 2], pixels: &mut Pixels) {
             answers.push(found);
         }
     }
-    let reference = &answers[0].reference;
+    let truth = &answers[0].truth;
     let seen = |pixel: &usize| {
         let first = answers[0].visibility[*pixel];
         answers
@@ -245,11 +245,11 @@ fn judged(scene: &Arc<Scene>, viewport: [u32; 2], pixels: &mut Pixels) {
             .any(|other| other.visibility[*pixel] != first)
     };
     let differing: Vec<usize> = (0..answers[0].visibility.len()).filter(seen).collect();
-    let outside = differing.iter().find(|&&p| !reference.indeterminate[p]);
+    let outside = differing.iter().find(|&&p| !truth.indeterminate[p]);
     assert_eq!(outside, None, "{}: a determinate pixel differs", scene.name);
-    pixels.judged += reference.indeterminate.len();
+    pixels.judged += truth.indeterminate.len();
     pixels.differing += differing.len();
-    pixels.indeterminate += reference.indeterminate.iter().filter(|it| **it).count();
+    pixels.indeterminate += truth.indeterminate.iter().filter(|it| **it).count();
     pixels.listed += answers[3..6].iter().map(Answers::certain).sum::<usize>();
 }
 

@@ -23,7 +23,7 @@ fn space(mesh: &Mesh) -> LightSpace {
         view_projection: place * scale,
         extent,
     };
-    LightSpace::of_fit(fit, mesh, SIZE)
+    LightSpace::from_fit(fit, mesh, SIZE)
 }
 
 fn mesh(corners: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Mesh {

@@ -35,7 +35,7 @@ fn statuses_of_a_square_above_a_floor() {
     let primitives = Oracle::new(&mesh)
         .primary(&camera, Progress::default())
         .unwrap();
-    let reference = render(&mesh, &camera, light, OracleMode::Exact);
+    let truth = render(&mesh, &camera, light, OracleMode::Exact);
     let adjacency = Adjacency::new(&mesh);
     let mut uncertain = vec![];
     for method in METHODS {
@@ -52,7 +52,7 @@ fn statuses_of_a_square_above_a_floor() {
         let count = |wanted| of.status.iter().filter(|&&status| status == wanted).count();
         for (index, &found) in of.status.iter().enumerate() {
             let wrong = matches!(
-                (reference.classes[index], found),
+                (truth.classes[index], found),
                 (Class::Lit, status::CERTAIN_SHADOW) | (Class::Shadow, status::CERTAIN_LIGHT)
             );
             assert!(!wrong || method == Method::HybridPcf, "{method:?} {index}");

@@ -16,7 +16,7 @@ use skiagraph_graph::{
     Sources,
 };
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
-use skiagraph_reference::{Oracle, OracleMode, Progress, Reference, Statistics};
+use skiagraph_reference::{GroundTruthPixels, Oracle, OracleMode, Progress, Statistics};
 use skiagraph_scene::{DirectionalLight, LightKind, PointLight, Scene, View};
 use std::{path::Path, sync::Arc};
 use wgpu::util::DeviceExt;
@@ -143,7 +143,7 @@ fn the_lines_of_the_readme_are_those_of_the_files() {
 const PARK: [u32; 2] = [256, 256];
 
 /// What the oracle says of the park's first view.
-fn reference(scene: &Arc<Scene>, light: &DirectionalLight) -> Reference {
+fn truth(scene: &Arc<Scene>, light: &DirectionalLight) -> GroundTruthPixels {
     let mut provider = provider(scene, &scene.views[0], PARK);
     let plan = plan("pipelines/shared/gbuffer.ron", &provider, PARK, |request| {
         request.outputs = Some(vec!["primitive".into()]);
@@ -163,7 +163,7 @@ fn wrong(
     params: &[(&str, ParamValue)],
     frames: usize,
     scene: &Arc<Scene>,
-    reference: &Reference,
+    truth: &GroundTruthPixels,
 ) -> Vec<f64> {
     let mut provider = provider(scene, &scene.views[0], PARK);
     let plan = plan(path, &provider, PARK, |request| {
@@ -178,7 +178,7 @@ fn wrong(
     let mut share = || {
         let report = frame(&gpu, &mut executor, &["visibility", "status"]);
         let (visibility, status) = (values(&report, "visibility"), values(&report, "status"));
-        let counts = Statistics::judged(&visibility, &status, reference)
+        let counts = Statistics::judged(&visibility, &status, truth)
             .unwrap_or_else(|error| panic!("{path}: {error}"));
         100.0 * counts.wrong_share()
     };
@@ -188,7 +188,7 @@ fn wrong(
 #[test]
 fn each_method_is_as_wrong_on_park_as_its_author_has_measured() {
     let scene = load("park");
-    let reference = reference(&scene, &scene.sun().unwrap());
+    let truth = truth(&scene, &scene.sun().unwrap());
     let far = [
         ("map_size", ParamValue::U32(1024)),
         ("reach", ParamValue::F32(80.0)),
@@ -205,7 +205,7 @@ fn each_method_is_as_wrong_on_park_as_its_author_has_measured() {
         ("volumes/volumes.ron", &[], 0.10),
         ("volumes/stencil.ron", &[], 0.10),
     ] {
-        let found = wrong(path, params, 1, &scene, &reference)[0];
+        let found = wrong(path, params, 1, &scene, &truth)[0];
         println!("{path}: {found:.4} %, {percent} % expected");
         assert!((found - percent).abs() < 0.05, "{path}: {found} %");
     }
@@ -215,8 +215,8 @@ fn each_method_is_as_wrong_on_park_as_its_author_has_measured() {
 #[test]
 fn temporal_is_right_once_every_pixel_has_had_its_ray() {
     let scene = load("park");
-    let reference = reference(&scene, &scene.sun().unwrap());
-    let found = wrong("temporal/temporal.ron", &[], 5, &scene, &reference);
+    let truth = truth(&scene, &scene.sun().unwrap());
+    let found = wrong("temporal/temporal.ron", &[], 5, &scene, &truth);
     println!("{found:?}");
     for (found, percent) in found.iter().zip([53.8, 35.9, 18.0, 0.003, 0.003]) {
         assert!((found - percent).abs() < 0.05, "{found} % for {percent} %");
@@ -251,7 +251,7 @@ fn the_two_lights_are_each_asked_by_itself() {
     assert!(both != sun && both != sky);
     // The light that a pass has aimed is one as good as the scene's.
     let light = DirectionalLight::new(DVec3::NEG_Y);
-    let counts = Statistics::judged(&sky, &status, &reference(&scene, &light))
+    let counts = Statistics::judged(&sky, &status, &truth(&scene, &light))
         .unwrap_or_else(|error| panic!("{error}"));
     println!("straight from above: {:.2} %", 100.0 * counts.wrong_share());
     assert!(counts.wrong_share() < 0.05, "{counts:?}");

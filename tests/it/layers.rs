@@ -244,7 +244,7 @@ fn judge(
     let report = run(plan, provider, &["visibility", "status", "primitive"]);
     let camera = scene.views[0].camera(VIEWPORT);
     let primitives = values(&report, "primitive");
-    let reference = Oracle::new(&scene.mesh)
+    let truth = Oracle::new(&scene.mesh)
         .shade(
             &camera,
             scene.sun().unwrap(),
@@ -254,7 +254,7 @@ fn judge(
         )
         .unwrap();
     let (visibility, status) = (values(&report, "visibility"), values(&report, "status"));
-    Statistics::judged(&visibility, &status, &reference).unwrap()
+    Statistics::judged(&visibility, &status, &truth).unwrap()
 }
 
 const STRAIGHT_DOWN: DVec3 = DVec3::NEG_Y;

@@ -87,9 +87,12 @@ fn parallel_rays_hit_the_same() {
         ];
         for direction in directions {
             let mut mesh = meshes::soup(600, 0.2, case as u64);
-            let place = |p: Vec3| match on_a_grid {
-                true => snapped(p) * scale + offset,
-                false => p * scale + offset,
+            let place = |p: Vec3| {
+                if on_a_grid {
+                    snapped(p) * scale + offset
+                } else {
+                    p * scale + offset
+                }
             };
             mesh.positions.iter_mut().for_each(|p| *p = place(*p));
             let direction_of_rays = to_light(&mesh, direction);

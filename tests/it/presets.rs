@@ -37,7 +37,7 @@ fn scene() -> Arc<Scene> {
 
 /// What a pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Truth {
+enum GroundTruthPixel {
     Background,
     FacingAway,
     Lit,
@@ -46,14 +46,14 @@ enum Truth {
     Unsure,
 }
 
-impl Truth {
+impl GroundTruthPixel {
     fn is_settled(self) -> bool {
         self != Self::Unsure
     }
 }
 
 /// How near a border a ray must pass, as a share of the triangle, to count as unsure.
-fn truth(scene: &Scene, border: f64) -> Vec<Truth> {
+fn ground_truth(scene: &Scene, border: f64) -> Vec<GroundTruthPixel> {
     let camera = scene.views[0].camera(VIEWPORT);
     let to_light = scene.light().towards(glam::DVec3::ZERO).direction;
     let answer = |ray: &Ray, skip| {
@@ -71,13 +71,13 @@ fn truth(scene: &Scene, border: f64) -> Vec<Truth> {
             t_max: 50.0,
         };
         let Some(seen) = answer(&ray, MISS) else {
-            return Truth::Unsure;
+            return GroundTruthPixel::Unsure;
         };
         let Some(seen) = seen else {
-            return Truth::Background;
+            return GroundTruthPixel::Background;
         };
         if scene.mesh.corner_normals(seen.primitive)[0].dot(to_light) <= 0.0 {
-            return Truth::FacingAway;
+            return GroundTruthPixel::FacingAway;
         }
         let position = camera.eye + direction * seen.t;
         let ray = Ray {
@@ -87,9 +87,9 @@ fn truth(scene: &Scene, border: f64) -> Vec<Truth> {
             t_max: 50.0,
         };
         match answer(&ray, seen.primitive) {
-            None => Truth::Unsure,
-            Some(None) => Truth::Lit,
-            Some(Some(_)) => Truth::Shadow,
+            None => GroundTruthPixel::Unsure,
+            Some(None) => GroundTruthPixel::Lit,
+            Some(Some(_)) => GroundTruthPixel::Shadow,
         }
     };
     (0..VIEWPORT[1])
@@ -98,27 +98,27 @@ fn truth(scene: &Scene, border: f64) -> Vec<Truth> {
         .collect()
 }
 
-fn count(truth: &[Truth], which: Truth) -> usize {
-    truth.iter().filter(|&&t| t == which).count()
+fn count(ground_truth: &[GroundTruthPixel], which: GroundTruthPixel) -> usize {
+    ground_truth.iter().filter(|&&t| t == which).count()
 }
 
 #[test]
 fn rt_agrees_with_rays_traced_by_hand() {
-    let truth = truth(&scene(), 1e-4);
+    let ground_truth = ground_truth(&scene(), 1e-4);
     // All kinds of pixels occur, and nearly all are settled.
     for kind in [
-        Truth::Background,
-        Truth::FacingAway,
-        Truth::Lit,
-        Truth::Shadow,
+        GroundTruthPixel::Background,
+        GroundTruthPixel::FacingAway,
+        GroundTruthPixel::Lit,
+        GroundTruthPixel::Shadow,
     ] {
         assert!(
-            count(&truth, kind) > 50,
+            count(&ground_truth, kind) > 50,
             "{kind:?}: {}",
-            count(&truth, kind)
+            count(&ground_truth, kind)
         );
     }
-    assert!(count(&truth, Truth::Unsure) < truth.len() / 50);
+    assert!(count(&ground_truth, GroundTruthPixel::Unsure) < ground_truth.len() / 50);
 
     for per_pixel in [false, true] {
         let scene = scene();
@@ -130,26 +130,26 @@ fn rt_agrees_with_rays_traced_by_hand() {
         });
         let report = run(plan, &mut provider, &["visibility", "status", "ray_count"]);
         let (visibility, status) = (values(&report, "visibility"), values(&report, "status"));
-        for (index, &truth) in truth
+        for (index, &ground_truth) in ground_truth
             .iter()
             .enumerate()
-            .filter(|(_, truth)| truth.is_settled())
+            .filter(|(_, ground_truth)| ground_truth.is_settled())
         {
-            let expected = match truth {
-                Truth::Background => (1, 0),
-                Truth::FacingAway => (0, 1),
-                Truth::Lit => (1, 4),
-                Truth::Shadow | Truth::Unsure => (0, 4),
+            let expected = match ground_truth {
+                GroundTruthPixel::Background => (1, 0),
+                GroundTruthPixel::FacingAway => (0, 1),
+                GroundTruthPixel::Lit => (1, 4),
+                GroundTruthPixel::Shadow | GroundTruthPixel::Unsure => (0, 4),
             };
             assert_eq!(
                 (visibility[index], status[index]),
                 expected,
-                "pixel {index}, {truth:?}, per pixel: {per_pixel}"
+                "pixel {index}, {ground_truth:?}, per pixel: {per_pixel}"
             );
         }
         let asked = status.iter().filter(|&&status| status == 4).count();
         let rays = values(&report, "ray_count")[0] as usize;
-        assert_eq!(rays, if per_pixel { truth.len() } else { asked });
+        assert_eq!(rays, if per_pixel { ground_truth.len() } else { asked });
     }
 }
 
@@ -232,8 +232,8 @@ fn pixels_in_turns_get_the_answers_that_they_get_at_once() {
 #[test]
 fn nsm_is_wrong_at_contours_only_and_less_so_on_a_finer_map() {
     // A contour may be off by a texel or so: 12 % of a face of the box at a map of 32 texels' edge.
-    let settled = truth(&scene(), 0.12);
-    let all = truth(&scene(), 1e-4);
+    let settled = ground_truth(&scene(), 0.12);
+    let all = ground_truth(&scene(), 1e-4);
     let mut wrong = vec![];
     for map_size in [32, 1024] {
         let scene = scene();
@@ -245,30 +245,30 @@ fn nsm_is_wrong_at_contours_only_and_less_so_on_a_finer_map() {
         });
         let report = run(plan, &mut provider, &["visibility", "status"]);
         let (visibility, status) = (values(&report, "visibility"), values(&report, "status"));
-        let expected = |truth| match truth {
-            Truth::Background => (1, 0),
-            Truth::FacingAway => (0, 1),
-            Truth::Lit => (1, 2),
-            Truth::Shadow | Truth::Unsure => (0, 3),
+        let expected = |ground_truth| match ground_truth {
+            GroundTruthPixel::Background => (1, 0),
+            GroundTruthPixel::FacingAway => (0, 1),
+            GroundTruthPixel::Lit => (1, 2),
+            GroundTruthPixel::Shadow | GroundTruthPixel::Unsure => (0, 3),
         };
-        for (index, &truth) in settled
+        for (index, &ground_truth) in settled
             .iter()
             .enumerate()
-            .filter(|(_, truth)| truth.is_settled())
+            .filter(|(_, ground_truth)| ground_truth.is_settled())
         {
             assert_eq!(
                 (visibility[index], status[index]),
-                expected(truth),
-                "pixel {index}, {truth:?}, map {map_size}"
+                expected(ground_truth),
+                "pixel {index}, {ground_truth:?}, map {map_size}"
             );
         }
         let pixels = all
             .iter()
             .enumerate()
-            .filter(|(_, truth)| truth.is_settled());
+            .filter(|(_, ground_truth)| ground_truth.is_settled());
         wrong.push(
             pixels
-                .filter(|(index, truth)| visibility[*index] != expected(**truth).0)
+                .filter(|(index, ground_truth)| visibility[*index] != expected(**ground_truth).0)
                 .count(),
         );
     }

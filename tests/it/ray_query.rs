@@ -49,7 +49,7 @@ fn rt_answers_alike(scene: &Arc<Scene>, viewport: [u32; 2]) {
         .collect();
     let outside: Vec<[usize; 2]> = differing
         .iter()
-        .filter(|&&pixel| !ours.reference.indeterminate[pixel])
+        .filter(|&&pixel| !ours.truth.indeterminate[pixel])
         .map(|pixel| [pixel % viewport[0] as usize, pixel / viewport[0] as usize])
         .collect();
     println!(

@@ -268,7 +268,7 @@ fn distances(scene: &Arc<Scene>, viewport: [u32; 2]) -> Vec<f64> {
 /// Of the pixels that face the light at such a distance, the share that is wrong.
 fn wrong_share(answers: &Answers, distances: &[f64], between: [f64; 2]) -> f64 {
     let (mut wrong, mut all) = (0.0, 0.0);
-    for (pixel, class) in answers.reference.classes.iter().enumerate() {
+    for (pixel, class) in answers.truth.classes.iter().enumerate() {
         if class.faces_light() && (between[0]..between[1]).contains(&distances[pixel]) {
             all += 1.0;
             let lit = *class == Class::Lit;

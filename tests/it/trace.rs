@@ -491,23 +491,23 @@ fn a_pixel_without_an_answer_is_neither_lit_nor_judged() {
     let [visibility, status, primitives] =
         ["visibility", "status", "primitive"].map(|name| graphs::values(&report, name));
     let oracle = Oracle::new(&scene.mesh);
-    let reference = oracle.shade(
+    let truth = oracle.shade(
         &view.camera(viewport),
         scene.light(),
         &primitives,
         OracleMode::Exact,
         Progress::default(),
     );
-    let reference = reference.unwrap();
+    let truth = truth.unwrap();
     let is_unanswered = |shown: &&u32| **shown == statistics::UNANSWERED;
     let unanswered = visibility.iter().filter(is_unanswered).count();
-    match Statistics::judged(&visibility, &status, &reference) {
+    match Statistics::judged(&visibility, &status, &truth) {
         Err(Error::Unanswered { pixels, .. }) => assert_eq!(pixels, unanswered),
         judged => assert_eq!((judged.unwrap().wrong.total, unanswered), (0, 0)),
     }
     // Those that have one have the right one.
     let (mut wrong, mut in_shadow) = (0, 0);
-    for ((&shown, right), &status) in visibility.iter().zip(reference.visibility()).zip(&status) {
+    for ((&shown, right), &status) in visibility.iter().zip(truth.visibility()).zip(&status) {
         let is_answered = status == 4 && shown != statistics::UNANSWERED;
         in_shadow += usize::from(is_answered && right == 0);
         wrong += usize::from(is_answered && shown != u32::from(right));

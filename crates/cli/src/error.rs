@@ -35,7 +35,7 @@ pub enum CliError {
     },
     /// Graphs that ran, but whose outputs do not hold what a shadow method's must.
     #[error("{0}")]
-    Contract(String),
+    InvalidOutputs(String),
     /// Methods or cases that are not as they must be; which ones was printed before.
     #[error("{0}")]
     Judged(String),

@@ -56,7 +56,7 @@ pub(crate) fn detail(material: &Material) -> String {
         (Kind::AccelerationStructure, ..) => "acceleration structure".to_owned(),
     }];
     if material.layers > 1 {
-        let layer = Unit::of_layers(material).word();
+        let layer = Unit::from_material(material).word();
         words[0].push_str(&format!(" × {} {}s", material.layers, layer));
     }
     let counts = [
@@ -116,7 +116,7 @@ impl Unit {
     }
 
     /// What the layers of a material's parts are.
-    fn of_layers(material: &Material) -> Self {
+    fn from_material(material: &Material) -> Self {
         match material.kind {
             Kind::Buffer => Self::Item,
             _ if material.is_3d => Self::Slice,
@@ -151,7 +151,7 @@ pub(crate) fn narrowed<'a>(
 ) -> impl Iterator<Item = (Unit, Option<&'a Range<u32>>)> {
     let ranges = [
         (Unit::Mip, &part.mips),
-        (Unit::of_layers(material), &part.layers),
+        (Unit::from_material(material), &part.layers),
     ];
     let ranges = ranges.into_iter().filter(|(_, range)| range.is_some());
     let aspect = part.aspect.map(|aspect| match aspect {

@@ -364,9 +364,9 @@ impl Graph {
                 let Some(first) = variants.next() else {
                     continue;
                 };
-                let mut unused = finder.of(first, &constants);
+                let mut unused = finder.find(first, &constants);
                 for other in variants {
-                    let other = finder.of(other, &constants);
+                    let other = finder.find(other, &constants);
                     unused.retain(|unused| other.contains(unused));
                 }
                 unused.retain(|unused| found.iter().all(|(known, _)| known != unused));

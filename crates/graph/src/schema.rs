@@ -240,16 +240,16 @@ struct Kinds<'k> {
 }
 
 impl Kinds<'_> {
-    fn of<T: JsonSchema>(&mut self) -> Value {
+    fn schema<T: JsonSchema>(&mut self) -> Value {
         self.generator.subschema_for::<T>().to_value()
     }
 
     fn list<T: JsonSchema>(&mut self) -> Value {
-        self.of::<Vec<T>>()
+        self.schema::<Vec<T>>()
     }
 
     fn map<T: JsonSchema>(&mut self) -> Value {
-        json!({ "type": "object", "additionalProperties": self.of::<T>() })
+        json!({ "type": "object", "additionalProperties": self.schema::<T>() })
     }
 
     fn section(&mut self, name: &str) -> Value {
@@ -257,7 +257,7 @@ impl Kinds<'_> {
             "format" => json!({ "const": FORMAT }),
             "requires" => self.list::<String>(),
             "params" => {
-                let fields = self.of::<ParamFields>();
+                let fields = self.schema::<ParamFields>();
                 let params = PARAM_TYPES.map(|tag| (tag.to_owned(), fields.clone()));
                 tagged(params.into_iter().chain([removed()]))
             }
@@ -265,15 +265,15 @@ impl Kinds<'_> {
             "narrow" => self.map::<Narrow>(),
             "imports" => self.list::<ImportEntry>(),
             "inputs" => tagged([
-                ("Texture".to_owned(), self.of::<TextureInput>()),
-                ("Buffer".to_owned(), self.of::<BufferInput>()),
-                ("Sampler".to_owned(), self.of::<SamplerInput>()),
+                ("Texture".to_owned(), self.schema::<TextureInput>()),
+                ("Buffer".to_owned(), self.schema::<BufferInput>()),
+                ("Sampler".to_owned(), self.schema::<SamplerInput>()),
                 removed(),
             ]),
             "materials" => tagged([
-                ("Texture".to_owned(), self.of::<TextureEntry>()),
-                ("Buffer".to_owned(), self.of::<BufferEntry>()),
-                ("Sampler".to_owned(), self.of::<SamplerEntry>()),
+                ("Texture".to_owned(), self.schema::<TextureEntry>()),
+                ("Buffer".to_owned(), self.schema::<BufferEntry>()),
+                ("Sampler".to_owned(), self.schema::<SamplerEntry>()),
                 removed(),
             ]),
             "passes" => self.passes(),

@@ -22,7 +22,7 @@ pub(crate) struct Buffers {
 
 impl Buffers {
     /// The buffer of that name, if what is in it is of that version.
-    pub fn of(&self, name: &str, version: u64) -> Option<&wgpu::Buffer> {
+    pub fn get(&self, name: &str, version: u64) -> Option<&wgpu::Buffer> {
         let held = self.held.get(name).filter(|(_, of)| *of == version);
         held.map(|(buffer, _)| buffer)
     }

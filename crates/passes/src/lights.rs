@@ -10,7 +10,7 @@ pub(crate) const LIGHTS: &str = "lights";
 pub(crate) const LIGHT_AREAS: &str = "light_areas";
 
 /// All lights of a scene; the default one of a scene that has none.
-pub(crate) fn of(scene: &Scene) -> Vec<LightKind> {
+pub(crate) fn from_scene(scene: &Scene) -> Vec<LightKind> {
     match &scene.lights[..] {
         [] => vec![scene.light()],
         lights => lights.iter().map(|light| light.kind).collect(),

@@ -166,7 +166,7 @@ impl Versions {
     }
 
     /// That of a resource.
-    pub fn of(&self, name: &str) -> u64 {
+    pub fn get(&self, name: &str) -> u64 {
         match name {
             CAMERA | UNPROJECTION => self.camera.number(),
             LIGHT_AREA => self.light.number(),

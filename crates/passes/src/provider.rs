@@ -78,7 +78,7 @@ impl SceneProvider {
     /// Provides `scene`. Builds nothing; until [`set_view`](Self::set_view) the `camera` is all
     /// zeros, and the light is the scene's.
     pub fn new(scene: Arc<Scene>) -> Self {
-        let (eye, light, lights) = (Eye::default(), scene.light(), lights::of(&scene));
+        let (eye, light, lights) = (Eye::default(), scene.light(), lights::from_scene(&scene));
         Self {
             versions: Versions::new(eye, light, lights.clone()),
             light,
@@ -148,14 +148,14 @@ impl SceneProvider {
 
     /// The buffer of that name with what is in it now.
     fn buffer(&mut self, name: &'static str, on: On) -> Result<wgpu::Buffer, Error> {
-        let version = self.versions.of(name);
-        if let Some(buffer) = self.buffers.of(name, version) {
+        let version = self.versions.get(name);
+        if let Some(buffer) = self.buffers.get(name, version) {
             return Ok(buffer.clone());
         }
         let began = Instant::now();
         let how = self.upload_named(name, on)?;
         self.note(name, how, began);
-        let buffer = self.buffers.of(name, version);
+        let buffer = self.buffers.get(name, version);
         buffer.cloned().ok_or_else(|| unknown(name))
     }
 
@@ -198,7 +198,7 @@ impl SceneProvider {
         items: &[T],
         on: On,
     ) -> Result<How, Error> {
-        let version = self.versions.of(name);
+        let version = self.versions.get(name);
         self.buffers.make(name, items, version, on)?;
         Ok(How::Made)
     }
@@ -219,7 +219,7 @@ impl SceneProvider {
         on: On,
     ) -> Result<How, Error> {
         self.upload_items(nodes, &words.nodes, on)?;
-        let version = self.versions.of(primitives);
+        let version = self.versions.get(primitives);
         match words.primitives {
             Some(items) => drop(self.upload_items(primitives, &items, on)?),
             None => self.buffers.still_hold(primitives, version),
@@ -351,7 +351,7 @@ impl Provider for SceneProvider {
     fn version(&self, name: &str) -> u64 {
         match lights::describe(name, &self.lights) {
             Some(_) => self.versions.of_lists(),
-            None => self.versions.of(name),
+            None => self.versions.get(name),
         }
     }
 
@@ -389,7 +389,7 @@ impl Provider for SceneProvider {
         if name != TLAS {
             return Err(why(unknown(name)));
         }
-        let version = self.versions.of(TLAS);
+        let version = self.versions.get(TLAS);
         if let Some((tlas, of)) = &self.tlas
             && *of == version
         {

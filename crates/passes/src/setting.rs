@@ -15,7 +15,7 @@ impl SceneProvider {
     pub fn set_view(&mut self, view: &View, viewport: [u32; 2]) {
         self.set_camera(&view.camera(viewport));
         let light = self.scene.light_of(view);
-        let mut lights = lights::of(&self.scene);
+        let mut lights = lights::from_scene(&self.scene);
         // A view may be under one of the scene's lights, or have one of its own.
         if !lights.contains(&light) {
             lights = vec![light];

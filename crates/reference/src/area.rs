@@ -2,7 +2,8 @@
 
 use crate::{
     error::Error,
-    oracle::{Answer, Class, Oracle, OracleMode, Reference, base_colors},
+    ground_truth::{Answer, AreaVisibility, Class, GroundTruth, GroundTruthPixels},
+    oracle::{Oracle, OracleMode, base_colors},
     pixels::{Progress, check_pixel_count, per_pixel},
     ray::Ray,
     receiver::Receiver,
@@ -11,59 +12,11 @@ use crate::{
 };
 use glam::DVec3;
 use skiagraph_scene::{Camera, LIGHT_GAP, LightKind, Towards};
-use std::{borrow::Cow, ops::ControlFlow};
+use std::ops::ControlFlow;
 
 /// Casters among which a receiver's rays search one by one; where there are more, each walks the
 /// hierarchy.
 const MOST_CASTERS: usize = 48;
-
-/// The share of an area light that each pixel sees, row by row from the top left.
-///
-/// The samples are two independent sets of as many strata of equal area, so that half the
-/// difference of their means estimates the standard error of the whole.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AreaVisibility {
-    /// Shadow rays per pixel that faces the light.
-    pub samples: u32,
-    /// 0 in the umbra, 1 where all of the light is seen; 0 where the pixel does not face the light.
-    pub shares: Vec<f32>,
-    /// The estimated standard error of each share.
-    pub standard_errors: Vec<f32>,
-}
-
-impl AreaVisibility {
-    /// The standard errors' root mean square and greatest over the pixels that face the light.
-    pub fn standard_error(&self, reference: &Reference) -> [f64; 2] {
-        let classes = reference.classes.iter().zip(&self.standard_errors);
-        let facing = classes.filter(|(class, _)| class.faces_light());
-        let errors: Vec<f64> = facing.map(|(_, &error)| f64::from(error)).collect();
-        let squares: f64 = errors.iter().map(|error| error * error).sum();
-        [
-            (squares / (errors.len().max(1)) as f64).sqrt(),
-            errors.iter().copied().fold(0.0, f64::max),
-        ]
-    }
-}
-
-/// What is right for one view: of a light without extent which pixels are lit, of one with extent
-/// what share of it each sees, too.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RightAnswer {
-    /// What each pixel shows.
-    pub reference: Reference,
-    /// The shares, of a light with extent.
-    pub area: Option<AreaVisibility>,
-}
-
-impl RightAnswer {
-    /// What share of the light each pixel sees.
-    pub fn shares(&self) -> Cow<'_, [f32]> {
-        match &self.area {
-            Some(area) => Cow::Borrowed(&area.shares),
-            None => Cow::Owned(self.reference.shares()),
-        }
-    }
-}
 
 /// The points of a light, as vectors from a receiver.
 struct Emitter {
@@ -105,10 +58,10 @@ impl Emitter {
         } = receiver.towards;
         // All of the ball around the centre.
         let sin = (radius / distance).min(1.0);
-        let (right, up) = across.any_orthonormal_pair();
+        let (x, y) = across.any_orthonormal_pair();
         Self {
             centre: direction * distance,
-            across: [right * radius, up * radius],
+            across: [x * radius, y * radius],
             is_place: true,
             cone: Cone {
                 axis: direction,
@@ -133,28 +86,28 @@ impl Emitter {
 }
 
 impl<'a> Oracle<'a> {
-    /// The right answer under this light: [`shade`](Self::shade) of one without extent,
+    /// The ground truth under this light: [`shade`](Self::shade) of one without extent,
     /// [`shade_area`](Self::shade_area) of one that has an extent.
     ///
     /// # Errors
     /// Those of [`shade`](Self::shade).
-    pub fn right_answer(
+    pub fn ground_truth(
         &self,
         camera: &Camera,
         light: impl Into<LightKind>,
         primitives: &[u32],
         (mode, samples): (OracleMode, u32),
         progress: Progress,
-    ) -> Result<RightAnswer, Error> {
+    ) -> Result<GroundTruth, Error> {
         let light = light.into();
         if light.has_extent() {
             let answer = self.shade_area(camera, light, primitives, (mode, samples), progress)?;
-            let (reference, area) = (answer.0, Some(answer.1));
-            return Ok(RightAnswer { reference, area });
+            let (pixels, area) = (answer.0, Some(answer.1));
+            return Ok(GroundTruth { pixels, area });
         }
-        let reference = self.shade(camera, light, primitives, mode, progress)?;
+        let pixels = self.shade(camera, light, primitives, mode, progress)?;
         let area = None;
-        Ok(RightAnswer { reference, area })
+        Ok(GroundTruth { pixels, area })
     }
 
     /// As [`shade`](Self::shade), of a light that is an area: the share of it that each pixel sees,
@@ -175,13 +128,13 @@ impl<'a> Oracle<'a> {
         primitives: &[u32],
         (mode, samples): (OracleMode, u32),
         progress: Progress,
-    ) -> Result<(Reference, AreaVisibility), Error> {
+    ) -> Result<(GroundTruthPixels, AreaVisibility), Error> {
         check_pixel_count("primitives", camera.viewport, primitives.len())?;
         let light = light.into();
         self.check(&light, mode)?;
         let strata = Strata::new(samples.div_ceil(2).max(2));
         let pixels = per_pixel(camera.viewport, progress, |x, y, stack| {
-            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, [x, y], &light)?;
+            let receiver = Receiver::from_pixel(self.mesh, primitives, camera, [x, y], &light)?;
             let Some(receiver) = receiver else {
                 return Ok((Answer::BACKGROUND, [0.0; 2]));
             };
@@ -206,7 +159,7 @@ impl<'a> Oracle<'a> {
             standard_errors: shares.iter().map(|[_, error]| *error as f32).collect(),
         };
         Ok((
-            Reference::new(
+            GroundTruthPixels::new(
                 camera.viewport,
                 &answers,
                 base_colors(self.mesh, camera, primitives),

@@ -71,7 +71,7 @@ impl Oracle<'_> {
         let width = camera.viewport[0] as usize;
         let blockers = pixels.par_iter().map_init(Vec::new, |stack, &pixel| {
             let pixel = [(pixel % width) as u32, (pixel / width) as u32];
-            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, pixel, &light)?;
+            let receiver = Receiver::from_pixel(self.mesh, primitives, camera, pixel, &light)?;
             Ok(match receiver {
                 Some(receiver) if receiver.n_dot_l > 0.0 && !receiver.outside_cone => {
                     let (origin, way, passed) = mode.ray(&receiver);

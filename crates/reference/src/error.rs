@@ -39,7 +39,7 @@ pub enum Error {
         /// Triangles of the mesh.
         count: u64,
     },
-    /// A `visibility` or `status` value outside the contract of shadow presets.
+    /// A `visibility` or `status` value that a shadow preset must not have.
     #[error("{name} is {value} at pixel ({x}, {y}); {expected}")]
     Value {
         /// Which buffer: `visibility` or `status`.
@@ -50,7 +50,7 @@ pub enum Error {
         y: u32,
         /// The value found there.
         value: u32,
-        /// The values the contract allows, as a sentence.
+        /// The values that are allowed, as a sentence.
         expected: &'static str,
     },
     /// Pixels whose `visibility` is [`UNANSWERED`](crate::statistics::UNANSWERED).

@@ -3,8 +3,8 @@
 use crate::{
     error::Error,
     flip::flip,
+    ground_truth::GroundTruthPixels,
     image::{Image, error},
-    oracle::{Class, Reference},
     pixels::check_pixel_count,
 };
 use serde::{Deserialize, Serialize};
@@ -77,14 +77,14 @@ impl Graded {
     pub fn judged(
         visibility: &[f32],
         shares: &[f32],
-        reference: &Reference,
+        truth: &GroundTruthPixels,
     ) -> Result<Self, Error> {
-        check_pixel_count("visibility", reference.viewport, visibility.len())?;
-        check_pixel_count("shares", reference.viewport, shares.len())?;
+        check_pixel_count("visibility", truth.viewport, visibility.len())?;
+        check_pixel_count("shares", truth.viewport, shares.len())?;
         let mut graded = Self::default();
         let (mut facing, mut squares) = (0u64, 0.0);
         let (mut in_band, mut squares_in_band) = (0u64, 0.0);
-        let classes = reference.classes.iter().zip(&reference.indeterminate);
+        let classes = truth.classes.iter().zip(&truth.indeterminate);
         for ((&shown, &share), (class, &indeterminate)) in
             visibility.iter().zip(shares).zip(classes)
         {
@@ -109,8 +109,8 @@ impl Graded {
         let facing = facing.max(1) as f64;
         graded.rmse = (squares / facing).sqrt();
         graded.mean_absolute_error /= facing;
-        let right = Image::shaded(shares, reference)?;
-        graded.flip = flip(&right, &Image::shaded(visibility, reference)?)?;
+        let right = Image::shaded(shares, truth)?;
+        graded.flip = flip(&right, &Image::shaded(visibility, truth)?)?;
         Ok(graded)
     }
 }
@@ -160,22 +160,15 @@ impl Graded {
     }
 }
 
-impl Reference {
-    /// The reference's own shares of a light without extent: 1 where lit, 0 elsewhere.
-    pub fn shares(&self) -> Vec<f32> {
-        let share = |&class: &Class| f32::from(u8::from(class == Class::Lit));
-        self.classes.iter().map(share).collect()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Class;
 
     /// The last pixel is indeterminate.
-    fn reference(classes: &[Class]) -> Reference {
+    fn truth(classes: &[Class]) -> GroundTruthPixels {
         let last = classes.len() - 1;
-        Reference {
+        GroundTruthPixels {
             viewport: [classes.len() as u32, 1],
             classes: classes.to_vec(),
             indeterminate: (0..=last).map(|pixel| pixel == last).collect(),
@@ -187,10 +180,10 @@ mod tests {
     #[test]
     fn errors_are_means_over_the_pixels_that_face_the_light() {
         use Class::{Background, FacingAway, Lit, Shadow};
-        let reference = reference(&[Shadow, Lit, Lit, FacingAway, Background, Lit]);
+        let truth = truth(&[Shadow, Lit, Lit, FacingAway, Background, Lit]);
         let shares = [0.0, 0.75, 0.5, 0.0, 0.0, 1.0];
         let shown = [0.5, 0.75, 0.4, 1.0, 1.0, 1.0];
-        let graded = Graded::judged(&shown, &shares, &reference).unwrap();
+        let graded = Graded::judged(&shown, &shares, &truth).unwrap();
         // Errors 0.5, 0, −0.1, and 0 in the band.
         assert!((graded.rmse_outside_band - (0.26f64 / 3.0).sqrt()).abs() < 1e-7);
         assert!(
@@ -205,22 +198,22 @@ mod tests {
         };
         assert_eq!((graded.off, graded.invalid.total()), (off, 0));
         assert!(graded.flip > 0.0);
-        let right = Graded::judged(&shares, &shares, &reference).unwrap();
+        let right = Graded::judged(&shares, &shares, &truth).unwrap();
         assert_eq!(right, Graded::default());
-        assert!(Graded::judged(&shares[1..], &shares, &reference).is_err());
+        assert!(Graded::judged(&shares[1..], &shares, &truth).is_err());
     }
 
     #[test]
     fn pictures_together_are_as_one_of_all_their_pixels() {
         // The last pixel of each picture is in the band; that of the whole one is put there.
         let of = |shown: &[f32], in_band: &[usize]| {
-            let mut reference = reference(&vec![Class::Lit; shown.len()]);
+            let mut truth = truth(&vec![Class::Lit; shown.len()]);
             for &pixel in in_band {
-                reference.indeterminate[pixel] = true;
+                truth.indeterminate[pixel] = true;
             }
-            let in_band = reference.indeterminate.iter().filter(|it| **it).count();
+            let in_band = truth.indeterminate.iter().filter(|it| **it).count();
             let right = vec![1.0; shown.len()];
-            let graded = Graded::judged(shown, &right, &reference).unwrap();
+            let graded = Graded::judged(shown, &right, &truth).unwrap();
             let pixels = JudgedPixels {
                 facing_light: shown.len() as u64,
                 in_band: in_band as u64,
@@ -243,9 +236,9 @@ mod tests {
 
     #[test]
     fn what_is_no_share_is_counted_and_clamped() {
-        let reference = reference(&[Class::Lit; 6]);
+        let truth = truth(&[Class::Lit; 6]);
         let shown = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1.5, -0.5, 1.0];
-        let graded = Graded::judged(&shown, &[1.0; 6], &reference).unwrap();
+        let graded = Graded::judged(&shown, &[1.0; 6], &truth).unwrap();
         let invalid = Invalid {
             nan: 1,
             infinite: 2,

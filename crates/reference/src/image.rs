@@ -2,7 +2,7 @@
 
 use crate::{
     error::Error,
-    oracle::{Class, Reference},
+    ground_truth::{Class, GroundTruthPixels},
     pixels::check_pixel_count,
     statistics::{UNANSWERED, Verdict, for_each_verdict, status},
 };
@@ -101,17 +101,17 @@ impl Image {
     pub fn error(
         visibility: &[impl Copy + Into<u32>],
         status: &[impl Copy + Into<u32>],
-        reference: &Reference,
+        truth: &GroundTruthPixels,
     ) -> Result<Self, Error> {
-        let mut rgb = Vec::with_capacity(reference.classes.len() * 3);
+        let mut rgb = Vec::with_capacity(truth.classes.len() * 3);
         let mut wrong = Vec::new();
         for_each_verdict(
             visibility,
             status,
-            reference,
+            truth,
             |class, _, indeterminate, verdict| {
                 let pixel = rgb.len() / 3;
-                let backdrop = |grey| tinted(grey, reference, pixel);
+                let backdrop = |grey| tinted(grey, truth, pixel);
                 if verdict != Verdict::Right && !indeterminate {
                     wrong.push(pixel);
                 }
@@ -128,7 +128,7 @@ impl Image {
             },
         )?;
         let mut image = Self {
-            size: reference.viewport,
+            size: truth.viewport,
             rgb,
         };
         image.point_out(&wrong);
@@ -192,10 +192,10 @@ impl Image {
     pub fn difference(
         visibility: &[f32],
         shares: &[f32],
-        reference: &Reference,
+        truth: &GroundTruthPixels,
     ) -> Result<Self, Error> {
-        check_pixel_count("visibility", reference.viewport, visibility.len())?;
-        check_pixel_count("shares", reference.viewport, shares.len())?;
+        check_pixel_count("visibility", truth.viewport, visibility.len())?;
+        check_pixel_count("shares", truth.viewport, shares.len())?;
         let colour = |(index, class): (usize, &Class)| match class {
             Class::Background => DIM_BACKGROUND,
             Class::FacingAway => DIM_FACING_AWAY,
@@ -211,9 +211,9 @@ impl Image {
                 mixed(dim, full, (off.abs() / FULL_COLOUR).min(1.0))
             }
         };
-        let pixels = reference.classes.iter().enumerate();
+        let pixels = truth.classes.iter().enumerate();
         Ok(Self {
-            size: reference.viewport,
+            size: truth.viewport,
             rgb: pixels.flat_map(colour).collect(),
         })
     }
@@ -252,10 +252,10 @@ impl Image {
     pub fn uncertain(
         visibility: &[impl Shown],
         status: &[impl Copy + Into<u32>],
-        reference: &Reference,
+        truth: &GroundTruthPixels,
     ) -> Result<Self, Error> {
-        check_pixel_count("status", reference.viewport, status.len())?;
-        let mut image = Self::shaded(visibility, reference)?;
+        check_pixel_count("status", truth.viewport, status.len())?;
+        let mut image = Self::shaded(visibility, truth)?;
         for (pixel, &status) in image.rgb.chunks_exact_mut(3).zip(status) {
             if status.into() == status::UNCERTAIN {
                 pixel.copy_from_slice(&UNCERTAIN);
@@ -269,31 +269,31 @@ impl Image {
     ///
     /// # Errors
     /// [`Error::PixelCount`] if `visibility` does not fit the reference.
-    pub fn shaded(visibility: &[impl Shown], reference: &Reference) -> Result<Self, Error> {
-        check_pixel_count("visibility", reference.viewport, visibility.len())?;
-        let mut rgb = Vec::with_capacity(reference.classes.len() * 3);
-        for (index, &class) in reference.classes.iter().enumerate() {
-            let direct = visibility[index].share() * reference.n_dot_l[index].max(0.0);
+    pub fn shaded(visibility: &[impl Shown], truth: &GroundTruthPixels) -> Result<Self, Error> {
+        check_pixel_count("visibility", truth.viewport, visibility.len())?;
+        let mut rgb = Vec::with_capacity(truth.classes.len() * 3);
+        for (index, &class) in truth.classes.iter().enumerate() {
+            let direct = visibility[index].share() * truth.n_dot_l[index].max(0.0);
             // A little of n · l in the ambient term keeps form readable where no light arrives.
-            let ambient = AMBIENT * (0.75 + 0.25 * reference.n_dot_l[index].clamp(-1.0, 1.0));
+            let ambient = AMBIENT * (0.75 + 0.25 * truth.n_dot_l[index].clamp(-1.0, 1.0));
             rgb.extend(if class == Class::Background {
                 BACKGROUND
             } else {
                 let light = ambient + (1.0 - AMBIENT) * direct;
-                match reference.base_colors.get(index) {
+                match truth.base_colors.get(index) {
                     Some(color) => color.map(|channel| srgb(channel * light)),
                     None => [srgb(light); 3],
                 }
             });
         }
         Ok(Self {
-            size: reference.viewport,
+            size: truth.viewport,
             rgb,
         })
     }
 }
 
-impl Reference {
+impl GroundTruthPixels {
     /// The reference's own visibility: 1 where lit, 0 elsewhere.
     pub fn visibility(&self) -> Vec<u8> {
         self.classes
@@ -341,8 +341,8 @@ fn srgb(linear: f32) -> u8 {
 }
 
 /// A grey of the backdrop in the colour of what the pixel shows, where that is known.
-fn tinted(grey: Colour, reference: &Reference, pixel: usize) -> Colour {
-    match reference.base_colors.get(pixel) {
+fn tinted(grey: Colour, truth: &GroundTruthPixels, pixel: usize) -> Colour {
+    match truth.base_colors.get(pixel) {
         Some(color) => {
             let tint = color.map(|channel| f32::from(srgb(channel)) / 255.0);
             std::array::from_fn(|at| (f32::from(grey[at]) * tint[at]).round() as u8)
@@ -356,8 +356,8 @@ mod tests {
     use super::*;
 
     /// One pixel of each class, then a shadowed one that is indeterminate.
-    fn reference() -> Reference {
-        Reference {
+    fn truth() -> GroundTruthPixels {
+        GroundTruthPixels {
             viewport: [5, 1],
             classes: vec![
                 Class::Background,
@@ -374,16 +374,15 @@ mod tests {
 
     #[test]
     fn base_colours_tint_what_is_shown() {
-        let mut reference = reference();
-        let grey = colours(Image::shaded(&[0u8, 0, 1, 0, 0], &reference).unwrap());
-        reference.base_colors = vec![[1.0, 0.0, 1.0]; 5];
-        let tinted = colours(Image::shaded(&[0u8, 0, 1, 0, 0], &reference).unwrap());
+        let mut truth = truth();
+        let grey = colours(Image::shaded(&[0u8, 0, 1, 0, 0], &truth).unwrap());
+        truth.base_colors = vec![[1.0, 0.0, 1.0]; 5];
+        let tinted = colours(Image::shaded(&[0u8, 0, 1, 0, 0], &truth).unwrap());
         assert_eq!(tinted[0], grey[0], "the background");
         for (tinted, grey) in tinted.iter().zip(&grey).skip(1) {
             assert_eq!(*tinted, [grey[0], 0, grey[2]]);
         }
-        let error =
-            colours(Image::error(&[0u8, 0, 1, 0, 0], &[0u8, 1, 2, 3, 3], &reference).unwrap());
+        let error = colours(Image::error(&[0u8, 0, 1, 0, 0], &[0u8, 1, 2, 3, 3], &truth).unwrap());
         assert_eq!(error[2], [DIM_LIGHT[0], 0, DIM_LIGHT[2]]);
     }
 
@@ -401,11 +400,9 @@ mod tests {
 
     #[test]
     fn errors_are_blue_and_red() {
-        let reference = reference();
-        let right = colours(
-            Image::error(&reference.visibility(), &reference.status(), &reference)
-                .expect("its own"),
-        );
+        let truth = truth();
+        let right =
+            colours(Image::error(&truth.visibility(), &truth.status(), &truth).expect("its own"));
         assert_eq!(
             right,
             [
@@ -416,14 +413,13 @@ mod tests {
                 DIM_SHADOW
             ]
         );
-        let wrong = colours(
-            Image::error(&[0u8, 0, 0, 1, 1], &reference.status(), &reference).expect("valid"),
-        );
+        let wrong =
+            colours(Image::error(&[0u8, 0, 0, 1, 1], &truth.status(), &truth).expect("valid"));
         assert_eq!(
             wrong[2..],
             [WRONGLY_SHADOWED, WRONGLY_LIT, WRONGLY_LIT_INDETERMINATE]
         );
-        assert!(Image::error(&[0u8; 4], &[0u8; 5], &reference).is_err());
+        assert!(Image::error(&[0u8; 4], &[0u8; 5], &truth).is_err());
     }
 
     #[test]
@@ -431,12 +427,11 @@ mod tests {
         let (visibility, status) = ([1u8, 1, 1, 0, 1], [0u8, 1, 2, 3, 4]);
         let shown = colours(Image::visibility([5, 1], &visibility, &status).expect("same sizes"));
         assert_eq!(shown, [BACKGROUND, FACING_AWAY, [255; 3], [0; 3], [255; 3]]);
-        let reference = reference();
-        let shaded = colours(Image::shaded(&visibility, &reference).expect("same size"));
-        let shown =
-            colours(Image::uncertain(&visibility, &status, &reference).expect("same sizes"));
+        let truth = truth();
+        let shaded = colours(Image::shaded(&visibility, &truth).expect("same size"));
+        let shown = colours(Image::uncertain(&visibility, &status, &truth).expect("same sizes"));
         assert_eq!((&shown[..4], shown[4]), (&shaded[..4], UNCERTAIN));
-        assert!(Image::uncertain(&visibility, &status[1..], &reference).is_err());
+        assert!(Image::uncertain(&visibility, &status[1..], &truth).is_err());
         assert!(Image::visibility([5, 2], &visibility, &status).is_err());
     }
 
@@ -444,7 +439,7 @@ mod tests {
     fn as_many_pixels_are_coloured_as_are_wrong_and_lone_ones_have_a_ring() {
         let [width, height] = [512usize, 64];
         let at = |x: usize, y: usize| y * width + x;
-        let mut reference = Reference {
+        let mut truth = GroundTruthPixels {
             viewport: [512, 64],
             classes: vec![Class::Lit; width * height],
             indeterminate: vec![false; width * height],
@@ -456,12 +451,12 @@ mod tests {
         let (pair, corner) = ([at(400, 20), at(402, 21)], at(0, 0));
         // In the band, where the lone pixel's ring would lie.
         let in_band = at(108, 32);
-        reference.indeterminate[in_band] = true;
+        truth.indeterminate[in_band] = true;
         let wrong = [&crowd[..], &pair, &[lone, corner, in_band]].concat();
         let mut visibility = vec![1u8; width * height];
         wrong.iter().for_each(|&pixel| visibility[pixel] = 0);
         let status = vec![status::CERTAIN_LIGHT as u8; width * height];
-        let image = Image::error(&visibility, &status, &reference).unwrap();
+        let image = Image::error(&visibility, &status, &truth).unwrap();
         let found = colours(image);
         let count = |of: Colour| found.iter().filter(|colour| **colour == of).count();
         assert_eq!(count(WRONGLY_SHADOWED), wrong.len() - 1);
@@ -480,16 +475,16 @@ mod tests {
         // Where many are alone, all are seen.
         let many = (0..30).map(|index| at(10 + 16 * index, 32));
         many.for_each(|pixel| visibility[pixel] = 0);
-        let image = Image::error(&visibility, &status, &reference).unwrap();
+        let image = Image::error(&visibility, &status, &truth).unwrap();
         assert!(!colours(image).contains(&RING));
     }
 
     #[test]
     fn differences_of_shares_have_a_side_and_a_strength() {
-        let reference = reference();
+        let truth = truth();
         let shares = [0.0, 0.0, 1.0, 0.5, 0.5];
         let shown = [1.0, 1.0, 0.75, 0.625, f32::NAN];
-        let shown = colours(Image::difference(&shown, &shares, &reference).expect("same sizes"));
+        let shown = colours(Image::difference(&shown, &shares, &truth).expect("same sizes"));
         let middle = mixed(DIM_SHADOW, DIM_LIGHT, 0.5);
         let half = mixed(middle, WRONGLY_LIT, 0.5);
         let expected = [
@@ -500,16 +495,16 @@ mod tests {
             NO_NUMBER,
         ];
         assert_eq!(shown, expected);
-        assert!(Image::difference(&shares[1..], &shares, &reference).is_err());
+        assert!(Image::difference(&shares[1..], &shares, &truth).is_err());
     }
 
     #[test]
     fn shading_follows_the_cosine_and_the_visibility() {
-        let shaded = colours(Image::shaded(&[1u8, 1, 1, 0, 1], &reference()).expect("same size"));
+        let shaded = colours(Image::shaded(&[1u8, 1, 1, 0, 1], &truth()).expect("same size"));
         assert_eq!(shaded[0], BACKGROUND);
         assert_eq!(shaded[2], [255; 3]);
         let level = |pixel: usize| shaded[pixel][0];
         assert!(level(2) > level(4) && level(4) > level(3) && level(3) > level(1) && level(1) > 0);
-        assert!(Image::shaded(&[1u8; 6], &reference()).is_err());
+        assert!(Image::shaded(&[1u8; 6], &truth()).is_err());
     }
 }

@@ -1,5 +1,5 @@
 //! The reference against which Skiagraph measures shadow methods: an f64 ray tracer ([`Oracle`]),
-//! pixel counts ([`Statistics`]) and pictures ([`Image`]).
+//! the [`GroundTruth`] that it finds, pixel counts ([`Statistics`]) and pictures ([`Image`]).
 //!
 //! The oracle starts from what a GPU's G-buffer says each pixel shows (one primitive id per pixel),
 //! recomputes the hit on that primitive in f64, traces a shadow ray in f64, and marks the pixels
@@ -21,8 +21,8 @@
 //! let oracle = Oracle::new(&mesh);
 //! let primitives = oracle.primary(&camera, Progress::default())?;
 //! let (mode, progress) = (OracleMode::Exact, Progress::default());
-//! let reference = oracle.shade(&camera, &light, &primitives, mode, progress)?;
-//! let counts = Statistics::judged(&reference.visibility(), &reference.status(), &reference)?;
+//! let truth = oracle.shade(&camera, &light, &primitives, mode, progress)?;
+//! let counts = Statistics::judged(&truth.visibility(), &truth.status(), &truth)?;
 //! assert_eq!(counts.pixels.background, 64);
 //! assert_eq!(counts.wrong.total, 0);
 //! # Ok::<(), skiagraph_reference::Error>(())
@@ -35,6 +35,7 @@ mod error;
 pub mod error_bound;
 pub mod flip;
 pub mod graded;
+pub mod ground_truth;
 pub mod image;
 mod masked;
 pub mod oracle;
@@ -48,12 +49,12 @@ mod sums;
 mod tree;
 mod visible;
 
-pub use area::{AreaVisibility, RightAnswer};
 pub use blockers::BlockerCounts;
 pub use error::Error;
 pub use graded::{Graded, Invalid, JudgedPixels, OffBy};
+pub use ground_truth::{AreaVisibility, Class, GroundTruth, GroundTruthPixels};
 pub use image::Image;
-pub use oracle::{Class, Occlusion, Oracle, OracleMode, Reference, unshadowed};
+pub use oracle::{Occlusion, Oracle, OracleMode, unshadowed};
 pub use pixels::{BACKGROUND, Progress};
 pub use receiver::Receiver;
 pub use shimmer::Shimmer;

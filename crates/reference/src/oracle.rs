@@ -4,6 +4,7 @@ use crate::{
     contact::{Contact, FuzzyRay},
     error::Error,
     error_bound::Uncertainty,
+    ground_truth::{Answer, Class, GroundTruthPixels},
     pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel},
     ray::Ray,
     receiver::{self, Receiver},
@@ -74,45 +75,6 @@ impl fmt::Display for OracleMode {
 /// The longest offset in extents of the mesh: far beyond it rays miss by rounding alone.
 const MOST_EXTENTS: f64 = 1e6;
 
-/// What the oracle says of a pixel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Class {
-    /// Shows no geometry.
-    Background,
-    /// dot(interpolated normal, l) ≤ 0, in its own shade, whatever stands in between; or outside of
-    /// a spot light's cone.
-    FacingAway,
-    /// Faces the light and sees it.
-    Lit,
-    /// Faces the light and does not see it.
-    Shadow,
-}
-
-impl Class {
-    /// Whether the pixel is one of the *pixels facing the light* (PFL), the denominator of all
-    /// shares.
-    pub fn faces_light(self) -> bool {
-        matches!(self, Self::Lit | Self::Shadow)
-    }
-}
-
-/// The exact answer for one view. All buffers have one entry per pixel, row by row from the top
-/// left.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Reference {
-    /// Width and height in pixels.
-    pub viewport: [u32; 2],
-    /// The answer.
-    pub classes: Vec<Class>,
-    /// Whether the answer flips when receiver or casters move within their f32 error bounds: no f32
-    /// method can be blamed for it.
-    pub indeterminate: Vec<bool>,
-    /// dot(interpolated vertex normal, unit vector towards the light); 0 in the background.
-    pub n_dot_l: Vec<f32>,
-    /// Linear base colour of each pixel, for pictures; nothing where the mesh has no materials.
-    pub base_colors: Vec<[f32; 3]>,
-}
-
 /// The f64 ray tracer over one mesh.
 pub struct Oracle<'a> {
     pub(crate) mesh: &'a Mesh,
@@ -129,55 +91,6 @@ pub struct Occlusion {
     /// Whether that changes when the triangles move by what f32 makes of their corners, seen from
     /// the ray's origin.
     pub indeterminate: bool,
-}
-
-#[derive(Clone, Copy)]
-pub(crate) struct Answer {
-    pub(crate) class: Class,
-    indeterminate: bool,
-    n_dot_l: f32,
-}
-
-impl Answer {
-    pub(crate) const BACKGROUND: Self = Self {
-        class: Class::Background,
-        indeterminate: false,
-        n_dot_l: 0.0,
-    };
-
-    /// Facing away, or lit as long as nobody has looked for blockers.
-    pub(crate) fn facing(receiver: &Receiver) -> Self {
-        let faces_away = receiver.n_dot_l <= 0.0;
-        let could_turn = receiver.n_dot_l.abs() <= receiver.n_dot_l_error;
-        // What faces away does so within the cone and outside of it.
-        let could_leave = receiver.on_cone_edge && (!faces_away || could_turn);
-        let beyond_cone = receiver.outside_cone && !receiver.on_cone_edge;
-        Self {
-            class: if faces_away || receiver.outside_cone {
-                Class::FacingAway
-            } else {
-                Class::Lit
-            },
-            indeterminate: !beyond_cone && (could_turn || could_leave),
-            n_dot_l: if receiver.outside_cone {
-                receiver.n_dot_l.min(0.0) as f32
-            } else {
-                receiver.n_dot_l as f32
-            },
-        }
-    }
-}
-
-impl Reference {
-    pub(crate) fn new(viewport: [u32; 2], answers: &[Answer], base_colors: Vec<[f32; 3]>) -> Self {
-        Self {
-            viewport,
-            base_colors,
-            classes: answers.iter().map(|answer| answer.class).collect(),
-            indeterminate: answers.iter().map(|answer| answer.indeterminate).collect(),
-            n_dot_l: answers.iter().map(|answer| answer.n_dot_l).collect(),
-        }
-    }
 }
 
 impl<'a> Oracle<'a> {
@@ -240,20 +153,20 @@ impl<'a> Oracle<'a> {
         primitives: &[u32],
         mode: OracleMode,
         progress: Progress,
-    ) -> Result<Reference, Error> {
+    ) -> Result<GroundTruthPixels, Error> {
         let viewport = camera.viewport;
         check_pixel_count("primitives", viewport, primitives.len())?;
         let light = light.into();
         self.check(&light, mode)?;
         let answers = per_pixel(viewport, progress, |x, y, stack| {
-            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, [x, y], &light)?;
+            let receiver = Receiver::from_pixel(self.mesh, primitives, camera, [x, y], &light)?;
             Ok(match receiver {
                 Some(receiver) => self.answer(&receiver, mode, stack),
                 None => Answer::BACKGROUND,
             })
         })?;
         let base_colors = base_colors(self.mesh, camera, primitives);
-        Ok(Reference::new(viewport, &answers, base_colors))
+        Ok(GroundTruthPixels::new(viewport, &answers, base_colors))
     }
 
     /// Whether a light can be traced.
@@ -409,15 +322,19 @@ pub fn unshadowed(
     light: &LightKind,
     primitives: &[u32],
     progress: Progress,
-) -> Result<Reference, Error> {
+) -> Result<GroundTruthPixels, Error> {
     check_pixel_count("primitives", camera.viewport, primitives.len())?;
     light.check().map_err(Error::Light)?;
     let answers = per_pixel(camera.viewport, progress, |x, y, _| {
-        let receiver = Receiver::of_pixel(mesh, primitives, camera, [x, y], light)?;
+        let receiver = Receiver::from_pixel(mesh, primitives, camera, [x, y], light)?;
         Ok(receiver.map_or(Answer::BACKGROUND, |receiver| Answer::facing(&receiver)))
     })?;
     let base_colors = base_colors(mesh, camera, primitives);
-    Ok(Reference::new(camera.viewport, &answers, base_colors))
+    Ok(GroundTruthPixels::new(
+        camera.viewport,
+        &answers,
+        base_colors,
+    ))
 }
 
 /// What the pixels of a G-buffer are made of; nothing where the mesh has no materials.

@@ -67,7 +67,7 @@ impl Receiver {
     ///
     /// # Errors
     /// [`Error::UnknownPrimitive`].
-    pub fn of_pixel(
+    pub fn from_pixel(
         mesh: &Mesh,
         primitives: &[u32],
         camera: &Camera,

@@ -1,8 +1,8 @@
-//! Shimmer: answers that change from a frame to the next though the right ones do not.
+//! Shimmer: answers that change from a frame to the next though the ground truth does not.
 
 use crate::{
-    area::RightAnswer,
     error::Error,
+    ground_truth::GroundTruth,
     pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel},
 };
 use glam::DVec3;
@@ -18,7 +18,7 @@ const SAME: f32 = 1.0 / 255.0;
 /// Counts of receivers that are seen in two frames one after the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shimmer {
-    /// Pixels whose receiver faces the light and had the same right answer a frame before (to 1/255
+    /// Pixels whose receiver faces the light and had the same ground truth a frame before (to 1/255
     /// of an area light), both outside the band.
     pub compared: u64,
     /// Of these, the ones whose visibility the method changed by more than 1/16.
@@ -101,28 +101,28 @@ fn earlier(place: DVec3, primitive: u32, before: &Mesh, now: &Mesh) -> DVec3 {
 }
 
 /// Counts the answers that changed: `same` is of [`same_receivers`], and of each frame there are
-/// what share of the light the method shows per pixel, and the right answer.
+/// what share of the light the method shows per pixel, and the ground truth.
 ///
 /// # Errors
 /// [`Error::PixelCount`] for buffers that are not as large as their frame.
 pub fn shimmer(
     same: &[u32],
     [before, now]: [&[f32]; 2],
-    [right_before, right_now]: [&RightAnswer; 2],
+    [truth_before, truth_now]: [&GroundTruth; 2],
 ) -> Result<Shimmer, Error> {
-    let (reference_before, reference_now) = (&right_before.reference, &right_now.reference);
-    check_pixel_count("same receivers", reference_now.viewport, same.len())?;
-    check_pixel_count("visibility", reference_now.viewport, now.len())?;
-    check_pixel_count("visibility", reference_before.viewport, before.len())?;
-    let (shares_before, shares_now) = (right_before.shares(), right_now.shares());
+    let (pixels_before, pixels_now) = (&truth_before.pixels, &truth_now.pixels);
+    check_pixel_count("same receivers", pixels_now.viewport, same.len())?;
+    check_pixel_count("visibility", pixels_now.viewport, now.len())?;
+    check_pixel_count("visibility", pixels_before.viewport, before.len())?;
+    let (shares_before, shares_now) = (truth_before.shares(), truth_now.shares());
     let mut counts = Shimmer::default();
     for (pixel, &earlier) in same.iter().enumerate() {
         let earlier = earlier as usize;
         if earlier == BACKGROUND as usize
-            || !reference_now.classes[pixel].faces_light()
-            || !reference_before.classes[earlier].faces_light()
-            || reference_now.indeterminate[pixel]
-            || reference_before.indeterminate[earlier]
+            || !pixels_now.classes[pixel].faces_light()
+            || !pixels_before.classes[earlier].faces_light()
+            || pixels_now.indeterminate[pixel]
+            || pixels_before.indeterminate[earlier]
             || (shares_now[pixel] - shares_before[earlier]).abs() > SAME
         {
             continue;

@@ -2,7 +2,7 @@
 
 use crate::{
     error::Error,
-    oracle::{Class, Reference},
+    ground_truth::{Class, GroundTruthPixels},
     pixels::check_pixel_count,
 };
 use serde::{Deserialize, Serialize};
@@ -162,17 +162,17 @@ impl Statistics {
     ///
     /// # Errors
     /// [`Error::PixelCount`] if a buffer is not as large as the reference, [`Error::Value`] for a
-    /// value outside the contract.
+    /// value that is none of these.
     pub fn judged(
         visibility: &[impl Copy + Into<u32>],
         status: &[impl Copy + Into<u32>],
-        reference: &Reference,
+        truth: &GroundTruthPixels,
     ) -> Result<Self, Error> {
         let mut counts = Self::default();
         for_each_verdict(
             visibility,
             status,
-            reference,
+            truth,
             |class, status, indeterminate, verdict| {
                 counts.add(class, status, indeterminate, verdict);
             },
@@ -222,14 +222,14 @@ impl Statistics {
     pub fn certain_wrong_pixels(
         visibility: &[impl Copy + Into<u32>],
         status: &[impl Copy + Into<u32>],
-        reference: &Reference,
+        truth: &GroundTruthPixels,
     ) -> Result<Vec<usize>, Error> {
         let mut pixels = Vec::new();
         let mut place = 0;
         for_each_verdict(
             visibility,
             status,
-            reference,
+            truth,
             |_, status, indeterminate, verdict| {
                 if is_certain_wrong(status, indeterminate, verdict) {
                     pixels.push(place);
@@ -283,21 +283,18 @@ fn is_certain_wrong(status: u32, indeterminate: bool, verdict: Verdict) -> bool 
 pub(crate) fn for_each_verdict(
     visibility: &[impl Copy + Into<u32>],
     status: &[impl Copy + Into<u32>],
-    reference: &Reference,
+    truth: &GroundTruthPixels,
     mut pixel: impl FnMut(Class, u32, bool, Verdict),
 ) -> Result<(), Error> {
-    check_pixel_count("visibility", reference.viewport, visibility.len())?;
-    check_pixel_count("status", reference.viewport, status.len())?;
-    check_answers(visibility, reference.viewport)?;
-    for (index, (&class, &indeterminate)) in reference
-        .classes
-        .iter()
-        .zip(&reference.indeterminate)
-        .enumerate()
+    check_pixel_count("visibility", truth.viewport, visibility.len())?;
+    check_pixel_count("status", truth.viewport, status.len())?;
+    check_answers(visibility, truth.viewport)?;
+    for (index, (&class, &indeterminate)) in
+        truth.classes.iter().zip(&truth.indeterminate).enumerate()
     {
         let (visibility, status) = (visibility[index].into(), status[index].into());
         let value = |name, value, expected| {
-            let width = reference.viewport[0] as usize;
+            let width = truth.viewport[0] as usize;
             Error::Value {
                 name,
                 x: (index % width) as u32,
@@ -349,8 +346,8 @@ mod tests {
     use super::*;
 
     /// One row of pixels: class, whether indeterminate.
-    fn reference(pixels: &[(Class, bool)]) -> Reference {
-        Reference {
+    fn truth(pixels: &[(Class, bool)]) -> GroundTruthPixels {
+        GroundTruthPixels {
             viewport: [pixels.len() as u32, 1],
             classes: pixels.iter().map(|pixel| pixel.0).collect(),
             indeterminate: pixels.iter().map(|pixel| pixel.1).collect(),
@@ -380,7 +377,7 @@ mod tests {
             (Shadow, false, 1, 2), // wrongly lit, certain
             (Shadow, false, 1, 0), // taken for background, shown lit
         ];
-        let reference = reference(&pixels.map(|pixel| (pixel.0, pixel.1)));
+        let truth = truth(&pixels.map(|pixel| (pixel.0, pixel.1)));
         let visibility = pixels.map(|pixel| pixel.2);
         let status = pixels.map(|pixel| pixel.3);
         let expected = Statistics {
@@ -420,17 +417,17 @@ mod tests {
             facing_mismatch: 6,
         };
         assert_eq!(
-            Statistics::judged(&visibility, &status, &reference),
+            Statistics::judged(&visibility, &status, &truth),
             Ok(expected)
         );
         assert_eq!(
-            Statistics::certain_wrong_pixels(&visibility, &status, &reference),
+            Statistics::certain_wrong_pixels(&visibility, &status, &truth),
             Ok(vec![3, 7, 13])
         );
         // The same values as u32.
         let (visibility, status) = (visibility.map(u32::from), status.map(u32::from));
         assert_eq!(
-            Statistics::judged(&visibility, &status, &reference),
+            Statistics::judged(&visibility, &status, &truth),
             Ok(expected)
         );
         assert_eq!(expected.wrong_share(), 0.8);
@@ -489,7 +486,7 @@ mod tests {
 
     #[test]
     fn foreign_values_and_sizes_are_errors() {
-        let reference = reference(&[(Class::Lit, false), (Class::Shadow, false)]);
+        let truth = truth(&[(Class::Lit, false), (Class::Shadow, false)]);
         let viewport = [2, 1];
         let size = |name, actual| {
             Err(Error::PixelCount {
@@ -500,17 +497,17 @@ mod tests {
             })
         };
         assert_eq!(
-            Statistics::judged(&[1u8], &[2u8, 3], &reference),
+            Statistics::judged(&[1u8], &[2u8, 3], &truth),
             size("visibility", 1)
         );
         assert_eq!(
-            Statistics::judged(&[1u8, 0], &[2u8, 3, 3], &reference),
+            Statistics::judged(&[1u8, 0], &[2u8, 3, 3], &truth),
             size("status", 3)
         );
         let named = |visibility: [u8; 2], status: [u8; 2]| match Statistics::judged(
             &visibility,
             &status,
-            &reference,
+            &truth,
         ) {
             Err(Error::Value {
                 name, x, y, value, ..
@@ -521,7 +518,7 @@ mod tests {
         assert_eq!(named([1, 0], [5, 3]), Some(("status", 0, 0, 5)));
         assert_eq!(named([1, 0], [2, 3]), None);
         assert_eq!(
-            Statistics::judged(&[0u8, 2], &[2u8, 4], &reference),
+            Statistics::judged(&[0u8, 2], &[2u8, 4], &truth),
             Err(Error::Unanswered {
                 pixels: 1,
                 x: 1,

@@ -51,7 +51,7 @@ impl Mask {
 
     /// Of a texture: opaque where `opacity` of a texel is `cutoff` at least.
     #[cfg(feature = "files")]
-    pub(crate) fn of_texels(
+    pub(crate) fn from_texels(
         texels: &crate::texels::Texels,
         wrap: [Wrap; 2],
         opacity: impl Fn([u8; 4]) -> f32,

@@ -9,7 +9,7 @@ use crate::support::{
 use skiagraph_gpu::{Executor, FrameReport};
 use skiagraph_graph::ParamValue;
 use skiagraph_passes::SceneProvider;
-use skiagraph_reference::{Graded, Oracle, OracleMode, Progress, RightAnswer, Statistics};
+use skiagraph_reference::{Graded, GroundTruth, Oracle, OracleMode, Progress, Statistics};
 use skiagraph_scene::{LightKind, Scene, View};
 use std::sync::Arc;
 
@@ -47,13 +47,13 @@ impl Bench {
         provider
     }
 
-    fn right(&self) -> RightAnswer {
+    fn ground_truth(&self) -> GroundTruth {
         let gbuffer = "pipelines/shared/gbuffer.ron";
         let primitives = values(&self.frames(gbuffer, &[], 1, &["primitive"]), "primitive");
         let camera = self.view.camera(VIEWPORT);
         let (how, progress) = ((OracleMode::Exact, 512), Progress::default());
         Oracle::new(&self.scene.mesh)
-            .right_answer(&camera, self.light, &primitives, how, progress)
+            .ground_truth(&camera, self.light, &primitives, how, progress)
             .unwrap_or_else(|error| panic!("{error}"))
     }
 
@@ -81,12 +81,12 @@ const MAP: Params = &[("map_size", ParamValue::U32(512))];
 
 /// Pixels that are wrong, percent, once buffers that grow have room.
 fn are_wrong(bench: &Bench, methods: &[(&str, f64)]) {
-    let right = bench.right();
+    let ground_truth = bench.ground_truth();
     for &(method, percent) in methods {
         let path = format!("engine/{method}.ron");
         let report = bench.frames(&path, MAP, 4, &["visibility", "status"]);
         let (visibility, status) = (values(&report, "visibility"), values(&report, "status"));
-        let counts = Statistics::judged(&visibility, &status, &right.reference)
+        let counts = Statistics::judged(&visibility, &status, &ground_truth.pixels)
             .unwrap_or_else(|error| panic!("{path}: {error}"));
         let found = 100.0 * counts.wrong_share();
         println!("{path}: {found:.4} %, {percent} % expected");
@@ -97,12 +97,12 @@ fn are_wrong(bench: &Bench, methods: &[(&str, f64)]) {
 /// Root mean square errors of methods with these params, after some frames.
 fn are_off(methods: &[(&str, Params, f64)], frames: usize) {
     let bench = Bench::soft();
-    let right = bench.right();
+    let ground_truth = bench.ground_truth();
     for &(method, params, rmse) in methods {
         let path = format!("engine/{method}.ron");
         let report = bench.frames(&path, params, frames, &["visibility"]);
         let shown = shares(&report, "visibility");
-        let graded = Graded::judged(&shown, &right.shares(), &right.reference)
+        let graded = Graded::judged(&shown, &ground_truth.shares(), &ground_truth.pixels)
             .unwrap_or_else(|error| panic!("{path}: {error}"));
         println!("{path}: RMSE {:.5}, {rmse} expected", graded.rmse);
         assert!((graded.rmse - rmse).abs() < 1e-3, "{path}: {}", graded.rmse);
@@ -128,7 +128,7 @@ fn contact_shadows_stand_over_any_method() {
         &bench.frames("pipelines/nsm.ron", MAP, 1, &["status"]),
         "status",
     );
-    let counts = Statistics::judged(&above, &status, &bench.right().reference);
+    let counts = Statistics::judged(&above, &status, &bench.ground_truth().pixels);
     let found = 100.0 * counts.expect("it is hard").wrong_share();
     assert!((found - 11.435).abs() < 0.05, "{found} %");
     let is_darkened = |pixel: usize| below[pixel] == 1 && above[pixel] == 0;

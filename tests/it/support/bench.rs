@@ -5,7 +5,7 @@ use skiagraph_gpu::device::Gpu;
 use skiagraph_graph::{Capture, ParamValue, Sources};
 use skiagraph_passes::{EmbeddedSources, SceneProvider};
 use skiagraph_reference::{
-    Oracle, OracleMode, PixelCounts, Progress, Reference, Statistics, statistics::status,
+    GroundTruthPixels, Oracle, OracleMode, PixelCounts, Progress, Statistics, statistics::status,
 };
 use skiagraph_scene::{Scene, View};
 use std::sync::Arc;
@@ -15,7 +15,7 @@ pub struct Answers {
     pub visibility: Vec<u32>,
     pub status: Vec<u32>,
     pub primitives: Vec<u32>,
-    pub reference: Reference,
+    pub truth: GroundTruthPixels,
     pub counts: Statistics,
 }
 
@@ -101,7 +101,7 @@ impl<'a> Bench<'a> {
         let primitives = values(&report, "primitive");
         let camera = self.view.camera(self.viewport);
         let light = self.scene.light();
-        let reference = self
+        let truth = self
             .oracle
             .shade(
                 &camera,
@@ -112,7 +112,7 @@ impl<'a> Bench<'a> {
             )
             .unwrap();
         let (visibility, status) = (values(&report, "visibility"), values(&report, "status"));
-        let counts = Statistics::judged(&visibility, &status, &reference).unwrap();
+        let counts = Statistics::judged(&visibility, &status, &truth).unwrap();
         println!(
             "{preset} {} {} {:?} {params:?}: {counts:?}",
             self.scene.name, self.view.name, self.viewport
@@ -121,7 +121,7 @@ impl<'a> Bench<'a> {
             visibility,
             status,
             primitives,
-            reference,
+            truth,
             counts,
         }
     }
@@ -136,8 +136,8 @@ impl<'a> Bench<'a> {
         let shaded = self
             .oracle
             .shade(&camera, light, &primitives, mode, progress);
-        let reference = shaded.unwrap();
-        Statistics::judged(&reference.visibility(), &reference.status(), &reference)
+        let truth = shaded.unwrap();
+        Statistics::judged(&truth.visibility(), &truth.status(), &truth)
             .unwrap()
             .pixels
     }

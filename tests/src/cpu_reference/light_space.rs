@@ -26,11 +26,11 @@ pub struct LightSpace {
 impl LightSpace {
     /// Fitted to the corners of the mesh, as the presets do; without any, to a point at the origin.
     pub fn new(mesh: &Mesh, light: &DirectionalLight, map_size: u32) -> Self {
-        Self::of_fit(light.fit(mesh.corner_positions()), mesh, map_size)
+        Self::from_fit(light.fit(mesh.corner_positions()), mesh, map_size)
     }
 
     /// Of a given fit.
-    pub fn of_fit(fit: LightFit, mesh: &Mesh, map_size: u32) -> Self {
+    pub fn from_fit(fit: LightFit, mesh: &Mesh, map_size: u32) -> Self {
         let (min, max) = mesh.bounds().unwrap_or((Vec3::ZERO, Vec3::ZERO));
         let (min, max) = (min.as_dvec3(), max.as_dvec3());
         Self {

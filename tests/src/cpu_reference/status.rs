@@ -143,7 +143,7 @@ impl Maps<'_> {
         check_pixel_count("primitives", viewport, primitives.len())?;
         let answers = per_pixel(viewport, progress, |x, y, _| {
             let pixel = [x, y];
-            let receiver = Receiver::of_pixel(self.mesh, primitives, camera, pixel, &self.light)?;
+            let receiver = Receiver::from_pixel(self.mesh, primitives, camera, pixel, &self.light)?;
             let background = (status::BACKGROUND, false);
             Ok(receiver.map_or(background, |receiver| self.answer(&receiver)))
         })?;

@@ -32,9 +32,10 @@ pub fn trapezoid(corners: [DVec2; 8], focus: f64) -> Option<[DVec2; 4]> {
     let focused = focus * (far - near).length() - top;
     let room = (1.0 - FOCUS_LINE) * height - 2.0 * focused;
     let farthest = 1e3 * height;
-    let apex = match room > 0.0 {
-        true => (height * focused * (1.0 + FOCUS_LINE) / room).min(farthest),
-        false => farthest,
+    let apex = if room > 0.0 {
+        (height * focused * (1.0 + FOCUS_LINE) / room).min(farthest)
+    } else {
+        farthest
     };
     let slopes = places.map(|place| place.x / (place.y - top + apex));
     let left = slopes.into_iter().fold(f64::INFINITY, f64::min);

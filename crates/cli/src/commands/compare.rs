@@ -13,11 +13,11 @@ use crate::graphs::method::{self, Method};
 use crate::graphs::openings;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::variants;
-use crate::graphs::{contract, preset};
+use crate::graphs::{preset, shadow_method};
 use crate::measuring::comparison::{Comparison, ComparisonSetup};
-use crate::measuring::reference::PrimaryVisibility;
+use crate::measuring::ground_truth::PrimaryVisibility;
 use crate::measuring::scene_selection::{SceneSelection, check_path, under_lights};
-use crate::measuring::subject::Subject;
+use crate::measuring::view_or_path::ViewOrPath;
 use crate::measuring::{date, device};
 use crate::pictures::run_pictures::{check_stems, graph_name, reference_stem, stem};
 use crate::records::results::{PROGRAM, Results};
@@ -41,7 +41,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let sources = preset::sources();
     let names = preset::named_or_all(&args.presets, &sources);
     let (arguments, params) = openings::arguments(&names, &args.params, &sources)?;
-    let presets = contract::load_all(&variants::presets(&arguments), &sources)?;
+    let presets = shadow_method::load_all(&variants::presets(&arguments), &sources)?;
     let methods = method::methods(&presets, &arguments, &params, &args.map_size)?;
     method::note_without_map(&methods, &args.map_size);
     let primary = PrimaryVisibility::load(&sources)?;
@@ -56,15 +56,15 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let scene = Arc::new(scene);
     let mut provider = SceneProvider::new(scene.clone());
     let device = Capabilities::new(&gpu);
-    let is_layered = |method: &Method| contract::is_layered(method, &device, &provider);
+    let is_layered = |method: &Method| shadow_method::is_layered(method, &device, &provider);
     let lights = if methods.iter().any(is_layered) {
         every_light(&args.scene)
     } else {
         args.scene.clone()
     };
-    let subjects = subjects(args, &scene, views, &lights)?;
+    let views_or_paths = views_or_paths(args, &scene, views, &lights)?;
     if args.images == Images::All {
-        check_pictures(&methods, &subjects, &viewports)?;
+        check_pictures(&methods, &views_or_paths, &viewports)?;
     }
     // Everything is planned before anything runs: nobody should wait for an hour to read that the
     // last file has a mistake. What a provider describes is the same for every view under a light
@@ -73,13 +73,13 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         primary.plan(&gpu, viewport, &provider)?;
     }
     let (mut kinds, mut idle) = (Vec::new(), IdleParams::default());
-    for subject in &subjects {
-        let light = subject.light(&scene);
+    for view_or_path in &views_or_paths {
+        let light = view_or_path.light(&scene);
         let kind = light.word();
         if !kinds.contains(&kind) {
             kinds.push(kind);
             provider.set_light(light);
-            contract::check_plans(&methods, &viewports, &provider, Some(&device))?;
+            shadow_method::check_plans(&methods, &viewports, &provider, Some(&device))?;
             idle.note(&methods, &device, &provider);
         }
     }
@@ -99,11 +99,11 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let setup = ComparisonSetup {
         gpu: &gpu,
         scene: &scene,
-        subjects: &subjects,
+        views: &views_or_paths,
         viewports: &viewports,
         methods: &methods,
         primary: &primary,
-        fingerprint: fingerprint(args, &scene, &subjects, &primary),
+        fingerprint: fingerprint(args, &scene, &views_or_paths, &primary),
     };
     let graphs = match args.images {
         Images::All => graphs(&setup, &provider),
@@ -115,7 +115,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         write_whole(&args.out.join(name), svg.as_bytes())?;
     }
     interrupt::install()?;
-    let outcome = run(args, &mut comparison, &subjects, viewports.len());
+    let outcome = run(args, &mut comparison, &views_or_paths, viewports.len());
     finish(args, comparison, outcome)
 }
 
@@ -139,12 +139,12 @@ fn graphs(setup: &ComparisonSetup, provider: &SceneProvider) -> Vec<(String, Str
 fn fingerprint(
     args: &CompareArgs,
     scene: &Scene,
-    subjects: &[Subject],
+    views_or_paths: &[ViewOrPath],
     primary: &PrimaryVisibility,
 ) -> Fingerprint {
     let mut of = primary.fingerprint.with_scene(&scene.mesh, &scene.lights);
-    let has_extent = |subject: &Subject| subject.light(scene).has_extent();
-    if subjects.iter().any(has_extent) {
+    let has_extent = |view_or_path: &ViewOrPath| view_or_path.light(scene).has_extent();
+    if views_or_paths.iter().any(has_extent) {
         of = of.with_text(&args.reference_samples.to_string());
     }
     match args.jitter {
@@ -163,35 +163,35 @@ fn every_light(args: &SceneArgs) -> SceneArgs {
 }
 
 /// The views, or the camera paths that are asked for, under the lights that are.
-fn subjects(
+fn views_or_paths(
     args: &CompareArgs,
     scene: &Scene,
     views: Vec<View>,
     lights: &SceneArgs,
-) -> Result<Vec<Subject>, CliError> {
+) -> Result<Vec<ViewOrPath>, CliError> {
     let Some(name) = &args.path else {
         let views = if args.scene.light == lights.light {
             views
         } else {
             under_lights(scene, views, lights)?
         };
-        return Ok(views.into_iter().map(Subject::Still).collect());
+        return Ok(views.into_iter().map(ViewOrPath::Still).collect());
     };
     check_path(&args.scene, name)?;
     let paths = SceneLibrary::from_environment().paths(&args.scene.scene);
     let paths = paths.map_err(|error| CliError::Input(error.to_string()))?;
-    Subject::paths(scene, paths, name, lights)
+    ViewOrPath::paths(scene, paths, name, lights)
 }
 
 /// Refuses runs that would overwrite each other's pictures, before anything runs.
 fn check_pictures(
     methods: &[Method],
-    subjects: &[Subject],
+    views_or_paths: &[ViewOrPath],
     viewports: &[[u32; 2]],
 ) -> Result<(), CliError> {
     let mut stems = Vec::new();
-    for subject in subjects {
-        let view = subject.name();
+    for view_or_path in views_or_paths {
+        let view = view_or_path.name();
         for &viewport in viewports {
             stems.extend(methods.iter().map(|method| {
                 let owner = format!("`{}` on view `{view}`", method.name);
@@ -208,7 +208,7 @@ fn check_pictures(
 fn run(
     args: &CompareArgs,
     comparison: &mut Comparison,
-    subjects: &[Subject],
+    views_or_paths: &[ViewOrPath],
     viewports: usize,
 ) -> Result<(), CliError> {
     if args.format == Format::Markdown {
@@ -222,9 +222,9 @@ fn run(
         );
         print(&header)?;
     }
-    for (index, subject) in subjects.iter().enumerate() {
+    for (index, view_or_path) in views_or_paths.iter().enumerate() {
         if args.format == Format::Markdown {
-            print(&markdown::view(subject.name()))?;
+            print(&markdown::view(view_or_path.name()))?;
         }
         for viewport in 0..viewports {
             let outcome = comparison.measure(index, viewport);
@@ -296,7 +296,7 @@ fn finish(
         }
     }
     if !broken.is_empty() {
-        return Err(CliError::Contract(broken.join("\nerror: ")));
+        return Err(CliError::InvalidOutputs(broken.join("\nerror: ")));
     }
     if results.runs.iter().all(|run| run.measured.is_none()) {
         return Err(CliError::Input(format!(

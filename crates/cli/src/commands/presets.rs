@@ -98,7 +98,7 @@ fn row(preset: &Preset) -> Result<[String; 7], CliError> {
         words.join(", ")
     });
     let method = Method::new(preset, Default::default());
-    let promise = guarantee::of(&method, &[])?;
+    let promise = guarantee::find(&method, &[])?;
     let promise = promise.map_or("–", |(guarantee, _)| guarantee.word());
     let description = graph.description().trim_end_matches('.').to_owned();
     Ok([

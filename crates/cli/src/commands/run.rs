@@ -3,7 +3,7 @@
 use crate::args::commands::RunArgs;
 use crate::args::shared::GpuArgs;
 use crate::args::values::Save;
-use crate::commands::run_sequence::{Shots, of_frame};
+use crate::commands::run_sequence::{PoseSequence, of_frame};
 use crate::error::CliError;
 use crate::files::write::check_writable;
 use crate::graphs::idle_params::IdleParams;
@@ -44,14 +44,14 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     check_writable(&files.collect::<Vec<_>>())?;
     let gpu = device::open(gpu, [&preset.graph])?;
     let SceneSelection { scene, mut views } = SceneSelection::load(&args.scene)?;
-    let shots = Shots::new(args, &scene, &views)?;
-    if let Some(first) = shots.as_ref().and_then(Shots::first) {
+    let poses = PoseSequence::new(args, &scene, &views)?;
+    if let Some(first) = poses.as_ref().and_then(PoseSequence::first) {
         views = vec![first.clone()];
     }
     let scene = Arc::new(scene);
     let mut provider = SceneProvider::new(scene.clone());
-    if let Some(shots) = &shots {
-        shots.begin(&mut provider);
+    if let Some(poses) = &poses {
+        poses.begin(&mut provider);
     }
     let mut idle = IdleParams::default();
     for view in &views {
@@ -77,8 +77,8 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         let poisoned = args
             .poison
             .then(|| poison::check(&gpu, &plan, &mut provider, preset));
-        if let Some(shots) = &shots {
-            shots.record(&gpu, (preset, plan), &mut provider, saves)?;
+        if let Some(poses) = &poses {
+            poses.record(&gpu, (preset, plan), &mut provider, saves)?;
             if let Some(verdict) = poisoned {
                 print(&verdict?)?;
             }

@@ -4,10 +4,11 @@ use crate::args::commands::RunArgs;
 use crate::args::values::Save;
 use crate::error::CliError;
 use crate::graphs::preset::Preset;
+use crate::measuring::camera_pose::CameraPose;
 use crate::measuring::frame;
+use crate::measuring::mesh_frames::MeshFrames;
 use crate::measuring::scene_selection::check_path;
-use crate::measuring::shapes::Shapes;
-use crate::measuring::subject::{Shot, Subject};
+use crate::measuring::view_or_path::ViewOrPath;
 use crate::pictures::colours::ClipPlanes;
 use crate::pictures::run_pictures::numbered;
 use crate::pictures::save::{Decoding, capture, write};
@@ -29,41 +30,41 @@ pub fn of_frame(save: &Save, index: usize) -> Save {
 }
 
 /// The views of the frames that are asked for, with how many there are in a second.
-pub struct Shots {
-    shots: Vec<Shot>,
+pub struct PoseSequence {
+    poses: Vec<CameraPose>,
     /// The mesh in each frame, where parts of it move.
-    shapes: Option<Shapes>,
+    mesh_frames: Option<MeshFrames>,
     frames_per_second: f64,
 }
 
-impl Shots {
+impl PoseSequence {
     /// Of each path that is asked for, or of each view; none without `--frames` and `--path`.
     ///
     /// # Errors
     /// No such path, or one that has fewer frames.
     pub fn new(args: &RunArgs, scene: &Scene, views: &[View]) -> Result<Option<Self>, CliError> {
-        let subject = match (&args.path, args.frames, views) {
+        let view_or_path = match (&args.path, args.frames, views) {
             (None, None, _) if args.jitter.is_some() => {
                 return Err(CliError::Usage("--jitter needs --frames or --path".into()));
             }
             (None, None, _) => return Ok(None),
             (Some(name), ..) => Self::path(args, scene, name)?,
-            (None, Some(_), [view]) => Subject::Still(view.clone()),
+            (None, Some(_), [view]) => ViewOrPath::Still(view.clone()),
             (None, Some(_), _) => {
                 return Err(CliError::Usage(
                     "--frames is of one view under one light".into(),
                 ));
             }
         };
-        let of_path = subject.shots(args.jitter);
-        let shots = match (&subject, args.frames) {
-            (Subject::Still(view), Some(count)) => {
-                Shot::numbered(vec![view.clone(); count as usize], args.jitter)
+        let of_path = view_or_path.poses(args.jitter);
+        let poses = match (&view_or_path, args.frames) {
+            (ViewOrPath::Still(view), Some(count)) => {
+                CameraPose::numbered(vec![view.clone(); count as usize], args.jitter)
             }
-            (Subject::Path(_), Some(count)) if count as usize > of_path.len() => {
+            (ViewOrPath::Path(_), Some(count)) if count as usize > of_path.len() => {
                 return Err(CliError::Input(format!(
                     "--frames {count}: the path `{}` has {}",
-                    subject.name(),
+                    view_or_path.name(),
                     frames(of_path.len() as u32)
                 )));
             }
@@ -73,20 +74,20 @@ impl Shots {
             }
         };
         Ok(Some(Self {
-            frames_per_second: subject.frames_per_second(),
-            shapes: subject.shapes(scene, shots.len())?,
-            shots,
+            frames_per_second: view_or_path.frames_per_second(),
+            mesh_frames: view_or_path.mesh_frames(scene, poses.len())?,
+            poses,
         }))
     }
 
-    fn path(args: &RunArgs, scene: &Scene, name: &str) -> Result<Subject, CliError> {
+    fn path(args: &RunArgs, scene: &Scene, name: &str) -> Result<ViewOrPath, CliError> {
         check_path(&args.scene, name)?;
         let paths: Result<Vec<CameraPath>, _> =
             SceneLibrary::from_environment().paths(&args.scene.scene);
         let paths = paths.map_err(|error| CliError::Input(error.to_string()))?;
-        let mut subjects = Subject::paths(scene, paths, name, &args.scene)?;
-        match subjects.len() {
-            1 => Ok(subjects.remove(0)),
+        let mut views_or_paths = ViewOrPath::paths(scene, paths, name, &args.scene)?;
+        match views_or_paths.len() {
+            1 => Ok(views_or_paths.remove(0)),
             _ => Err(CliError::Usage(
                 "--save takes the pictures of one path under one light; name them".into(),
             )),
@@ -95,14 +96,14 @@ impl Shots {
 
     /// Gives the provider the mesh of the first frame.
     pub fn begin(&self, provider: &mut SceneProvider) {
-        if let Some(shapes) = &self.shapes {
-            shapes.begin(provider);
+        if let Some(mesh_frames) = &self.mesh_frames {
+            mesh_frames.begin(provider);
         }
     }
 
     /// The first frame's view.
     pub fn first(&self) -> Option<&View> {
-        self.shots.first().map(|shot| &shot.view)
+        self.poses.first().map(|pose| &pose.view)
     }
 
     /// Renders the frames one after the other, the first with an empty memory, and saves what is
@@ -122,18 +123,18 @@ impl Shots {
         let viewport = plan.viewport();
         let (mut executor, growth) = frame::settled(gpu, plan, provider).map_err(failed)?;
         print(&growth.text())?;
-        let step = Step::begin(preset.name.clone(), self.shots.len() as u64, "frames");
-        for (index, shot) in self.shots.iter().enumerate() {
+        let step = Step::begin(preset.name.clone(), self.poses.len() as u64, "frames");
+        for (index, pose) in self.poses.iter().enumerate() {
             if interrupt::raised() {
                 let kept = format!("the pictures of {} are there", frames(index as u32));
                 return Err(CliError::Interrupted { kept });
             }
-            shot.show(provider, viewport);
-            if let Some(shapes) = &self.shapes {
-                shapes.show(index, provider)?;
+            pose.show(provider, viewport);
+            if let Some(mesh_frames) = &self.mesh_frames {
+                mesh_frames.show(index, provider)?;
             }
             let readings = saves.iter();
-            let planes = ClipPlanes::new(&shot.view);
+            let planes = ClipPlanes::new(&pose.view);
             let plan = executor.plan();
             let readings = readings.map(|save| Decoding::new(plan, &capture(save).name(), planes));
             let readings: Vec<Decoding> = readings.collect();
@@ -150,7 +151,7 @@ impl Shots {
             step.set_done(index as u64 + 1);
         }
         step.end();
-        let last = self.shots.len().saturating_sub(1);
+        let last = self.poses.len().saturating_sub(1);
         for save in saves {
             let file = |index| numbered(&save.file, index);
             print(&format!(

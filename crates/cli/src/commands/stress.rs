@@ -12,9 +12,9 @@ use crate::graphs::method::{self, Method};
 use crate::graphs::openings;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::variants;
-use crate::graphs::{contract, preset};
+use crate::graphs::{preset, shadow_method};
+use crate::measuring::ground_truth::PrimaryVisibility;
 use crate::measuring::hard_case::{HardCaseContext, MethodRun};
-use crate::measuring::reference::PrimaryVisibility;
 use crate::measuring::{device, guarantee};
 use crate::pictures::run_pictures::{check_stems, reference_stem};
 use crate::records::results::PROGRAM;
@@ -44,15 +44,15 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let names = preset::named_or_all(&args.presets, &sources);
     check_exact(&args.exact, &names)?;
     let (arguments, params) = openings::arguments(&names, &args.params, &sources)?;
-    let presets = contract::load_all(&variants::presets(&arguments), &sources)?;
+    let presets = shadow_method::load_all(&variants::presets(&arguments), &sources)?;
     let methods = method::methods(&presets, &arguments, &params, &args.map_size)?;
     for method in &methods {
-        guarantee::of(method, &args.exact)?;
+        guarantee::find(method, &args.exact)?;
     }
     let primary = PrimaryVisibility::load(&sources)?;
     let viewport = args.size.0;
     let provider = SceneProvider::new(Arc::new(with_triangles(&cases).scene()));
-    contract::check_plans(&methods, &[viewport], &provider, None)?;
+    shadow_method::check_plans(&methods, &[viewport], &provider, None)?;
     let gpu = device::open(gpu, preset::graphs(&presets))?;
     primary.plan(&gpu, viewport, &provider)?;
     let methods: Vec<MethodRun> = methods

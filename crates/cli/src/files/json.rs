@@ -23,7 +23,7 @@ pub struct Mistake {
 
 impl Mistake {
     /// What serde found, where it found it.
-    pub fn of_serde(text: &str, error: &serde_json::Error) -> Self {
+    pub fn from_serde(text: &str, error: &serde_json::Error) -> Self {
         // serde_json counts lines and, in bytes, columns from 1; an empty text has column 0.
         let lines = text.split_inclusive('\n').map(str::len);
         let before: usize = lines.take(error.line().saturating_sub(1)).sum();

@@ -204,10 +204,12 @@ pub fn locate(argument: &str, sources: &dyn Sources) -> Result<String, CliError>
     let is_path = Path::new(argument)
         .extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("ron"));
-    let path = match is_path {
-        true if cfg!(windows) => argument.replace('\\', "/"),
-        true => argument.into(),
-        false => format!("pipelines/{argument}.ron"),
+    let path = if !is_path {
+        format!("pipelines/{argument}.ron")
+    } else if cfg!(windows) {
+        argument.replace('\\', "/")
+    } else {
+        argument.into()
     };
     let missing = match sources.read(&path) {
         Ok(Some(_)) => return Ok(path),

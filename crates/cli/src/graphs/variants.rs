@@ -117,10 +117,11 @@ fn range(from: &str, to: &str, count: &str, ty: &ParamType) -> Option<Vec<String
     let value = |index: usize| {
         let share = index as f64 / (count - 1) as f64;
         let value = from * (1.0 - share) + to * share;
-        match whole {
-            true => format!("{}", value.round()),
+        if whole {
+            format!("{}", value.round())
+        } else {
             // As short as f32 allows: sums of tenths have a tail.
-            false => format!("{}", value as f32),
+            format!("{}", value as f32)
         }
     };
     let values: Vec<String> = (0..count).map(value).collect();

@@ -6,13 +6,14 @@ use crate::files::fingerprint::Fingerprint;
 use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
-use crate::measuring::reference::{Judge, PrimaryVisibility, Tracing};
+use crate::measuring::camera_pose::CameraPose;
+use crate::measuring::ground_truth::{GroundTruthView, PrimaryVisibility, Tracing};
+use crate::measuring::mesh_frames::MeshFrames;
 use crate::measuring::results_folder::ResultsFolder;
 use crate::measuring::resume::{Earlier, RunKey, earlier};
 use crate::measuring::run::MeasureContext;
 use crate::measuring::sequence;
-use crate::measuring::shapes::Shapes;
-use crate::measuring::subject::{Shot, Subject};
+use crate::measuring::view_or_path::ViewOrPath;
 use crate::pictures::run_pictures::PictureFile;
 use crate::records::read_back;
 use crate::records::results::{Results, Run};
@@ -39,7 +40,7 @@ pub struct ComparisonSetup<'a> {
     /// What is drawn.
     pub scene: &'a Scene,
     /// From where.
-    pub subjects: &'a [Subject],
+    pub views: &'a [ViewOrPath],
     /// In how many pixels.
     pub viewports: &'a [[u32; 2]],
     /// By which means.
@@ -54,13 +55,13 @@ impl ComparisonSetup<'_> {
     /// Every run, in the order of the results.
     fn planned(&self) -> Vec<RunKey> {
         let mut planned = Vec::new();
-        for subject in self.subjects {
-            let fingerprint = subject.fingerprint(self.fingerprint);
+        for view in self.views {
+            let fingerprint = view.fingerprint(self.fingerprint);
             for &viewport in self.viewports {
                 let methods = self.methods.iter().map(|method| method.at(viewport));
                 planned.extend(methods.map(|method| RunKey {
                     preset: method.name.clone(),
-                    view: subject.name().to_owned(),
+                    view: view.name().to_owned(),
                     viewport,
                     map_size: method.map_size,
                     params: method.all_params(),
@@ -89,7 +90,7 @@ pub struct Comparison<'a> {
     pub results: Results,
     /// Where they are kept, with what is in the folder besides.
     folder: ResultsFolder,
-    /// Why graphs broke the contract of outputs.
+    /// Why graphs' outputs are not what a shadow method's must be.
     pub broken: Vec<String>,
     /// Counts the runs that are measured now.
     progress: Runs,
@@ -163,15 +164,15 @@ impl<'a> Comparison<'a> {
     }
 
     /// The runs that are done of a view and viewport, both by their index.
-    pub fn runs(&self, subject: usize, viewport: usize) -> &[Run] {
-        let places = self.places(subject, viewport);
+    pub fn runs(&self, view: usize, viewport: usize) -> &[Run] {
+        let places = self.places(view, viewport);
         &self.results.runs[self.done_before(places.start)..self.done_before(places.end)]
     }
 
     /// Where the runs of a view and viewport stand among the planned ones.
-    fn places(&self, subject: usize, viewport: usize) -> Range<usize> {
+    fn places(&self, view: usize, viewport: usize) -> Range<usize> {
         let methods = self.setup.methods.len();
-        let first = (subject * self.setup.viewports.len() + viewport) * methods;
+        let first = (view * self.setup.viewports.len() + viewport) * methods;
         first..first + methods
     }
 
@@ -179,16 +180,15 @@ impl<'a> Comparison<'a> {
     ///
     /// # Errors
     /// Ctrl-C, a lost device, files that cannot be written, a reference that cannot be had.
-    pub fn measure(&mut self, subject: usize, viewport: usize) -> Result<(), CliError> {
-        let places = self.places(subject, viewport);
-        let subjects = self.setup.subjects;
-        let (subject, viewport) = (&subjects[subject], self.setup.viewports[viewport]);
-        let shots = subject.shots(self.args.jitter);
-        let Some(first) = shots.first() else {
+    pub fn measure(&mut self, view: usize, viewport: usize) -> Result<(), CliError> {
+        let places = self.places(view, viewport);
+        let (view, viewport) = (&self.setup.views[view], self.setup.viewports[viewport]);
+        let poses = view.poses(self.args.jitter);
+        let Some(first) = poses.first() else {
             return Ok(());
         };
-        let shapes = subject.shapes(self.setup.scene, shots.len())?;
-        self.set_mesh(shapes.as_ref());
+        let mesh_frames = view.mesh_frames(self.setup.scene, poses.len())?;
+        self.set_mesh(mesh_frames.as_ref());
         first.show(&mut self.provider, viewport);
         let methods = self.setup.methods.iter();
         let methods: Vec<Method> = methods.map(|method| method.at(viewport)).collect();
@@ -199,31 +199,31 @@ impl<'a> Comparison<'a> {
         if self.states[places.clone()].iter().all(is_done) {
             return Ok(());
         }
-        let judges = self.judges(shapes.as_ref(), &shots, viewport)?;
+        let truth_views = self.truth_views(mesh_frames.as_ref(), &poses, viewport)?;
         let frames = sequence::Path::new(
-            (shots, subject.frames_per_second()),
-            shapes.as_ref(),
-            judges,
+            (poses, view.frames_per_second()),
+            mesh_frames.as_ref(),
+            truth_views,
         )?;
-        let Some(judge) = frames.judges.first() else {
+        let Some(truth_view) = frames.truth_views.first() else {
             return Ok(());
         };
         let own = frames.own_counts();
-        if let Some(text) = unlit(subject.name(), &own.pixels) {
+        if let Some(text) = unlit(view.name(), &own.pixels) {
             note(&text);
         }
         let context = MeasureContext {
             gpu: self.setup.gpu,
             timestamps: self.results.adapter.gpu_unavailable.is_none(),
-            view: subject.name(),
+            view: view.name(),
             light: self.provider.light_number(),
-            fingerprint: subject.fingerprint(self.setup.fingerprint),
-            judge,
+            fingerprint: view.fingerprint(self.setup.fingerprint),
+            truth_view,
             own,
             wrong_surfaces: frames.wrong_surfaces(),
-            frames: match subject {
-                Subject::Still(_) => self.args.frames.into(),
-                Subject::Path(_) => frames.shots.len() as u64,
+            frames: match view {
+                ViewOrPath::Still(_) => self.args.frames.into(),
+                ViewOrPath::Path(_) => frames.poses.len() as u64,
             },
             warmup: self.args.warmup,
             cached_frames: self.results.cached_frames,
@@ -234,13 +234,13 @@ impl<'a> Comparison<'a> {
                 continue;
             }
             let provider = &mut self.provider;
-            let run = match subject {
-                Subject::Still(_) => {
+            let run = match view {
+                ViewOrPath::Still(_) => {
                     context.measure(method, provider, |method, plan, provider, step| {
                         context.still(method, plan, provider, step)
                     })
                 }
-                Subject::Path(_) => {
+                ViewOrPath::Path(_) => {
                     context.measure(method, provider, |method, plan, provider, step| {
                         context.follow(method, plan, &frames, provider, step)
                     })
@@ -248,7 +248,7 @@ impl<'a> Comparison<'a> {
             };
             let run = match run {
                 // The others are worth measuring all the same.
-                Err(CliError::Contract(reason)) => {
+                Err(CliError::InvalidOutputs(reason)) => {
                     let run = context.unavailable(method, reason.clone());
                     self.broken.push(reason);
                     run
@@ -299,44 +299,44 @@ impl<'a> Comparison<'a> {
     }
 
     /// The mesh of a path's begin, or the scene's own again.
-    fn set_mesh(&mut self, shapes: Option<&Shapes>) {
-        match shapes {
-            Some(shapes) => shapes.begin(&mut self.provider),
+    fn set_mesh(&mut self, mesh_frames: Option<&MeshFrames>) {
+        match mesh_frames {
+            Some(mesh_frames) => mesh_frames.begin(&mut self.provider),
             None if self.is_moved => self.provider.set_mesh(self.setup.scene.mesh.clone()),
             None => {}
         }
-        self.is_moved = shapes.is_some();
+        self.is_moved = mesh_frames.is_some();
     }
 
-    /// The right answers.
-    fn judges<'m>(
+    /// The ground truth of each frame.
+    fn truth_views<'m>(
         &mut self,
-        shapes: Option<&'m Shapes>,
-        shots: &[Shot],
+        mesh_frames: Option<&'m MeshFrames>,
+        poses: &[CameraPose],
         viewport: [u32; 2],
-    ) -> Result<Vec<Judge<'m>>, CliError>
+    ) -> Result<Vec<GroundTruthView<'m>>, CliError>
     where
         'a: 'm,
     {
-        if let ([shot], None) = (shots, shapes) {
+        if let ([pose], None) = (poses, mesh_frames) {
             let oracle = self.still_oracle();
-            let judge = self.judge(shot, viewport, &shot.view.name, oracle)?;
-            return Ok(vec![judge]);
+            let truth_view = self.truth_view(pose, viewport, &pose.view.name, oracle)?;
+            return Ok(vec![truth_view]);
         }
-        let frames = shots.len();
-        let named = |(index, shot): (usize, &Shot)| {
-            let what = format!("{} {} of {frames}", shot.view.name, index + 1);
-            shot.show(&mut self.provider, viewport);
-            let oracle: Rc<Oracle<'m>> = match shapes {
-                Some(shapes) => {
-                    shapes.show(index, &mut self.provider)?;
-                    Rc::new(Oracle::new(shapes.mesh(index)))
+        let frames = poses.len();
+        let named = |(index, pose): (usize, &CameraPose)| {
+            let what = format!("{} {} of {frames}", pose.view.name, index + 1);
+            pose.show(&mut self.provider, viewport);
+            let oracle: Rc<Oracle<'m>> = match mesh_frames {
+                Some(mesh_frames) => {
+                    mesh_frames.show(index, &mut self.provider)?;
+                    Rc::new(Oracle::new(mesh_frames.mesh(index)))
                 }
                 None => self.still_oracle(),
             };
-            self.judge(shot, viewport, &what, oracle)
+            self.truth_view(pose, viewport, &what, oracle)
         };
-        shots.iter().enumerate().map(named).collect()
+        poses.iter().enumerate().map(named).collect()
     }
 
     /// Of the scene's own mesh.
@@ -351,14 +351,14 @@ impl<'a> Comparison<'a> {
         oracle.clone()
     }
 
-    /// The right answer.
-    fn judge<'m>(
+    /// The ground truth of one frame.
+    fn truth_view<'m>(
         &mut self,
-        shot: &Shot,
+        pose: &CameraPose,
         viewport: [u32; 2],
         name: &str,
         oracle: Rc<Oracle<'m>>,
-    ) -> Result<Judge<'m>, CliError> {
+    ) -> Result<GroundTruthView<'m>, CliError> {
         let primary = self.setup.primary;
         let what = format!("{name} {}", size(viewport));
         let step = Step::begin(format!("visible triangles, {what}"), 1, "frames");
@@ -368,8 +368,8 @@ impl<'a> Comparison<'a> {
             mode: self.args.oracle,
             samples: self.args.reference_samples,
         };
-        let (camera, light) = (shot.camera(viewport), self.provider.light());
-        Judge::new(oracle, camera, light, ids, tracing, &what)
+        let (camera, light) = (pose.camera(viewport), self.provider.light());
+        GroundTruthView::new(oracle, camera, light, ids, tracing, &what)
     }
 
     fn done(&mut self, place: usize, mut run: Run) {

@@ -16,7 +16,7 @@ const CLAIMS: [Guarantee; 2] = [Guarantee::Exact, Guarantee::Certain];
 ///
 /// # Errors
 /// A claim that nobody judges, a condition without a value.
-pub fn of(method: &Method, exact: &[String]) -> Result<Option<(Guarantee, String)>, CliError> {
+pub fn find(method: &Method, exact: &[String]) -> Result<Option<(Guarantee, String)>, CliError> {
     let preset = method.preset;
     if exact.contains(&method.name) || exact.contains(&preset.name) {
         return Ok(Some((Guarantee::Exact, "--exact".into())));
@@ -68,7 +68,7 @@ pub fn without_culling<'a>(method: &Method<'a>) -> Option<Method<'a>> {
 
 /// What the document promises, for the record; a claim that nobody judges is no promise.
 pub fn promise(method: &Method) -> Option<Promise> {
-    let (guarantee, _) = of(method, &[]).ok()??;
+    let (guarantee, _) = find(method, &[]).ok()??;
     Some(Promise {
         of: guarantee.word().into(),
         closed_only: without_culling(method).is_some(),
@@ -114,11 +114,11 @@ mod tests {
             ("nsm", "", false),
         ] {
             let method = method(&presets, name, set);
-            let found = of(&method, &[]).unwrap();
+            let found = find(&method, &[]).unwrap();
             assert_eq!(found.is_some(), guaranteed, "{name} {set}");
             let word = found.map(|(guarantee, _)| guarantee.word());
             assert!(word.is_none_or(|word| (word == "certain") == (name == "crsm_single")));
-            let asked = of(&method, &[name.into()]).unwrap();
+            let asked = find(&method, &[name.into()]).unwrap();
             assert_eq!(
                 asked.map(|(guarantee, _)| guarantee),
                 Some(Guarantee::Exact)
@@ -141,7 +141,7 @@ mod tests {
             if let Some(other) = other {
                 let params = other.all_params();
                 assert_eq!(params["cull"], "none");
-                assert!(of(&other, &[]).unwrap().is_some());
+                assert!(find(&other, &[]).unwrap().is_some());
             }
         }
     }
@@ -155,7 +155,7 @@ mod tests {
         let name = file.to_str().unwrap().to_owned();
         let presets = preset::load_all(&[name], &preset::sources()).unwrap();
         let method = Method::new(&presets[0], Default::default());
-        let message = of(&method, &[]).unwrap_err().to_string();
+        let message = find(&method, &[]).unwrap_err().to_string();
         assert!(message.contains("claims `exakt`"), "{message}");
         assert!(message.contains("did you mean `exact`?"), "{message}");
     }

@@ -2,16 +2,17 @@
 
 use crate::args::commands::REFERENCE_SAMPLES;
 use crate::error::{CliError, is_fatal, with_causes};
-use crate::graphs::contract::{Judgement, Outputs, judged};
 use crate::graphs::faults::reasons;
+use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::light_kinds;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
+use crate::graphs::shadow_method::Outputs;
 use crate::measuring::frame;
-use crate::measuring::guarantee::{self, WITHOUT_CULLING};
-use crate::measuring::reference::{
-    PrimaryVisibility, Tracing, own_counts, right_answer, wrong_surfaces,
+use crate::measuring::ground_truth::{
+    PrimaryVisibility, Tracing, ground_truth, own_counts, wrong_surfaces,
 };
+use crate::measuring::guarantee::{self, WITHOUT_CULLING};
 use crate::measuring::steady;
 use crate::measuring::stop::Stop;
 use crate::pictures::run_pictures::{PicturePlace, draw_pictures, stem, write_pictures};
@@ -21,7 +22,7 @@ use skiagraph_cases::HardCase;
 use skiagraph_gpu::device::Gpu;
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{
-    Class, Error, Oracle, OracleMode, PixelCounts, Reference, RightAnswer, Statistics,
+    Class, Error, GroundTruth, GroundTruthPixels, Oracle, OracleMode, PixelCounts, Statistics,
 };
 use skiagraph_scene::{Scene, View};
 use std::{path::Path, sync::Arc};
@@ -45,7 +46,7 @@ impl<'a> MethodRun<'a> {
     /// Those of [`guarantee::of`].
     pub fn new(method: Method<'a>, exact: &[String]) -> Result<Self, CliError> {
         Ok(Self {
-            guarantee: guarantee::of(&method, exact)?,
+            guarantee: guarantee::find(&method, exact)?,
             without_culling: guarantee::without_culling(&method),
             method,
             unavailable: None,
@@ -150,7 +151,7 @@ impl HardCaseContext<'_> {
             wrong_surface: 0,
             cells: Vec::new(),
         };
-        let (right, wrong_surface) = match self.right_answer(&scene, &mut provider) {
+        let (ground_truth, wrong_surface) = match self.ground_truth(&scene, &mut provider) {
             Ok(answer) => answer,
             Err(error) if ends_all(&error) => return Err(error),
             Err(error) => {
@@ -158,7 +159,7 @@ impl HardCaseContext<'_> {
                 return Ok(case);
             }
         };
-        let counts = own_counts(&right.reference);
+        let counts = own_counts(&ground_truth.pixels);
         (case.pixels, case.band) = (counts.pixels, counts.band);
         case.wrong_surface = wrong_surface;
         if !case.exceeds_cap() {
@@ -182,7 +183,7 @@ impl HardCaseContext<'_> {
                     failed: None,
                     images: None,
                 };
-                match self.count(variant.method, &mut provider, &right) {
+                match self.count(variant.method, &mut provider, &ground_truth) {
                     Ok((outputs, whole, counts)) => {
                         let guarantee = run.guarantee.as_ref().map(|(guarantee, _)| *guarantee);
                         let certain = case.pixels.facing_light.saturating_sub(counts.uncertain);
@@ -196,7 +197,8 @@ impl HardCaseContext<'_> {
                                 view: hard.name,
                                 frame: None,
                             };
-                            let (images, files) = draw_pictures(&place, &right, &outputs, &whole)?;
+                            let (images, files) =
+                                draw_pictures(&place, &ground_truth, &outputs, &whole)?;
                             write_pictures(folder, &files)?;
                             cell.images = Some(images);
                         }
@@ -210,12 +212,12 @@ impl HardCaseContext<'_> {
         Ok(case)
     }
 
-    /// The right answer, and how many pixels show a surface which is not seen there.
-    fn right_answer(
+    /// The ground truth, and how many pixels show a surface which is not seen there.
+    fn ground_truth(
         &self,
         scene: &Scene,
         provider: &mut SceneProvider,
-    ) -> Result<(RightAnswer, u64), CliError> {
+    ) -> Result<(GroundTruth, u64), CliError> {
         let [view] = &scene.views[..] else {
             return Err(CliError::Input(format!(
                 "{} has no single view",
@@ -231,7 +233,7 @@ impl HardCaseContext<'_> {
             samples: REFERENCE_SAMPLES,
         };
         let camera = view.camera(self.viewport);
-        let right = right_answer(
+        let ground_truth = ground_truth(
             &oracle,
             &camera,
             &scene.light_of(view),
@@ -241,7 +243,7 @@ impl HardCaseContext<'_> {
             &scene.name,
         )?;
         let wrong = wrong_surfaces(&oracle, &camera, &ids, &|_| (), &scene.name)?;
-        Ok((right, wrong))
+        Ok((ground_truth, wrong))
     }
 
     /// One frame of a method, counted; of one that remembers, the worst of its steady state.
@@ -249,34 +251,37 @@ impl HardCaseContext<'_> {
         &self,
         method: &Method,
         provider: &mut SceneProvider,
-        right: &RightAnswer,
+        ground_truth: &GroundTruth,
     ) -> Result<(Outputs, Judgement, Counts), CliError> {
         let preset = method.preset;
         let plan = method.plan(self.viewport, Capabilities::new(self.gpu), provider);
         let plan = plan.map_err(|faults| CliError::Input(reasons(&faults)))?;
         let names = preset.judged();
-        let (reference, light) = (&right.reference, provider.light_number());
-        let judge = |contents| judged(preset, Outputs::of_light(contents, light, reference), right);
-        let (outputs, judgement) = match plan.remembers() {
-            true => {
-                let executor = frame::executor(self.gpu, plan, provider);
-                let worst = executor.map_err(Stop::from).and_then(|mut executor| {
-                    frame::grow(self.gpu, &mut executor, provider)?;
-                    let mut steady = steady::settle(self.gpu, &mut executor)?;
-                    steady::judge(self.gpu, &mut executor, &names, &mut steady, judge)
-                });
-                worst.map_err(|stop| stop.of(&preset.name))?
-            }
-            false => {
-                let (contents, _) = frame::render(self.gpu, &preset.name, plan, provider, &names)?;
-                judge(contents)?
-            }
+        let (truth, light) = (&ground_truth.pixels, provider.light_number());
+        let judge = |contents| {
+            judged(
+                preset,
+                Outputs::from_contents(contents, light, truth),
+                ground_truth,
+            )
         };
-        let broken = |error: Error| CliError::Contract(error.to_string());
-        let (visibility, status) = (strict(&outputs, right), &outputs.status);
-        let whole = Statistics::judged(&visibility, status, reference).map_err(broken)?;
-        let settled = right_in_band(&visibility, reference);
-        let outside = Statistics::judged(&settled, status, reference).map_err(broken)?;
+        let (outputs, judgement) = if plan.remembers() {
+            let executor = frame::executor(self.gpu, plan, provider);
+            let worst = executor.map_err(Stop::from).and_then(|mut executor| {
+                frame::grow(self.gpu, &mut executor, provider)?;
+                let mut steady = steady::settle(self.gpu, &mut executor)?;
+                steady::judge(self.gpu, &mut executor, &names, &mut steady, judge)
+            });
+            worst.map_err(|stop| stop.into_error(&preset.name))?
+        } else {
+            let (contents, _) = frame::render(self.gpu, &preset.name, plan, provider, &names)?;
+            judge(contents)?
+        };
+        let broken = |error: Error| CliError::InvalidOutputs(error.to_string());
+        let (visibility, status) = (strict(&outputs, ground_truth), &outputs.status);
+        let whole = Statistics::judged(&visibility, status, truth).map_err(broken)?;
+        let settled = right_in_band(&visibility, truth);
+        let outside = Statistics::judged(&settled, status, truth).map_err(broken)?;
         let counts = Counts::new(&whole, &outside, outputs.rays);
         Ok((outputs, judgement, counts))
     }
@@ -284,11 +289,15 @@ impl HardCaseContext<'_> {
 
 /// The picture as 0 and 1. A share that is off by more than 8 bits can tell is as wrong as it can
 /// be: what is guaranteed is guaranteed of shares, too.
-fn strict(outputs: &Outputs, right: &RightAnswer) -> Vec<u32> {
+fn strict(outputs: &Outputs, ground_truth: &GroundTruth) -> Vec<u32> {
     let Some(shown) = &outputs.shares else {
         return outputs.visibility.clone();
     };
-    let answers = right.reference.classes.iter().zip(right.shares().to_vec());
+    let answers = ground_truth
+        .pixels
+        .classes
+        .iter()
+        .zip(ground_truth.shares().to_vec());
     let pixels = shown.iter().zip(answers);
     let strict = |(&shown, (&class, share)): (&f32, (&Class, f32))| {
         let is_right = f64::from((shown - share).abs()) <= 1.0 / 255.0;
@@ -298,8 +307,8 @@ fn strict(outputs: &Outputs, right: &RightAnswer) -> Vec<u32> {
 }
 
 /// The picture with the reference's answer wherever that is in the band.
-fn right_in_band(visibility: &[u32], reference: &Reference) -> Vec<u32> {
-    let answers = reference.classes.iter().zip(&reference.indeterminate);
+fn right_in_band(visibility: &[u32], truth: &GroundTruthPixels) -> Vec<u32> {
+    let answers = truth.classes.iter().zip(&truth.indeterminate);
     let pixels = visibility.iter().zip(answers);
     pixels
         .map(|(&shown, (&class, &in_band))| {
@@ -350,7 +359,7 @@ mod tests {
     #[test]
     fn pixels_in_the_band_are_settled_by_the_reference_and_no_others() {
         use Class::{Background, FacingAway, Lit, Shadow};
-        let reference = Reference {
+        let truth = GroundTruthPixels {
             viewport: [6, 1],
             classes: vec![Background, FacingAway, Lit, Lit, Shadow, Shadow],
             indeterminate: vec![false, true, true, false, true, false],
@@ -358,13 +367,13 @@ mod tests {
             base_colors: Vec::new(),
         };
         let wrong = [0, 1, 0, 0, 1, 1];
-        assert_eq!(right_in_band(&wrong, &reference), [0, 0, 1, 0, 0, 1]);
+        assert_eq!(right_in_band(&wrong, &truth), [0, 0, 1, 0, 0, 1]);
         let status = [0u32, 4, 3, 3, 2, 4];
-        let count = |visibility: &[u32]| Statistics::judged(visibility, &status, &reference);
+        let count = |visibility: &[u32]| Statistics::judged(visibility, &status, &truth);
         let whole = count(&wrong).unwrap();
         let counts = Counts::new(
             &whole,
-            &count(&right_in_band(&wrong, &reference)).unwrap(),
+            &count(&right_in_band(&wrong, &truth)).unwrap(),
             None,
         );
         assert_eq!((counts.wrong.lit, counts.wrong.shadow), (3, 2));

@@ -2,11 +2,12 @@
 
 use crate::error::CliError;
 use crate::files::fingerprint::Fingerprint;
-use crate::graphs::contract::{Judgement, Outputs, judged};
 use crate::graphs::faults::reasons;
+use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
-use crate::measuring::reference::Judge;
+use crate::graphs::shadow_method::Outputs;
+use crate::measuring::ground_truth::GroundTruthView;
 use crate::measuring::steady;
 use crate::measuring::stop::{Attempt, Stop, attempt};
 use crate::measuring::timing::{self, FrameMode, Times};
@@ -22,7 +23,7 @@ use crate::terminal::progress::Step;
 use skiagraph_gpu::{ExecuteError, Provider, device::Gpu};
 use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
-use skiagraph_reference::{RightAnswer, Statistics};
+use skiagraph_reference::{GroundTruth, Statistics};
 use std::cell::RefCell;
 
 /// What all methods on one view and viewport share.
@@ -37,8 +38,8 @@ pub struct MeasureContext<'a> {
     pub light: usize,
     /// Of mesh, light and view.
     pub fingerprint: Fingerprint,
-    /// The right answer, and where it is from; of a path's first frame.
-    pub judge: &'a Judge<'a>,
+    /// The ground truth, and where it is from; of a path's first frame.
+    pub truth_view: &'a GroundTruthView<'a>,
     /// The reference's own pixels, of all frames of a path.
     pub own: Statistics,
     /// Pixels that show a surface which is not seen there, of all frames of a path.
@@ -70,15 +71,15 @@ impl MeasureContext<'_> {
     /// that says why.
     ///
     /// # Errors
-    /// Ctrl-C, a lost device, outputs that break the contract ([`CliError::Contract`]), a picture
-    /// that cannot be written.
+    /// Ctrl-C, a lost device, a picture that cannot be written, outputs that are not a shadow
+    /// method's ([`CliError::InvalidOutputs`]).
     pub fn measure(
         &self,
         method: &Method,
         provider: &mut SceneProvider,
         run: impl FnOnce(&Method, Plan, &mut SceneProvider, &Step) -> Attempt,
     ) -> Result<Run, CliError> {
-        let viewport = self.judge.right.reference.viewport;
+        let viewport = self.truth_view.ground_truth.pixels.viewport;
         let plan = match method.plan(viewport, Capabilities::new(self.gpu), provider) {
             Ok(plan) => plan,
             // The graph itself is sound: that was checked before anything ran.
@@ -144,8 +145,8 @@ impl MeasureContext<'_> {
         let scene_bytes = self.scene_bytes(plan, provider)?;
         let names = method.preset.judged();
         let judge = |contents| {
-            let outputs = self.decode(contents, self.judge);
-            judged(method.preset, outputs, &self.judge.right)
+            let outputs = self.decode(contents, self.truth_view);
+            judged(method.preset, outputs, &self.truth_view.ground_truth)
         };
         let mut settled = None;
         if executor.plan().remembers() {
@@ -182,8 +183,12 @@ impl MeasureContext<'_> {
     }
 
     /// What was read, of the light that is judged.
-    pub fn decode(&self, contents: Contents, judge: &Judge) -> Result<Outputs, String> {
-        Outputs::of_light(contents, self.light, &judge.right.reference)
+    pub fn decode(
+        &self,
+        contents: Contents,
+        truth_view: &GroundTruthView,
+    ) -> Result<Outputs, String> {
+        Outputs::from_contents(contents, self.light, &truth_view.ground_truth.pixels)
     }
 
     /// Bytes of what the scene gives to the plan.
@@ -219,13 +224,13 @@ impl MeasureContext<'_> {
             memory: (memory_bytes, saved_bytes),
             scene_bytes,
         } = executed;
-        let right = &self.judge.right;
+        let ground_truth = &self.truth_view.ground_truth;
         let Judgement { counts, graded } = &judgement;
         let blockers = match counts.wrong.certain {
             0 => None,
             // Which pixels are wrong is a question of grades.
             _ if graded.is_some() => None,
-            _ => Some(self.judge.blockers(&outputs)?),
+            _ => Some(self.truth_view.blockers(&outputs)?),
         };
         if !self.timestamps {
             times.frame.gpu_ms = None;
@@ -234,7 +239,7 @@ impl MeasureContext<'_> {
                 .for_each(|cached| cached.frame.gpu_ms = None);
             times.passes.iter_mut().for_each(|pass| pass.gpu_ms = None);
         }
-        let images = self.draw(method, None, right, (&outputs, &judgement))?;
+        let images = self.draw(method, None, ground_truth, (&outputs, &judgement))?;
         Ok(Measured {
             certain: counts.certain,
             uncertain: counts.uncertain,
@@ -268,31 +273,31 @@ impl MeasureContext<'_> {
         &self,
         method: &Method,
         frame: Option<usize>,
-        right: &RightAnswer,
+        ground_truth: &GroundTruth,
         (outputs, judgement): (&Outputs, &Judgement),
     ) -> Result<Option<Images>, CliError> {
         let Some(pictures) = &self.pictures else {
             return Ok(None);
         };
         let place = PicturePlace {
-            stem: stem(method, self.view, right.reference.viewport),
+            stem: stem(method, self.view, ground_truth.pixels.viewport),
             view: self.view,
             frame,
         };
-        let (images, files) = draw_pictures(&place, right, outputs, judgement)?;
+        let (images, files) = draw_pictures(&place, ground_truth, outputs, judgement)?;
         pictures.replace(files);
         Ok(Some(images))
     }
 
     /// The run with nothing measured.
     fn empty(&self, method: &Method) -> Run {
-        let right = &self.judge.right;
-        let (reference, area) = (&right.reference, right.area.as_ref());
+        let ground_truth = &self.truth_view.ground_truth;
+        let (truth, area) = (&ground_truth.pixels, ground_truth.area.as_ref());
         let counts = self.own;
         Run {
             preset: method.name.clone(),
             view: self.view.into(),
-            viewport: reference.viewport,
+            viewport: truth.viewport,
             map_size: method.map_size,
             params: method.all_params(),
             fingerprint: method.fingerprint(self.fingerprint),
@@ -301,7 +306,7 @@ impl MeasureContext<'_> {
             pixels: counts.pixels,
             band: counts.band,
             wrong_surface: Some(self.wrong_surfaces),
-            area: area.map(|area| AreaReference::new(area, reference)),
+            area: area.map(|area| AreaReference::new(area, truth)),
             measured: None,
             unavailable: None,
             published: Vec::new(),

@@ -1,16 +1,17 @@
 //! A method over the frames of a camera path, each judged.
 
 use crate::error::CliError;
-use crate::graphs::contract::{Judgement, Outputs, judged};
+use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
+use crate::graphs::shadow_method::Outputs;
+use crate::measuring::camera_pose::CameraPose;
 use crate::measuring::frame;
-use crate::measuring::reference::{Judge, own_counts};
+use crate::measuring::ground_truth::{GroundTruthView, own_counts};
+use crate::measuring::mesh_frames::MeshFrames;
 use crate::measuring::run::MeasureContext;
-use crate::measuring::shapes::Shapes;
 use crate::measuring::steady;
 use crate::measuring::stop::{Attempt, Stop, attempt};
-use crate::measuring::subject::Shot;
-use crate::measuring::timing;
+use crate::measuring::timing::Times;
 use crate::records::results::{Answer, Measured};
 use crate::records::samples::TimedFrame;
 use crate::records::sequence::{FrameCost, Remade, Sequence, SequenceFrame};
@@ -31,14 +32,14 @@ fn ms(time: Duration) -> f64 {
     time.as_secs_f64() * 1e3
 }
 
-/// The frames of a path with their right answers.
+/// The frames of a path with their ground truth.
 pub struct Path<'a> {
     /// From where.
-    pub shots: Vec<Shot>,
+    pub poses: Vec<CameraPose>,
     /// The mesh in each frame, where parts of it move.
-    shapes: Option<&'a Shapes>,
-    /// The right answers.
-    pub judges: Vec<Judge<'a>>,
+    mesh_frames: Option<&'a MeshFrames>,
+    /// The ground truth of each.
+    pub truth_views: Vec<GroundTruthView<'a>>,
     /// Frames per second of the path's own time.
     frames_per_second: f64,
     /// For each frame but the first, where each pixel's receiver was in the frame before.
@@ -51,22 +52,22 @@ impl<'a> Path<'a> {
     /// # Errors
     /// Ctrl-C.
     pub fn new(
-        (shots, frames_per_second): (Vec<Shot>, f64),
-        shapes: Option<&'a Shapes>,
-        judges: Vec<Judge<'a>>,
+        (poses, frames_per_second): (Vec<CameraPose>, f64),
+        mesh_frames: Option<&'a MeshFrames>,
+        truth_views: Vec<GroundTruthView<'a>>,
     ) -> Result<Self, CliError> {
         let progress = Progress {
             rows_done: &|_| (),
             interrupted: interrupt::flag(),
         };
-        let pairs = judges.windows(2);
+        let pairs = truth_views.windows(2);
         let same = pairs.map(|pair| same_receivers(pair[0].seen(), pair[1].seen(), progress));
         let same = same.collect::<Result<_, _>>();
         let same = same.map_err(|_| CliError::interrupted())?;
         Ok(Self {
-            shots,
-            shapes,
-            judges,
+            poses,
+            mesh_frames,
+            truth_views,
             frames_per_second,
             same,
         })
@@ -79,9 +80,9 @@ impl<'a> Path<'a> {
         viewport: [u32; 2],
         provider: &mut SceneProvider,
     ) -> Result<(), CliError> {
-        self.shots[index].show(provider, viewport);
-        match self.shapes {
-            Some(shapes) => shapes.show(index, provider),
+        self.poses[index].show(provider, viewport);
+        match self.mesh_frames {
+            Some(mesh_frames) => mesh_frames.show(index, provider),
             None => Ok(()),
         }
     }
@@ -93,14 +94,17 @@ impl<'a> Path<'a> {
 
     /// Pixels of all frames that show a surface which is not seen there.
     pub fn wrong_surfaces(&self) -> u64 {
-        self.judges.iter().map(|judge| judge.wrong_surfaces).sum()
+        self.truth_views
+            .iter()
+            .map(|truth_view| truth_view.wrong_surfaces)
+            .sum()
     }
 
     /// The reference's pixels of all frames together.
     pub fn own_counts(&self) -> Statistics {
         let mut all = Statistics::default();
-        for judge in &self.judges {
-            all += own_counts(&judge.right.reference);
+        for truth_view in &self.truth_views {
+            all += own_counts(&truth_view.ground_truth.pixels);
         }
         all
     }
@@ -175,7 +179,8 @@ impl MeasureContext<'_> {
     /// Runs a method over a path, with what it keeps from frame to frame.
     ///
     /// # Errors
-    /// Ctrl-C, a lost device, outputs that break the contract, a picture that cannot be written.
+    /// Ctrl-C, a lost device, outputs that are not a shadow method's, a picture that cannot be
+    /// written.
     pub fn follow(
         &self,
         method: &Method,
@@ -203,13 +208,13 @@ impl MeasureContext<'_> {
         } = self.begin(plan, path, provider)?;
         let mut account = Account::default();
         let names = method.preset.judged();
-        for index in 0..path.shots.len() {
+        for index in 0..path.poses.len() {
             let done = self.frame(&mut executor, path, index, (&names, false), provider)?;
             self.account(method, path, index, done, &mut account)?;
             step.set_done(u64::from(self.warmup) + index as u64 + 1);
         }
         let every_pass = self.every_pass(&mut executor, path, &names, provider, &mut account)?;
-        let times = timing::of(account.timed);
+        let times = Times::new(account.timed);
         let mut times = times.ok_or_else(CliError::interrupted)?;
         if !self.timestamps {
             times.frame.gpu_ms = None;
@@ -217,8 +222,8 @@ impl MeasureContext<'_> {
         }
         let images = match &account.worst {
             Some((index, outputs, judgement)) => {
-                let right = &path.judges[*index].right;
-                self.draw(method, Some(*index), right, (outputs, judgement))?
+                let ground_truth = &path.truth_views[*index].ground_truth;
+                self.draw(method, Some(*index), ground_truth, (outputs, judgement))?
             }
             None => None,
         };
@@ -260,15 +265,14 @@ impl MeasureContext<'_> {
     /// An executor that stands still at the path's begin until it is warm, or, of a method that
     /// remembers, until it is in its steady state: so all flags give the same pictures.
     fn begin(&self, plan: Plan, path: &Path, provider: &mut SceneProvider) -> Result<Begun, Stop> {
-        path.show(0, self.judge.right.reference.viewport, provider)?;
+        path.show(0, self.truth_view.ground_truth.pixels.viewport, provider)?;
         let mut executor = frame::executor(self.gpu, plan, provider)?;
         frame::grow(self.gpu, &mut executor, provider)?;
-        let steady = match executor.plan().remembers() {
-            true => Some(steady::settle(self.gpu, &mut executor)?),
-            false => {
-                self.stand(&mut executor, self.warmup)?;
-                None
-            }
+        let steady = if executor.plan().remembers() {
+            Some(steady::settle(self.gpu, &mut executor)?)
+        } else {
+            self.stand(&mut executor, self.warmup)?;
+            None
         };
         let plan = executor.plan();
         Ok(Begun {
@@ -303,7 +307,7 @@ impl MeasureContext<'_> {
         }
         let mut timed = Vec::new();
         // The first one brings the camera back, and is no frame of the path.
-        for index in std::iter::once(0).chain(0..path.shots.len()) {
+        for index in std::iter::once(0).chain(0..path.poses.len()) {
             let done = self.frame(executor, path, index, (names, true), provider)?;
             timed.push(timed_frame(done.report, done.wall)?);
         }
@@ -314,7 +318,7 @@ impl MeasureContext<'_> {
                 wall_ms: ms(timed.wall),
             });
         }
-        let times = timing::of(timed).ok_or_else(CliError::interrupted)?;
+        let times = Times::new(timed).ok_or_else(CliError::interrupted)?;
         Ok(Some(FrameTimes {
             gpu_ms: times.frame.gpu_ms.filter(|_| self.timestamps),
             ..times.frame
@@ -337,7 +341,7 @@ impl MeasureContext<'_> {
         if interrupt::raised() {
             return Err(CliError::interrupted().into());
         }
-        let viewport = self.judge.right.reference.viewport;
+        let viewport = self.truth_view.ground_truth.pixels.viewport;
         path.show(index, viewport, provider)?;
         let before = provider.built().to_vec();
         executor.refresh(provider)?;
@@ -372,21 +376,24 @@ impl MeasureContext<'_> {
             wall,
             remade,
         } = done;
-        let judge = &path.judges[index];
+        let truth_view = &path.truth_views[index];
         let contents = frame::contents(std::mem::take(&mut report.readbacks));
         let timed = timed_frame(report, wall)?;
-        let outputs = self.decode(contents, judge);
-        let (outputs, judgement) = judged(method.preset, outputs, &judge.right)?;
+        let outputs = self.decode(contents, truth_view);
+        let (outputs, judgement) = judged(method.preset, outputs, &truth_view.ground_truth)?;
         let counts = judgement.counts;
         if counts.wrong.certain > 0 && judgement.graded.is_none() {
-            *account.blockers.get_or_insert_default() += judge.blockers(&outputs)?;
+            *account.blockers.get_or_insert_default() += truth_view.blockers(&outputs)?;
         }
         let shown = outputs.shown().into_owned();
         let changed = match &account.before {
             None => None,
             Some(before) => {
-                let right = [&path.judges[index - 1].right, &judge.right];
-                let counts = shimmer(&path.same[index - 1], [before, &shown], right);
+                let ground_truth = [
+                    &path.truth_views[index - 1].ground_truth,
+                    &truth_view.ground_truth,
+                ];
+                let counts = shimmer(&path.same[index - 1], [before, &shown], ground_truth);
                 Some(counts.map_err(|error| CliError::Input(format!("no shimmer: {error}")))?)
             }
         };

@@ -1,8 +1,9 @@
 //! What a method that remembers shows of a still view: its steady state.
 
 use crate::error::CliError;
-use crate::graphs::contract::{Judgement, Outputs};
+use crate::graphs::ground_truth::Judgement;
 use crate::graphs::preset::VISIBILITY;
+use crate::graphs::shadow_method::Outputs;
 use crate::measuring::frame::{self, Contents};
 use crate::measuring::stop::Stop;
 use crate::records::steady::{Cycle, Steady};

@@ -16,7 +16,7 @@ pub enum Stop {
 
 impl Stop {
     /// As an error that ends what was to come of `graph`.
-    pub fn of(self, graph: &str) -> CliError {
+    pub fn into_error(self, graph: &str) -> CliError {
         match self {
             Self::Refused(error) => frame::failed(graph, *error),
             Self::Failed(error) => error,
@@ -48,6 +48,6 @@ pub fn attempt(method: &Method, came: Result<Measured, Stop>) -> Attempt {
         Ok(measured) => Ok(Ok(measured)),
         // The box is an error, too, but not the one that is asked for.
         Err(Stop::Refused(error)) if !is_fatal(&*error) => Ok(Err(explain(&*error))),
-        Err(stop) => Err(stop.of(&method.name)),
+        Err(stop) => Err(stop.into_error(&method.name)),
     }
 }

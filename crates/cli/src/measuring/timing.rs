@@ -79,6 +79,26 @@ pub struct Times {
     pub skipped: Vec<String>,
 }
 
+impl Times {
+    /// The times of some frames in short; `None` of none.
+    pub fn new(timed: Vec<TimedFrame>) -> Option<Self> {
+        let samples = Samples::new(&timed);
+        let pass = |PassSamples { name, gpu, cpu }| Pass {
+            name,
+            gpu_ms: Spread::from_all(&gpu),
+            cpu_ms: Spread::new(&cpu).expect("a pass is named by its first sample"),
+        };
+        Some(Self {
+            frame: FrameTimes {
+                gpu_ms: Spread::from_all(&samples.gpu),
+                wall_ms: Spread::new(&samples.wall)?,
+            },
+            passes: samples.passes.into_iter().map(pass).collect(),
+            skipped: timed.into_iter().next()?.skipped,
+        })
+    }
+}
+
 /// [`sample`] in short; `None` if Ctrl-C came first.
 ///
 /// # Errors
@@ -94,25 +114,7 @@ pub fn times(
     if timed.len() < frames as usize {
         return Ok(None);
     }
-    Ok(of(timed))
-}
-
-/// The times of some frames in short; `None` of none.
-pub fn of(timed: Vec<TimedFrame>) -> Option<Times> {
-    let samples = Samples::new(&timed);
-    let pass = |PassSamples { name, gpu, cpu }| Pass {
-        name,
-        gpu_ms: Spread::of_all(&gpu),
-        cpu_ms: Spread::new(&cpu).expect("a pass is named by its first sample"),
-    };
-    Some(Times {
-        frame: FrameTimes {
-            gpu_ms: Spread::of_all(&samples.gpu),
-            wall_ms: Spread::new(&samples.wall)?,
-        },
-        passes: samples.passes.into_iter().map(pass).collect(),
-        skipped: timed.into_iter().next()?.skipped,
-    })
+    Ok(Times::new(timed))
 }
 
 /// The times of frames in which only the camera moves: `None` if Ctrl-C came first, `Some(None)` if

@@ -2,12 +2,13 @@
 
 use crate::error::CliError;
 use crate::files::write::write_whole;
-use crate::graphs::contract::{Judgement, Outputs};
+use crate::graphs::ground_truth::Judgement;
 use crate::graphs::method::Method;
+use crate::graphs::shadow_method::Outputs;
 use crate::pictures::png;
 use crate::records::results::Images;
 use crate::wording::size;
-use skiagraph_reference::{Error, Image, RightAnswer};
+use skiagraph_reference::{Error, GroundTruth, Image};
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
@@ -56,13 +57,13 @@ impl PicturePlace<'_> {
 /// Outputs that do not fit the reference.
 pub fn draw_pictures(
     place: &PicturePlace,
-    right: &RightAnswer,
+    ground_truth: &GroundTruth,
     outputs: &Outputs,
     judgement: &Judgement,
 ) -> Result<(Images, Vec<PictureFile>), CliError> {
     let Judgement { counts, graded } = judgement;
-    let (reference, visibility, status) = (&right.reference, &outputs.shown(), &outputs.status);
-    let of_reference = draw_reference(place.view, place.frame, right)?;
+    let (truth, visibility, status) = (&ground_truth.pixels, &outputs.shown(), &outputs.status);
+    let of_reference = draw_reference(place.view, place.frame, ground_truth)?;
     let mut files = Vec::new();
     let mut draw = |kind: &str, image| -> Result<String, CliError> {
         let file = drawn(place.file(format!("{}-{kind}.png", place.stem)), image)?;
@@ -73,25 +74,22 @@ pub fn draw_pictures(
     let images = Images {
         frame: place.frame,
         reference: Some(of_reference.name.clone()),
-        shaded: draw("shaded", Image::shaded(visibility, reference))?,
+        shaded: draw("shaded", Image::shaded(visibility, truth))?,
         visibility: draw(
             "visibility",
-            Image::visibility(reference.viewport, visibility, status),
+            Image::visibility(truth.viewport, visibility, status),
         )?,
         error: match graded {
-            None => draw(
-                "error",
-                Image::error(&outputs.visibility, status, reference),
-            )?,
+            None => draw("error", Image::error(&outputs.visibility, status, truth))?,
             Some(_) => {
-                let difference = Image::difference(visibility, &right.shares(), reference);
+                let difference = Image::difference(visibility, &ground_truth.shares(), truth);
                 draw("error", difference)?
             }
         },
         uncertain: match counts.certain.lit + counts.certain.shadow + counts.uncertain {
             0 => None,
             _ => {
-                let image = Image::uncertain(visibility, status, reference);
+                let image = Image::uncertain(visibility, status, truth);
                 Some(draw("uncertain", image)?)
             }
         },
@@ -104,16 +102,16 @@ pub fn draw_pictures(
 fn draw_reference(
     view: &str,
     frame: Option<usize>,
-    right: &RightAnswer,
+    ground_truth: &GroundTruth,
 ) -> Result<PictureFile, CliError> {
-    let reference = &right.reference;
-    let image = Image::visibility(reference.viewport, &right.shares(), &reference.status());
+    let truth = &ground_truth.pixels;
+    let image = Image::visibility(truth.viewport, &ground_truth.shares(), &truth.status());
     let place = PicturePlace {
         stem: String::new(),
         view,
         frame,
     };
-    drawn(place.file(reference_name(view, reference.viewport)), image)
+    drawn(place.file(reference_name(view, truth.viewport)), image)
 }
 
 fn drawn(name: String, image: Result<Image, Error>) -> Result<PictureFile, CliError> {

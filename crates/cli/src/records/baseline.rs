@@ -120,7 +120,7 @@ impl Ratio {
     }
 
     /// The same, where both are there.
-    pub fn of_both(old: Option<&Series>, new: Option<&Series>) -> Option<Self> {
+    pub fn from_both(old: Option<&Series>, new: Option<&Series>) -> Option<Self> {
         Some(Self::new(old?, new?))
     }
 }

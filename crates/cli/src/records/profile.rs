@@ -173,7 +173,7 @@ impl Profile {
         memory: Memory,
     ) -> Option<Self> {
         let is_trusted = conditions.adapter.gpu_unavailable.is_none();
-        let gpu = |times: &[Option<Duration>]| Series::of_all(times).filter(|_| is_trusted);
+        let gpu = |times: &[Option<Duration>]| Series::from_all(times).filter(|_| is_trusted);
         let frame = FrameProfile {
             gpu_ms: gpu(&samples.gpu),
             cpu_ms: Series::from_times(&samples.cpu)?,
@@ -213,7 +213,7 @@ impl Profile {
             let before = old.passes.iter().find(|old| old.name == pass.name)?;
             Some(PassRatio {
                 name: pass.name.clone(),
-                gpu: Ratio::of_both(before.gpu_ms.as_ref(), pass.gpu_ms.as_ref()),
+                gpu: Ratio::from_both(before.gpu_ms.as_ref(), pass.gpu_ms.as_ref()),
                 cpu: Ratio::new(&before.cpu_ms, &pass.cpu_ms),
             })
         });
@@ -224,7 +224,7 @@ impl Profile {
             differences: self.conditions.differences(&old.conditions),
             passes: passes.collect(),
             frame: FrameRatio {
-                gpu: Ratio::of_both(before.gpu_ms.as_ref(), frame.gpu_ms.as_ref()),
+                gpu: Ratio::from_both(before.gpu_ms.as_ref(), frame.gpu_ms.as_ref()),
                 cpu: Ratio::new(&before.cpu_ms, &frame.cpu_ms),
                 wall: Ratio::new(&before.wall_ms, &frame.wall_ms),
             },
@@ -242,7 +242,7 @@ impl Profile {
 fn share(pass: Option<&Series>, frame: Option<&Series>) -> Option<f64> {
     let frames = pass?.samples.iter().zip(&frame?.samples);
     let shares = frames.filter(|(_, frame)| **frame > 0.0);
-    Some(Spread::of_ms(shares.map(|(pass, frame)| pass / frame))?.median)
+    Some(Spread::from_ms(shares.map(|(pass, frame)| pass / frame))?.median)
 }
 
 impl From<MemoryEntry> for Material {

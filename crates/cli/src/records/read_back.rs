@@ -125,12 +125,11 @@ fn parse_stress(text: &str) -> Result<Value, Mistake> {
     let value: Value = parse(text)?;
     check_schema(text, value.get("schema").cloned())?;
     let has = |name: &str| value.get(name).is_some_and(Value::is_array);
-    match has("methods") && has("cases") {
-        true => Ok(value),
-        false => {
-            let what = "there are no \"methods\" in it, or no \"cases\"".into();
-            Err(Mistake::at_field(text, "{", what))
-        }
+    if has("methods") && has("cases") {
+        Ok(value)
+    } else {
+        let what = "there are no \"methods\" in it, or no \"cases\"".into();
+        Err(Mistake::at_field(text, "{", what))
     }
 }
 
@@ -164,7 +163,7 @@ struct Head {
 }
 
 fn parse<T: DeserializeOwned>(text: &str) -> Result<T, Mistake> {
-    serde_json::from_str(text).map_err(|error| Mistake::of_serde(text, &error))
+    serde_json::from_str(text).map_err(|error| Mistake::from_serde(text, &error))
 }
 
 fn parse_profile(text: &str) -> Result<Profile, Mistake> {

@@ -7,7 +7,7 @@ use crate::records::steady::Steady;
 use crate::wording::{size, thousands};
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{
-    AreaVisibility, BlockerCounts, CertainCounts, Graded, PixelCounts, Reference, Split,
+    AreaVisibility, BlockerCounts, CertainCounts, Graded, GroundTruthPixels, PixelCounts, Split,
     WrongCounts,
 };
 use std::{collections::BTreeMap, fmt};
@@ -270,8 +270,8 @@ pub struct AreaReference {
 
 impl AreaReference {
     /// Of the oracle's answer.
-    pub fn new(area: &AreaVisibility, reference: &Reference) -> Self {
-        let [standard_error_rms, standard_error_worst] = area.standard_error(reference);
+    pub fn new(area: &AreaVisibility, truth: &GroundTruthPixels) -> Self {
+        let [standard_error_rms, standard_error_worst] = area.standard_error(truth);
         let partial = area
             .shares
             .iter()

@@ -27,11 +27,11 @@ pub struct FrameTimes {
 impl Spread {
     /// Of some samples; `None` if there are none.
     pub fn new(samples: &[Duration]) -> Option<Self> {
-        Self::of_ms(samples.iter().map(|sample| sample.as_secs_f64() * 1e3))
+        Self::from_ms(samples.iter().map(|sample| sample.as_secs_f64() * 1e3))
     }
 
     /// Of some samples in milliseconds; `None` if there are none.
-    pub fn of_ms(samples: impl Iterator<Item = f64>) -> Option<Self> {
+    pub fn from_ms(samples: impl Iterator<Item = f64>) -> Option<Self> {
         let mut ms: Vec<f64> = samples.collect();
         ms.sort_by(f64::total_cmp);
         let last = ms.len().checked_sub(1)?;
@@ -44,7 +44,7 @@ impl Spread {
     }
 
     /// Of samples of which any may be missing; `None` if one is.
-    pub fn of_all(samples: &[Option<Duration>]) -> Option<Self> {
+    pub fn from_all(samples: &[Option<Duration>]) -> Option<Self> {
         Self::new(&all(samples)?)
     }
 }
@@ -71,7 +71,7 @@ pub struct Series {
 impl Series {
     /// Of some milliseconds; `None` if there are none.
     pub fn new(samples: Vec<f64>) -> Option<Self> {
-        let Spread { min, median, p95 } = Spread::of_ms(samples.iter().copied())?;
+        let Spread { min, median, p95 } = Spread::from_ms(samples.iter().copied())?;
         Some(Self {
             min,
             median,
@@ -89,7 +89,7 @@ impl Series {
     }
 
     /// Of samples of which any may be missing; `None` if one is.
-    pub fn of_all(times: &[Option<Duration>]) -> Option<Self> {
+    pub fn from_all(times: &[Option<Duration>]) -> Option<Self> {
         Self::from_times(&all(times)?)
     }
 
@@ -150,7 +150,7 @@ pub(crate) mod tests {
                 p95: 95.0
             })
         );
-        assert_eq!(Spread::of_all(&[Some(Duration::ZERO), None]), None);
+        assert_eq!(Spread::from_all(&[Some(Duration::ZERO), None]), None);
     }
 
     #[test]

@@ -36,7 +36,7 @@ pub fn area_reference(area: &AreaReference, band: u64) -> String {
 pub fn graded(runs: &[Run]) -> Vec<String> {
     let mut notes: Vec<String> = ranks(runs).into_iter().collect();
     notes.extend(runs.iter().filter_map(no_shares));
-    if runs.iter().any(|run| of(run).is_some()) {
+    if runs.iter().any(|run| errors(run).is_some()) {
         notes.push(
             "errors are over PFL; error pictures of grades: blue too light, red too dark, full \
              colour where off by 1/4 and more, magenta NaN"
@@ -46,13 +46,13 @@ pub fn graded(runs: &[Run]) -> Vec<String> {
     notes
 }
 
-fn of(run: &Run) -> Option<Graded> {
+fn errors(run: &Run) -> Option<Graded> {
     run.measured.as_ref()?.graded
 }
 
 /// That a method shows what is no share of light.
 pub fn no_shares(run: &Run) -> Option<String> {
-    let invalid = of(run)?.invalid;
+    let invalid = errors(run)?.invalid;
     let counts = [
         ("NaN", invalid.nan),
         ("infinite", invalid.infinite),
@@ -69,7 +69,7 @@ pub fn no_shares(run: &Run) -> Option<String> {
 /// Methods by their error under a light with extent, and whether the reference can tell.
 fn ranks(runs: &[Run]) -> Option<String> {
     let reference = runs.first()?.area?.standard_error_rms;
-    let rank = |run: &Run| Some((of(run)?.rmse, run.method_label()));
+    let rank = |run: &Run| Some((errors(run)?.rmse, run.method_label()));
     let mut ranks: Vec<(f64, String)> = runs.iter().filter_map(rank).collect();
     ranks.sort_by(|(one, _), (other, _)| one.total_cmp(other));
     let in_doubt = ranks.iter().filter(|(rmse, _)| *rmse < 10.0 * reference);

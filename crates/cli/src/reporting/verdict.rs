@@ -26,10 +26,12 @@ pub fn verdict(rows: &[Row]) -> Verdict {
         .filter(|(_, row)| row.views() == most && most > 0)
         .filter_map(|(index, row)| Contender::new(index, row, by_wall))
         .collect();
-    match full.iter().all(|of| of.rmse.is_some()) {
-        _ if full.is_empty() => Verdict::default(),
-        true => graded(&full, rows),
-        false => hard(&full),
+    if full.is_empty() {
+        Verdict::default()
+    } else if full.iter().all(|of| of.rmse.is_some()) {
+        graded(&full, rows)
+    } else {
+        hard(&full)
     }
 }
 
@@ -263,7 +265,7 @@ mod tests {
     }
 
     /// The label of the marked row, and what is said.
-    fn of(runs: &[Run]) -> (Option<String>, Vec<String>) {
+    fn outcome(runs: &[Run]) -> (Option<String>, Vec<String>) {
         let rows = rows(runs, [512, 256]);
         let verdict = verdict(&rows);
         let marked = verdict.fastest_exact.map(|index| rows[index].label.clone());
@@ -278,7 +280,7 @@ mod tests {
             run("light_buffer", 0, 21.0, 21.0),
             unavailable("rt_hw"),
         ];
-        let (marked, said) = of(&runs);
+        let (marked, said) = outcome(&runs);
         assert_eq!(marked.as_deref(), Some("light_buffer"));
         assert_eq!(
             said,
@@ -296,7 +298,7 @@ mod tests {
             run("crsma_full", 0, 380.0, 34.0),
             run("nsm", 9, 20.0, 10.0),
         ];
-        let (marked, said) = of(&runs);
+        let (marked, said) = outcome(&runs);
         assert_eq!(marked.as_deref(), Some("rt"));
         assert_eq!(
             said,
@@ -311,7 +313,7 @@ mod tests {
 
     #[test]
     fn nothing_exact_all_exact_and_level_times() {
-        let (marked, said) = of(&[run("nsm", 500, 10.0, 10.0), run("crsm", 20, 40.0, 40.0)]);
+        let (marked, said) = outcome(&[run("nsm", 500, 10.0, 10.0), run("crsm", 20, 40.0, 40.0)]);
         assert_eq!(marked, None);
         assert_eq!(
             said,
@@ -320,21 +322,21 @@ mod tests {
                  fastest `nsm` (0.500 % wrong, 10.0 ms)."
             ]
         );
-        let (_, said) = of(&[run("a", 0, 10.0, 10.0), run("b", 0, 10.2, 10.2)]);
+        let (_, said) = outcome(&[run("a", 0, 10.0, 10.0), run("b", 0, 10.2, 10.2)]);
         assert_eq!(
             said,
             ["`a`, level with `b`: exact here, 10.0 ms; all are exact here."]
         );
-        let (_, said) = of(&[run("rt", 0, 10.0, 4.0)]);
+        let (_, said) = outcome(&[run("rt", 0, 10.0, 4.0)]);
         assert_eq!(
             said,
             ["Whatever moves: `rt`: exact here, 10.0 ms (4.00 while only the camera moves)."]
         );
-        assert_eq!(of(&[unavailable("rt_hw")]), (None, Vec::new()));
-        assert_eq!(of(&[]), (None, Vec::new()));
+        assert_eq!(outcome(&[unavailable("rt_hw")]), (None, Vec::new()));
+        assert_eq!(outcome(&[]), (None, Vec::new()));
         let mut dark = run("rt", 0, 10.0, 10.0);
         dark.pixels.facing_light = 0;
-        assert_eq!(of(&[dark]), (None, Vec::new()), "nothing to judge");
+        assert_eq!(outcome(&[dark]), (None, Vec::new()), "nothing to judge");
     }
 
     #[test]
@@ -348,12 +350,12 @@ mod tests {
             elsewhere(run("rt", 0, 60.0, 60.0)),
             run("quick", 0, 1.0, 1.0),
         ];
-        let (marked, said) = of(&runs);
+        let (marked, said) = outcome(&runs);
         assert_eq!(marked.as_deref(), Some("rt"));
         assert_eq!(said, ["`rt`: exact here, 55.0 ms."]);
         // Wrong in one view is wrong.
         let runs = [run("rt", 0, 1.0, 1.0), elsewhere(run("rt", 7, 1.0, 1.0))];
-        assert!(of(&runs).1[0].starts_with("None is exact here"));
+        assert!(outcome(&runs).1[0].starts_with("None is exact here"));
     }
 
     #[test]
@@ -361,6 +363,6 @@ mod tests {
         let runs = [graded("rt_area", 0.01, 90.0), graded("pcf", 0.2, 9.0)];
         let expected = "The least error: `rt_area` (RMSE 0.0100, 90.0 ms); the fastest: `pcf` \
             (RMSE 0.2000, 9.00 ms).";
-        assert_eq!(of(&runs), (None, vec![expected.into()]));
+        assert_eq!(outcome(&runs), (None, vec![expected.into()]));
     }
 }

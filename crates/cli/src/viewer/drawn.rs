@@ -1,12 +1,13 @@
 //! From a frame to what a pane of the window shows of it: a picture, its legend, and its numbers.
 
-use crate::graphs::contract::{Judgement, Outputs};
+use crate::graphs::ground_truth::Judgement;
 use crate::graphs::preset::{STATUS, VISIBILITY};
+use crate::graphs::shadow_method::Outputs;
 use crate::pictures::buffer_csv;
 use crate::pictures::material::Picture;
-use crate::viewer::judge::{Answer, thin, thinned_size};
+use crate::viewer::desired_state::{FrameSnapshot, MethodSnapshot};
+use crate::viewer::ground_truth::{Answer, thin, thinned_size};
 use crate::viewer::texels::{Histogram, Texels};
-use crate::viewer::wanted::{MethodShot, Shot};
 use crate::wording::{percent, thousands};
 use skiagraph_gpu::Content;
 use skiagraph_graph::{Capture, PartSummary};
@@ -72,13 +73,13 @@ impl Drawn {
 
 /// What a pane shows of the method `index`; `answer` is the reference's to this frame.
 pub fn draw(
-    shot: &Shot,
+    snapshot: &FrameSnapshot,
     index: usize,
     show: &Show,
     reading: &Reading,
     answer: Option<&Answer>,
 ) -> Drawn {
-    let Some(method) = shot.methods.get(index) else {
+    let Some(method) = snapshot.methods.get(index) else {
         return Drawn::default();
     };
     if method.contents.is_empty() {
@@ -87,17 +88,17 @@ pub fn draw(
     let drawn = match (show, answer) {
         (Show::Material(capture), _) => Ok(material(method, &capture.name(), reading)),
         (Show::Difference, None) => Err("the reference has no answer to this frame yet".into()),
-        (Show::Difference, Some(answer)) => difference(shot, method, answer),
-        (show, _) => lit(shot, method, show),
+        (Show::Difference, Some(answer)) => difference(snapshot, method, answer),
+        (show, _) => lit(snapshot, method, show),
     };
     drawn.unwrap_or_else(Drawn::only)
 }
 
 /// The method's answer on the scene.
-fn lit(shot: &Shot, method: &MethodShot, show: &Show) -> Result<Drawn, String> {
-    let facing = &*shot.facing;
+fn lit(snapshot: &FrameSnapshot, method: &MethodSnapshot, show: &Show) -> Result<Drawn, String> {
+    let facing = &*snapshot.facing;
     let contents = (*method.contents).clone();
-    let outputs = Outputs::of_light(contents, shot.light_number, facing)?;
+    let outputs = Outputs::from_contents(contents, snapshot.light_number, facing)?;
     let shown = outputs.shown();
     let image = match show {
         Show::Visibility => Image::visibility(facing.viewport, &shown, &outputs.status),
@@ -131,7 +132,7 @@ fn lit(shot: &Shot, method: &MethodShot, show: &Show) -> Result<Drawn, String> {
     let numbers = method.contents.get(VISIBILITY).map(Content::split);
     let numbers = numbers
         .as_ref()
-        .and_then(|layers| layers.get(shot.light_number));
+        .and_then(|layers| layers.get(snapshot.light_number));
     Ok(Drawn {
         image: Some(image.map_err(|error| error.to_string())?),
         legend,
@@ -141,27 +142,31 @@ fn lit(shot: &Shot, method: &MethodShot, show: &Show) -> Result<Drawn, String> {
 }
 
 /// Where the method is wrong, of the pixels that the reference has answered.
-fn difference(shot: &Shot, method: &MethodShot, answer: &Answer) -> Result<Drawn, String> {
-    let right = answer.right.as_ref().map_err(Clone::clone)?;
-    let size = shot.facing.viewport;
+fn difference(
+    snapshot: &FrameSnapshot,
+    method: &MethodSnapshot,
+    answer: &Answer,
+) -> Result<Drawn, String> {
+    let ground_truth = answer.ground_truth.as_ref().map_err(Clone::clone)?;
+    let size = snapshot.facing.viewport;
     let judged = [VISIBILITY, STATUS].into_iter();
     let contents: BTreeMap<String, Content> = judged
         .filter_map(|name| Some((name.to_owned(), method.contents.get(name)?)))
         .map(|(name, content)| (name, thin_content(content, size, answer.stride)))
         .collect();
-    let outputs = Outputs::of_light(contents, shot.light_number, &right.reference)?;
+    let outputs = Outputs::from_contents(contents, snapshot.light_number, &ground_truth.pixels)?;
     let wrong = |error: skiagraph_reference::Error| error.to_string();
-    let judgement = Judgement::new(&outputs, right).map_err(wrong)?;
-    let reference = &right.reference;
+    let judgement = Judgement::new(&outputs, ground_truth).map_err(wrong)?;
+    let truth = &ground_truth.pixels;
     let image = match judgement.graded {
-        Some(_) => Image::difference(&outputs.shown(), &right.shares(), reference),
-        None => Image::error(&outputs.visibility, &outputs.status, reference),
+        Some(_) => Image::difference(&outputs.shown(), &ground_truth.shares(), truth),
+        None => Image::error(&outputs.visibility, &outputs.status, truth),
     };
     Ok(Drawn {
         image: Some(image.map_err(wrong)?),
         legend: format!(
             "{}; {}",
-            verdict(&judgement, reference),
+            verdict(&judgement, truth),
             of_pixels(answer.stride)
         ),
         ..Drawn::default()
@@ -177,14 +182,14 @@ pub fn of_pixels(stride: u32) -> &'static str {
     }
 }
 
-fn verdict(judgement: &Judgement, reference: &skiagraph_reference::Reference) -> String {
+fn verdict(judgement: &Judgement, truth: &skiagraph_reference::GroundTruthPixels) -> String {
     if let Some(graded) = &judgement.graded {
         return format!(
             "blue too light, red too dark; RMSE {:.4}, mean {:.4}, FLIP {:.4}",
             graded.rmse, graded.mean_absolute_error, graded.flip
         );
     }
-    let facing = reference
+    let facing = truth
         .classes
         .iter()
         .filter(|class: &&Class| class.faces_light());
@@ -209,10 +214,11 @@ fn thin_content(content: &Content, size: [u32; 2], stride: u32) -> Content {
     let layers = content.split();
     let thinned = layers.iter().flat_map(|layer| {
         let texels: Vec<&[u8]> = layer.bytes().chunks_exact(texel).collect();
-        match texels.len() == size[0] as usize * size[1] as usize {
-            true => thin(&texels, size, stride).concat(),
+        if texels.len() == size[0] as usize * size[1] as usize {
+            thin(&texels, size, stride).concat()
+        } else {
             // Of another size, which judging refuses by name.
-            false => Vec::new(),
+            Vec::new()
         }
     });
     Content::Texture {
@@ -223,7 +229,7 @@ fn thin_content(content: &Content, size: [u32; 2], stride: u32) -> Content {
 }
 
 /// A material, decoded as files of it are.
-fn material(method: &MethodShot, name: &str, reading: &Reading) -> Drawn {
+fn material(method: &MethodSnapshot, name: &str, reading: &Reading) -> Drawn {
     let Some(content) = method.contents.get(name) else {
         return Drawn::only(format!("`{name}` was not read yet"));
     };
@@ -241,9 +247,9 @@ fn material(method: &MethodShot, name: &str, reading: &Reading) -> Drawn {
     let parts = content.split();
     let part = &parts[reading.part.min(parts.len() - 1)];
     let texels = Texels::new(part, decoding.planes);
-    let channel = |wanted: usize| {
+    let channel = |desired: usize| {
         let last = texels.as_ref().map_or(0, |texels| texels.channels() - 1);
-        wanted.min(last)
+        desired.min(last)
     };
     let histogram = texels
         .as_ref()
@@ -258,11 +264,11 @@ fn material(method: &MethodShot, name: &str, reading: &Reading) -> Drawn {
         Err(why) => (None, format!("`{name}` {why}")),
     };
     let mut heat = None;
-    if let (Some(wanted), Some(texels)) = (reading.heat, &texels) {
-        let range = texels.histogram(channel(wanted)).range;
+    if let (Some(desired), Some(texels)) = (reading.heat, &texels) {
+        let range = texels.histogram(channel(desired)).range;
         if range[0] <= range[1] {
-            image = Some(texels.heat(channel(wanted), range));
-            legend = format!("heat map of channel {}", channel(wanted));
+            image = Some(texels.heat(channel(desired), range));
+            legend = format!("heat map of channel {}", channel(desired));
             heat = Some(range);
         }
     }

@@ -1,10 +1,11 @@
 //! `skiagraph view`: methods in a window. One thread runs them, one traces the reference, and the
 //! window shows what comes; what is decided is in `state.rs`, without a toolkit.
 
+mod desired_state;
 mod drawn;
 mod flight;
+mod ground_truth;
 mod heat;
-mod judge;
 mod saving;
 mod slot;
 mod start;
@@ -13,7 +14,6 @@ mod state;
 mod tests;
 mod texels;
 mod ui;
-mod wanted;
 mod window;
 mod worker;
 

@@ -6,7 +6,7 @@ use crate::graphs::planning::Capabilities;
 use crate::graphs::preset::{self, Preset, VISIBILITY};
 use crate::measuring::frame;
 use crate::pictures::{colours::ClipPlanes, save::Decoding};
-use crate::viewer::wanted::{MethodShot, PassShot, WantedMethod};
+use crate::viewer::desired_state::{DesiredMethod, MethodSnapshot, PassSnapshot};
 use skiagraph_gpu::{ExecuteError, Executor, Frame, FrameReport, device::Gpu};
 use skiagraph_graph::{Graph, LinkedPass, Origin, Plan, ResourceKind, Sources};
 use skiagraph_passes::SceneProvider;
@@ -18,7 +18,7 @@ pub struct Lost;
 /// What a plan was made for.
 #[derive(Clone, PartialEq)]
 struct PlannedFor {
-    wanted: WantedMethod,
+    desired: DesiredMethod,
     size: [u32; 2],
     light: &'static str,
     reads: u64,
@@ -39,7 +39,7 @@ pub struct Slot {
     /// Of what was read last, whether it was good or not.
     texts: Option<Fingerprint>,
     reads: u64,
-    last: MethodShot,
+    last: MethodSnapshot,
 }
 
 impl Slot {
@@ -55,7 +55,7 @@ impl Slot {
             error: None,
             texts: None,
             reads: 0,
-            last: MethodShot::default(),
+            last: MethodSnapshot::default(),
         }
     }
 
@@ -98,19 +98,19 @@ impl Slot {
         self.planned = None;
     }
 
-    /// Runs a frame, of the graph as it is wanted if that can be, else of the last one that ran.
+    /// Runs a frame, of the graph as it is desired if that can be, else of the last one that ran.
     ///
     /// # Errors
     /// The device is lost.
-    pub fn shoot(
+    pub fn take_snapshot(
         &mut self,
         gpu: &Gpu,
         provider: &mut SceneProvider,
-        wanted: &WantedMethod,
+        desired: &DesiredMethod,
         how: &How,
-    ) -> Result<MethodShot, Lost> {
+    ) -> Result<MethodSnapshot, Lost> {
         let planned = PlannedFor {
-            wanted: wanted.clone(),
+            desired: desired.clone(),
             size: how.size,
             light: provider.light().word(),
             reads: self.reads,
@@ -123,7 +123,7 @@ impl Slot {
         }
         if self.executor.is_some() {
             match self.run(gpu, provider, how) {
-                Ok(shot) => self.last = shot,
+                Ok(snapshot) => self.last = snapshot,
                 Err(error) => {
                     if let Some(planned) = self.planned.clone() {
                         self.refuse(planned, Refusal::new(error))?;
@@ -132,13 +132,13 @@ impl Slot {
                 }
             }
         }
-        let mut shot = self.last.clone();
-        shot.name.clone_from(&self.name);
-        shot.reads = self.reads;
+        let mut snapshot = self.last.clone();
+        snapshot.name.clone_from(&self.name);
+        snapshot.reads = self.reads;
         let errors = [&self.faults, &self.error];
         let errors: Vec<&str> = errors.into_iter().flatten().map(String::as_str).collect();
-        shot.error = (!errors.is_empty()).then(|| errors.join("\n"));
-        Ok(shot)
+        snapshot.error = (!errors.is_empty()).then(|| errors.join("\n"));
+        Ok(snapshot)
     }
 
     fn refuse(&mut self, planned: PlannedFor, refusal: Refusal) -> Result<(), Lost> {
@@ -147,7 +147,7 @@ impl Slot {
         if refusal.is_fatal { Err(Lost) } else { Ok(()) }
     }
 
-    /// Brings the executor to what is wanted.
+    /// Brings the executor to the desired state.
     fn make(
         &mut self,
         gpu: &Gpu,
@@ -167,7 +167,7 @@ impl Slot {
             && planned.only_sets_params(next)
         {
             executor.refresh(provider).map_err(Refusal::new)?;
-            for (name, value) in &next.wanted.params {
+            for (name, value) in &next.desired.params {
                 let set = executor.set_param(name, value.clone(), provider);
                 set.map_err(Refusal::new)?;
             }
@@ -194,7 +194,7 @@ impl Slot {
         gpu: &Gpu,
         provider: &mut SceneProvider,
         how: &How,
-    ) -> Result<MethodShot, ExecuteError> {
+    ) -> Result<MethodSnapshot, ExecuteError> {
         let (Some(executor), Some(preset)) = (&mut self.executor, &self.preset) else {
             return Ok(self.last.clone());
         };
@@ -206,15 +206,15 @@ impl Slot {
             .map(|it| it.name)
             .collect();
         let read: Vec<&str> = names.iter().map(String::as_str).collect();
-        let wanted = Frame {
+        let desired = Frame {
             timing: how.timing,
             statistics: true,
             all: how.all_passes,
             read: &read,
             seconds: how.seconds,
         };
-        let (report, wall) = frame::run(gpu, executor, &wanted)?;
-        Ok(shot(preset, executor.plan(), report, wall, how.planes))
+        let (report, wall) = frame::run(gpu, executor, &desired)?;
+        Ok(snapshot(preset, executor.plan(), report, wall, how.planes))
     }
 }
 
@@ -232,7 +232,7 @@ pub struct How {
     pub planes: ClipPlanes,
 }
 
-/// Why something cannot be as wanted.
+/// Why the desired state cannot be reached.
 struct Refusal {
     text: String,
     is_fatal: bool,
@@ -253,15 +253,15 @@ impl Refusal {
 impl PlannedFor {
     /// Whether the next plan is this one with other values of params, and no default comes back.
     fn only_sets_params(&self, next: &Self) -> bool {
-        let known = |name| next.wanted.params.contains_key(name);
+        let known = |name| next.desired.params.contains_key(name);
         let with_params = Self {
-            wanted: WantedMethod {
-                params: next.wanted.params.clone(),
-                ..self.wanted.clone()
+            desired: DesiredMethod {
+                params: next.desired.params.clone(),
+                ..self.desired.clone()
             },
             ..self.clone()
         };
-        with_params == *next && self.wanted.params.keys().all(known)
+        with_params == *next && self.desired.params.keys().all(known)
     }
 }
 
@@ -274,8 +274,8 @@ fn plan(
     provider: &SceneProvider,
 ) -> Result<Plan, Refusal> {
     let mut request = capabilities.request(next.size, provider);
-    request.params = next.wanted.params.clone();
-    request.captures = next.wanted.material.iter().cloned().collect();
+    request.params = next.desired.params.clone();
+    request.captures = next.desired.material.iter().cloned().collect();
     let judged = preset.judged();
     if judged.contains(&VISIBILITY) {
         request.outputs = Some(judged.into_iter().map(str::to_owned).collect());
@@ -288,13 +288,13 @@ fn plan(
 }
 
 /// What a frame brought, as the window shows it.
-fn shot(
+fn snapshot(
     preset: &Preset,
     plan: &Plan,
     report: FrameReport,
     wall: Duration,
     planes: ClipPlanes,
-) -> MethodShot {
+) -> MethodSnapshot {
     let ms = |time: Duration| time.as_secs_f64() * 1e3;
     let timing = report.timing.as_ref();
     let gpu_of = |name: &str| {
@@ -305,7 +305,7 @@ fn shot(
         let mut passes = report.statistics.iter().flatten();
         passes.find(|pass| pass.name == name).cloned()
     };
-    let pass = |pass: &LinkedPass| PassShot {
+    let pass = |pass: &LinkedPass| PassSnapshot {
         name: pass.name.value.clone(),
         kind: pass.kind.to_owned(),
         writes: written(plan, pass),
@@ -321,7 +321,7 @@ fn shot(
         let reading = Decoding::new(plan, &output.name, planes);
         (output.name, reading)
     });
-    MethodShot {
+    MethodSnapshot {
         name: preset.name.clone(),
         description: preset.graph.description().to_owned(),
         params: preset.graph.params().to_vec(),

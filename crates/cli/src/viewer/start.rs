@@ -9,10 +9,10 @@ use crate::graphs::openings;
 use crate::graphs::variants;
 use crate::graphs::{method, preset};
 use crate::measuring::device;
-use crate::viewer::judge::Judge;
-use crate::viewer::state::{Choices, Lines, Viewer};
-use crate::viewer::wanted::{Wanted, WantedMethod};
-use crate::viewer::worker::{Order, Worker};
+use crate::viewer::desired_state::{DesiredMethod, DesiredState};
+use crate::viewer::ground_truth::GroundTruthThread;
+use crate::viewer::state::{Channels, Choices, Viewer};
+use crate::viewer::worker::{Command, Worker};
 use skiagraph_gpu::timing::Trust;
 use skiagraph_scene::SceneLibrary;
 use std::{
@@ -35,10 +35,10 @@ pub fn start(
     wake: Wake,
 ) -> Result<(Viewer, Option<Watch>), CliError> {
     let sources = preset::sources();
-    let methods = wanted_methods(args)?;
+    let methods = desired_methods(args)?;
     let opened = device::open(gpu, [])?;
     let choices = choices(args, &opened);
-    let (orders, ordered) = mpsc::channel();
+    let (commands, command_receiver) = mpsc::channel();
     let (tell, events) = mpsc::channel();
     let woken = Arc::clone(&wake);
     // Who is not listened to any more is about to end.
@@ -55,23 +55,23 @@ pub fn start(
     let failed = |error: std::io::Error| CliError::Input(format!("no thread: {error}"));
     thread::Builder::new()
         .name("methods".into())
-        .spawn(move || worker.work(&ordered))
+        .spawn(move || worker.work(&command_receiver))
         .map_err(failed)?;
     let (tell, answers) = mpsc::channel();
-    let judge = Judge::start(move |answer| {
+    let ground_truth = GroundTruthThread::start(move |answer| {
         let _ = tell.send(answer);
         wake();
     });
-    let again = orders.clone();
+    let again = commands.clone();
     let folders = watch::folders(
         args.methods
             .iter()
             .map(|it| it.split('@').next().unwrap_or(it)),
     );
     let watch = Watch::start(&folders, move || {
-        let _ = again.send(Order::Reload);
+        let _ = again.send(Command::Reload);
     });
-    let wanted = Wanted {
+    let desired = DesiredState {
         scene: args.scene.scene.clone(),
         view: None,
         size: args.size.0,
@@ -79,17 +79,17 @@ pub fn start(
         all_passes: false,
         frame: 0,
     };
-    let lines = Lines {
-        orders,
+    let channels = Channels {
+        commands,
         events,
-        judge: judge.map_err(failed)?,
+        ground_truth: ground_truth.map_err(failed)?,
         answers,
     };
-    let mut viewer = Viewer::new(lines, choices, wanted);
+    let mut viewer = Viewer::new(channels, choices, desired);
     let watch = match watch {
         Ok(watch) => Some(watch),
         Err(error) => {
-            viewer.complain(&format!("changed files are not noticed: {error}"));
+            viewer.notify_error(&format!("changed files are not noticed: {error}"));
             None
         }
     };
@@ -98,7 +98,7 @@ pub fn start(
 
 /// The methods of the command line with their settings. Without settings they need not be read
 /// before the window is there, which then shows what is wrong with them.
-fn wanted_methods(args: &ViewArgs) -> Result<Vec<WantedMethod>, CliError> {
+fn desired_methods(args: &ViewArgs) -> Result<Vec<DesiredMethod>, CliError> {
     let sources = preset::sources();
     let (arguments, params) = openings::arguments(&args.methods, &args.params, &sources)?;
     for argument in &arguments {
@@ -107,7 +107,7 @@ fn wanted_methods(args: &ViewArgs) -> Result<Vec<WantedMethod>, CliError> {
     let map_sizes: Vec<u32> = args.map_size.into_iter().collect();
     let own = arguments.iter().any(|argument| !argument.own.is_empty());
     if !own && map_sizes.is_empty() && params.is_empty() {
-        let plain = arguments.into_iter().map(|argument| WantedMethod {
+        let plain = arguments.into_iter().map(|argument| DesiredMethod {
             name: argument.preset,
             params: Default::default(),
             material: None,
@@ -122,12 +122,12 @@ fn wanted_methods(args: &ViewArgs) -> Result<Vec<WantedMethod>, CliError> {
             methods.len()
         )));
     }
-    let wanted = methods.into_iter().map(|method| WantedMethod {
+    let desired = methods.into_iter().map(|method| DesiredMethod {
         name: method.preset.name.clone(),
         params: method.params,
         material: None,
     });
-    Ok(wanted.collect())
+    Ok(desired.collect())
 }
 
 fn choices(args: &ViewArgs, gpu: &skiagraph_gpu::device::Gpu) -> Choices {

@@ -1,11 +1,13 @@
 //! What the window shows and what was chosen in it. It knows no toolkit: tests drive it as the
 //! window does.
 
+use crate::viewer::desired_state::{
+    DesiredMethod, DesiredState, Event, FrameSnapshot, Loaded, MethodSnapshot,
+};
 use crate::viewer::drawn::{Drawn, Reading, Show, draw};
 use crate::viewer::flight;
-use crate::viewer::judge::{Answer, Judge};
-use crate::viewer::wanted::{Event, Loaded, MethodShot, Shot, Wanted, WantedMethod};
-use crate::viewer::worker::Order;
+use crate::viewer::ground_truth::{Answer, GroundTruthThread};
+use crate::viewer::worker::Command;
 use glam::DVec3;
 use skiagraph_graph::{Capture, ParamValue};
 use skiagraph_scene::{Light, LightKind, View};
@@ -59,14 +61,14 @@ impl Pane {
     }
 }
 
-/// The way to the other threads.
-pub struct Lines {
+/// Channels to and from the other threads.
+pub struct Channels {
     /// To that of the graphs.
-    pub orders: mpsc::Sender<Order>,
+    pub commands: mpsc::Sender<Command>,
     /// From it.
     pub events: mpsc::Receiver<Event>,
     /// To that of the reference.
-    pub judge: Judge,
+    pub ground_truth: GroundTruthThread,
     /// From it.
     pub answers: mpsc::Receiver<Answer>,
 }
@@ -84,16 +86,16 @@ pub struct Choices {
 
 /// The state of the window.
 pub struct Viewer {
-    lines: Lines,
+    channels: Channels,
     /// What there is to choose from.
     pub choices: Choices,
     /// What is to be seen.
-    pub wanted: Wanted,
-    sent: Option<Wanted>,
+    pub desired: DesiredState,
+    sent: Option<DesiredState>,
     /// The scene that is there.
     pub loaded: Option<Loaded>,
     /// The newest frame.
-    pub shot: Option<Shot>,
+    pub snapshot: Option<FrameSnapshot>,
     answer: Option<Answer>,
     /// The pictures; as many are shown as there are methods.
     pub panes: [Pane; 2],
@@ -109,14 +111,14 @@ pub struct Viewer {
 
 impl Viewer {
     /// Shows nothing yet.
-    pub fn new(lines: Lines, choices: Choices, wanted: Wanted) -> Self {
+    pub fn new(channels: Channels, choices: Choices, desired: DesiredState) -> Self {
         Self {
-            lines,
+            channels,
             choices,
-            wanted,
+            desired,
             sent: None,
             loaded: None,
-            shot: None,
+            snapshot: None,
             answer: None,
             panes: [Pane::new(), Pane::new()],
             drag: Drag::Look,
@@ -126,53 +128,53 @@ impl Viewer {
         }
     }
 
-    /// Takes in what the threads have to tell, and tells them what has become wanted. Returns
-    /// whether there is something new to see.
-    pub fn turn(&mut self) -> bool {
+    /// Takes in the events and answers of the threads, and sends them a changed desired state.
+    /// Returns whether there is something new to see.
+    pub fn update(&mut self) -> bool {
         let mut is_new = false;
-        while let Ok(event) = self.lines.events.try_recv() {
-            self.hear(event);
+        while let Ok(event) = self.channels.events.try_recv() {
+            self.on_event(event);
             is_new = true;
         }
-        while let Ok(answer) = self.lines.answers.try_recv() {
+        while let Ok(answer) = self.channels.answers.try_recv() {
             let fits = self
-                .shot
+                .snapshot
                 .as_ref()
-                .is_some_and(|shot| answer.question.is_about(shot));
+                .is_some_and(|snapshot| answer.question.is_about(snapshot));
             if fits {
                 self.answer = Some(answer);
                 self.redraw();
                 is_new = true;
             }
         }
-        self.judge();
+        self.request_ground_truth();
         for index in 0..self.panes.len() {
             self.draw(index);
         }
-        if self.sent.as_ref() != Some(&self.wanted) {
-            self.sent = Some(self.wanted.clone());
-            let order = Order::Show(Box::new(self.wanted.clone()));
-            if self.lines.orders.send(order).is_err() {
-                self.complain("the thread that runs the methods has ended: start anew");
+        if self.sent.as_ref() != Some(&self.desired) {
+            self.sent = Some(self.desired.clone());
+            let command = Command::Show(Box::new(self.desired.clone()));
+            if self.channels.commands.send(command).is_err() {
+                self.notify_error("the thread that runs the methods has ended: start anew");
             }
         }
         is_new
     }
 
-    fn hear(&mut self, event: Event) {
+    fn on_event(&mut self, event: Event) {
         match event {
-            Event::Scene(name, Ok(loaded)) if name == self.wanted.scene => {
-                if self.wanted.view.is_none() {
-                    self.wanted.view = loaded.views.first().cloned();
+            Event::Scene(name, Ok(loaded)) if name == self.desired.scene => {
+                if self.desired.view.is_none() {
+                    self.desired.view = loaded.views.first().cloned();
                 }
                 self.loaded = Some(loaded);
                 self.notice = None;
             }
-            Event::Scene(name, Err(why)) if name == self.wanted.scene => self.complain(&why),
+            Event::Scene(name, Err(why)) if name == self.desired.scene => self.notify_error(&why),
             Event::Scene(..) => {}
-            Event::Broken(why) => self.complain(&why),
-            Event::Frame(shot) => {
-                for (pane, method) in self.panes.iter_mut().zip(&shot.methods) {
+            Event::Broken(why) => self.notify_error(&why),
+            Event::Frame(snapshot) => {
+                for (pane, method) in self.panes.iter_mut().zip(&snapshot.methods) {
                     pane.history
                         .push_back(method.gpu_ms.unwrap_or(method.wall_ms));
                     if pane.history.len() > HISTORY {
@@ -180,35 +182,37 @@ impl Viewer {
                     }
                 }
                 // A scene is chosen by its first frame, which says where it is seen from.
-                let is_newest = self.sent.as_ref() == Some(&shot.wanted);
-                self.shot = Some(*shot);
+                let is_newest = self.sent.as_ref() == Some(&snapshot.desired);
+                self.snapshot = Some(*snapshot);
                 let about = |answer: &Answer| {
-                    let shot = self.shot.as_ref();
-                    shot.is_some_and(|shot| answer.question.is_about(shot))
+                    let snapshot = self.snapshot.as_ref();
+                    snapshot.is_some_and(|snapshot| answer.question.is_about(snapshot))
                 };
                 if !self.answer.as_ref().is_some_and(about) {
                     self.answer = None;
                 }
                 self.redraw();
                 if self.keep_running && is_newest {
-                    self.wanted.frame += 1;
+                    self.desired.frame += 1;
                 }
             }
         }
     }
 
-    /// Says something that went wrong.
-    pub fn complain(&mut self, what: &str) {
+    /// Shows what went wrong.
+    pub fn notify_error(&mut self, what: &str) {
         self.notice = Some((what.to_owned(), true));
     }
 
-    /// Asks for the reference where somebody wants to see it.
-    fn judge(&mut self) {
-        let shown = self.panes.iter().take(self.wanted.methods.len());
+    /// Asks for the reference while it is shown.
+    fn request_ground_truth(&mut self) {
+        let shown = self.panes.iter().take(self.desired.methods.len());
         let is_shown = shown.into_iter().any(|pane| pane.show == Show::Difference);
-        match &self.shot {
-            Some(shot) if self.is_judged || is_shown => self.lines.judge.ask(shot),
-            _ => self.lines.judge.forget(),
+        match &self.snapshot {
+            Some(snapshot) if self.is_judged || is_shown => {
+                self.channels.ground_truth.ask(snapshot)
+            }
+            _ => self.channels.ground_truth.forget(),
         }
     }
 
@@ -217,10 +221,10 @@ impl Viewer {
         self.answer.as_ref()
     }
 
-    /// Whether the picture is of what is wanted now.
+    /// Whether the picture is of the desired state.
     pub fn is_current(&self) -> bool {
-        let shown = self.shot.as_ref().map(|shot| &shot.wanted);
-        shown == Some(&self.wanted) && self.sent.as_ref() == Some(&self.wanted)
+        let shown = self.snapshot.as_ref().map(|snapshot| &snapshot.desired);
+        shown == Some(&self.desired) && self.sent.as_ref() == Some(&self.desired)
     }
 
     /// Everything is drawn anew.
@@ -230,10 +234,10 @@ impl Viewer {
 
     fn draw(&mut self, index: usize) {
         let (pane, answer) = (&mut self.panes[index], self.answer.as_ref());
-        let Some(shot) = self.shot.as_ref().filter(|_| pane.is_stale) else {
+        let Some(snapshot) = self.snapshot.as_ref().filter(|_| pane.is_stale) else {
             return;
         };
-        pane.drawn = draw(shot, index, &pane.show, &pane.reading, answer);
+        pane.drawn = draw(snapshot, index, &pane.show, &pane.reading, answer);
         pane.version += 1;
         pane.is_stale = false;
     }
@@ -242,7 +246,7 @@ impl Viewer {
     pub fn show(&mut self, index: usize, show: Show) {
         let pane = &mut self.panes[index];
         if pane.show != show {
-            if let Some(method) = self.wanted.methods.get_mut(index) {
+            if let Some(method) = self.desired.methods.get_mut(index) {
                 method.material = match &show {
                     Show::Material(capture) => Some(capture.clone()),
                     _ => None,
@@ -264,23 +268,23 @@ impl Viewer {
     }
 
     /// The newest frame of a method, if it is of that method.
-    pub fn method(&self, index: usize) -> Option<&MethodShot> {
-        let method = self.shot.as_ref()?.methods.get(index)?;
-        let wanted = self.wanted.methods.get(index)?;
-        (method.name == wanted.name).then_some(method)
+    pub fn method(&self, index: usize) -> Option<&MethodSnapshot> {
+        let method = self.snapshot.as_ref()?.methods.get(index)?;
+        let desired = self.desired.methods.get(index)?;
+        (method.name == desired.name).then_some(method)
     }
 
     /// Another method in a pane, with its defaults.
     pub fn choose_method(&mut self, index: usize, name: &str) {
-        let method = WantedMethod {
+        let method = DesiredMethod {
             name: name.to_owned(),
             params: Default::default(),
             material: None,
         };
-        match self.wanted.methods.get_mut(index) {
+        match self.desired.methods.get_mut(index) {
             Some(place) if place.name == name => return,
             Some(place) => *place = method,
-            None => self.wanted.methods.push(method),
+            None => self.desired.methods.push(method),
         }
         if let Show::Material(_) = self.panes[index].show {
             self.show(index, Show::Shaded);
@@ -290,28 +294,28 @@ impl Viewer {
 
     /// Takes the second method away.
     pub fn close_second(&mut self) {
-        self.wanted.methods.truncate(1);
+        self.desired.methods.truncate(1);
     }
 
     /// Sets a param; one at its default stays named, so that only its value changes.
     pub fn set_param(&mut self, index: usize, name: &str, value: ParamValue) {
-        if let Some(method) = self.wanted.methods.get_mut(index) {
+        if let Some(method) = self.desired.methods.get_mut(index) {
             method.params.insert(name.to_owned(), value);
         }
     }
 
     /// All params of a method back to their defaults.
     pub fn reset_params(&mut self, index: usize) {
-        if let Some(method) = self.wanted.methods.get_mut(index) {
+        if let Some(method) = self.desired.methods.get_mut(index) {
             method.params.clear();
         }
     }
 
     /// Another scene, from its first view.
     pub fn choose_scene(&mut self, name: &str) {
-        if self.wanted.scene != name {
-            self.wanted.scene = name.to_owned();
-            self.wanted.view = None;
+        if self.desired.scene != name {
+            self.desired.scene = name.to_owned();
+            self.desired.view = None;
             self.loaded = None;
         }
     }
@@ -320,7 +324,7 @@ impl Viewer {
     pub fn choose_view(&mut self, name: &str) {
         let mut views = self.loaded.iter().flat_map(|loaded| &loaded.views);
         if let Some(view) = views.find(|view| view.name == name) {
-            self.wanted.view = Some(view.clone());
+            self.desired.view = Some(view.clone());
         }
     }
 
@@ -373,7 +377,7 @@ impl Viewer {
     /// Turns camera or light by so many radians, or shifts the eye by these shares of the scene.
     pub fn dragged(&mut self, drag: Drag, by: [f64; 2]) {
         let (centre, radius) = self.extent();
-        let Some(view) = &mut self.wanted.view else {
+        let Some(view) = &mut self.desired.view else {
             return;
         };
         let [x, y] = by;
@@ -401,7 +405,7 @@ impl Viewer {
     /// Moves the eye along its own right, up and forward, by shares of the scene.
     pub fn fly(&mut self, by: DVec3) {
         let (_, radius) = self.extent();
-        if let Some(mut view) = self.wanted.view.clone() {
+        if let Some(mut view) = self.desired.view.clone() {
             flight::fly(&mut view, by * radius);
             self.look_from(view);
         }
@@ -410,13 +414,13 @@ impl Viewer {
     /// Takes a view that can be one.
     pub fn look_from(&mut self, view: View) {
         if view.check().is_ok() {
-            self.wanted.view = Some(view);
+            self.desired.view = Some(view);
         }
     }
 
-    /// The light of what is wanted, with its name.
+    /// The light of the desired state, with its name.
     pub fn light(&self) -> Option<(String, LightKind)> {
-        let view = self.wanted.view.as_ref()?;
+        let view = self.desired.view.as_ref()?;
         let lights = self.loaded.as_ref()?.scene.lights_of(view);
         let light = lights.into_iter().next()?;
         Some((light.name, light.kind))

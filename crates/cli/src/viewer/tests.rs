@@ -1,9 +1,9 @@
 //! Drives the window without a display: input by script, pictures by wgpu.
 
+use super::desired_state::MethodSnapshot;
 use super::drawn::Show;
 use super::state::{Drag, Viewer};
 use super::ui::{self, Surface};
-use super::wanted::MethodShot;
 use crate::args::commands::ViewArgs;
 use crate::args::shared::{GpuArgs, SceneArgs};
 use crate::args::values::Size;
@@ -86,7 +86,7 @@ fn until(desk: &mut Harness<Desk>, what: &str, holds: impl Fn(&Viewer) -> bool) 
     }
 }
 
-fn shown(desk: &Harness<Desk>, index: usize) -> MethodShot {
+fn shown(desk: &Harness<Desk>, index: usize) -> MethodSnapshot {
     desk.state().viewer.method(index).cloned().unwrap()
 }
 
@@ -169,7 +169,7 @@ fn a_lamp_is_moved_and_its_cone_narrowed() {
 fn dragging_turns_the_camera_and_the_light() {
     let mut desk = desk(&["nsm"]);
     settled(&mut desk);
-    let view = desk.state().viewer.wanted.view.clone().unwrap();
+    let view = desk.state().viewer.desired.view.clone().unwrap();
     let lit = output(&desk, 0, "visibility");
     let [from, to] = [egui::pos2(800.0, 300.0), egui::pos2(860.0, 310.0)];
     desk.hover_at(from);
@@ -178,13 +178,13 @@ fn dragging_turns_the_camera_and_the_light() {
     desk.hover_at(to);
     desk.drop_at(to);
     settled(&mut desk);
-    let looked = desk.state().viewer.wanted.view.clone().unwrap();
+    let looked = desk.state().viewer.desired.view.clone().unwrap();
     assert_ne!(looked.direction, view.direction);
     assert_eq!(looked.eye, view.eye);
     desk.state_mut().viewer.look_from(view.clone());
     desk.state_mut().viewer.dragged(Drag::Light, [0.6, 0.2]);
     settled(&mut desk);
-    let turned = desk.state().viewer.wanted.view.clone().unwrap();
+    let turned = desk.state().viewer.desired.view.clone().unwrap();
     assert!(turned.light.is_some());
     assert_ne!(output(&desk, 0, "visibility"), lit);
     desk.key_down_modifiers(Modifiers::NONE, egui::Key::W);
@@ -192,7 +192,7 @@ fn dragging_turns_the_camera_and_the_light() {
     desk.key_up_modifiers(Modifiers::NONE, egui::Key::W);
     settled(&mut desk);
     assert_ne!(
-        desk.state().viewer.wanted.view.as_ref().unwrap().eye,
+        desk.state().viewer.desired.view.as_ref().unwrap().eye,
         view.eye
     );
 }
@@ -357,7 +357,7 @@ fn another_scene_and_a_scene_that_is_not_there() {
     desk.state_mut().viewer.choose_scene("forest:10000");
     settled(&mut desk);
     assert_eq!(desk.state().viewer.notice, None);
-    let scene = desk.state().viewer.shot.as_ref().unwrap().scene.clone();
+    let scene = desk.state().viewer.snapshot.as_ref().unwrap().scene.clone();
     assert_eq!(scene.name, "forest");
 }
 
@@ -365,7 +365,7 @@ fn another_scene_and_a_scene_that_is_not_there() {
 #[test]
 #[ignore = "takes larger pictures than a test needs"]
 fn pictures_for_the_documents() {
-    let large = |viewer: &mut Viewer| viewer.wanted.size = [720, 480];
+    let large = |viewer: &mut Viewer| viewer.desired.size = [720, 480];
     let map = |viewer: &mut Viewer, index: usize| {
         viewer.set_param(index, "map_size", ParamValue::U32(1024));
     };

@@ -105,14 +105,12 @@ impl Texels {
         let texels = self.size[0] as usize * self.size[1] as usize;
         (0..texels).map(move |texel| {
             let number = self.number(texel * self.channels + channel);
-            match self.is_depth {
-                true if number == f64::from(cleared(self.planes)) => None,
-                true => Some(
-                    self.planes
-                        .map_or(number, |planes| f64::from(planes.distance(number as f32))),
-                ),
-                false => Some(number),
+            if !self.is_depth {
+                return Some(number);
             }
+            let distance = |planes: ClipPlanes| f64::from(planes.distance(number as f32));
+            let is_written = number != f64::from(cleared(self.planes));
+            is_written.then(|| self.planes.map_or(number, distance))
         })
     }
 

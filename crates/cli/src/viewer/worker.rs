@@ -1,14 +1,14 @@
-//! The thread of the graphs: it loads scenes and methods, and runs a frame whenever something else
-//! is wanted. It has a device of its own, so that the window never waits for a method.
+//! The thread of the graphs: it loads scenes and methods, and runs a frame whenever the desired
+//! state changes. It has a device of its own, so that the window never waits for a method.
 
 use crate::args::shared::{GpuArgs, SceneArgs};
 use crate::error::{CliError, explain, with_causes};
 use crate::measuring::{
-    device, frame, reference::PrimaryVisibility, scene_selection::SceneSelection,
+    device, frame, ground_truth::PrimaryVisibility, scene_selection::SceneSelection,
 };
 use crate::pictures::colours::ClipPlanes;
+use crate::viewer::desired_state::{DesiredState, Event, FrameSnapshot, Loaded};
 use crate::viewer::slot::{How, Lost, Slot};
-use crate::viewer::wanted::{Event, Loaded, Shot, Wanted};
 use skiagraph_gpu::{Content, Executor, device::Gpu, timing::Trust};
 use skiagraph_graph::Sources;
 use skiagraph_passes::SceneProvider;
@@ -19,10 +19,10 @@ use std::{
     time::Instant,
 };
 
-/// What the window tells the thread.
-pub enum Order {
+/// What the window asks of the thread.
+pub enum Command {
     /// Show this.
-    Show(Box<Wanted>),
+    Show(Box<DesiredState>),
     /// Files may have changed.
     Reload,
 }
@@ -77,17 +77,17 @@ impl Worker {
         }
     }
 
-    /// Works until nobody gives orders any more.
-    pub fn work(mut self, orders: &mpsc::Receiver<Order>) {
-        let mut wanted: Option<Wanted> = None;
-        while let Ok(first) = orders.recv() {
+    /// Works until the channel of commands closes.
+    pub fn work(mut self, commands: &mpsc::Receiver<Command>) {
+        let mut desired: Option<DesiredState> = None;
+        while let Ok(first) = commands.recv() {
             let mut is_changed = false;
             let mut reload = false;
             // Of several the last one counts.
-            for order in [first].into_iter().chain(orders.try_iter()) {
-                match order {
-                    Order::Show(next) => (wanted, is_changed) = (Some(*next), true),
-                    Order::Reload => reload = true,
+            for command in [first].into_iter().chain(commands.try_iter()) {
+                match command {
+                    Command::Show(next) => (desired, is_changed) = (Some(*next), true),
+                    Command::Reload => reload = true,
                 }
             }
             if reload {
@@ -95,24 +95,24 @@ impl Worker {
                     is_changed |= slot.read(&*self.sources);
                 }
             }
-            if let Some(wanted) = wanted.as_ref().filter(|_| is_changed)
-                && let Err(error) = self.show(wanted)
+            if let Some(desired) = desired.as_ref().filter(|_| is_changed)
+                && let Err(error) = self.show(desired)
             {
                 (self.tell)(Event::Broken(error.to_string()));
             }
         }
     }
 
-    fn show(&mut self, wanted: &Wanted) -> Result<(), CliError> {
-        if !self.load(wanted) {
+    fn show(&mut self, desired: &DesiredState) -> Result<(), CliError> {
+        if !self.load(desired) {
             return Ok(());
         }
-        self.fill_slots(wanted)?;
+        self.fill_slots(desired)?;
         // A device that a method has lost is opened anew once, without that method.
-        for _ in 0..=wanted.methods.len() {
-            match self.shoot(wanted)? {
-                Ok(shot) => {
-                    (self.tell)(Event::Frame(Box::new(shot)));
+        for _ in 0..=desired.methods.len() {
+            match self.take_snapshot(desired)? {
+                Ok(snapshot) => {
+                    (self.tell)(Event::Frame(Box::new(snapshot)));
                     return Ok(());
                 }
                 Err(Lost) => self.reopen()?,
@@ -122,21 +122,21 @@ impl Worker {
     }
 
     /// Loads the scene, if it is another one; says whether there is one.
-    fn load(&mut self, wanted: &Wanted) -> bool {
+    fn load(&mut self, desired: &DesiredState) -> bool {
         if self
             .stage
             .as_ref()
-            .is_some_and(|stage| stage.name == wanted.scene)
+            .is_some_and(|stage| stage.name == desired.scene)
         {
             return true;
         }
-        if self.failed_scene.as_ref() == Some(&wanted.scene) {
+        if self.failed_scene.as_ref() == Some(&desired.scene) {
             return false;
         }
-        let args = if self.scene_args.scene == wanted.scene {
+        let args = if self.scene_args.scene == desired.scene {
             self.scene_args.clone()
         } else {
-            SceneArgs::new(&wanted.scene)
+            SceneArgs::new(&desired.scene)
         };
         match SceneSelection::load(&args) {
             Ok(SceneSelection { scene, views }) => {
@@ -149,11 +149,11 @@ impl Worker {
                     .collect();
                 all.extend(others);
                 let loaded = Loaded { scene, views: all };
-                (self.tell)(Event::Scene(wanted.scene.clone(), Ok(loaded.clone())));
+                (self.tell)(Event::Scene(desired.scene.clone(), Ok(loaded.clone())));
                 self.slots.iter_mut().for_each(Slot::forget_device);
                 self.failed_scene = None;
                 self.stage = Some(Stage {
-                    name: wanted.scene.clone(),
+                    name: desired.scene.clone(),
                     provider: SceneProvider::new(loaded.scene.clone()),
                     loaded,
                     primitives: None,
@@ -161,8 +161,8 @@ impl Worker {
                 true
             }
             Err(error) => {
-                self.failed_scene = Some(wanted.scene.clone());
-                let event = Event::Scene(wanted.scene.clone(), Err(with_causes(&error)));
+                self.failed_scene = Some(desired.scene.clone());
+                let event = Event::Scene(desired.scene.clone(), Err(with_causes(&error)));
                 (self.tell)(event);
                 false
             }
@@ -170,9 +170,9 @@ impl Worker {
     }
 
     /// A slot for each method; the device gets the features that they can make use of.
-    fn fill_slots(&mut self, wanted: &Wanted) -> Result<(), CliError> {
+    fn fill_slots(&mut self, desired: &DesiredState) -> Result<(), CliError> {
         let mut before = std::mem::take(&mut self.slots);
-        for method in &wanted.methods {
+        for method in &desired.methods {
             let known = before.iter().position(|slot| slot.name() == method.name);
             self.slots.push(match known {
                 Some(known) => before.swap_remove(known),
@@ -207,36 +207,39 @@ impl Worker {
         Ok(())
     }
 
-    fn shoot(&mut self, wanted: &Wanted) -> Result<Result<Shot, Lost>, CliError> {
+    fn take_snapshot(
+        &mut self,
+        desired: &DesiredState,
+    ) -> Result<Result<FrameSnapshot, Lost>, CliError> {
         let Some(stage) = &mut self.stage else {
             return Err(CliError::Input("there is no scene".into()));
         };
-        let view = wanted.view.as_ref().or(stage.loaded.views.first());
+        let view = desired.view.as_ref().or(stage.loaded.views.first());
         let Some(view) = view.cloned() else {
             return Err(CliError::Input(format!("{} has no view", stage.name)));
         };
         view.check().map_err(CliError::Input)?;
-        stage.provider.set_view(&view, wanted.size);
-        let camera = view.camera(wanted.size);
-        let primitives = stage.primitives(&self.gpu, &*self.sources, wanted.size)?;
+        stage.provider.set_view(&view, desired.size);
+        let camera = view.camera(desired.size);
+        let primitives = stage.primitives(&self.gpu, &*self.sources, desired.size)?;
         let light = stage.provider.light();
         let facing = stage.facing(&camera, &primitives)?;
         let how = How {
-            size: wanted.size,
+            size: desired.size,
             timing: self.timing,
-            all_passes: wanted.all_passes,
+            all_passes: desired.all_passes,
             seconds: self.began.elapsed().as_secs_f32(),
             planes: ClipPlanes::new(&view),
         };
         let mut methods = Vec::new();
-        for (slot, method) in self.slots.iter_mut().zip(&wanted.methods) {
-            match slot.shoot(&self.gpu, &mut stage.provider, method, &how) {
-                Ok(shot) => methods.push(shot),
+        for (slot, method) in self.slots.iter_mut().zip(&desired.methods) {
+            match slot.take_snapshot(&self.gpu, &mut stage.provider, method, &how) {
+                Ok(snapshot) => methods.push(snapshot),
                 Err(lost) => return Ok(Err(lost)),
             }
         }
-        Ok(Ok(Shot {
-            wanted: wanted.clone(),
+        Ok(Ok(FrameSnapshot {
+            desired: desired.clone(),
             camera,
             light,
             light_number: stage.provider.light_number(),
@@ -282,7 +285,7 @@ impl Stage {
         &self,
         camera: &Camera,
         primitives: &[u32],
-    ) -> Result<skiagraph_reference::Reference, CliError> {
+    ) -> Result<skiagraph_reference::GroundTruthPixels, CliError> {
         let (mesh, light) = (&self.loaded.scene.mesh, self.provider.light());
         unshadowed(mesh, camera, &light, primitives, Progress::default())
             .map_err(|error| CliError::Input(error.to_string()))

@@ -69,7 +69,7 @@ impl GpuPass {
             let uniform = uniform.and_then(|made| made.params[index].clone());
             let made_step = || match before {
                 Some(made) => made.pipelines[index].clone(),
-                None => pipelines.of(device, &pass.name, (index, step)),
+                None => pipelines.get_or_make(device, &pass.name, (index, step)),
             };
             let pipeline = scoped(device, &pass.name, made_step).map_err(refused)?;
             made.push(pipeline);

@@ -48,7 +48,7 @@ impl Pipelines {
     }
 
     /// The pipeline of a pass's step at `index`; copies and clears have none.
-    pub fn of(
+    pub fn get_or_make(
         &mut self,
         device: &wgpu::Device,
         label: &str,

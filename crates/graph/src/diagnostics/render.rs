@@ -60,7 +60,7 @@ impl<'a> Report<'a> {
             .labels
             .first()
             .map(|label| label.span.file.clone());
-        let mut report = Self::of_file(diagnostic, diagnostic.message.clone(), first.as_ref());
+        let mut report = Self::from_file(diagnostic, diagnostic.message.clone(), first.as_ref());
         let mut files: Vec<_> = diagnostic
             .labels
             .iter()
@@ -72,7 +72,7 @@ impl<'a> Report<'a> {
             .into_iter()
             .filter(|file| Some(file) != first.as_ref())
         {
-            let note = Self::of_file(diagnostic, format!("and in {}", file.name), Some(&file));
+            let note = Self::from_file(diagnostic, format!("and in {}", file.name), Some(&file));
             report.related.push(Self {
                 is_note: true,
                 ..note
@@ -81,7 +81,11 @@ impl<'a> Report<'a> {
         report
     }
 
-    fn of_file(diagnostic: &'a Diagnostic, mut message: String, file: Option<&SourceFile>) -> Self {
+    fn from_file(
+        diagnostic: &'a Diagnostic,
+        mut message: String,
+        file: Option<&SourceFile>,
+    ) -> Self {
         let labels = diagnostic.labels.iter();
         let mut labels: Vec<&Label> = labels
             .filter(|label| Some(&label.span.file) == file)

@@ -580,12 +580,11 @@ impl LinkError {
             Self::Unsupported { span, .. } => diagnostic.at(span, ""),
             Self::ParamsUniform { what, size, span } => diagnostic
                 .at(span, format!("{size} bytes"))
-                .help(match what.contains("large") {
-                    true => "put what is large into a buffer",
-                    false => {
-                        "write `struct Params { … }` with the params that the shader reads, \
-                              and `var<uniform> params: Params;`"
-                    }
+                .help(if what.contains("large") {
+                    "put what is large into a buffer"
+                } else {
+                    "write `struct Params { … }` with the params that the shader reads, \
+                     and `var<uniform> params: Params;`"
                 }),
             Self::UnknownGlobal {
                 global,

@@ -44,7 +44,7 @@ pub(crate) struct Order {
 impl Order {
     /// The passes whose versions of a part of a resource are final.
     pub fn final_writers(&self, target: &Target) -> BTreeSet<PassId> {
-        let parts = self.subresources.of(target.id, &target.part);
+        let parts = self.subresources.within(target.id, &target.part);
         parts
             .filter_map(|part| self.last.get(&(target.id, part)).copied())
             .collect()
@@ -98,7 +98,7 @@ fn walk<'p>(
             let has_content = resource.keep
                 || resource.origin != Origin::Own
                 || matches!(resource.kind, ResourceKind::Sampler(_));
-            for part in subresources.of(access.resource, &access.part) {
+            for part in subresources.within(access.resource, &access.part) {
                 let state = states.entry((access.resource, part)).or_default();
                 let mut edge = |from: PassId, hazard| {
                     if from != index {

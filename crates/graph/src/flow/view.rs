@@ -102,7 +102,7 @@ impl Subresources {
     }
 
     /// The mips, stretches of layers and aspects of a part.
-    pub fn of(
+    pub fn within(
         &self,
         id: ResourceId,
         part: &SubresourceRange,

@@ -456,13 +456,14 @@ impl<'a> Builder<'a, '_> {
                     | (Material::Buffer(_), ResourceKind::Buffer(_))
                     | (Material::Sampler(_), ResourceKind::Sampler(_))
             );
-            match fits {
-                true => Ok(target),
-                false => Err(self.reports.report(InterfaceError::BoundOutput {
+            if fits {
+                Ok(target)
+            } else {
+                Err(self.reports.report(InterfaceError::BoundOutput {
                     name,
                     why: format!("this is {}", found.describe()),
                     declared: material.name().span.clone(),
-                })),
+                }))
             }
         }))
     }

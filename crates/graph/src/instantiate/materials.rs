@@ -389,14 +389,15 @@ impl SymbolTable<'_> {
             .into_iter()
             .filter(|count| features.flags.sample_count_supported(*count));
         let known: Vec<u32> = known.collect();
-        match known.contains(&texture.samples) {
-            true => Ok(()),
-            false => reports.unsupported(SizeError::Samples {
+        if known.contains(&texture.samples) {
+            Ok(())
+        } else {
+            reports.unsupported(SizeError::Samples {
                 name,
                 format,
                 samples: texture.samples,
                 known,
-            }),
+            })
         }
     }
 }

@@ -448,13 +448,14 @@ impl Linker<'_, '_> {
         let fits = |start: u32, length: u32, whole: u32| {
             length > 0 && start.checked_add(length).is_some_and(|end| end <= whole)
         };
-        match fits(x, width, whole[0]) && fits(y, height, whole[1]) {
-            true => Ok(()),
-            false => Err(self.report(LinkError::AreaOutside {
+        if fits(x, width, whole[0]) && fits(y, height, whole[1]) {
+            Ok(())
+        } else {
+            Err(self.report(LinkError::AreaOutside {
                 pass: pass.name.clone(),
                 area: [x, y, width, height],
                 whole,
-            })),
+            }))
         }
     }
 }

@@ -79,24 +79,26 @@ impl Linker<'_, '_> {
     fn stage_may_write(&mut self, global: &Global) -> Result<(), ErrorGuaranteed> {
         let needed = wgt::Features::VERTEX_WRITABLE_STORAGE;
         let has = self.symbols.request.features.contains(needed);
-        match global.stages.contains(wgt::ShaderStages::VERTEX) && !has {
-            false => Ok(()),
-            true => self.reports.unsupported(LinkError::VertexWrites {
+        if global.stages.contains(wgt::ShaderStages::VERTEX) && !has {
+            self.reports.unsupported(LinkError::VertexWrites {
                 global: global.name.clone(),
                 span: global.span.clone(),
-            }),
+            })
+        } else {
+            Ok(())
         }
     }
 
     /// Not every device queries rays.
     fn ray_query(&mut self, global: &Global, pass: &LinkedPass) -> Result<(), ErrorGuaranteed> {
         let needed = wgt::Features::EXPERIMENTAL_RAY_QUERY;
-        match self.symbols.request.features.contains(needed) {
-            true => Ok(()),
-            false => self.reports.unsupported(LinkError::RayQuery {
+        if self.symbols.request.features.contains(needed) {
+            Ok(())
+        } else {
+            self.reports.unsupported(LinkError::RayQuery {
                 pass: pass.name.clone(),
                 span: global.span.clone(),
-            }),
+            })
         }
     }
 

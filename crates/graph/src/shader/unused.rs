@@ -26,7 +26,7 @@ struct Words<'t> {
 }
 
 impl<'t> Words<'t> {
-    fn of(text: &'t str) -> Self {
+    fn new(text: &'t str) -> Self {
         let mut words = Self::default();
         let (mut at, mut depth, mut before) = (0, 0usize, "");
         // Inside `<…>` behind `var`.
@@ -68,7 +68,7 @@ pub(crate) struct UnusedFinder<'s> {
 impl<'s> UnusedFinder<'s> {
     /// What nothing in a shader uses: imports of all files, params and globals that its own file
     /// declares. `constants` of it are named by the document.
-    pub fn of(&mut self, shader: &'s Shader, constants: &BTreeSet<&str>) -> Vec<Unused> {
+    pub fn find(&mut self, shader: &'s Shader, constants: &BTreeSet<&str>) -> Vec<Unused> {
         let mut unused = self.imports(&shader.source, constants);
         unused.extend(shader.unused_params());
         unused.extend(shader.unused_globals());
@@ -84,7 +84,7 @@ impl<'s> UnusedFinder<'s> {
             .collect();
         for (name, file) in &files {
             let words = self.words.entry(name);
-            words.or_insert_with(|| Words::of(&file.text));
+            words.or_insert_with(|| Words::new(&file.text));
         }
         let words = &self.words;
         let is_used = |line: &ImportLine| {

@@ -28,11 +28,12 @@ fn every_mistake_has_its_text() {
     };
     let mut right = Vec::new();
     for (name, found) in all() {
-        match found.is_empty() {
-            true => right.push(name),
-            false => settings().bind(|| {
+        if found.is_empty() {
+            right.push(name);
+        } else {
+            settings().bind(|| {
                 insta::assert_snapshot!(name.as_str(), diagnostics::render(&found, false));
-            }),
+            });
         }
     }
     assert!(

@@ -16,7 +16,7 @@ fn a_square_throws_a_square_shadow() {
     let mut mesh = floor();
     add_rectangle(&mut mesh, [-0.9, 0.9], 2.0, [-0.91, 0.9]);
     for mode in MODES {
-        let reference = render(
+        let truth = render(
             &mesh,
             &from_above(10.0, [200, 200]),
             light(2.0, -1.0, 0.0),
@@ -29,9 +29,9 @@ fn a_square_throws_a_square_shadow() {
             lit: 39_676,
             shadow: 324,
         };
-        assert_eq!(counts(&reference).pixels, pixels, "{mode}");
+        assert_eq!(counts(&truth).pixels, pixels, "{mode}");
         let at = |x: f64, z: f64| {
-            reference.classes[((x + 10.0) * 10.0) as usize + 200 * ((z + 10.0) * 10.0) as usize]
+            truth.classes[((x + 10.0) * 10.0) as usize + 200 * ((z + 10.0) * 10.0) as usize]
         };
         assert_eq!(at(3.15, -0.85), Class::Shadow);
         assert_eq!(at(3.05, -0.85), Class::Lit);
@@ -39,7 +39,7 @@ fn a_square_throws_a_square_shadow() {
         assert_eq!(at(4.85, 0.95), Class::Lit);
         // The scene is flat, so n · l is the same everywhere: 1 / √5.
         assert!(
-            reference
+            truth
                 .n_dot_l
                 .iter()
                 .all(|n_dot_l| (n_dot_l - 0.2f32.sqrt()).abs() < 1e-6)
@@ -56,14 +56,14 @@ fn casters_are_two_sided_and_light_may_run_along_an_axis() {
         let x = if back { [0.5, -0.5] } else { [-0.5, 0.5] };
         add_rectangle(&mut mesh, x, 2.0, [-0.5, 0.5]);
         for mode in MODES {
-            let reference = render(
+            let truth = render(
                 &mesh,
                 &from_above(1.0, [100, 100]),
                 light(0.0, -3.0, 0.0),
                 mode,
             );
-            assert_eq!(counts(&reference).pixels.shadow, 2500);
-            assert_eq!(counts(&reference).pixels.lit, 7500);
+            assert_eq!(counts(&truth).pixels.shadow, 2500);
+            assert_eq!(counts(&truth).pixels.lit, 7500);
         }
     }
 }
@@ -85,47 +85,43 @@ fn casters_without_area_throw_no_shadow() {
         &mut mesh,
         [[-9.0, 2.0, 0.0], [9.0, 2.0, 0.0], [0.0, 3.0, 0.0]],
     );
-    let reference = render(
+    let truth = render(
         &mesh,
         &from_above(1.0, [64, 64]),
         light(0.0, -1.0, 0.0),
         OracleMode::Exact,
     );
-    assert_eq!(counts(&reference).pixels.lit, 64 * 64);
+    assert_eq!(counts(&truth).pixels.lit, 64 * 64);
 }
 
 #[test]
 fn light_along_a_surface_does_not_face_it() {
     // N · L = 0 exactly: facing away by definition, and indeterminate, for an ulp would turn it.
-    let reference = render(
+    let truth = render(
         &floor(),
         &from_above(1.0, [16, 16]),
         light(1.0, 0.0, 0.0),
         OracleMode::Exact,
     );
-    assert_eq!(counts(&reference).pixels.facing_away, 256);
-    assert_eq!(
-        counts(&reference).band,
-        0,
-        "only pixels facing the light count"
-    );
+    assert_eq!(counts(&truth).pixels.facing_away, 256);
+    assert_eq!(counts(&truth).band, 0, "only pixels facing the light count");
     assert!(
-        reference
+        truth
             .indeterminate
             .iter()
             .all(|&indeterminate| indeterminate)
     );
     // A thousandth of a degree decides.
     for (y, class) in [(-2e-5, Class::Lit), (2e-5, Class::FacingAway)] {
-        let reference = render(
+        let truth = render(
             &floor(),
             &from_above(1.0, [16, 16]),
             light(1.0, y, 0.0),
             OracleMode::Exact,
         );
-        assert!(reference.classes.iter().all(|&c| c == class));
+        assert!(truth.classes.iter().all(|&c| c == class));
         assert!(
-            reference
+            truth
                 .indeterminate
                 .iter()
                 .all(|&indeterminate| !indeterminate)
@@ -149,14 +145,14 @@ fn the_mode_decides_what_a_receiver_shades_itself_with() {
     let oracle = Oracle::new(&mesh);
     let camera = from_above(1.0, [8, 8]);
     let shade = |mode| {
-        let reference = oracle.shade(
+        let truth = oracle.shade(
             &camera,
             light(0.0, -1.0, 0.0),
             &[0; 64],
             mode,
             Progress::default(),
         );
-        counts(&reference.expect("primitive 0 exists")).pixels
+        counts(&truth.expect("primitive 0 exists")).pixels
     };
     assert_eq!(shade(OracleMode::Exact).shadow, 64);
     assert_eq!(shade(OracleMode::Offset(0.005)).shadow, 64);
@@ -173,16 +169,16 @@ fn a_primitive_seen_edge_on_is_indeterminate() {
     let oracle = Oracle::new(&mesh);
     // An odd width puts the middle column's rays exactly into the plane of the wall.
     let camera = from_above(1.0, [9, 9]);
-    let reference = oracle.shade(
+    let truth = oracle.shade(
         &camera,
         light(1.0, -1.0, 0.0),
         &[1; 81],
         OracleMode::Exact,
         Progress::default(),
     );
-    let reference = reference.expect("primitive 1 exists");
-    assert!((0..9).all(|row| reference.indeterminate[row * 9 + 4]));
-    assert!(reference.n_dot_l.iter().all(|n_dot_l| n_dot_l.is_finite()));
+    let truth = truth.expect("primitive 1 exists");
+    assert!((0..9).all(|row| truth.indeterminate[row * 9 + 4]));
+    assert!(truth.n_dot_l.iter().all(|n_dot_l| n_dot_l.is_finite()));
 }
 
 #[test]
@@ -314,18 +310,18 @@ fn progress_is_told_and_interruption_obeyed() {
 #[test]
 fn an_empty_mesh_is_background() {
     let mesh = Mesh::default();
-    let reference = render(
+    let truth = render(
         &mesh,
         &from_above(1.0, [5, 3]),
         light(0.0, -1.0, 0.0),
         OracleMode::Exact,
     );
     assert_eq!(
-        counts(&reference).pixels,
+        counts(&truth).pixels,
         PixelCounts {
             background: 15,
             ..PixelCounts::default()
         }
     );
-    assert_eq!(counts(&reference).wrong_share(), 0.0);
+    assert_eq!(counts(&truth).wrong_share(), 0.0);
 }

@@ -3,7 +3,7 @@
 use crate::common;
 use crate::common::scenes::{add_rectangle, floor, from_above};
 use glam::DVec3;
-use skiagraph_reference::{AreaVisibility, Class, Oracle, OracleMode, Progress, Reference};
+use skiagraph_reference::{AreaVisibility, Class, GroundTruthPixels, Oracle, OracleMode, Progress};
 use skiagraph_scene::{DirectionalLight, Mesh};
 
 const FROM_ABOVE: DVec3 = DVec3::NEG_Y;
@@ -13,7 +13,7 @@ fn area(
     (direction, angle_degrees): (DVec3, f64),
     samples: u32,
     mode: OracleMode,
-) -> (Reference, AreaVisibility) {
+) -> (GroundTruthPixels, AreaVisibility) {
     let light = DirectionalLight {
         direction,
         angle_degrees,
@@ -45,7 +45,7 @@ fn a_straight_edge_throws_the_penumbra_of_a_disk() {
     // distance 1; the light's rim at tan 20°.
     let radius = 20f64.to_radians().tan();
     for mode in [OracleMode::Exact, OracleMode::Offset(1e-9)] {
-        let (reference, area) = area(&half_plane(), (FROM_ABOVE, 40.0), 400, mode);
+        let (truth, area) = area(&half_plane(), (FROM_ABOVE, 40.0), 400, mode);
         assert_eq!(area.samples, 400);
         let (mut worst, mut penumbra, mut squares, mut pixels) = (0.0f64, 0, 0.0, 0);
         for (index, &share) in area.shares.iter().enumerate() {
@@ -60,14 +60,14 @@ fn a_straight_edge_throws_the_penumbra_of_a_disk() {
             worst = worst.max(error.abs());
             (squares, pixels) = (squares + error * error, pixels + 1);
             penumbra += u32::from(share > 0.0 && share < 1.0);
-            assert_eq!(reference.classes[index], Class::Lit);
+            assert_eq!(truth.classes[index], Class::Lit);
         }
         // Four columns of 80 pixels, a share of 1 elsewhere.
         assert!((240..=320).contains(&penumbra), "{penumbra}");
         assert!(worst < 0.03, "{worst}");
         // The standard error that it states is the one that it has, on the half of PFL where there
         // is one.
-        let [stated, greatest] = area.standard_error(&reference);
+        let [stated, greatest] = area.standard_error(&truth);
         let real = (squares / f64::from(pixels) * 0.5).sqrt();
         assert!((0.7..1.4).contains(&(stated / real)), "{stated} {real}");
         assert!(greatest < 0.05, "{greatest}");
@@ -77,13 +77,13 @@ fn a_straight_edge_throws_the_penumbra_of_a_disk() {
 #[test]
 fn more_samples_converge_and_the_same_ones_repeat() {
     let error = |samples| {
-        let (reference, area) = area(
+        let (truth, area) = area(
             &half_plane(),
             (FROM_ABOVE, 40.0),
             samples,
             OracleMode::Exact,
         );
-        area.standard_error(&reference)[0]
+        area.standard_error(&truth)[0]
     };
     let errors = [16, 64, 256, 1024].map(error);
     // Strata beat the square root: a quarter of the error of four times as many would be 1/N, half
@@ -143,10 +143,10 @@ fn a_receiver_within_the_lights_ball_asks_the_hierarchy() {
     let how = (OracleMode::Exact, 64);
     let light = skiagraph_scene::LightKind::Point(bulb);
     let answer = oracle.shade_area(&camera, light, &primitives, how, Progress::default());
-    let (reference, area) = answer.unwrap();
+    let (truth, area) = answer.unwrap();
     // From (-0.7, 0) the disk across (0.7, 2) is hidden from a fifth of its radius on.
     let near = 20 * 40 + 16;
-    assert_eq!(reference.classes[near], Class::Lit);
+    assert_eq!(truth.classes[near], Class::Lit);
     assert!(
         (left_of(0.2) - f64::from(area.shares[near])).abs() < 0.05,
         "{}",
@@ -156,13 +156,13 @@ fn a_receiver_within_the_lights_ball_asks_the_hierarchy() {
 
 #[test]
 fn what_faces_away_from_the_lights_centre_sees_none_of_it() {
-    let (reference, area) = area(&half_plane(), (DVec3::Y, 170.0), 16, OracleMode::Exact);
+    let (truth, area) = area(&half_plane(), (DVec3::Y, 170.0), 16, OracleMode::Exact);
     assert!(
-        reference
+        truth
             .classes
             .iter()
             .all(|class| *class == Class::FacingAway)
     );
     assert!(area.shares.iter().all(|share| *share == 0.0));
-    assert_eq!(area.standard_error(&reference), [0.0; 2]);
+    assert_eq!(area.standard_error(&truth), [0.0; 2]);
 }

@@ -3,7 +3,7 @@
 use crate::common::scenes::{add, add_rectangle, floor, from_above, light};
 use glam::Vec3;
 use skiagraph_reference::{
-    BlockerCounts, Oracle, OracleMode, Progress, Reference, Statistics, statistics::status,
+    BlockerCounts, GroundTruthPixels, Oracle, OracleMode, Progress, Statistics, statistics::status,
 };
 use skiagraph_scene::{Camera, DirectionalLight, Mesh};
 
@@ -39,7 +39,7 @@ fn judged(mesh: &Mesh, light: &DirectionalLight, mode: OracleMode, visibility: u
     let camera: Camera = from_above(10.0, VIEWPORT);
     let oracle = Oracle::new(mesh);
     let primitives = oracle.primary(&camera, Progress::default()).unwrap();
-    let reference: Reference = oracle
+    let truth: GroundTruthPixels = oracle
         .shade(&camera, light, &primitives, mode, Progress::default())
         .unwrap();
     let says = match visibility {
@@ -50,8 +50,8 @@ fn judged(mesh: &Mesh, light: &DirectionalLight, mode: OracleMode, visibility: u
         vec![visibility; primitives.len()],
         vec![says; primitives.len()],
     );
-    let counts = Statistics::judged(&visibility, &says, &reference).unwrap();
-    let pixels = Statistics::certain_wrong_pixels(&visibility, &says, &reference).unwrap();
+    let counts = Statistics::judged(&visibility, &says, &truth).unwrap();
+    let pixels = Statistics::certain_wrong_pixels(&visibility, &says, &truth).unwrap();
     assert_eq!(pixels.len() as u64, counts.wrong.certain);
     let blockers = oracle
         .blockers(&camera, light, &primitives, mode, &pixels)

@@ -4,7 +4,7 @@
 use crate::common::scenes::render;
 use glam::DVec3;
 use skiagraph_cases::{HardCase, Shows, cases};
-use skiagraph_reference::{Class, Oracle, OracleMode, Progress, Reference};
+use skiagraph_reference::{Class, GroundTruthPixels, Oracle, OracleMode, Progress};
 use skiagraph_scene::{Camera, Mesh, Scene};
 
 const VIEWPORTS: [[u32; 2]; 2] = [[96, 96], [61, 43]];
@@ -28,12 +28,12 @@ fn complaints(case: &HardCase, viewport: [u32; 2]) -> Vec<String> {
     let primitives = oracle
         .primary(&camera, Progress::default())
         .expect("nobody interrupts");
-    let reference = render(&mesh, &camera, light, OracleMode::Exact);
+    let truth = render(&mesh, &camera, light, OracleMode::Exact);
     let count =
         |wanted: &dyn Fn(usize) -> bool| (0..primitives.len()).filter(|&i| wanted(i)).count();
-    let facing = |i: usize| reference.classes[i].faces_light();
+    let facing = |i: usize| truth.classes[i].faces_light();
     let facing_light = count(&facing);
-    let indeterminate = count(&|i| facing(i) && reference.indeterminate[i]);
+    let indeterminate = count(&|i| facing(i) && truth.indeterminate[i]);
     let share = indeterminate as f64 / facing_light.max(1) as f64;
     let mut complaints = Vec::new();
     if share > case.indeterminate_cap {
@@ -42,7 +42,7 @@ fn complaints(case: &HardCase, viewport: [u32; 2]) -> Vec<String> {
             case.indeterminate_cap
         ));
     }
-    complaints.extend(unexpected(case, &reference));
+    complaints.extend(unexpected(case, &truth));
     if case.is_analytic() {
         let answer = |i: usize| case.lit(point(&mesh, primitives[i], &camera, i));
         let answered = count(&|i| facing(i) && answer(i).is_some());
@@ -50,13 +50,13 @@ fn complaints(case: &HardCase, viewport: [u32; 2]) -> Vec<String> {
             complaints.push(format!("{answered} of {facing_light} answered"));
         }
         let wrong = |i: usize| {
-            let said = reference.classes[i] == Class::Lit;
-            facing(i) && !reference.indeterminate[i] && answer(i).is_some_and(|lit| lit != said)
+            let said = truth.classes[i] == Class::Lit;
+            facing(i) && !truth.indeterminate[i] && answer(i).is_some_and(|lit| lit != said)
         };
         let wrongs: Vec<usize> = (0..primitives.len()).filter(|&i| wrong(i)).collect();
         if let Some(&first) = wrongs.first() {
             let at = point(&mesh, primitives[first], &camera, first);
-            let class = reference.classes[first];
+            let class = truth.classes[first];
             complaints.push(format!(
                 "{} wrong, the first at {at} of triangle {}: {class:?}",
                 wrongs.len(),
@@ -72,25 +72,19 @@ fn complaints(case: &HardCase, viewport: [u32; 2]) -> Vec<String> {
 }
 
 /// Whether the picture lacks what it should show: a fiftieth of its pixels, or none.
-fn unexpected(case: &HardCase, reference: &Reference) -> Option<String> {
-    let of = |class: Class| reference.classes.iter().filter(|&&c| c == class).count();
-    let (lit, shadow, enough) = (
-        of(Class::Lit),
-        of(Class::Shadow),
-        reference.classes.len() / 50,
-    );
+fn unexpected(case: &HardCase, truth: &GroundTruthPixels) -> Option<String> {
+    let of = |class: Class| truth.classes.iter().filter(|&&c| c == class).count();
+    let (lit, shadow, enough) = (of(Class::Lit), of(Class::Shadow), truth.classes.len() / 50);
     let right = match case.shows {
         Shows::Both => lit >= enough && shadow >= enough,
         // An indeterminate shadow may be none.
         Shows::LitOnly => {
-            let certain =
-                |i: usize| reference.classes[i] == Class::Shadow && !reference.indeterminate[i];
-            lit >= enough && !(0..reference.classes.len()).any(certain)
+            let certain = |i: usize| truth.classes[i] == Class::Shadow && !truth.indeterminate[i];
+            lit >= enough && !(0..truth.classes.len()).any(certain)
         }
         Shows::ShadowOnly => {
-            let certain =
-                |i: usize| reference.classes[i] == Class::Lit && !reference.indeterminate[i];
-            shadow >= enough && !(0..reference.classes.len()).any(certain)
+            let certain = |i: usize| truth.classes[i] == Class::Lit && !truth.indeterminate[i];
+            shadow >= enough && !(0..truth.classes.len()).any(certain)
         }
         Shows::Nothing => lit + shadow == 0,
     };

@@ -10,9 +10,9 @@ use skiagraph_reference::{Class, Oracle, OracleMode, Progress, Statistics};
 use skiagraph_scene::{Bvh, Mesh, View};
 
 /// The indeterminate pixels that face the light, by index.
-fn indeterminate(reference: &skiagraph_reference::Reference) -> Vec<usize> {
-    (0..reference.classes.len())
-        .filter(|&i| reference.indeterminate[i] && reference.classes[i].faces_light())
+fn indeterminate(truth: &skiagraph_reference::GroundTruthPixels) -> Vec<usize> {
+    (0..truth.classes.len())
+        .filter(|&i| truth.indeterminate[i] && truth.classes[i].faces_light())
         .collect()
 }
 
@@ -30,15 +30,15 @@ fn a_ray_through_a_casters_edge_is_indeterminate_and_one_a_hair_away_is_not() {
     ] {
         let mut mesh = floor();
         add_rectangle(&mut mesh, [edge, 3.0], 2.0, [-3.0, 3.0]);
-        let reference = render(&mesh, &camera, light(0.0, -1.0, 0.0), OracleMode::Exact);
+        let truth = render(&mesh, &camera, light(0.0, -1.0, 0.0), OracleMode::Exact);
         let expected: Vec<usize> = if is_indeterminate {
             (0..101).map(|row| row * 101 + 50).collect()
         } else {
             vec![]
         };
-        assert_eq!(indeterminate(&reference), expected, "edge at {edge}");
+        assert_eq!(indeterminate(&truth), expected, "edge at {edge}");
         assert!(
-            (0..101).all(|row| reference.classes[row * 101 + 50] == class),
+            (0..101).all(|row| truth.classes[row * 101 + 50] == class),
             "edge at {edge}"
         );
     }
@@ -62,13 +62,13 @@ fn an_edge_between_two_casters_is_determinate_unless_it_is_a_crack() {
         mesh
     };
     let down = light(0.0, -1.0, 0.0);
-    let reference = render(&joined, &camera, down, OracleMode::Exact);
-    assert_eq!(counts(&reference).pixels.shadow, 101 * 101);
-    assert_eq!(indeterminate(&reference), [0usize; 0]);
-    let reference = render(&abutting, &camera, down, OracleMode::Exact);
-    assert_eq!(counts(&reference).pixels.shadow, 101 * 101);
+    let truth = render(&joined, &camera, down, OracleMode::Exact);
+    assert_eq!(counts(&truth).pixels.shadow, 101 * 101);
+    assert_eq!(indeterminate(&truth), [0usize; 0]);
+    let truth = render(&abutting, &camera, down, OracleMode::Exact);
+    assert_eq!(counts(&truth).pixels.shadow, 101 * 101);
     assert_eq!(
-        indeterminate(&reference),
+        indeterminate(&truth),
         (0..101).map(|row| row * 101 + 50).collect::<Vec<_>>()
     );
 }
@@ -103,9 +103,9 @@ fn more_is_indeterminate_farther_from_the_origin() {
         }
         let mut camera = from_above(1.0, [100, 100]);
         camera.eye.x += f64::from(shift);
-        let reference = render(&mesh, &camera, light(0.0, -1.0, 0.0), OracleMode::Exact);
-        assert_eq!(counts(&reference).pixels.facing_light, 10_000);
-        indeterminate(&reference).len()
+        let truth = render(&mesh, &camera, light(0.0, -1.0, 0.0), OracleMode::Exact);
+        assert_eq!(counts(&truth).pixels.facing_light, 10_000);
+        indeterminate(&truth).len()
     };
     assert_eq!(width(0.0), 0);
     let far = width(1_048_576.0);
@@ -180,13 +180,13 @@ proptest! {
             OracleMode::Exact,
             OracleMode::Offset(1e-3 * f64::from(scale)),
         ] {
-            let reference = oracle
+            let truth = oracle
                 .shade(&camera, light, &primitives, mode, Progress::default())
                 .expect("valid ids");
             let (visibility, status) =
                 f32_shading::shade(&mesh, &bvh, &camera, light, &primitives, mode);
             let counts =
-                Statistics::judged(&visibility, &status, &reference).expect("valid values");
+                Statistics::judged(&visibility, &status, &truth).expect("valid values");
             prop_assert_eq!(counts.wrong.total, counts.wrong.in_band, "{:?}", counts);
         }
     }

@@ -6,7 +6,7 @@ use crate::common::{
 };
 use glam::DVec3;
 use proptest::prelude::*;
-use skiagraph_reference::{Class, Oracle, OracleMode, Progress, Reference, Statistics};
+use skiagraph_reference::{Class, GroundTruthPixels, Oracle, OracleMode, Progress, Statistics};
 use skiagraph_scene::{Bvh, Camera, LightKind, Mesh, PointLight, SpotLight};
 
 fn point(position: [f64; 3]) -> LightKind {
@@ -36,14 +36,11 @@ fn on_floor(camera: &Camera, pixel: usize) -> DVec3 {
 
 /// All pixels are of the class that their place on the floor should have, and only those within
 /// `near` of its change are indeterminate.
-fn expect(reference: &Reference, camera: &Camera, class: impl Fn(DVec3) -> (Class, f64)) {
-    for (pixel, found) in reference.classes.iter().enumerate() {
+fn expect(truth: &GroundTruthPixels, camera: &Camera, class: impl Fn(DVec3) -> (Class, f64)) {
+    for (pixel, found) in truth.classes.iter().enumerate() {
         let (expected, away) = class(on_floor(camera, pixel));
         assert_eq!(*found, expected, "pixel {pixel}");
-        assert!(
-            away < 1e-3 || !reference.indeterminate[pixel],
-            "pixel {pixel}"
-        );
+        assert!(away < 1e-3 || !truth.indeterminate[pixel], "pixel {pixel}");
     }
 }
 
@@ -54,8 +51,8 @@ fn a_shadow_spreads_away_from_a_point_light() {
     // Beyond the light, and no caster.
     add_rectangle(&mut mesh, [-9.0, 9.0], 4.5, [-9.0, 9.0]);
     let camera = from_above(1.5, [100, 100]);
-    let reference = render(&mesh, &camera, point([0.0, 4.0, 0.0]), OracleMode::Exact);
-    expect(&reference, &camera, |at| {
+    let truth = render(&mesh, &camera, point([0.0, 4.0, 0.0]), OracleMode::Exact);
+    expect(&truth, &camera, |at| {
         let inside = 1.0 - at.x.abs().max(at.z.abs());
         let class = if inside > 0.0 {
             Class::Shadow
@@ -70,8 +67,8 @@ fn a_shadow_spreads_away_from_a_point_light() {
 fn a_spot_light_ends_at_its_cone() {
     let camera = from_above(1.5, [100, 100]);
     let light = spot(DVec3::Y, DVec3::NEG_Y, 90.0);
-    let reference = render(&floor(), &camera, light, OracleMode::Exact);
-    expect(&reference, &camera, |at| {
+    let truth = render(&floor(), &camera, light, OracleMode::Exact);
+    expect(&truth, &camera, |at| {
         let inside = 1.0 - at.x.hypot(at.z);
         let class = if inside >= 0.0 {
             Class::Lit
@@ -93,8 +90,8 @@ fn a_surface_that_the_light_lies_on_shades_nobody() {
             [[-10.0, 0.0, -6.0], [0.0, 0.0, 10.0], [10.0, 0.0, -6.0]],
         );
         add_rectangle(&mut mesh, [-3.0, 3.0], ceiling, [-3.0, 3.0]);
-        let reference = render(&mesh, &camera, point([0.1, 2.0, 0.2]), OracleMode::Exact);
-        expect(&reference, &camera, |_| (class, 1.0));
+        let truth = render(&mesh, &camera, point([0.1, 2.0, 0.2]), OracleMode::Exact);
+        expect(&truth, &camera, |_| (class, 1.0));
     }
 }
 
@@ -165,13 +162,13 @@ proptest! {
         let oracle = Oracle::new(&mesh);
         let primitives = oracle.primary(&camera, Progress::default()).expect("nobody interrupts");
         let mode = OracleMode::Exact;
-        let reference = oracle.shade(&camera, light, &primitives, mode, Progress::default());
-        let reference = reference.expect("its own primitives");
+        let truth = oracle.shade(&camera, light, &primitives, mode, Progress::default());
+        let truth = truth.expect("its own primitives");
         let bvh = Bvh::build(&mesh);
         let (visibility, status) =
             f32_shading::shade(&mesh, &bvh, &camera, light, &primitives, mode);
         for pixel in 0..primitives.len() {
-            if reference.indeterminate[pixel] {
+            if truth.indeterminate[pixel] {
                 continue;
             }
             let said = match (status[pixel], visibility[pixel]) {
@@ -180,9 +177,9 @@ proptest! {
                 (_, 0) => Class::Shadow,
                 _ => Class::Lit,
             };
-            prop_assert_eq!(said, reference.classes[pixel], "pixel {}", pixel);
+            prop_assert_eq!(said, truth.classes[pixel], "pixel {}", pixel);
         }
-        let counts = Statistics::judged(&visibility, &status, &reference).expect("the contract's");
+        let counts = Statistics::judged(&visibility, &status, &truth).expect("valid values");
         // Of the few pixels that a cone near the floor lights, two may lie at its edge.
         let most = 0.2 * counts.pixels.facing_light as f64 + 2.0;
         // A light on a caster: whether that shades the floor hangs on the floor's own rounding.

@@ -1,4 +1,4 @@
-//! Tests of `crates/reference`, one module for each subject.
+//! Tests of `crates/truth`, one module for each subject.
 
 mod common;
 

@@ -3,7 +3,7 @@
 use crate::common::scenes::{add_rectangle, floor, from_above, light};
 use glam::DVec3;
 use skiagraph_reference::{
-    BACKGROUND, Oracle, OracleMode, Progress, RightAnswer, Shimmer,
+    BACKGROUND, GroundTruth, Oracle, OracleMode, Progress, Shimmer,
     shimmer::{Seen, same_receivers, shimmer},
 };
 use skiagraph_scene::{Camera, Mesh};
@@ -13,7 +13,7 @@ const VIEWPORT: [u32; 2] = [100, 100];
 struct Frame {
     camera: Camera,
     primitives: Vec<u32>,
-    right: RightAnswer,
+    ground_truth: GroundTruth,
 }
 
 /// A sheet over the floor, seen from above by an eye moved by `pixels` to the right.
@@ -34,8 +34,8 @@ fn frame(mesh: &Mesh, pixels: f64) -> Frame {
     Frame {
         camera,
         primitives,
-        right: RightAnswer {
-            reference: shaded.unwrap(),
+        ground_truth: GroundTruth {
+            pixels: shaded.unwrap(),
             area: None,
         },
     }
@@ -55,7 +55,7 @@ fn compared(mesh: &Mesh, [before, now]: [&Frame; 2], answers: [&[f32]; 2]) -> Sh
         primitives: &ids,
     };
     let same = same_receivers(before_seen, now_seen, Progress::default()).unwrap();
-    shimmer(&same, answers, [&before.right, &now.right]).unwrap()
+    shimmer(&same, answers, [&before.ground_truth, &now.ground_truth]).unwrap()
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn an_exact_method_does_not_shimmer_and_a_picture_that_sticks_to_the_screen_does
     let mut mesh = floor();
     add_rectangle(&mut mesh, [-1.01, 1.03], 5.0, [-1.02, 1.04]);
     let (before, now) = (frame(&mesh, 0.0), frame(&mesh, 3.0));
-    let right = [before.right.shares(), now.right.shares()];
+    let right = [before.ground_truth.shares(), now.ground_truth.shares()];
     let exact = compared(&mesh, [&before, &now], [&right[0], &right[1]]);
     assert_eq!(exact.changed, 0);
     // All of the floor that both see but the shadow's and the sheet's borders.

@@ -5,7 +5,7 @@
 //! relative to the workspace or absolute.
 
 use crate::common::f32_shading;
-use skiagraph_reference::{Oracle, OracleMode, Progress, Reference, Statistics};
+use skiagraph_reference::{GroundTruthPixels, Oracle, OracleMode, Progress, Statistics};
 use skiagraph_scene::{Bvh, Camera, Scene, SceneLibrary, SceneRequest, View};
 use std::{path::Path, sync::OnceLock, time::Instant};
 
@@ -72,7 +72,7 @@ fn shade(
     camera: &Camera,
     primitives: &[u32],
     mode: OracleMode,
-) -> Reference {
+) -> GroundTruthPixels {
     oracle
         .shade(camera, scene.light(), primitives, mode, Progress::default())
         .expect("the mesh's own primitives")
@@ -88,7 +88,7 @@ fn f32_errs_in_few_indeterminate_pixels_only(scene: &Scene, mode: OracleMode) {
         let primitives = oracle
             .primary(&snapped(&camera), Progress::default())
             .expect("nobody interrupts");
-        let reference = shade(&oracle, scene, &camera, &primitives, mode);
+        let truth = shade(&oracle, scene, &camera, &primitives, mode);
         let (visibility, status) = f32_shading::shade(
             &scene.mesh,
             &bvh,
@@ -97,7 +97,7 @@ fn f32_errs_in_few_indeterminate_pixels_only(scene: &Scene, mode: OracleMode) {
             &primitives,
             mode,
         );
-        let counts = Statistics::judged(&visibility, &status, &reference).expect("valid values");
+        let counts = Statistics::judged(&visibility, &status, &truth).expect("valid values");
         let (name, share) = (&view.name, 100.0 * counts.indeterminate_share());
         println!("{name} {mode}: {counts:?}, indeterminate {share:.4} %");
         assert_eq!(counts.wrong.total, counts.wrong.in_band, "{name}");
@@ -128,11 +128,10 @@ fn sponza_has_the_dissertations_counts() {
         println!("{viewport:?} primary rays: {:?}", begin.elapsed());
         for mode in [OracleMode::Offset(0.03), OracleMode::Exact] {
             let begin = Instant::now();
-            let reference = shade(&oracle, scene, &camera, &primitives, mode);
+            let truth = shade(&oracle, scene, &camera, &primitives, mode);
             let elapsed = begin.elapsed();
             let counts =
-                Statistics::judged(&reference.visibility(), &reference.status(), &reference)
-                    .expect("its own");
+                Statistics::judged(&truth.visibility(), &truth.status(), &truth).expect("its own");
             let (pixels, share) = (counts.pixels, 100.0 * counts.indeterminate_share());
             println!(
                 "{viewport:?} {mode}: {pixels:?}, indeterminate {} ({share:.4} %), {elapsed:?}",

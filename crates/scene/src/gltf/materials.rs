@@ -197,5 +197,5 @@ fn mask(texture: Option<&Texture>, alpha: f32, cutoff: f32) -> Result<Mask, Stri
     };
     let texels = texture.texels()?;
     let opacity = |texel: [u8; 4]| f32::from(texel[3]) / 255.0 * alpha;
-    Ok(Mask::of_texels(texels, texture.wrap, opacity, cutoff))
+    Ok(Mask::from_texels(texels, texture.wrap, opacity, cutoff))
 }

@@ -297,7 +297,7 @@ impl Reading<'_> {
                 };
                 let own = opacity_channel(texels);
                 let at = |texel| (base + gain * level(channel, own, texel)) * opacity;
-                let mask = Arc::new(Mask::of_texels(texels, [wrap; 2], at, CUTOFF));
+                let mask = Arc::new(Mask::from_texels(texels, [wrap; 2], at, CUTOFF));
                 self.masks.insert(key, mask.clone());
                 mask
             }

@@ -82,7 +82,7 @@ impl Kind {
 }
 
 /// A file that could go in.
-struct Wanted {
+struct EmbedCandidate {
     source: usize,
     run: usize,
     kind: Kind,
@@ -97,10 +97,10 @@ impl Pictures {
     pub fn embed(sources: &[Source], room: usize) -> Self {
         let mut pictures = Self::default();
         let mut room = room;
-        let wanted: Vec<Wanted> = wanted(sources);
+        let candidates: Vec<EmbedCandidate> = candidates(sources);
         let mut left_out: BTreeMap<&str, usize> = BTreeMap::new();
         for kind in ORDER {
-            for file in wanted.iter().filter(|wanted| wanted.kind == kind) {
+            for file in candidates.iter().filter(|candidate| candidate.kind == kind) {
                 let source = &sources[file.source];
                 let path = source.folder_of(file.run).join(&file.name);
                 let Ok(length) = fs::metadata(&path).map(|found| found.len() as usize) else {
@@ -134,7 +134,7 @@ impl Pictures {
     }
 
     /// The newest file, where it belongs.
-    fn place(&mut self, source: &Source, of: &Wanted) {
+    fn place(&mut self, source: &Source, of: &EmbedCandidate) {
         let file = self.files.len() - 1;
         let run = &source.results.runs[of.run];
         if of.kind == Kind::Graph {
@@ -177,8 +177,8 @@ impl Pictures {
     }
 }
 
-fn wanted(sources: &[Source]) -> Vec<Wanted> {
-    let mut all: Vec<Wanted> = Vec::new();
+fn candidates(sources: &[Source]) -> Vec<EmbedCandidate> {
+    let mut all: Vec<EmbedCandidate> = Vec::new();
     for (index, source) in sources.iter().enumerate() {
         for (number, run) in source.results.runs.iter().enumerate() {
             let measured = run.measured.as_ref();
@@ -187,9 +187,10 @@ fn wanted(sources: &[Source]) -> Vec<Wanted> {
             };
             for (kind, name) in names(run, images) {
                 let is_shared = matches!(kind, Kind::Reference | Kind::Graph);
-                let is_known = |known: &Wanted| (known.source, &known.name) == (index, &name);
+                let is_known =
+                    |known: &EmbedCandidate| (known.source, &known.name) == (index, &name);
                 if !is_shared || !all.iter().any(is_known) {
-                    all.push(Wanted {
+                    all.push(EmbedCandidate {
                         source: index,
                         run: number,
                         kind,

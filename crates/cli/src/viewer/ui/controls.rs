@@ -25,13 +25,13 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer) {
     ui.separator();
     running(ui, viewer);
     let mut index = 0;
-    while index < viewer.wanted.methods.len() {
+    while index < viewer.desired.methods.len() {
         ui.separator();
         method(ui, viewer, index);
         index += 1;
     }
-    if viewer.wanted.methods.len() == 1 && ui.button("Method beside it").clicked() {
-        let first = viewer.wanted.methods[0].name.clone();
+    if viewer.desired.methods.len() == 1 && ui.button("Method beside it").clicked() {
+        let first = viewer.desired.methods[0].name.clone();
         let mut others = viewer.choices.methods.iter();
         let other = others.find(|name| *name == "rt" && **name != first);
         let other = other.or(viewer.choices.methods.first()).cloned();
@@ -55,17 +55,17 @@ pub fn names(ui: &mut Ui, label: &str, now: &str, all: &[String]) -> Option<Stri
 }
 
 fn scene(ui: &mut Ui, viewer: &mut Viewer) {
-    let scene = viewer.wanted.scene.clone();
+    let scene = viewer.desired.scene.clone();
     if let Some(name) = names(ui, "scene", &scene, &viewer.choices.scenes) {
         viewer.choose_scene(&name);
     }
     let views = viewer.loaded.iter().flat_map(|loaded| &loaded.views);
     let views: Vec<String> = views.map(|view| view.name.clone()).collect();
-    let now = viewer.wanted.view.as_ref().map(|view| view.name.clone());
+    let now = viewer.desired.view.as_ref().map(|view| view.name.clone());
     if let Some(name) = names(ui, "view", &now.unwrap_or_default(), &views) {
         viewer.choose_view(&name);
     }
-    let Some(view) = viewer.wanted.view.clone() else {
+    let Some(view) = viewer.desired.view.clone() else {
         return;
     };
     ui.horizontal(|ui| {
@@ -87,7 +87,7 @@ fn scene(ui: &mut Ui, viewer: &mut Viewer) {
             .button("Save")
             .on_hover_text("the scene file once more, with this view");
         if save.clicked() {
-            viewer.notice = Some(saved(&viewer.wanted.scene, &view));
+            viewer.notice = Some(saved(&viewer.desired.scene, &view));
         }
     });
 }
@@ -130,7 +130,7 @@ fn saved(scene: &str, view: &View) -> (String, bool) {
 }
 
 fn running(ui: &mut Ui, viewer: &mut Viewer) {
-    let now = viewer.wanted.size;
+    let now = viewer.desired.size;
     let mut sizes = SIZES.to_vec();
     if !sizes.contains(&now) {
         sizes.insert(0, now);
@@ -138,21 +138,21 @@ fn running(ui: &mut Ui, viewer: &mut Viewer) {
     let named: Vec<String> = sizes.iter().map(|it| size(*it)).collect();
     if let Some(name) = names(ui, "pixels", &size(now), &named) {
         let chosen = named.iter().position(|other| *other == name);
-        viewer.wanted.size = chosen.map_or(now, |at| sizes[at]);
+        viewer.desired.size = chosen.map_or(now, |at| sizes[at]);
     }
     ui.checkbox(&mut viewer.keep_running, "run on and on")
         .on_hover_text("frame after frame, though nothing changes: for times");
     if viewer.keep_running && viewer.is_current() {
-        viewer.wanted.frame += 1;
+        viewer.desired.frame += 1;
     }
-    ui.checkbox(&mut viewer.wanted.all_passes, "run every pass")
+    ui.checkbox(&mut viewer.desired.all_passes, "run every pass")
         .on_hover_text("also those that would keep what they have made");
     ui.checkbox(&mut viewer.is_judged, "reference")
         .on_hover_text("trace it on the CPU whenever the picture stands");
 }
 
 fn method(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
-    let name = viewer.wanted.methods[index].name.clone();
+    let name = viewer.desired.methods[index].name.clone();
     let label = ["method", "beside it"][index.min(1)];
     ui.push_id(index, |ui| {
         ui.horizontal(|ui| {

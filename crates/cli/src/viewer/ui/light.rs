@@ -34,7 +34,7 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer) {
     if kind == before {
         return;
     }
-    if let Some(mut view) = viewer.wanted.view.clone() {
+    if let Some(mut view) = viewer.desired.view.clone() {
         view.light = Some(Light { name, kind });
         viewer.look_from(view);
     }

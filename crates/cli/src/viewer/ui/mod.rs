@@ -18,7 +18,7 @@ pub struct Surface {
 
 /// Draws everything, and does what the input says.
 pub fn show(ui: &mut Ui, viewer: &mut Viewer, surface: &mut Surface) {
-    viewer.turn();
+    viewer.update();
     Panel::left("controls").default_size(300.0).show(ui, |ui| {
         ScrollArea::vertical().show(ui, |ui| controls::show(ui, viewer));
     });
@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer, surface: &mut Surface) {
         .default_size(170.0)
         .show(ui, |ui| passes::show(ui, viewer));
     CentralPanel::default().show(ui, |ui| {
-        let count = viewer.wanted.methods.len();
+        let count = viewer.desired.methods.len();
         ui.columns(count, |columns| {
             for (index, column) in columns.iter_mut().enumerate() {
                 picture::show(column, viewer, index, &mut surface.pictures[index]);

@@ -12,7 +12,7 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
     if params.is_empty() {
         return;
     }
-    let set = viewer.wanted.methods[index].params.clone();
+    let set = viewer.desired.methods[index].params.clone();
     for param in &params {
         let name = &param.name.value;
         // What was set and does not run yet stays under the pointer.

@@ -1,15 +1,15 @@
 //! The panel below: what each pass took, what memory there is, the times of the last frames.
 
+use crate::viewer::desired_state::MethodSnapshot;
 use crate::viewer::drawn::Show;
 use crate::viewer::state::{HISTORY, Viewer};
-use crate::viewer::wanted::MethodShot;
 use crate::wording::{bytes, thousands};
 use egui::{Grid, Pos2, RichText, ScrollArea, Sense, Shape, Stroke, Ui, Vec2};
 use skiagraph_gpu::PassStatistics;
 use skiagraph_graph::Capture;
 
 pub fn show(ui: &mut Ui, viewer: &mut Viewer) {
-    ui.columns(viewer.wanted.methods.len(), |columns| {
+    ui.columns(viewer.desired.methods.len(), |columns| {
         for (index, column) in columns.iter_mut().enumerate() {
             one(column, viewer, index);
         }
@@ -64,7 +64,7 @@ fn one(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
     }
 }
 
-fn summary(method: &MethodShot) -> String {
+fn summary(method: &MethodSnapshot) -> String {
     let time = match method.gpu_ms {
         Some(ms) => format!("{ms:.2} ms on the GPU, {:.0} ms in all", method.wall_ms),
         None => format!("{:.0} ms in all", method.wall_ms),

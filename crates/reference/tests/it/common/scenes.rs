@@ -1,7 +1,7 @@
 //! Small scenes whose shadows are known.
 
 use glam::{DVec3, Vec3};
-use skiagraph_reference::{Oracle, OracleMode, Progress, Reference, Statistics};
+use skiagraph_reference::{GroundTruthPixels, Oracle, OracleMode, Progress, Statistics};
 use skiagraph_scene::{Camera, DirectionalLight, LightKind, Mesh, View};
 
 /// Adds a triangle with its geometric normal at every corner; positions are welded.
@@ -73,7 +73,7 @@ pub fn render(
     camera: &Camera,
     light: impl Into<LightKind>,
     mode: OracleMode,
-) -> Reference {
+) -> GroundTruthPixels {
     let oracle = Oracle::new(mesh);
     let primitives = oracle
         .primary(camera, Progress::default())
@@ -84,7 +84,6 @@ pub fn render(
 }
 
 /// The counts of a reference judged by itself.
-pub fn counts(reference: &Reference) -> Statistics {
-    Statistics::judged(&reference.visibility(), &reference.status(), reference)
-        .expect("its own outputs")
+pub fn counts(truth: &GroundTruthPixels) -> Statistics {
+    Statistics::judged(&truth.visibility(), &truth.status(), truth).expect("its own outputs")
 }

@@ -10,9 +10,7 @@ use crate::wording::size;
 use skiagraph_gpu::Content;
 use skiagraph_graph::{Code, Plan, Sources};
 use skiagraph_passes::SceneProvider;
-use skiagraph_reference::{
-    Class, Graded, Reference, RightAnswer, Statistics, image::Shown, statistics::status,
-};
+use skiagraph_reference::{Class, GroundTruthPixels, image::Shown, statistics::status};
 use std::{
     borrow::Cow,
     collections::{BTreeMap, BTreeSet},
@@ -41,7 +39,7 @@ fn none_or_error(errors: Vec<String>) -> Result<(), CliError> {
 /// one cannot run is no mistake, unless there is no other; nor is one that does not take the light.
 ///
 /// # Errors
-/// Every fault of every graph together, outputs that do not fit the contract; why the
+/// Every fault of every graph together, outputs that are not a shadow method's; why the
 /// device, if there is one yet, can run none.
 pub fn check_plans(
     methods: &[Method],
@@ -165,10 +163,10 @@ impl Outputs {
     ///
     /// # Errors
     /// Those of [`decode`](Self::decode).
-    pub fn of_light(
+    pub fn from_contents(
         contents: BTreeMap<String, Content>,
         light: usize,
-        reference: &Reference,
+        truth: &GroundTruthPixels,
     ) -> Result<Self, String> {
         let of = |(name, content): (String, Content)| {
             let mut layers = content.split();
@@ -178,17 +176,17 @@ impl Outputs {
             };
             (name, content)
         };
-        Self::decode(&contents.into_iter().map(of).collect(), reference)
+        Self::decode(&contents.into_iter().map(of).collect(), truth)
     }
 
     /// Decodes what was read. Without a status the reference says what faces the light, and the
     /// method is certain of it.
     ///
     /// # Errors
-    /// An output that is not there or not in one of the contract's formats.
+    /// An output that is not there or not in one of the allowed formats.
     pub fn decode(
         contents: &BTreeMap<String, Content>,
-        reference: &Reference,
+        truth: &GroundTruthPixels,
     ) -> Result<Self, String> {
         let integers = |name: &str| contents.get(name).and_then(Content::as_u32);
         let shares = contents.get(VISIBILITY).and_then(Content::as_f32);
@@ -203,7 +201,7 @@ impl Outputs {
             Some(status) => status
                 .as_u32()
                 .ok_or("`status` cannot be read as integers")?,
-            None => certain(&visibility, reference),
+            None => certain(&visibility, truth),
         };
         Ok(Self {
             visibility,
@@ -225,79 +223,23 @@ impl Outputs {
 }
 
 /// The status of a method that has none.
-fn certain(visibility: &[u32], reference: &Reference) -> Vec<u32> {
+fn certain(visibility: &[u32], truth: &GroundTruthPixels) -> Vec<u32> {
     let of = |(&class, &visibility): (&Class, &u32)| match (class, visibility) {
         (Class::Background, _) => status::BACKGROUND,
         (Class::FacingAway, _) => status::FACING_AWAY,
         (_, 0) => status::CERTAIN_SHADOW,
         _ => status::CERTAIN_LIGHT,
     };
-    reference.classes.iter().zip(visibility).map(of).collect()
-}
-
-/// How a frame compares with the right answer.
-pub struct Judgement {
-    /// Its pixels counted; of shares as if they were cut at one half.
-    pub counts: Statistics,
-    /// Where the answer or the light is graded.
-    pub graded: Option<Graded>,
-}
-
-impl Judgement {
-    /// Of a frame's outputs beside the right answer.
-    ///
-    /// # Errors
-    /// Outputs of another size than the reference, or with values that are none.
-    pub fn new(outputs: &Outputs, right: &RightAnswer) -> Result<Self, skiagraph_reference::Error> {
-        let reference = &right.reference;
-        let counts = Statistics::judged(&outputs.visibility, &outputs.status, reference)?;
-        let graded = (outputs.shares.is_some() || right.area.is_some())
-            .then(|| Graded::judged(&outputs.shown(), &right.shares(), reference))
-            .transpose()?;
-        Ok(Self { counts, graded })
-    }
-
-    /// Compares two pictures of a still view: by grades where there are any, else by wrong pixels.
-    pub fn is_worse_than(&self, other: &Self) -> bool {
-        match (&self.graded, &other.graded) {
-            (Some(one), Some(other)) => one.rmse > other.rmse,
-            _ => self.counts.wrong.total > other.counts.wrong.total,
-        }
-    }
-}
-
-/// A frame's outputs beside the right answer.
-///
-/// # Errors
-/// [`CliError::Contract`] where they are not what a shadow method's must be.
-pub fn judged(
-    preset: &Preset,
-    outputs: Result<Outputs, String>,
-    right: &RightAnswer,
-) -> Result<(Outputs, Judgement), CliError> {
-    let broken = |reason: String| {
-        let name = &preset.name;
-        CliError::Contract(format!("`{name}` breaks the contract of outputs: {reason}"))
-    };
-    let outputs = outputs.map_err(broken)?;
-    let judgement = Judgement::new(&outputs, right).map_err(|error| match error {
-        // The driver's doing, not the method's.
-        skiagraph_reference::Error::Unanswered { .. } => {
-            CliError::Contract(format!("`{}`: {error}", preset.name))
-        }
-        error => broken(error.to_string()),
-    })?;
-    Ok((outputs, judgement))
+    truth.classes.iter().zip(visibility).map(of).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use skiagraph_reference::AreaVisibility;
     use wgpu::TextureFormat as F;
 
-    fn reference() -> Reference {
-        Reference {
+    fn truth() -> GroundTruthPixels {
+        GroundTruthPixels {
             viewport: [4, 1],
             classes: vec![
                 Class::Shadow,
@@ -338,7 +280,7 @@ mod tests {
             (graded, Some([0.25, 0.5])),
             (eighths, Some([0.2, 1.0])),
         ] {
-            let outputs = Outputs::decode(&contents(visibility, status()), &reference()).unwrap();
+            let outputs = Outputs::decode(&contents(visibility, status()), &truth()).unwrap();
             assert_eq!(outputs.visibility, [0, 1, 0, 0]);
             assert_eq!(outputs.status, [3, 2, 1, 0]);
             let first = outputs.shares.as_ref().map(|shares| [shares[0], shares[1]]);
@@ -351,41 +293,16 @@ mod tests {
     #[test]
     fn without_a_status_the_reference_says_what_faces_the_light() {
         let hard = texture(F::R8Uint, &[1, 0, 1, 0]);
-        let outputs = Outputs::decode(&contents(hard, None), &reference()).unwrap();
+        let outputs = Outputs::decode(&contents(hard, None), &truth()).unwrap();
         assert_eq!(outputs.status, [2, 3, 1, 0]);
     }
 
     #[test]
-    fn a_graded_answer_or_light_is_judged_as_graded() {
-        let presets = preset::load_all(&["nsm".into()], &skiagraph_passes::EmbeddedSources);
-        let presets = presets.unwrap();
-        let is_graded = |visibility: Content, area: Option<AreaVisibility>| {
-            let reference = reference();
-            let outputs = Outputs::decode(&contents(visibility, None), &reference);
-            let right = RightAnswer { reference, area };
-            let (_, judgement) = judged(&presets[0], outputs, &right).unwrap();
-            judgement.graded.map(|graded| graded.mean_absolute_error)
-        };
-        let hard = || texture(F::R8Uint, &[0, 1, 0, 0]);
-        let area = AreaVisibility {
-            samples: 4,
-            shares: vec![0.5, 1.0, 0.0, 0.0],
-            standard_errors: vec![0.0; 4],
-        };
-        assert_eq!(is_graded(hard(), None), None);
-        assert_eq!(
-            is_graded(texture(F::R8Unorm, &[0, 255, 9, 9]), None),
-            Some(0.0)
-        );
-        assert_eq!(is_graded(hard(), Some(area)), Some(0.25));
-    }
-
-    #[test]
     fn a_missing_output_is_named() {
-        let missing = Outputs::decode(&BTreeMap::new(), &reference()).err();
+        let missing = Outputs::decode(&BTreeMap::new(), &truth()).err();
         assert!(missing.unwrap().contains("visibility"));
         let status = Some(texture(F::R8Unorm, &[0; 4]));
-        let wrong = Outputs::decode(&contents(texture(F::R8Uint, &[0; 4]), status), &reference());
+        let wrong = Outputs::decode(&contents(texture(F::R8Uint, &[0; 4]), status), &truth());
         assert!(wrong.err().unwrap().contains("status"));
     }
 }

@@ -1,10 +1,10 @@
-//! The right answer for one view and viewport: the GPU's primitive ids, judged by the oracle.
+//! The ground truth of one view and viewport: the GPU's primitive ids, judged by the oracle.
 
 use crate::error::CliError;
 use crate::files::fingerprint::{Fingerprint, RecordedSources};
-use crate::graphs::contract::Outputs;
 use crate::graphs::faults::GraphFaults;
 use crate::graphs::planning::Capabilities;
+use crate::graphs::shadow_method::Outputs;
 use crate::measuring::frame;
 use crate::terminal::interrupt;
 use crate::terminal::progress::Step;
@@ -12,7 +12,7 @@ use skiagraph_gpu::{Content, Provider, device::Gpu};
 use skiagraph_graph::{Graph, Plan, Sources};
 use skiagraph_passes::registry;
 use skiagraph_reference::{
-    BlockerCounts, Error, Oracle, OracleMode, Progress, Reference, RightAnswer, Statistics,
+    BlockerCounts, Error, GroundTruth, GroundTruthPixels, Oracle, OracleMode, Progress, Statistics,
     shimmer::Seen,
 };
 use skiagraph_scene::{Camera, LightKind};
@@ -84,10 +84,10 @@ impl PrimaryVisibility {
 }
 
 /// The reference's pixels, counted as a method's are.
-pub fn own_counts(reference: &Reference) -> Statistics {
-    let (visibility, status) = (reference.visibility(), reference.status());
-    // Its own buffers are as large as it is and hold the contract's values.
-    Statistics::judged(&visibility, &status, reference).unwrap_or_default()
+pub fn own_counts(truth: &GroundTruthPixels) -> Statistics {
+    let (visibility, status) = (truth.visibility(), truth.status());
+    // Its own buffers are as large as it is and hold values that are allowed.
+    Statistics::judged(&visibility, &status, truth).unwrap_or_default()
 }
 
 /// How the oracle traces.
@@ -99,24 +99,24 @@ pub struct Tracing {
     pub samples: u32,
 }
 
-/// The oracle on one view and viewport.
-pub struct Judge<'a> {
+/// The ground truth of one view and viewport, and what it was traced from.
+pub struct GroundTruthView<'a> {
     oracle: Rc<Oracle<'a>>,
     camera: Camera,
     light: LightKind,
     primitives: Vec<u32>,
     mode: OracleMode,
-    /// The right answer.
-    pub right: RightAnswer,
+    /// What the oracle found.
+    pub ground_truth: GroundTruth,
     /// Pixels that show a surface which is not seen there: on it, methods are judged all the same.
     pub wrong_surfaces: u64,
 }
 
-impl<'a> Judge<'a> {
+impl<'a> GroundTruthView<'a> {
     /// Runs the oracle with a progress bar.
     ///
     /// # Errors
-    /// Those of [`right_answer`].
+    /// Those of [`ground_truth`].
     pub fn new(
         oracle: Rc<Oracle<'a>>,
         camera: Camera,
@@ -131,7 +131,7 @@ impl<'a> Judge<'a> {
             "rows",
         );
         let rows_done = |rows| step.set_done(rows);
-        let right = right_answer(
+        let ground_truth = ground_truth(
             &oracle,
             &camera,
             &light,
@@ -155,7 +155,7 @@ impl<'a> Judge<'a> {
             light,
             primitives,
             mode: tracing.mode,
-            right,
+            ground_truth,
             wrong_surfaces,
         })
     }
@@ -175,7 +175,8 @@ impl<'a> Judge<'a> {
     /// Outputs that do not fit the reference.
     pub fn blockers(&self, outputs: &Outputs) -> Result<BlockerCounts, CliError> {
         let (visibility, status) = (&outputs.visibility, &outputs.status);
-        let pixels = Statistics::certain_wrong_pixels(visibility, status, &self.right.reference);
+        let pixels =
+            Statistics::certain_wrong_pixels(visibility, status, &self.ground_truth.pixels);
         let (camera, light, primitives) = (&self.camera, &self.light, &self.primitives);
         let blockers = pixels.and_then(|pixels| {
             let oracle = &self.oracle;
@@ -189,7 +190,7 @@ impl<'a> Judge<'a> {
 ///
 /// # Errors
 /// Ctrl-C, ids of another mesh, an impossible light.
-pub fn right_answer(
+pub fn ground_truth(
     oracle: &Oracle,
     camera: &Camera,
     light: &LightKind,
@@ -197,13 +198,13 @@ pub fn right_answer(
     Tracing { mode, samples }: Tracing,
     rows_done: &(dyn Fn(u64) + Sync),
     what: &str,
-) -> Result<RightAnswer, CliError> {
+) -> Result<GroundTruth, CliError> {
     let progress = Progress {
         rows_done,
         interrupted: interrupt::flag(),
     };
-    let right = oracle.right_answer(camera, light, primitives, (mode, samples), progress);
-    right.map_err(|error| named(error, what))
+    let ground_truth = oracle.ground_truth(camera, light, primitives, (mode, samples), progress);
+    ground_truth.map_err(|error| named(error, what))
 }
 
 /// Counts the pixels that show a surface which is not seen there; `rows_done` hears how far it is.

@@ -5,11 +5,11 @@ use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{CameraPath, Mesh};
 
 /// The mesh of each frame, all with the same triangles.
-pub struct Shapes {
+pub struct MeshFrames {
     frames: Vec<Mesh>,
 }
 
-impl Shapes {
+impl MeshFrames {
     /// Of the first frames of a path; `None` where nothing moves.
     ///
     /// # Errors

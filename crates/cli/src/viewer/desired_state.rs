@@ -1,4 +1,4 @@
-//! What is to be seen, and what came of it: what the window and the thread of the graphs tell each
+//! What is to be seen, and what came of it: what the window and the thread of the graphs send each
 //! other.
 
 use crate::graphs::method::ParamValues;
@@ -6,13 +6,13 @@ use crate::measuring::frame::Contents;
 use crate::pictures::save::Decoding;
 use skiagraph_gpu::PassStatistics;
 use skiagraph_graph::{Capture, Param, ParamValue};
-use skiagraph_reference::Reference;
+use skiagraph_reference::GroundTruthPixels;
 use skiagraph_scene::{Camera, LightKind, Scene, View};
 use std::{collections::BTreeMap, sync::Arc};
 
 /// What is to be seen.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Wanted {
+pub struct DesiredState {
     /// The scene, as on the command line.
     pub scene: String,
     /// From where, and under which light; `None`: the scene's first view.
@@ -20,16 +20,16 @@ pub struct Wanted {
     /// In how many pixels the methods run.
     pub size: [u32; 2],
     /// One, or two side by side.
-    pub methods: Vec<WantedMethod>,
+    pub methods: Vec<DesiredMethod>,
     /// Run passes that have no reason to run, too.
     pub all_passes: bool,
     /// Counts up to ask for another frame of the same.
     pub frame: u64,
 }
 
-/// A method as it is wanted.
+/// A method of the desired state.
 #[derive(Clone, Debug, PartialEq)]
-pub struct WantedMethod {
+pub struct DesiredMethod {
     /// Preset or path.
     pub name: String,
     /// Params that are not at their defaults.
@@ -43,7 +43,7 @@ pub enum Event {
     /// A scene was loaded, or could not be.
     Scene(String, Result<Loaded, String>),
     /// A frame.
-    Frame(Box<Shot>),
+    Frame(Box<FrameSnapshot>),
     /// Nothing more can be drawn.
     Broken(String),
 }
@@ -58,9 +58,9 @@ pub struct Loaded {
 }
 
 /// A frame of each method.
-pub struct Shot {
+pub struct FrameSnapshot {
     /// What it shows.
-    pub wanted: Wanted,
+    pub desired: DesiredState,
     /// From where.
     pub camera: Camera,
     /// Under which light.
@@ -72,15 +72,15 @@ pub struct Shot {
     /// The primitive of each pixel.
     pub primitives: Arc<Vec<u32>>,
     /// What faces the light, as if nothing stood in its way.
-    pub facing: Arc<Reference>,
+    pub facing: Arc<GroundTruthPixels>,
     /// One for each method.
-    pub methods: Vec<MethodShot>,
+    pub methods: Vec<MethodSnapshot>,
 }
 
 /// A frame of one method.
 #[derive(Clone, Default)]
-pub struct MethodShot {
-    /// The method as it was wanted.
+pub struct MethodSnapshot {
+    /// The name in the desired state.
     pub name: String,
     /// What its document says of itself.
     pub description: String,
@@ -89,7 +89,7 @@ pub struct MethodShot {
     /// The value of each.
     pub values: BTreeMap<String, ParamValue>,
     /// The live passes in their order.
-    pub passes: Vec<PassShot>,
+    pub passes: Vec<PassSnapshot>,
     /// Bytes of the graph's own memory, and what sharing saved.
     pub memory: [u64; 2],
     /// GPU time of the frame, milliseconds.
@@ -100,7 +100,7 @@ pub struct MethodShot {
     pub contents: Arc<Contents>,
     /// How depths and buffers among it are to be read.
     pub readings: BTreeMap<String, Decoding>,
-    /// Why it is not as wanted: what is shown is the last that ran.
+    /// Why it is not as desired: what is shown is the last that ran.
     pub error: Option<String>,
     /// How often it was read from its files.
     pub reads: u64,
@@ -108,7 +108,7 @@ pub struct MethodShot {
 
 /// A pass of a frame.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PassShot {
+pub struct PassSnapshot {
     /// Its name.
     pub name: String,
     /// Its kind, as documents write it.

@@ -3,59 +3,22 @@
 use crate::args::shared::SceneArgs;
 use crate::error::CliError;
 use crate::files::fingerprint::Fingerprint;
+use crate::measuring::camera_pose::CameraPose;
+use crate::measuring::mesh_frames::MeshFrames;
 use crate::measuring::scene_selection::under_lights;
-use crate::measuring::shapes::Shapes;
 use crate::wording::did_you_mean;
-use skiagraph_passes::SceneProvider;
-use skiagraph_scene::{Camera, CameraPath, LightKind, Scene, View};
+use skiagraph_scene::{CameraPath, LightKind, Scene, View};
 
-/// One frame: from where, and with which jitter.
+/// One still view or camera path of a comparison.
 #[derive(Clone, Debug)]
-pub struct Shot {
-    /// The view.
-    pub view: View,
-    /// Number of the frame, and how many have a jitter of their own.
-    jitter: Option<(u32, u32)>,
-}
-
-impl Shot {
-    /// Frames one after the other.
-    pub fn numbered(views: Vec<View>, jitter: Option<u32>) -> Vec<Self> {
-        let shot = |(view, frame)| Self {
-            view,
-            jitter: jitter.map(|count| (frame, count)),
-        };
-        views.into_iter().zip(0..).map(shot).collect()
-    }
-
-    /// Its camera.
-    pub fn camera(&self, viewport: [u32; 2]) -> Camera {
-        let camera = self.view.camera(viewport);
-        match self.jitter {
-            Some((frame, count)) => camera.jittered(frame, count),
-            None => camera,
-        }
-    }
-
-    /// Hands its camera and light to a provider.
-    pub fn show(&self, provider: &mut SceneProvider, viewport: [u32; 2]) {
-        provider.set_view(&self.view, viewport);
-        if self.jitter.is_some() {
-            provider.set_camera(&self.camera(viewport));
-        }
-    }
-}
-
-/// One place of a comparison.
-#[derive(Clone, Debug)]
-pub enum Subject {
+pub enum ViewOrPath {
     /// One picture.
     Still(View),
     /// A picture for each frame.
     Path(CameraPath),
 }
 
-impl Subject {
+impl ViewOrPath {
     /// Its name in results.
     pub fn name(&self) -> &str {
         match self {
@@ -65,22 +28,26 @@ impl Subject {
     }
 
     /// Its frames; of a path with `jitter`, each with that of as many that are blended.
-    pub fn shots(&self, jitter: Option<u32>) -> Vec<Shot> {
+    pub fn poses(&self, jitter: Option<u32>) -> Vec<CameraPose> {
         let views = match self {
             Self::Still(view) => vec![view.clone()],
             Self::Path(path) => path.views().collect(),
         };
-        Shot::numbered(views, jitter)
+        CameraPose::numbered(views, jitter)
     }
 
     /// The mesh of its first frames; `None` where it stands.
     ///
     /// # Errors
     /// A part that the mesh has not, or that is welded to others.
-    pub fn shapes(&self, scene: &Scene, frames: usize) -> Result<Option<Shapes>, CliError> {
+    pub fn mesh_frames(
+        &self,
+        scene: &Scene,
+        frames: usize,
+    ) -> Result<Option<MeshFrames>, CliError> {
         match self {
             Self::Still(_) => Ok(None),
-            Self::Path(path) => Shapes::new(path, &scene.mesh, frames),
+            Self::Path(path) => MeshFrames::new(path, &scene.mesh, frames),
         }
     }
 
@@ -133,19 +100,19 @@ impl Subject {
                 names.join(", ")
             )));
         }
-        let mut subjects = Vec::new();
+        let mut views_or_paths = Vec::new();
         for path in paths {
             if name == "all" || path.view.name == name {
                 let views = under_lights(scene, vec![path.view.clone()], args)?;
                 let lit = views.into_iter().map(|view| lit(scene, &path, view));
-                subjects.extend(
+                views_or_paths.extend(
                     lit.collect::<Result<Vec<_>, _>>()?
                         .into_iter()
                         .map(Self::Path),
                 );
             }
         }
-        Ok(subjects)
+        Ok(views_or_paths)
     }
 }
 

@@ -1,9 +1,9 @@
 //! The thread of the reference: the oracle's answer to what is shown, of every ninth pixel of each
 //! row and column first, then of every third, then of all. What is traced is exact for its pixels.
 
-use crate::viewer::wanted::Shot;
+use crate::viewer::desired_state::FrameSnapshot;
 use glam::DVec2;
-use skiagraph_reference::{Error, Oracle, OracleMode, Progress, RightAnswer};
+use skiagraph_reference::{Error, GroundTruth, Oracle, OracleMode, Progress};
 use skiagraph_scene::{Camera, LightKind, Scene};
 use std::{
     ops::ControlFlow,
@@ -35,21 +35,21 @@ pub struct Question {
 
 impl Question {
     /// About a frame.
-    pub fn new(shot: &Shot) -> Self {
+    pub fn new(snapshot: &FrameSnapshot) -> Self {
         Self {
-            scene: shot.scene.clone(),
-            camera: shot.camera,
-            light: shot.light,
-            primitives: shot.primitives.clone(),
+            scene: snapshot.scene.clone(),
+            camera: snapshot.camera,
+            light: snapshot.light,
+            primitives: snapshot.primitives.clone(),
             outdated: Arc::default(),
         }
     }
 
     /// Whether it asks for the same.
-    pub fn is_about(&self, shot: &Shot) -> bool {
-        Arc::ptr_eq(&self.scene, &shot.scene)
-            && (self.camera, self.light) == (shot.camera, shot.light)
-            && self.primitives == shot.primitives
+    pub fn is_about(&self, snapshot: &FrameSnapshot) -> bool {
+        Arc::ptr_eq(&self.scene, &snapshot.scene)
+            && (self.camera, self.light) == (snapshot.camera, snapshot.light)
+            && self.primitives == snapshot.primitives
     }
 }
 
@@ -60,16 +60,16 @@ pub struct Answer {
     /// It holds for one pixel of so many in each row and column.
     pub stride: u32,
     /// Of those pixels.
-    pub right: Result<RightAnswer, String>,
+    pub ground_truth: Result<GroundTruth, String>,
 }
 
 /// Asks the thread.
-pub struct Judge {
+pub struct GroundTruthThread {
     questions: mpsc::Sender<Question>,
     last: Option<Question>,
 }
 
-impl Judge {
+impl GroundTruthThread {
     /// Starts the thread; it ends with this.
     ///
     /// # Errors
@@ -86,12 +86,16 @@ impl Judge {
     }
 
     /// Asks about a frame, if that was not the last question; what was asked before is given up.
-    pub fn ask(&mut self, shot: &Shot) {
-        if self.last.as_ref().is_some_and(|last| last.is_about(shot)) {
+    pub fn ask(&mut self, snapshot: &FrameSnapshot) {
+        if self
+            .last
+            .as_ref()
+            .is_some_and(|last| last.is_about(snapshot))
+        {
             return;
         }
         self.forget();
-        let question = Question::new(shot);
+        let question = Question::new(snapshot);
         // The thread ends before this only by a panic, which has been printed.
         let _ = self.questions.send(question.clone());
         self.last = Some(question);
@@ -105,7 +109,7 @@ impl Judge {
     }
 }
 
-impl Drop for Judge {
+impl Drop for GroundTruthThread {
     fn drop(&mut self) {
         self.forget();
     }
@@ -144,15 +148,15 @@ fn answer(oracle: &Oracle, question: &Question, tell: &impl Fn(Answer)) {
             interrupted: &question.outdated,
         };
         let how = (OracleMode::Exact, SAMPLES);
-        let right = oracle.right_answer(&camera, question.light, &primitives, how, progress);
-        if matches!(right, Err(Error::Interrupted)) {
+        let ground_truth = oracle.ground_truth(&camera, question.light, &primitives, how, progress);
+        if matches!(ground_truth, Err(Error::Interrupted)) {
             return ControlFlow::Break(());
         }
         let question = question.clone();
         tell(Answer {
             question,
             stride,
-            right: right.map_err(|error| error.to_string()),
+            ground_truth: ground_truth.map_err(|error| error.to_string()),
         });
         ControlFlow::Continue(())
     });

@@ -1,0 +1,41 @@
+//! From where a frame is seen.
+
+use skiagraph_passes::SceneProvider;
+use skiagraph_scene::{Camera, View};
+
+/// One frame: from where, and with which jitter.
+#[derive(Clone, Debug)]
+pub struct CameraPose {
+    /// The view.
+    pub view: View,
+    /// Number of the frame, and how many have a jitter of their own.
+    jitter: Option<(u32, u32)>,
+}
+
+impl CameraPose {
+    /// Frames one after the other.
+    pub fn numbered(views: Vec<View>, jitter: Option<u32>) -> Vec<Self> {
+        let pose = |(view, frame)| Self {
+            view,
+            jitter: jitter.map(|count| (frame, count)),
+        };
+        views.into_iter().zip(0..).map(pose).collect()
+    }
+
+    /// Its camera.
+    pub fn camera(&self, viewport: [u32; 2]) -> Camera {
+        let camera = self.view.camera(viewport);
+        match self.jitter {
+            Some((frame, count)) => camera.jittered(frame, count),
+            None => camera,
+        }
+    }
+
+    /// Hands its camera and light to a provider.
+    pub fn show(&self, provider: &mut SceneProvider, viewport: [u32; 2]) {
+        provider.set_view(&self.view, viewport);
+        if self.jitter.is_some() {
+            provider.set_camera(&self.camera(viewport));
+        }
+    }
+}

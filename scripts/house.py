@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Checks what clippy does not: no import circle between the files of a crate, no line of Rust, of
-a preset's WGSL or of the docs over 100 columns.
+a preset's WGSL or of the docs over 100 columns, and plain words: no comment begins with "What",
+"Of", "Whether" or "Who", none speaks of nobody, somebody, whoever or anybody, no message says
+"is no …" or "nothing is called so".
 
 An import is a path in a `use` or in code that begins with `crate`, `super`, `self` or a child
 module. It counts as one of the file of the deepest module that it names; tests are left out.
@@ -21,6 +23,36 @@ TOKENS = re.compile(
     r"""//[^\n]*|/\*.*?\*/|b?r(?P<h>\#*)".*?"(?P=h)|b?"(?:\\.|[^"\\])*"|'(?:\\.[^']*|[^'\\\n])'""",
     re.DOTALL | re.VERBOSE,
 )
+
+
+COMMENT = re.compile(r"^\s*(//[/!]?)\s?(.*)$")
+RIDDLE = re.compile(r"(?:What|Of|Whether|Whoever|Who)\b(?!')")
+PERSON = re.compile(r"\b(?:nobody|somebody|whoever|anybody)\b", re.IGNORECASE)
+MESSAGE = re.compile(r'"[^"\n]*(?:\bis no (?!longer|more)|nothing is called so)[^"\n]*"')
+
+
+def words(text):
+    """The lines of Rust or WGSL whose comments or messages are not plain, with the reason."""
+    before = None
+    for number, line in enumerate(code_without_tests(text), 1):
+        comment = COMMENT.match(line)
+        kind, said = comment.groups() if comment else (None, "")
+        if kind and (before != kind or not previous.strip()) and RIDDLE.match(said):
+            yield number, f"a comment begins with `{said.split()[0]}`"
+        if kind and PERSON.search(said):
+            yield number, "a comment speaks of a person"
+        if not kind and MESSAGE.search(line):
+            yield number, "a message says `is no`"
+        before, previous = kind, said
+
+
+def code_without_tests(text):
+    """The lines of a file; those of its test module at the end are empty, as tests name what they test."""
+    lines = text.splitlines()
+    for at, line in enumerate(lines):
+        if line.startswith("#[cfg(test)]"):
+            return lines[:at]
+    return lines
 
 
 def code(text):
@@ -155,17 +187,23 @@ def main():
             if len(line) > WIDTH:
                 failed += 1
                 print(f"{file.relative_to(ROOT)}:{number}: {len(line)} columns")
+        for number, why in words(file.read_text()):
+            failed += 1
+            print(f"{file.relative_to(ROOT)}:{number}: {why}")
     for file in sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")]):
         if file.name in WRITTEN_BY_TESTS:
             continue
         is_quoted = False
         for number, line in enumerate(file.read_text().splitlines(), 1):
             is_quoted ^= line.startswith("```")
+            if PERSON.search(line) and not is_quoted:
+                failed += 1
+                print(f"{file.relative_to(ROOT)}:{number}: speaks of a person")
             # Tables, programs' words and pictures are as wide as they are.
             if len(line) > WIDTH and not is_quoted and not line.startswith(("|", "    ", "![")):
                 failed += 1
                 print(f"{file.relative_to(ROOT)}:{number}: {len(line)} columns")
-    print(f"house: {failed} faults" if failed else "house: no import circle, no long line")
+    print(f"house: {failed} faults" if failed else "house: no import circle, no long line, plain words")
     return 1 if failed else 0
 
 

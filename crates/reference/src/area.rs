@@ -1,4 +1,4 @@
-//! What share of a light that is an area each receiver sees: stratified samples in f64.
+//! Share of an area light that each receiver sees: stratified samples in f64.
 
 use crate::{
     error::Error,
@@ -45,18 +45,18 @@ impl AreaVisibility {
     }
 }
 
-/// What is right for one view: of a light without extent which pixels are lit, of one with extent
-/// what share of it each sees, too.
+/// Reference of one view: the lit pixels of a light without extent, and the visible share of a
+/// light with one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RightAnswer {
-    /// What each pixel shows.
+    /// Answer at each pixel.
     pub reference: Reference,
     /// The shares, of a light with extent.
     pub area: Option<AreaVisibility>,
 }
 
 impl RightAnswer {
-    /// What share of the light each pixel sees.
+    /// Returns the share of the light that each pixel sees.
     pub fn shares(&self) -> Cow<'_, [f32]> {
         match &self.area {
             Some(area) => Cow::Borrowed(&area.shares),
@@ -71,9 +71,9 @@ struct Emitter {
     centre: DVec3,
     /// From there to its rim, along two axes.
     across: [DVec3; 2],
-    /// Whether its points are places, or directions alone.
+    /// True if its points are places, false if directions alone.
     is_place: bool,
-    /// What contains all of it.
+    /// Cone that contains all of it.
     cone: Cone,
 }
 
@@ -185,7 +185,7 @@ impl<'a> Oracle<'a> {
             let Some(receiver) = receiver else {
                 return Ok((Answer::BACKGROUND, [0.0; 2]));
             };
-            // Of the light's centre, for what is indeterminate.
+            // Answer for the light's centre, for indeterminate pixels.
             let mut answer = self.answer(&receiver, mode, stack);
             if answer.class == Class::FacingAway {
                 return Ok((answer, [0.0; 2]));
@@ -264,7 +264,7 @@ impl<'a> Oracle<'a> {
             let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
             let blocks = |caster: &Caster| caster.hit(&ray).is_some_and(|hit| ray.reaches(hit.t));
             let blocker = casters.iter().position(blocks);
-            // What blocks one ray is likely to block the next.
+            // The blocker of one ray is likely to block the next.
             if let Some(blocker) = blocker {
                 casters.swap(0, blocker);
             }

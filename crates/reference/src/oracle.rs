@@ -62,7 +62,7 @@ impl FromStr for OracleMode {
 }
 
 impl fmt::Display for OracleMode {
-    /// What [`FromStr`] reads.
+    /// Writes the form that [`FromStr`] reads.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Exact => f.write_str("exact"),
@@ -74,7 +74,7 @@ impl fmt::Display for OracleMode {
 /// The longest offset in extents of the mesh: far beyond it rays miss by rounding alone.
 const MOST_EXTENTS: f64 = 1e6;
 
-/// What the oracle says of a pixel.
+/// Oracle's answer for a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// Shows no geometry.
@@ -89,8 +89,8 @@ pub enum Class {
 }
 
 impl Class {
-    /// Whether the pixel is one of the *pixels facing the light* (PFL), the denominator of all
-    /// shares.
+    /// Returns true if the pixel is one of the *pixels facing the light* (PFL), the denominator of
+    /// all shares.
     pub fn faces_light(self) -> bool {
         matches!(self, Self::Lit | Self::Shadow)
     }
@@ -104,8 +104,8 @@ pub struct Reference {
     pub viewport: [u32; 2],
     /// The answer.
     pub classes: Vec<Class>,
-    /// Whether the answer flips when receiver or casters move within their f32 error bounds: no f32
-    /// method can be blamed for it.
+    /// True where the answer flips when receiver or casters move within their f32 error bounds: no
+    /// f32 method can be blamed for it.
     pub indeterminate: Vec<bool>,
     /// dot(interpolated vertex normal, unit vector towards the light); 0 in the background.
     pub n_dot_l: Vec<f32>,
@@ -117,16 +117,16 @@ pub struct Reference {
 pub struct Oracle<'a> {
     pub(crate) mesh: &'a Mesh,
     pub(crate) tree: Tree<'a>,
-    /// Of the mesh, once somebody asks for blockers.
+    /// Parts of the mesh, found at the first request for blockers.
     pub(crate) parts: OnceLock<Parts>,
 }
 
-/// What the oracle says of a ray.
+/// Oracle's answer for a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Occlusion {
-    /// Whether a triangle stands in its way.
+    /// True if a triangle stands in its way.
     pub blocked: bool,
-    /// Whether that changes when the triangles move by what f32 makes of their corners, seen from
+    /// True if that changes when the triangles move by the f32 rounding of their corners, seen from
     /// the ray's origin.
     pub indeterminate: bool,
 }
@@ -145,11 +145,11 @@ impl Answer {
         n_dot_l: 0.0,
     };
 
-    /// Facing away, or lit as long as nobody has looked for blockers.
+    /// Returns the answer before blockers are looked for: facing away, or lit.
     pub(crate) fn facing(receiver: &Receiver) -> Self {
         let faces_away = receiver.n_dot_l <= 0.0;
         let could_turn = receiver.n_dot_l.abs() <= receiver.n_dot_l_error;
-        // What faces away does so within the cone and outside of it.
+        // A receiver that faces away does so within the cone and outside of it.
         let could_leave = receiver.on_cone_edge && (!faces_away || could_turn);
         let beyond_cone = receiver.outside_cone && !receiver.on_cone_edge;
         Self {
@@ -192,7 +192,7 @@ impl<'a> Oracle<'a> {
         Self { mesh, tree, parts }
     }
 
-    /// What it traces.
+    /// Returns the mesh that it traces.
     pub fn mesh(&self) -> &'a Mesh {
         self.mesh
     }
@@ -256,7 +256,7 @@ impl<'a> Oracle<'a> {
         Ok(Reference::new(viewport, &answers, base_colors))
     }
 
-    /// Whether a light can be traced.
+    /// Checks that a light can be traced.
     pub(crate) fn check(&self, light: &LightKind, mode: OracleMode) -> Result<(), Error> {
         light.check().map_err(Error::Light)?;
         if let OracleMode::Offset(length) = mode {
@@ -317,7 +317,7 @@ impl<'a> Oracle<'a> {
         }
     }
 
-    /// Whether the receiver is in shadow, and whether that is indeterminate.
+    /// Returns two answers: if the receiver is in shadow, and if that is indeterminate.
     fn visibility(
         &self,
         origin: DVec3,
@@ -374,7 +374,7 @@ impl<'a> Oracle<'a> {
         }
     }
 
-    /// Whether any triangle but `excluded` stands between `origin` and the light.
+    /// Returns true if any triangle but `excluded` stands between `origin` and the light.
     pub(crate) fn occluded(
         &self,
         origin: DVec3,
@@ -398,8 +398,8 @@ impl<'a> Oracle<'a> {
     }
 }
 
-/// What each pixel of a G-buffer shows as if nothing cast shadows: whatever faces the light is lit.
-/// It needs no hierarchy. `primitives` as for [`Oracle::shade`].
+/// Shades each pixel of a G-buffer as if nothing cast shadows: every receiver that faces the light
+/// is lit. It needs no hierarchy. `primitives` as for [`Oracle::shade`].
 ///
 /// # Errors
 /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Light`], [`Error::Interrupted`].
@@ -420,7 +420,7 @@ pub fn unshadowed(
     Ok(Reference::new(camera.viewport, &answers, base_colors))
 }
 
-/// What the pixels of a G-buffer are made of; nothing where the mesh has no materials.
+/// Returns the base colours of the pixels of a G-buffer; nothing where the mesh has no materials.
 pub(crate) fn base_colors(mesh: &Mesh, camera: &Camera, primitives: &[u32]) -> Vec<[f32; 3]> {
     let surfaces = &mesh.surfaces;
     if surfaces.materials.is_empty() {

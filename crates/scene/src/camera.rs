@@ -75,7 +75,7 @@ impl View {
         }
     }
 
-    /// Whether a camera can be made of this view, and its light has a direction.
+    /// Checks that a camera can be made of this view, and that its light has a direction.
     ///
     /// # Errors
     /// What is wrong with it, naming the view.

@@ -57,7 +57,7 @@ impl DirectionalLight {
     /// Checks that the light has a direction, and an angle below a half turn.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The first mistake.
     pub fn check(&self) -> Result<(), String> {
         if self.direction.try_normalize().is_none() {
             return Err(format!(

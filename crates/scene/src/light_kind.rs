@@ -77,7 +77,7 @@ impl Light {
     /// Checks that the name and the light can be used.
     ///
     /// # Errors
-    /// What is wrong.
+    /// The first mistake.
     pub fn check(&self) -> Result<(), String> {
         let starts = |c: char| c.is_ascii_lowercase();
         let goes_on = |c: char| starts(c) || c.is_ascii_digit() || c == '_';
@@ -156,7 +156,7 @@ impl LightKind {
     /// Checks that the light can exist.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The first mistake.
     pub fn check(&self) -> Result<(), String> {
         if let Some(position) = self.position()
             && (position.is_nan() || position.abs().max_element() > FARTHEST)

@@ -58,7 +58,7 @@ impl PartMotion {
     /// Checks that it is a motion.
     ///
     /// # Errors
-    /// What is wrong with it, naming the part.
+    /// The first mistake, naming the part.
     pub fn check(&self) -> Result<(), String> {
         let wrong = |what: String| Err(format!("moves: {:?}: {what}", self.part));
         let is_axis = |axis: DVec3| axis.is_finite() && axis.length_squared() > 0.0;

@@ -189,7 +189,7 @@ impl CameraPath {
     /// Checks that every frame makes a camera.
     ///
     /// # Errors
-    /// What is wrong with it, naming the path.
+    /// The first mistake, naming the path.
     pub fn check(&self) -> Result<(), String> {
         let name = &self.view.name;
         let keys = &self.keys;

@@ -30,7 +30,7 @@ impl Preparer {
     /// Makes the shader modules and pipelines of a plan that the executor does not have yet.
     ///
     /// # Errors
-    /// What the device refuses, with the pass and its place, or that it is lost.
+    /// The device refuses a step, named with its pass and place, or it is lost.
     pub fn prepare(self, plan: Plan) -> Result<Prepared, ExecuteError> {
         let Self {
             device,

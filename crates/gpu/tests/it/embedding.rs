@@ -184,7 +184,7 @@ fn provided_resources_change_when_the_host_says_so() {
     executor.refresh(&mut provider).unwrap();
     step(&mut executor, false, 100);
     provider.version = 1;
-    step(&mut executor, false, 100); // nobody has said so yet
+    step(&mut executor, false, 100); // not refreshed yet
     provider.is_there = false;
     let error = executor.refresh(&mut provider).expect_err("it fails");
     assert!(

@@ -24,8 +24,8 @@ impl Limit {
     /// The bytes of the file at `path`.
     ///
     /// # Errors
-    /// The error of the system; a folder, a device or a pipe, none of which is opened (that alone can
-    /// block); a file beyond the limit. The message does not name the file.
+    /// An error of the system; a folder, a device or a pipe, none of which is opened (that alone
+    /// can block); a file beyond the limit. The message does not name the file.
     pub fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         let found = std::fs::metadata(path)?;
         if found.is_dir() {

@@ -36,7 +36,7 @@ const TRIANGLE: &str = "
 }
 ";
 
-/// What the passes of a chain are.
+/// Kind of a chain's passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Compute passes of one dispatch.
@@ -60,7 +60,7 @@ impl Kind {
         }
     }
 
-    /// What tables call it.
+    /// Returns the name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Dispatch => "dispatch",
@@ -70,7 +70,7 @@ impl Kind {
     }
 }
 
-/// What pass `at` reads and what it writes, as indices of `source`, `ping`, `pong`.
+/// Returns the materials that pass `at` reads and writes, as indices of `source`, `ping`, `pong`.
 fn ends(at: usize) -> [usize; 2] {
     let written = 1 + at % 2;
     match at {

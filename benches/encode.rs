@@ -1,6 +1,6 @@
-//! What the executor costs over the same frame written by hand in plain wgpu, and what making and
-//! changing one costs. Encoding and finishing the encoder is measured, submission is not: no frame
-//! is submitted.
+//! Measures the executor against the same frame written by hand in plain wgpu, and the cost of
+//! making and changing an executor. Encoding and finishing the encoder is measured, submission is
+//! not: no frame is submitted.
 
 use criterion::{BenchmarkId, Criterion};
 use skiagraph_benches::{
@@ -74,7 +74,7 @@ fn compare(gpu: &Gpu) {
             let mut executor = executor(gpu, kind, passes).expect("the chain suits every device");
             let mut turn = |first: usize| {
                 let mut times = [0.0; 3];
-                // Whoever comes first finds other caches.
+                // The first way finds other caches.
                 for way in (0..3).map(|way| (first + way) % 3) {
                     let time = frame(gpu, |encoder| match way {
                         0 => drop(

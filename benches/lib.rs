@@ -82,7 +82,7 @@ var made: texture_storage_2d<rgba16float, write>;
 /// mips     Fullscreen open ─▶ mip 0 ─▶ mip 1 ─▶ mip 2; Fullscreen all mips ─▶ new
 /// ```
 /// where `open` is a texture that no pass has read yet. The chain's full-screen passes have a
-/// param, `strength`. What is left open in the end is joined, so that no pass is culled.
+/// param, `strength`. Materials left open in the end are joined, so that no pass is culled.
 pub fn graph(passes: usize, shaders: Shaders, seed: u64) -> Generated {
     let mut writer = Writer::new(shaders);
     let mut random = Random(seed);
@@ -142,7 +142,7 @@ impl Random {
     }
 }
 
-/// Writes the document pass by pass. What makes something returns its name.
+/// Writes the document pass by pass. Methods that make something return its name.
 struct Writer {
     shaders: Shaders,
     files: BTreeMap<String, String>,

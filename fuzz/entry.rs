@@ -131,7 +131,7 @@ impl Sources for Files<'_> {
             let text = std::str::from_utf8(self.bytes);
             return match text {
                 Ok(text) => Ok(Some(text.into())),
-                Err(_) => Err("it is no text in UTF-8".to_owned()),
+                Err(_) => Err("it is not UTF-8 text".to_owned()),
             };
         }
         let known = SHELF.iter().find(|(known, _)| *known == path);
@@ -148,7 +148,7 @@ impl Sources for Files<'_> {
     }
 }
 
-/// What documents and shaders find beside them.
+/// Files that documents and shaders find beside them.
 const SHELF: &[(&str, &str)] = &[
     (
         "pipelines/fixed.ron",

@@ -14,7 +14,7 @@ var<uniform> params: Params;
 var<storage, read> asked_count: u32;
 var<storage, read_write> sample_count: u32;
 var<storage, read_write> sample_groups: array<u32, 3>;
-// Of all turns.
+// Sum over all turns.
 var<storage, read_write> ray_count: u32;
 
 @compute @workgroup_size(1)

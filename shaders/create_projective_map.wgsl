@@ -7,7 +7,7 @@
 #import "shared/geometry.wgsl"
 #import "shared/solid.wgsl"
 
-// Of a point light's map.
+// Face of a point light's map.
 override face: u32 = 0u;
 
 struct Vertex {
@@ -51,7 +51,7 @@ fn fragment(vertex: Vertex) -> @builtin(frag_depth) f32 {
     return map_depth(vertex.depth);
 }
 
-// What a mask leaves out casts no shadow.
+// Texels that a mask leaves out cast no shadow.
 @fragment
 fn fragment_masked(vertex: MaskedVertex) -> @builtin(frag_depth) f32 {
     if !is_opaque(vertex.primitive, vertex.weights.x, vertex.weights.y) {
@@ -60,8 +60,8 @@ fn fragment_masked(vertex: MaskedVertex) -> @builtin(frag_depth) f32 {
     return map_depth(vertex.depth);
 }
 
-// What no shadow ray reaches is no caster, 1 as where there is none: a triangle that a lamp lies in
-// is seen edge-on, and may cover any texel.
+// Surfaces that no shadow ray reaches are no casters, 1 as where there is none: a triangle that a
+// lamp lies in is seen edge-on, and may cover any texel.
 fn map_depth(depth: f32) -> f32 {
     let is_reached = light_kind == LIGHT_DIRECTIONAL || depth > LIGHT_GAP;
     return select(1.0, saturate(depth), is_reached);

@@ -1,6 +1,6 @@
 // Stage to draw the scene's depth as the light sees it, by vertex pulling (three vertices per
-// primitive). What a mask leaves out casts no shadow. Williams, "Casting Curved Shadows on Curved
-// Surfaces", SIGGRAPH 1978.
+// primitive). Texels that a mask leaves out cast no shadow. Williams, "Casting Curved Shadows on
+// Curved Surfaces", SIGGRAPH 1978.
 
 #import "shared/map_fit.wgsl"
 #import "shared/geometry.wgsl"

@@ -24,7 +24,8 @@ fn compare(receiver: vec3<f32>) -> u32 {
         // Half of the slack; the other half is the corners'.
         error.x = 2.0 * spot_texel_error(fit, receiver);
     }
-    // What may lie in another texel than it seems, even one grown by the slack, is not compared.
+    // A receiver that may lie in another texel than it seems, even one grown by the slack, is not
+    // compared.
     if is_outside_of(fit, place.xy) || !(error.x <= SLACK) {
         return STATUS_UNCERTAIN;
     }

@@ -19,7 +19,7 @@ const SPLIT_UNIFORM: u32 = 0u;
 const SPLIT_LOGARITHMIC: u32 = 1u;
 
 var<uniform> params: Params;
-// Of each split, four words as receiver_box.wgsl has them.
+// Box of each split, four words as receiver_box.wgsl has them.
 var<storage, read> receiver_boxes: array<array<u32, 4>>;
 var<storage, read_write> map_fits: array<MapFitSlot>;
 
@@ -39,7 +39,7 @@ fn over_splits(@builtin(global_invocation_id) thread: vec3<u32>) {
         split_plane(split, splits, end),
         split_plane(split + 1u, splits, end),
     );
-    // Of what is beside the scene nobody asks.
+    // Texels beside the scene are never asked.
     let cut = Rectangle(max(around.low, -half), min(around.high, half));
     if all(cut.low < cut.high) {
         around = cut;

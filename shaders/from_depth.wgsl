@@ -1,7 +1,7 @@
 // Stage to find the receiver of each pixel from a host's depth and normals; one thread per pixel.
-// Nobody knows the receiver's primitive, so it is put before its surface instead: nearer to the eye
-// by what its depth may be off, and along its normal by what the arithmetic here may. What is seen
-// from its front does not shade itself then.
+// The receiver's primitive is not known, so it is put before its surface instead: nearer to the eye
+// by the error of its depth, and along its normal by the error of the arithmetic here. A surface
+// seen from its front does not shade itself then.
 
 #import "shared/light.wgsl"
 #import "shared/ids.wgsl"

@@ -4,8 +4,8 @@
 // with adjacency: the dissertation's chapter 4). Its four cases, 0 to 3 kept edges, are half
 // planes: d >= s at an edge that shrinks, d + d' >= c at a corner between two that do not. A corner
 // in a texel may be half a diagonal from its centre, and each of the two edges as far, so c is a
-// diagonal at least; the dissertation's is s. What is kept lies in the triangle, whose fragments
-// cut it to size.
+// diagonal at least; the dissertation's is s. The part that is kept lies in the triangle, whose
+// fragments cut it to size.
 
 #import "shared/casters.wgsl"
 

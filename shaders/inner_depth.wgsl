@@ -1,7 +1,7 @@
 // Stage to draw the inner conservative depth: every caster shrunk by `n` texel diagonals, so that
-// it covers only texels that lie in it as a whole. What lies behind it is in shadow (SGSM of
+// it covers only texels that lie in it as a whole. Receivers behind it are in shadow (SGSM of
 // Hertel, Hormann, Westermann, "A Hybrid GPU Rendering Pipeline for Alias-Free Hard Shadows",
-// Eurographics 2009). What shrinks lies in the triangle, whose fragments cut it to size.
+// Eurographics 2009). A shrunk triangle lies in the original, whose fragments cut it to size.
 
 #import "shared/casters.wgsl"
 

@@ -58,7 +58,7 @@ fn large(@builtin(vertex_index) index: u32) -> Large {
     );
 }
 
-// Of a kept edge.
+// Returns the corner beyond a kept edge.
 fn corner_beyond(tag: u32, edge: u32) -> vec3<f32> {
     if tag < KEPT {
         return vec3(0.0);
@@ -98,8 +98,8 @@ fn without_walk(vertex: Large) -> @builtin(frag_depth) f32 {
     return depth;
 }
 
-// Of the texels that an edge overlaps no centre is farther from it, in texels: half the diagonal of
-// one that is larger by SLACK on every side, and a hair for the rasteriser.
+// Greatest distance, in texels, from an edge to the centre of a texel that it overlaps: half the
+// diagonal of one that is larger by SLACK on every side, and a hair for the rasteriser.
 const REACH: f32 = 0.71815 + 0.0625;
 const HAIR: f32 = 0.0625;
 const EDGE_VERTICES: u32 = 12u;
@@ -177,7 +177,7 @@ fn patch_depth(vertex: Vertex) -> f32 {
     if !any(overlaps) {
         return select(depth, NOT_COVERED, is_large);
     }
-    // What is drawn of a large one reaches beyond it.
+    // The drawn shape of a large one reaches beyond it.
     if is_large && any(inward_distances(triangle, centre) < vec3(-SLACK)) {
         return NOT_COVERED;
     }
@@ -263,8 +263,8 @@ fn corners_of(primitive: u32) -> vec3<u32> {
     return vec3(scene_indices[first], scene_indices[first + 1u], scene_indices[first + 2u]);
 }
 
-// Whether the triangle contains the point; of two triangles on opposite sides of an edge that the
-// point lies on, one does.
+// Returns true if the triangle contains the point; of two triangles on opposite sides of an edge
+// that the point lies on, one does.
 fn contains(ids: vec3<u32>, triangle: LightTriangle, point: vec2<f32>) -> bool {
     let left = left_of(ids.x, ids.y, triangle.a.xy, triangle.b.xy, point);
     return left == left_of(ids.y, ids.z, triangle.b.xy, triangle.c.xy, point)

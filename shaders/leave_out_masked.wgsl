@@ -1,5 +1,5 @@
-// Stage to leave masked triangles out of the inner conservative depth, for nobody knows which
-// texels they cover: their corners become one. One thread per triangle of select_casters.wgsl.
+// Stage to leave masked triangles out of the inner conservative depth, for the texels that they
+// cover are not known: their corners become one. One thread per triangle of select_casters.wgsl.
 
 #import "shared/casters.wgsl"
 #import "shared/masks.wgsl"

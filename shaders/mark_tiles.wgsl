@@ -1,5 +1,5 @@
 // Stage to find, for each tile of the grid, the farthest receiver of its texels and which of them
-// somebody is in; one thread per tile.
+// hold a receiver; one thread per tile.
 
 #import "shared/light_buffer.wgsl"
 

@@ -1,6 +1,6 @@
 // Stage to draw the outer conservative depth: every caster grown by `n` texel diagonals, so that it
-// covers each texel that it overlaps. What lies in front of it is lit (BGSM). Vertex pulling, three
-// vertices per primitive: a triangle around the grown one, which the fragments cut to size.
+// covers each texel that it overlaps. Receivers in front of it are lit (BGSM). Vertex pulling,
+// three vertices per primitive: a triangle around the grown one, which the fragments cut to size.
 // Hasselgren, Akenine-Moller, Ohlsson, "Conservative Rasterization", GPU Gems 2, 2005, second
 // algorithm.
 

@@ -17,7 +17,7 @@ var<storage, read> unplaced_nearest: u32;
 
 struct Vertex {
     @builtin(position) clip: vec4<f32>,
-    // Of a FaceTriangle; `volume` 0 of the one over all of the map.
+    // Fields of a FaceTriangle; `volume` is 0 in the one over all of the map.
     @location(0) @interpolate(flat) a: vec3<f32>,
     @location(1) @interpolate(flat) b: vec3<f32>,
     @location(2) @interpolate(flat) c: vec3<f32>,
@@ -157,7 +157,7 @@ fn bounds_along(part: Part, along: vec2<f32>) -> vec4<f32> {
     return vec4(low, high);
 }
 
-// Of a triangle around the rectangle, twice as large.
+// Returns a corner of a triangle around the rectangle, twice as large.
 fn corner_around(part: Part, along: vec2<f32>, corner: u32) -> vec2<f32> {
     let bounds = bounds_along(part, along) + vec4(-1.0, -1.0, 1.0, 1.0);
     var place = bounds.xy;

@@ -75,6 +75,6 @@ fn by_hand(place: vec2<f32>, layer: u32, depth: f32) -> f32 {
             lit += cover.x * cover.y * select(0.0, 1.0, depth <= stored);
         }
     }
-    // What the parts of texels add up to is rounded.
+    // The sum over parts of texels is rounded.
     return saturate(lit / f32(last * last));
 }

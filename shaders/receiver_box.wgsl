@@ -5,8 +5,8 @@
 #import "shared/map_layers.wgsl"
 #import "shared/pixel_blocks.wgsl"
 
-// Of each layer bits of f32 from 0 to 1, which are in the order of the numbers: the greatest x, y,
-// 1 - x and 1 - y in shares of the scene's edge. All 0 if there is no receiver.
+// For each layer, bits of f32 from 0 to 1, which are in the order of the numbers: the greatest x,
+// y, 1 - x and 1 - y in shares of the scene's edge. All 0 if there is no receiver.
 var<storage, read_write> receiver_box: array<atomic<u32>, 4>;
 var<storage, read_write> receiver_boxes: array<array<atomic<u32>, 4>>;
 
@@ -43,7 +43,7 @@ fn of_layers(@builtin(global_invocation_id) thread: vec3<u32>) {
     }
 }
 
-// Nobody's beyond the image.
+// No receiver beyond the image.
 fn receiver_of(pixel: vec2<u32>) -> vec4<f32> {
     if any(pixel >= textureDimensions(position)) {
         return vec4(0.0);

@@ -26,8 +26,8 @@ const CORNERS: u32 = 192u;
 // Vertices at the edges of a large triangle, see inner_one_ring.wgsl.
 const EDGE_VERTICES: u32 = 36u;
 const NO_SLOT: u32 = 0xffffffffu;
-// Of the circle in a large triangle, in texels. Of 2, 4 and 8 the first two drew the layer equally
-// fast, the last more slowly.
+// Least radius of the circle in a large triangle, in texels. Among 2, 4 and 8 the first two drew
+// the layer equally fast, the last more slowly.
 const LEAST_RADIUS: f32 = 3.0;
 
 var<workgroup> texels: array<vec3<f32>, CORNERS>;
@@ -117,7 +117,7 @@ fn gather(corner: u32, lane: u32) -> LightTriangle {
 
 // Returns where in `selected` the corner is, NO_SLOT if nowhere.
 fn place(corner: u32, lane: u32, triangle: LightTriangle, tag: u32) -> u32 {
-    // What has no place in the map covers no texel for sure.
+    // A triangle without a place in the map covers no texel for sure.
     let in_map = is_asked(corner) && is_placed(triangle) && casts(triangle, params.cull);
     let word = lane / 96u;
     let bit = 1u << (lane / 3u % 32u);

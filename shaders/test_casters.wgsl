@@ -1,6 +1,6 @@
 // Stage to ask, for each receiver, the casters that are listed in its texel, by the tracer's own
-// test; a full-screen triangle, as some adapters take long to write texels in a compute stage. What
-// no complete list answers is left to a ray.
+// test; a full-screen triangle, as some adapters take long to write texels in a compute stage.
+// Receivers that no complete list answers are left to a ray.
 
 #import "shared/camera.wgsl"
 #import "shared/light_buffer.wgsl"
@@ -64,7 +64,7 @@ fn test_casters(receiver: vec3<f32>, own: u32) -> u32 {
     if nearest > 0.0 && bitcast<u32>(nearest) > ~texel.w {
         return STATUS_SHADOW;
     }
-    // Two shaders may round a receiver to different texels: then nobody has marked this one.
+    // Two shaders may round a receiver to different texels: then this texel was not marked.
     if place.depth > texel.x || texel.y > params.longest_list {
         return STATUS_UNCERTAIN;
     }

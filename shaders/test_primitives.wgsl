@@ -1,6 +1,6 @@
 // Stage to test each ray against one triangle, the one that the outer depth comes from in its
-// texel: a miss is taken for light. One thread per ray. What Hertel, Hormann, Westermann 2009 do
-// first; the dissertation's section 5.4.1 leaves it out because of its errors.
+// texel: a miss is taken for light. One thread per ray. Hertel, Hormann, Westermann 2009 begin with
+// it; the dissertation's section 5.4.1 leaves it out because of its errors.
 
 #import "shared/map_layers.wgsl"
 #import "shared/groups.wgsl"

@@ -9,7 +9,7 @@
 
 // As `LightSpaceNode` in crates/scene/src/bvh/light_space.rs, relative to `light.centre`.
 struct Node {
-    // What it covers, seen along the light.
+    // Rectangle that it covers, seen along the light.
     low: vec2<f32>,
     high: vec2<f32>,
     // The sides of its box in world space that are towards the light: axes permuted, mirrored so
@@ -31,7 +31,7 @@ const LEAF_MASK: u32 = 63u;
 // by 2, the triangles' test by 5 (Woop et al.). The nodes themselves are rounded outwards.
 const PAD: f32 = 1.9073486e-6;
 
-// What is recorded for a ray that does not go towards the light: a distance that no hit has.
+// Record of a ray that does not go towards the light: a distance that no hit has.
 const OTHER_DIRECTION: f32 = -1.0;
 
 // A ray as nodes are asked for it: the point that it is, grown, and where it begins.
@@ -84,7 +84,7 @@ fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
             let to_left = enters(at, left);
             let to_right = enters(at, right);
             if to_left || to_right {
-                // What is farther from the receiver is likelier to be beyond it.
+                // The box farther from the receiver is likelier to be beyond it.
                 let swap = !to_left || (to_right && right.farthest.z > left.farthest.z);
                 if to_left && to_right {
                     stack[height] = select(first + 1u, first, swap);

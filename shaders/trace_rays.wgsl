@@ -28,7 +28,7 @@ const PAD: f32 = 1.9073486e-6;
 // beyond the scene.
 const STEEPEST: f32 = 1e18;
 
-// What a ray's tests share: with triangles, and the padded slabs' terms.
+// Terms that a ray's tests share: with triangles, and the padded slabs' terms.
 struct Prepared {
     sheared: Sheared,
     inverse: vec3<f32>,

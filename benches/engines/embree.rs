@@ -68,7 +68,7 @@ fn scene(rays: &Rays) -> Result<Scene<'static>, embree3::Error> {
         )?
         .copy_from_slice(&mesh.triangles);
     if !rays.skip.is_empty() {
-        // What a ray does not see is its id.
+        // A ray skips the triangle whose id it carries.
         geometry.set_occluded_filter_function::<_, ()>(|rays, hits, mut valid, _, _| {
             for lane in 0..valid.len() {
                 if valid[lane] != 0 && hits.prim_id(lane) == rays.id(lane) {

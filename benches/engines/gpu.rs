@@ -189,7 +189,7 @@ pub fn engine<'a>(gpu: &'a Gpu, rays: &'a Rays, name: &str, builds: &[&str]) -> 
     ));
     let (device, queue) = (&gpu.device, &gpu.queue);
     let wait = || drop(device.poll(wgpu::PollType::wait_indefinitely()));
-    // What it is made of is uploaded for all engines alike.
+    // All engines share the mesh's uploads.
     for shared in ["scene.positions", "scene.indices"] {
         let built = provider.build(shared, device, queue);
         built.unwrap_or_else(|why| panic!("{why}"));

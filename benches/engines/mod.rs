@@ -9,7 +9,7 @@ use skiagraph_gpu::device::Gpu;
 use skiagraph_scene::{Scene, SceneLibrary, SceneRequest};
 use std::{sync::Arc, time::Duration};
 
-/// What `RayQuery` asks for.
+/// Features that `RayQuery` asks for.
 pub const RAY_QUERY: wgpu::Features = wgpu::Features::EXPERIMENTAL_RAY_QUERY;
 
 /// As the shaders have it.
@@ -29,11 +29,11 @@ pub struct Rays {
     pub rays: Vec<Ray>,
     /// The primitive that each ray does not see; empty if all see all.
     pub skip: Vec<u32>,
-    /// Whether all go towards the scene's light.
+    /// True if all rays go towards the scene's light.
     pub to_light: bool,
 }
 
-/// What traces some rays.
+/// One way to trace some rays.
 pub struct Engine<'a> {
     pub name: String,
     /// How long its hierarchy took.
@@ -41,7 +41,7 @@ pub struct Engine<'a> {
     /// Traces all of them: how long that took, and which are blocked.
     #[allow(clippy::type_complexity, reason = "one use")]
     pub trace: Box<dyn FnMut() -> (Duration, Vec<bool>) + 'a>,
-    /// What the first turn has found.
+    /// Answers of the first turn.
     pub blocked: Vec<bool>,
 }
 

@@ -17,7 +17,8 @@ struct BinnedTexel {
 var<uniform> params: Params;
 // As mark_tiles.wgsl has them.
 var<storage, read> tiles: array<vec4<u32>>;
-// Of the grid; behind them one that says LIST_LACKS if a part of a large triangle had no room.
+// Texels of the grid; behind them one that says LIST_LACKS if a part of a large triangle had no
+// room.
 var<storage, read_write> texels: array<BinnedTexel>;
 
 // Those included for which there is no room.
@@ -25,7 +26,7 @@ var<storage, read_write> entry_count: atomic<u32>;
 // As `Texel` has it.
 var<storage, read_write> entries: array<vec4<u32>>;
 
-// Whether a caster is there wherever its triangle is, and depths are those of the light's space: no
+// True if a caster is there wherever its triangle is, and depths are those of the light's space: no
 // mask, a directional light.
 override has_covers: bool = false;
 
@@ -78,7 +79,7 @@ fn bin(caster: Binned, first: u32, end: u32, step: u32) {
     }
 }
 
-// Whether a texel's list gets the caster; counts it.
+// Returns true if a texel's list gets the caster; counts it.
 fn is_listed(caster: Binned, texel: vec2<u32>) -> bool {
     let number = texel_number(binned_layer, texel);
     let centre = vec2<f32>(texel) + 0.5;
@@ -94,14 +95,14 @@ fn is_listed(caster: Binned, texel: vec2<u32>) -> bool {
     if has_covers && covers {
         let depth = covered_depth(caster, centre);
         atomicMax(&texels[number].full_coverage_depth, ~depth_bits(depth));
-        // Nobody behind it asks a list.
+        // No receiver behind it asks a list.
         atomicMin(&texels[number].max_receiver_depth, depth_bits(depth + cover_margin()));
     }
-    // Nobody reads a list that is longer.
+    // A longer list is never read.
     return (atomicAdd(&texels[number].length, 1u) & ~LIST_LACKS) < params.longest_list;
 }
 
-// Whoever is farther from the light, in a texel that the caster covers, has all of its triangle
+// A receiver farther from the light, in a texel that the caster covers, has all of its triangle
 // before it, wherever rounding may have either, and the tracer finds it; and none of its own
 // receivers is.
 fn covered_depth(caster: Binned, centre: vec2<f32>) -> f32 {

@@ -15,9 +15,10 @@ struct Binned {
     // How far the centre of a texel that the triangle overlaps may be beyond the lines of ab, bc
     // and ca, times their lengths.
     edge_threshold: vec3<f32>,
-    // What a texel is taken larger by on each side: SLACK, and more in fine grids and near a light.
+    // Growth of a texel on each side: SLACK, and more in fine grids and near a light.
     dilation: f32,
-    // What the tracer may find it nearer to the light by, or farther from it, in depth.
+    // Bound on the difference between its depth and the tracer's, nearer to the light or farther
+    // from it.
     depth_tolerance: f32,
 }
 
@@ -37,12 +38,13 @@ fn caster_of(primitive: u32) -> Binned {
     return caster_over(primitive, triangle, plane, dilation, depth_tolerance);
 }
 
-// What the tracer's view of a triangle may differ from its corners by, in any direction, as a share
-// of the longest way, twice the diagonal of the scene's box: docs/light_buffer.md.
+// Bound on the difference between the tracer's view of a triangle and its corners, in any
+// direction, as a share of the longest way, twice the diagonal of the scene's box:
+// docs/light_buffer.md.
 const TRACED: f32 = 16.0 * HALF_ULP;
 
 // How far a receiver may be beyond an edge, in texels in each direction, and the tracer not tell.
-// Of a directional light.
+// For a directional light.
 fn edge_tolerance() -> f32 {
     let placed = texel_error_of_summands(map_fit, light_clip_summands_of_scene()).x;
     let clip = light.max_distance / min(light.extent.x, light.extent.y);
@@ -107,8 +109,8 @@ fn caster_of_face(primitive: u32) -> Binned {
     let least = saturate(min(a.z, min(b.z, c.z)));
     let greatest = saturate(max(a.z, max(b.z, c.z)));
     let nearest = min(a.w, min(b.w, c.w));
-    // What projection makes of rounding, and of what the tracer's view may differ by, seen from the
-    // nearest corner.
+    // Projected rounding, and the projected difference of the tracer's view, seen from the nearest
+    // corner.
     let projected_ratio = max(
         max_projected_ratio(a),
         max(max_projected_ratio(b), max_projected_ratio(c)),

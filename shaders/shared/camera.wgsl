@@ -3,8 +3,8 @@
 struct Camera {
     eye: vec3<f32>,
     near: f32,
-    // What rounding the eye to f32 left over: corners far from the origin keep their distance to
-    // the eye.
+    // Remainder of rounding the eye to f32: corners far from the origin keep their distance to the
+    // eye.
     eye_low: vec3<f32>,
     far: f32,
     // Unit vectors; half_width and half_height are the image's half extents at distance 1.
@@ -29,7 +29,7 @@ fn relative_to_eye(position: vec3<f32>) -> vec3<f32> {
 
 // wgpu clip space: x right, y up, z from w at the near plane to 0 at the far plane. A depth is
 // about near / distance then, of which f32 keeps as many digits however far it is; the other way
-// round, far depths crowd below 1. What is drawn with it clears depth to 0 and compares with
+// round, far depths crowd below 1. Passes that draw with it clear depth to 0 and compare with
 // Greater.
 fn camera_clip(relative: vec3<f32>) -> vec4<f32> {
     let distance = dot(camera.forward, relative);

@@ -1,4 +1,4 @@
-// What select_casters.wgsl leaves of the scene: three corners per triangle that is in the map, in
+// Triangles of the scene that select_casters.wgsl keeps: three corners for each in the map, in
 // texels, to be pulled by vertex index.
 
 #import "shared/light_triangle.wgsl"
@@ -49,8 +49,8 @@ fn inner_vertex(index: u32, n: f32, small: u32) -> Vertex {
     return vertex;
 }
 
-// Whether the triangle, its edges moved inward by so many texels, turns inside out or has an edge
-// shorter than twice that.
+// Returns true if the triangle, its edges moved inward by so many texels, turns inside out or has
+// an edge shorter than twice that.
 fn is_small(vertex: Vertex, inward: f32) -> bool {
     let ab = distance(vertex.a.xy, vertex.b.xy);
     let bc = distance(vertex.b.xy, vertex.c.xy);

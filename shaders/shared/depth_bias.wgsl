@@ -1,4 +1,4 @@
-// What is added to a stored depth before a receiver is compared with it.
+// Bias that is added to a stored depth before a receiver is compared with it.
 
 #import "shared/map_fit.wgsl"
 

@@ -3,7 +3,7 @@
 
 #import "shared/binned_caster.wgsl"
 
-// What keys say of a triangle's edges ab, bc and ca that is the same in all texels.
+// Parts of the keys for a triangle's edges ab, bc and ca that are the same in all texels.
 struct Lines {
     // As `Edge` has it.
     inward: vec3<u32>,

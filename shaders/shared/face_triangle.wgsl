@@ -4,8 +4,8 @@
 
 #import "shared/light_triangle.wgsl"
 
-// Whether all of it is beyond one of the planes x = w, x = -w, y = w, y = -w, or behind the light,
-// by more than rounding.
+// Returns true if all of it is beyond one of the planes x = w, x = -w, y = w, y = -w, or behind the
+// light, by more than rounding.
 fn is_beside(a: vec4<f32>, b: vec4<f32>, c: vec4<f32>) -> bool {
     let spread = light_spread();
     let room = 2.0 * CLIP_ROUNDING * (1.0 + spread) * light.range
@@ -22,15 +22,15 @@ struct FaceTriangle {
     corners: array<vec3<f32>, 3>,
     // The most that is summed up for any of that, sizes alone.
     summed: vec3<f32>,
-    // Of the sign of the corners' determinant, and so of a placed triangle's area; 0 if rounding
+    // Has the sign of the corners' determinant, and so of a placed triangle's area; 0 if rounding
     // could decide it.
     volume: f32,
     nearest: f32,
-    // Of a triangle that is nowhere in the map.
+    // True for a triangle that is nowhere in the map.
     beside: bool,
 }
 
-// Of a spot light.
+// For a spot light.
 fn face_triangle(primitive: u32) -> FaceTriangle {
     var seen: array<vec4<f32>, 3>;
     var across: array<vec3<f32>, 3>;
@@ -61,8 +61,8 @@ fn face_triangle(primitive: u32) -> FaceTriangle {
     );
 }
 
-// Whether it may cover some of the texel around a centre. A direction meets a triangle if it is on
-// one side of the three planes through the light and an edge.
+// Returns true if it may cover some of the texel around a centre. A direction meets a triangle if
+// it is on one side of the three planes through the light and an edge.
 fn may_cover(triangle: FaceTriangle, centre: vec2<f32>) -> bool {
     if triangle.volume == 0.0 {
         return true;

@@ -5,7 +5,7 @@
 #import "shared/receiver.wgsl"
 
 struct Look {
-    // Whether the map decides; else `visibility` is known without it.
+    // True if the map decides; else `visibility` is known without it.
     at_map: bool,
     visibility: f32,
     // 0 to 1 across the map, y down.
@@ -47,7 +47,7 @@ fn step_along(pixel: vec2<u32>, direction: vec2<i32>, texel: vec2<f32>) -> f32 {
     return select(least, 1.0, least == map_fit.size);
 }
 
-// What a sampler with `Linear` would give, by one with `Nearest`, which asks nothing of a format.
+// Filters like a sampler with `Linear`, by one with `Nearest`, which asks nothing of a format.
 fn filtered(map: texture_2d<f32>, nearest: sampler, look: Look) -> vec2<f32> {
     let coarsest = f32(textureNumLevels(map) - 1u);
     let mip = min(look.mip, coarsest);

@@ -28,7 +28,7 @@ fn footprint(fit: MapFit, place: vec2<f32>, kind: u32) -> Footprint {
     );
 }
 
-// Whether all texels that are asked let light through, and whether none does.
+// True if all texels that are asked let light through, and true if none does.
 struct Taps {
     lit: bool,
     shadowed: bool,

@@ -1,4 +1,4 @@
-// The frame, as whoever runs the graph counts it.
+// The frame, as the host counts it.
 
 struct Frame {
     // From 0 in the first frame.

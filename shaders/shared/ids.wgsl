@@ -2,10 +2,10 @@
 // values of `status`. NO_PRIMITIVE is that of background pixels and missed rays.
 
 const NO_PRIMITIVE: u32 = 0xffffffffu;
-// Of a receiver of which only the depth is known.
+// Primitive of a receiver of which only the depth is known.
 const UNKNOWN_PRIMITIVE: u32 = 0xfffffffeu;
 const NO_PIXEL: u32 = 0xffffffffu;
-// Of a ray whose way the driver broke off, and what its pixel shows.
+// Hit of a ray whose way the driver broke off, and the visibility of its pixel.
 const UNANSWERED: u32 = 0xfffffffdu;
 const VISIBILITY_UNANSWERED: u32 = 2u;
 

@@ -74,7 +74,7 @@ struct Axes {
     v: vec2<f32>,
 }
 
-// Of upright rectangles, as seen from the light.
+// Axes of upright rectangles, as seen from the light.
 fn upright() -> Axes {
     // Clip x and y to world units along the rectangle's sides.
     let matrix = transpose(light.clip_from_relative);
@@ -122,16 +122,16 @@ fn fit_over_rectangle(axes: Axes, over: Rectangle, size: f32, rounding: f32) -> 
     );
 }
 
-// The greatest MapFit.scale for which `texel_error_bound_of` is at most `rounding`, anywhere in
-// the scene. Of a map within the scene |x.z| is no more than the scale; `beyond` is how many texels
-// more.
+// The greatest MapFit.scale for which `texel_error_bound_of` is at most `rounding`, anywhere in the
+// scene. For a map within the scene |x.z| is no more than the scale; `beyond` is the number of
+// texels more.
 fn greatest_scale(beyond: f32, rounding: f32) -> f32 {
     // Half the scene's box away from its centre; the bound of no receiver is greater.
     let matrix = transpose(light.clip_from_relative);
     let centre = abs(light.centre.xyz);
     let summed = max(dot(abs(matrix[0].xyz), centre), dot(abs(matrix[1].xyz), centre));
     let room = rounding / CLIP_ROUNDING - beyond;
-    // What is proven of edges holds in maps of up to 8,192 texels across the scene.
+    // The proof for edges holds in maps of up to 8,192 texels across the scene.
     let most = select(4096.0, 524288.0, rounding > SLACK);
     return clamp(room / (2.0 * (summed + light.centre.w) + 2.0), 0.5, most);
 }

@@ -2,7 +2,7 @@
 
 struct Light {
     // From a position relative to `centre` to the light's clip space; affine, z in 0..1 grows away
-    // from the light. Of a spot or point light: see `light_homogeneous`.
+    // from the light. For a spot or point light: see `light_homogeneous`.
     clip_from_relative: mat4x4<f32>,
     // Unit vector towards the light; of a spot light, against its axis; of a point light, 0.
     to_light: vec3<f32>,
@@ -14,24 +14,24 @@ struct Light {
     // World units per unit of clip x, y, z; of a spot or point light, at its `range`. w: as of
     // `centre`, for z.
     extent: vec4<f32>,
-    // Of a spot or point light: its place, and what rounding that to f32 left over.
+    // Place of a spot or point light, and the remainder of rounding it to f32.
     position: vec3<f32>,
-    // Of a spot light: cosine of the angle between its axis and the edge of its cone.
+    // Cosine of the angle between a spot light's axis and the edge of its cone.
     edge_cosine: f32,
     position_low: vec3<f32>,
-    // Of a spot or point light: no point of the scene is farther from it.
+    // Range of a spot or point light: no point of the scene is farther from it.
     range: f32,
 }
 
 var<uniform> light: Light;
 
-// Which kind of light it is: known when the graph is planned, so that nobody pays for the others.
+// Kind of the light: known when the graph is planned, so that the other kinds cost nothing.
 override light_kind: u32 = 0u;
 const LIGHT_DIRECTIONAL: u32 = 0u;
 const LIGHT_SPOT: u32 = 1u;
 const LIGHT_POINT: u32 = 2u;
 
-// What a shadow ray to a place leaves out of its way, as `LIGHT_GAP` in
+// Share that a shadow ray to a place leaves out of its way, as `LIGHT_GAP` in
 // crates/scene/src/light_kind.rs.
 const LIGHT_GAP: f32 = 0.0000152587890625;
 
@@ -57,7 +57,7 @@ fn light_distance(position: vec3<f32>) -> f32 {
     return length(light_way(position)) * (1.0 - LIGHT_GAP);
 }
 
-// Whether the light shines on a position at all, were nothing in between.
+// Returns true if the light shines on a position at all, were nothing in between.
 fn light_shines_on(position: vec3<f32>) -> bool {
     if light_kind != LIGHT_SPOT {
         return true;
@@ -79,8 +79,8 @@ fn light_face(position: vec3<f32>) -> u32 {
 }
 
 // A position as a face of the light's map sees it: x and y, of which w is the half width of the
-// map, and w; z, not to be divided by w, is the share of `range`, in 0..1 before the light. Of a
-// spot light w is the distance along the axis, of a point light along the face's. Behind the light
+// map, and w; z, not to be divided by w, is the share of `range`, in 0..1 before the light. For a
+// spot light w is the distance along the axis, for a point light along the face's. Behind the light
 // w is negative.
 fn light_homogeneous(position: vec3<f32>, face: u32) -> vec4<f32> {
     if light_kind == LIGHT_DIRECTIONAL {
@@ -104,8 +104,8 @@ fn light_homogeneous(position: vec3<f32>, face: u32) -> vec4<f32> {
     return vec4(turned.xy, turned.z / light.range, turned.z);
 }
 
-// Of a place in the world, in the map's face that it lies in: x and y in -1..1 over the map, y up,
-// z in 0..1 away from the light. A spot light's x and y are infinite beside the light.
+// Maps a place in the world into the map's face that it lies in: x and y in -1..1 over the map, y
+// up, z in 0..1 away from the light. A spot light's x and y are infinite beside the light.
 fn light_clip(position: vec3<f32>) -> vec3<f32> {
     if light_kind == LIGHT_DIRECTIONAL {
         return (light.clip_from_relative * vec4(position - light.centre.xyz, 1.0)).xyz;

@@ -7,14 +7,14 @@
 
 // One of the grid's texels. Receivers read it as one vec4.
 struct Texel {
-    // Of the receivers in it: bits of the depth of the farthest, see `Place`; 0 where nobody is.
-    // Behind a cover none is looked for.
+    // Bits of the depth of the farthest receiver in it, see `Place`; 0 where there is none. Behind
+    // a cover none is looked for.
     max_receiver_depth: u32,
     // Entries that its list should have; and LIST_LACKS if one had no room.
     length: u32,
     // Number of its first entry; LIST_END where there is none.
     head: u32,
-    // Bits of a depth, inverted: whoever is farther from the light is in the shadow of a caster
+    // Bits of a depth, inverted: a receiver farther from the light is in the shadow of a caster
     // that covers all of the texel. 0 where none does.
     full_coverage_depth: u32,
 }
@@ -31,7 +31,7 @@ struct Part {
 }
 
 // Edge of a tile, texels. A tile is a vec4: the farthest depth of its texels, a bit for each of
-// them, row by row, that somebody is in, and nothing.
+// them that holds a receiver, row by row, and nothing.
 const TILE: u32 = 8u;
 
 // The layer of the grid whose lists a pass makes; `map_fit` is its.
@@ -41,9 +41,9 @@ override binned_layer: u32 = 0u;
 struct Place {
     // Number of its texel; NO_TEXEL if it is outside the map, or rounding may move it too far.
     texel: u32,
-    // Bits of its depth, an f32 above 0. What is farther from the light does not shade it.
+    // Bits of its depth, an f32 above 0. A caster farther from the light does not shade it.
     depth: u32,
-    // What rounding may have added to that.
+    // Bound on the rounding of that.
     rounding: f32,
     // Relative to the texel's centre.
     offset: vec2<f32>,
@@ -61,7 +61,7 @@ fn tile_number(layer: u32, tile: vec2<u32>) -> u32 {
     return (layer * tiles + tile.y) * tiles + tile.x;
 }
 
-// Of the texels of a tile that have a bit: the first one's place in the tile, and its bit.
+// Returns the first texel of a tile that has a bit: its place in the tile, and its bit.
 fn first_of(texels: vec2<u32>) -> vec2<u32> {
     let bit = countTrailingZeros(select(texels.x, texels.y, texels.x == 0u));
     return vec2(bit % TILE, bit / TILE + select(0u, 4u, texels.x == 0u));
@@ -84,7 +84,7 @@ fn place_of(receiver: vec3<f32>, summed: vec2<f32>) -> Place {
         return Place(NO_TEXEL, 0u, 0.0, vec2(0.0));
     }
     let texel = vec2<u32>(at.xy);
-    // 0 says that nobody is there.
+    // 0 says that no receiver is there.
     let depth = max(depth_bits(at.z + error.y), 1u);
     return Place(texel_number(layer, texel), depth, 2.0 * error.y, fract(at.xy) - 0.5);
 }

@@ -20,8 +20,8 @@ const CULL_BACK: u32 = 2u;
 const DEPTH_PLANE: u32 = 0u;
 const DEPTH_CONSERVATIVE: u32 = 1u;
 
-// Of what is drawn whose depth is the fragment shader's affair: nothing is clipped by the near or
-// the far plane.
+// Depth of triangles whose fragment shader sets the depth: nothing is clipped by the near or the
+// far plane.
 const MIDDLE: f32 = 0.5;
 
 const NEAREST: f32 = -1.0;
@@ -62,13 +62,13 @@ fn is_placed(triangle: LightTriangle) -> bool {
         || max(triangle.a.z, max(triangle.b.z, triangle.c.z)) < 0.0;
 }
 
-// Whether the triangle is in the map at all. One seen edge-on, n . l = 0, is.
+// Returns true if the triangle is in the map at all. One seen edge-on, n . l = 0, is.
 fn casts(triangle: LightTriangle, cull: u32) -> bool {
     return !(cull == CULL_FRONT && triangle.area < 0.0)
         && !(cull == CULL_BACK && triangle.area > 0.0);
 }
 
-// Of the edges ab, bc and ca.
+// Returns the distances inward of the edges ab, bc and ca.
 fn inward_distances(triangle: LightTriangle, point: vec2<f32>) -> vec3<f32> {
     return vec3(
         inward_distance(triangle.a.xy, triangle.b.xy, point, triangle.area),
@@ -86,14 +86,14 @@ struct DepthPlane {
     corner: vec3<f32>,
     // dz/dx and dz/dy.
     slope: vec2<f32>,
-    // What a square is taken wider for, for rounding, in texels on each side; negative if only the
-    // depths of the corners tell.
+    // Growth of a square for rounding, in texels on each side; negative if only the depths of the
+    // corners tell.
     margin: f32,
-    // Of the corners.
+    // Least and greatest depth of the corners.
     least: f32,
     greatest: f32,
-    // What rounding may make of corners' depths, as a share of them: of a spot light's map, which
-    // is not drawn to one scale; of others receivers allow for it.
+    // Bound on the rounding of corners' depths, as a share of them: for a spot light's map, which
+    // is not drawn to one scale; for others receivers allow for it.
     rounding: f32,
 }
 
@@ -126,9 +126,9 @@ fn depth_plane(triangle: LightTriangle) -> DepthPlane {
     );
 }
 
-// Of a corner and of a receiver together, and of what is made of them. The way from the light,
-// components' sizes added, is at most sqrt(3) times its length, which is the distance along the
-// axis over the cosine of the angle between; 7 half ulps of that for either.
+// Bounds the rounding of a corner and of a receiver together, and of sums of them. The way from the
+// light, components' sizes added, is at most sqrt(3) times its length, which is the distance along
+// the axis over the cosine of the angle between; 7 half ulps of that for either.
 fn depth_rounding(triangle: LightTriangle) -> f32 {
     if light_kind == LIGHT_DIRECTIONAL {
         return 0.0;
@@ -161,8 +161,8 @@ fn plane_bound(plane: DepthPlane, centre: vec2<f32>, half_width: f32, end: f32) 
     let slope = abs(plane.slope);
     var change = (half_width + plane.margin) * (slope.x + slope.y);
     if light_kind != LIGHT_DIRECTIONAL {
-        // What rounding makes of three corners and of the way to this place; just outside of a low
-        // triangle its corners weigh more than 1, and as `margin` has it.
+        // Rounding of three corners and of the way to this place; just outside of a low triangle
+        // its corners weigh more than 1, and as `margin` has it.
         let way = dot(slope, abs(centre - plane.corner.xy));
         let weights = 4.5 * plane.margin / SLACK;
         change += plane.rounding * (weights * abs(plane.least) + way);
@@ -171,7 +171,7 @@ fn plane_bound(plane: DepthPlane, centre: vec2<f32>, half_width: f32, end: f32) 
     return clamp(bound, plane.least, plane.greatest);
 }
 
-// What the map holds of a depth that is linear across it.
+// Returns the map's value of a depth that is linear across it.
 fn map_depth(plane: DepthPlane, depth: f32, end: f32) -> f32 {
     if light_kind == LIGHT_DIRECTIONAL {
         return saturate(depth);

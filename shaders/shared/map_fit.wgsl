@@ -14,9 +14,9 @@ struct MapFit {
     scale: f32,
     // The same with |x.z| and |y.z|.
     reach: f32,
-    // Of a layer: the farthest distance from the eye, along its direction, of those who ask it.
+    // Farthest distance from the eye, along its direction, among the receivers that ask this layer.
     end: f32,
-    // What x and y are divided by in a projective map; 0, 0, 1 in an affine one.
+    // Divisor of x and y in a projective map; 0, 0, 1 in an affine one.
     w: vec4<f32>,
 }
 
@@ -46,7 +46,7 @@ fn texel_of_clip(fit: MapFit, clip: vec3<f32>) -> vec3<f32> {
     let texel = vec2(dot(fit.x.xyz, across), dot(fit.y.xyz, across));
     if map_is_projective {
         let w = dot(fit.w.xyz, across);
-        // What is behind the map's centre of projection is nowhere in it.
+        // A place behind the map's centre of projection is nowhere in it.
         return vec3(select(vec2(-1.0), texel / w, w > 0.0), clip.z);
     }
     return vec3(texel, clip.z);
@@ -66,8 +66,8 @@ fn is_outside_of(fit: MapFit, texel: vec2<f32>) -> bool {
     return !(all(texel >= vec2(0.0)) && all(texel < vec2(fit.size)));
 }
 
-// Of a spot light's map: all that is summed up, sizes alone, for x, y or w of a point in its cone,
-// per unit of w. A point light's faces take one coordinate each.
+// Returns all that is summed up for x, y or w of a point in the cone of a spot light's map, sizes
+// alone, per unit of w. A point light's faces take one coordinate each.
 fn light_spread() -> f32 {
     if light_kind == LIGHT_POINT {
         return 1.0;
@@ -77,7 +77,7 @@ fn light_spread() -> f32 {
     return (most.x + most.y + most.z) / max(light.edge_cosine, 1e-3);
 }
 
-// What rounding may move a point before a spot light by, in texels: 5 half ulps of what is summed
+// Bounds the rounding of a point before a spot light, in texels: 5 half ulps of all that is summed
 // up for x, y and w, a division of 2.5 ulp, and then 4 half ulps.
 fn spot_texel_error(fit: MapFit, position: vec3<f32>) -> f32 {
     let way = abs(light_way(position));
@@ -90,9 +90,9 @@ fn spot_texel_error(fit: MapFit, position: vec3<f32>) -> f32 {
     return CLIP_ROUNDING * (fit.scale * clip + fit.reach);
 }
 
-// What rounding may move a receiver and the corners of its casters by, together, in texels and in
+// Bounds the rounding of a receiver and the corners of its casters together, in texels and in
 // depth: on the way to clip space, and from there on, 4 half ulps of all that is summed up. The map
-// may have been rounded itself; it is one for all. Of affine maps.
+// may have been rounded itself; it is one for all. For affine maps.
 fn texel_error_bound_of(fit: MapFit, receiver: vec3<f32>) -> vec2<f32> {
     return texel_error_of_summands(fit, light_clip_summands(receiver));
 }
@@ -100,7 +100,8 @@ fn texel_error_bound_of(fit: MapFit, receiver: vec3<f32>) -> vec2<f32> {
 // `summed`: of `light_clip_summands`; not asked for under a spot or point light.
 fn texel_error_of_summands(fit: MapFit, summed: vec2<f32>) -> vec2<f32> {
     if light_kind != LIGHT_DIRECTIONAL {
-        // Of the receiver alone, where |x| and |y| are at most w: its casters differ in theirs.
+        // Bound of the receiver alone, where |x| and |y| are at most w: its casters differ in
+        // theirs.
         let across = fit.scale * (2.0 + 4.0 * light_spread()) + fit.reach;
         return CLIP_ROUNDING * vec2(across, 2.0 + 2.0 * light.max_distance / light.range);
     }

@@ -18,8 +18,8 @@ fn is_masked(primitive: u32) -> bool {
     return (scene_masks[primitive] & ~DOUBLE_SIDED) != 0u;
 }
 
-// Whether a primitive is there at the weights of its second and third corner: the nearest texel
-// decides.
+// Returns true if a primitive is there at the weights of its second and third corner: the nearest
+// texel decides.
 fn is_opaque(primitive: u32, b: f32, c: f32) -> bool {
     let record = scene_masks[primitive] & ~DOUBLE_SIDED;
     if record == 0u {

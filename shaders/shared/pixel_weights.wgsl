@@ -8,10 +8,10 @@
 const INSET: f32 = 0.015625;
 
 struct PixelWeights {
-    // Of the triangle's corners. One seen exactly edge-on has no such point; its centroid stands
-    // in.
+    // Weights of the triangle's corners. One seen exactly edge-on has no such point; its centroid
+    // stands in.
     weights: vec3<f32>,
-    // Whether its back face is seen.
+    // True if its back face is seen.
     from_behind: bool,
 }
 
@@ -41,8 +41,8 @@ fn pixel_weights(
     return PixelWeights(weights, sum > 0.0);
 }
 
-// Of the receiver: within the triangle by INSET, or in the middle of one that is narrower than two
-// of them.
+// Returns the weights of the receiver: within the triangle by INSET, or in the middle of one that
+// is narrower than two of them.
 fn receiver_weights(
     direction: vec3<f32>,
     viewport: vec2<u32>,

@@ -30,13 +30,13 @@ fn edge_area(p: vec2<f32>, q: vec2<f32>) -> f32 {
     return select(0.0, select(area, -area, swap), abs(area) > EDGE_ERROR * abs(product));
 }
 
-// Whether the box around three points has the origin in it: exact, and true of every triangle that
-// has.
+// Returns true if the box around three points has the origin in it: exact, and true of every
+// triangle that has.
 fn bbox_contains(a: vec2<f32>, b: vec2<f32>, c: vec2<f32>) -> bool {
     return all(min(a, min(b, c)) <= vec2(0.0)) && all(max(a, max(b, c)) >= vec2(0.0));
 }
 
-// What rounding may have moved a receiver out of its plane: half an ulp of its distance to the
+// Bounds the distance of a receiver from its plane by rounding: half an ulp of its distance to the
 // origin, of the sum that it is, and an ulp of its distance to the eye, of corners relative to the
 // eye. A surface that its shadow ray meets sooner is the receiver's own, beyond an edge. Holds for
 // random receivers of surface.wgsl whose corners are no farther from them than the eye; a triangle
@@ -48,13 +48,13 @@ fn receiver_error_bound(receiver: vec3<f32>, eye: vec3<f32>) -> f32 {
 
 // --- A square map: texels are closed unit squares around their centres ---
 
-// What rounding, of f32 coordinates and of rasterisers that snap vertices, may move a corner or a
-// receiver by, in texels: a texel is taken this much larger than it is.
+// Bound on the displacement of a corner or a receiver by f32 coordinates and by rasterisers that
+// snap vertices, in texels: a texel is taken this much larger than it is.
 const SLACK: f32 = 0.0078125;
 
-// Whether an edge overlaps the texel around a centre; errs towards yes, also by SLACK. Separating
-// axes of a segment and a square. In a map of 16,384 texels the cross product errs by 6 half ulps
-// of the edge's |x| |y|, less than half of what SLACK adds.
+// Returns true if an edge overlaps the texel around a centre; errs towards yes, also by SLACK.
+// Separating axes of a segment and a square. In a map of 16,384 texels the cross product errs by 6
+// half ulps of the edge's |x| |y|, less than half of what SLACK adds.
 fn edge_overlaps_texel(p: vec2<f32>, q: vec2<f32>, centre: vec2<f32>) -> bool {
     let half = 0.5 + SLACK;
     if any(min(p, q) > centre + half) || any(max(p, q) < centre - half) {
@@ -98,8 +98,8 @@ fn side_of_edge(p: vec2<f32>, q: vec2<f32>, point: vec2<f32>) -> f32 {
     return select(0.0, sign(across), abs(across) > CLEAR_OF_EDGE * length(edge));
 }
 
-// Whether a point is to the left of the edge from p, number `tail`, to q, number `head`; on the
-// line, whether the way to the higher number has it to the left. Evaluated from the lower number to
+// Returns true if a point is to the left of the edge from p, number `tail`, to q, number `head`; on
+// the line, if the way to the higher number has it to the left. Evaluated from the lower number to
 // the higher one, so that of two triangles on opposite sides of an edge one has the point, to the
 // bit; which one may be wrong within 3 half ulps of the point's distance to that end.
 fn left_of(tail: u32, head: u32, p: vec2<f32>, q: vec2<f32>, point: vec2<f32>) -> bool {

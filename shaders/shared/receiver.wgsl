@@ -1,5 +1,5 @@
-// What each pixel shows of the scene, as shared/gbuffer.ron makes it, and its status before any map
-// lookup or ray.
+// The scene at each pixel, as shared/gbuffer.ron makes it, and its status before any map lookup or
+// ray.
 
 #import "shared/facing.wgsl"
 

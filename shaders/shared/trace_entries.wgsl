@@ -1,4 +1,4 @@
-// What every engine of `Trace` binds, and its entry points: one thread per ray, workgroups spread
+// Bindings of every engine of `Trace`, and its entry points: one thread per ray, workgroups spread
 // over two dimensions. The engine has `fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit`.
 
 #import "shared/groups.wgsl"
@@ -67,10 +67,10 @@ fn answer(ray: Ray, skipped: u32, first_found: bool) -> Hit {
     return hit;
 }
 
-// Whether the driver has ended loops of this thread, which it does with all further ones: lavapipe
-// counts 65,535 rounds of the loops of threads that run in step, and leaves each later loop after
-// one round. So here, after the traversal, is one of two rounds. Its step, 1, is no constant to the
-// compiler, which would unroll the loop.
+// Returns true if the driver has ended loops of this thread, which it does with all further ones:
+// lavapipe counts 65,535 rounds of the loops of threads that run in step, and leaves each later
+// loop after one round. So here, after the traversal, is one of two rounds. Its step, 1, is no
+// constant to the compiler, which would unroll the loop.
 fn loops_are_cut() -> bool {
     let step = select(1u, 2u, arrayLength(&hits) == 0u);
     var rounds = 0u;

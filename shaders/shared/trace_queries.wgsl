@@ -1,4 +1,5 @@
-// How the device's own ray queries trace for `Trace`. Who imports this enables wgpu_ray_query.
+// How the device's own ray queries trace for `Trace`. A shader that imports this enables
+// wgpu_ray_query.
 
 #import "shared/trace_entries.wgsl"
 #import "shared/solid.wgsl"

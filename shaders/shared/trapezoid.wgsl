@@ -8,7 +8,7 @@ struct TrapezoidMap {
     x: vec3<f32>,
     y: vec3<f32>,
     w: vec3<f32>,
-    // Whether there is one: not where the eye looks along the light.
+    // True if there is one: not where the eye looks along the light.
     exists: bool,
 }
 

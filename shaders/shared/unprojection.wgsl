@@ -14,7 +14,7 @@ struct Unprojection {
 
 var<uniform> unprojection: Unprojection;
 
-// What a place beyond everything has for a depth.
+// Returns the depth of a place beyond everything.
 fn farthest_depth() -> f32 {
     return select(1.0, 0.0, unprojection.is_reversed != 0u);
 }

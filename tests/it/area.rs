@@ -38,7 +38,7 @@ fn sun(angle_degrees: f64) -> DirectionalLight {
     }
 }
 
-/// What a document shows, and its rays and passes.
+/// Picture of a document, and its rays and passes.
 struct Shown {
     shares: Vec<f32>,
     status: Vec<u32>,
@@ -211,7 +211,7 @@ fn eight_maps_agree_in_light_and_umbra_and_leave_the_penumbra_to_rays() {
         let pixels: Vec<usize> = certain.map(|(pixel, _)| pixel).collect();
         assert!(pixels.len() > 20, "{} of status {status}", pixels.len());
         assert!(pixels.iter().all(|&pixel| hybrid.shares[pixel] == share));
-        // What is certain is a pixel of no penumbra, but for what lies between eight points.
+        // Certain pixels are in no penumbra, but for errors between eight points.
         let wrong = pixels
             .iter()
             .filter(|&&pixel| (shares[pixel] - share).abs() > 0.05);

@@ -1,5 +1,5 @@
-//! What a provider's executors show after its camera, light or mesh was changed: what they would
-//! show had they been made then.
+//! Answers of a provider's executors after its camera, light or mesh was changed: those that they
+//! would give had they been made then.
 
 use crate::support::graphs::{self, open};
 use glam::{DAffine3, DMat3, DVec3};
@@ -12,7 +12,7 @@ use std::sync::Arc;
 const VIEWPORT: [u32; 2] = [48, 32];
 const PRESETS: [&str; 4] = ["rt", "light_buffer", "crsm", "nsm"];
 
-/// What moves: the lamp rigidly, a tree with the wind.
+/// Parts that move: the lamp rigidly, a tree with the wind.
 const PARTS: [&str; 2] = ["lamp", "tree 1"];
 
 struct Park {
@@ -35,7 +35,7 @@ impl Park {
         Self { scene, movable }
     }
 
-    /// Of what both parts are in the picture, or their shadows are.
+    /// Returns a view that shows both parts or their shadows.
     fn view(&self) -> View {
         View {
             eye: DVec3::new(-10.0, 60.0, 60.0),
@@ -79,7 +79,7 @@ fn next(gpu: &Gpu, executor: &mut Executor) -> FrameReport {
     graphs::frame(gpu, executor, &["visibility", "status"])
 }
 
-/// What another provider of the same scene, which has changed nothing, gives to a new executor.
+/// Renders with another provider of the same scene, which has changed nothing, and a new executor.
 fn anew(gpu: &Gpu, graph: &Graph, provider: &SceneProvider, view: &View) -> FrameReport {
     let scene = Scene {
         lights: vec![skiagraph_scene::Light::only(provider.light())],

@@ -77,7 +77,7 @@ fn either_over(a: f32, b: f32) -> f32 {
 }
 ";
 
-/// What is replaced in which of the shaders. Sums of three are in another order, too.
+/// Replacements in each of the shaders. Sums of three are in another order, too.
 const ALTERED: [(&str, &[(&str, &str)]); 4] = [
     (
         "shaders/shared/predicates.wgsl",

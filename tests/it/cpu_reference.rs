@@ -24,7 +24,7 @@ struct Bench<'a> {
     adjacency: Adjacency,
 }
 
-/// What a CPU reference and its preset have said of the pixels that face the light.
+/// Counts of the answers of a CPU reference and its preset, over the pixels that face the light.
 #[derive(Debug, Default)]
 struct Agreement {
     facing_light: usize,
@@ -32,7 +32,7 @@ struct Agreement {
     shadow: usize,
     uncertain: usize,
     indeterminate: usize,
-    /// Of the pixels that are not indeterminate.
+    /// Pixels that are not indeterminate and on which both disagree.
     disagree: usize,
 }
 

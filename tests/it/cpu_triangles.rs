@@ -9,7 +9,7 @@ use std::f64::consts::SQRT_2;
 /// Coordinates are multiples of this many of a texel, on which the tests that judge are exact.
 const GRID: f64 = 256.0;
 
-/// What the predicate's square roots may lose; nothing else does on the grid.
+/// Bound on the loss of the predicate's square roots; nothing else is rounded on the grid.
 const ROUNDING: f64 = 1e-9;
 
 fn triangle(corners: [[i32; 2]; 3], depths: [f64; 3]) -> TexelTriangle {
@@ -227,8 +227,8 @@ proptest! {
         }
     }
 
-    /// What surely holds does for every triangle with corners that near, and what may hold does if
-    /// it does for any of them.
+    /// A sure answer holds for every triangle with corners that near, and a possible one for at
+    /// least one of them.
     #[test]
     fn leeway_covers_every_displacement(
         triangle in triangles(),

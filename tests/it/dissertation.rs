@@ -47,7 +47,7 @@ impl Figures {
     }
 }
 
-/// Of the pixels that face the light, those that a preset leaves to rays.
+/// Returns the number of pixels facing the light that a preset leaves to rays.
 fn uncertain(
     scene: &Arc<Scene>,
     view: &str,

@@ -1,4 +1,4 @@
-//! What f32 can still tell apart: surfaces from themselves, and one scene however large, far off or
+//! Resolution of f32: surfaces told from themselves, and one scene however large, far off or
 //! coarse.
 //!
 //! The sweep behind the table of docs/precision.md is a suite of its own, which CI runs:

@@ -15,7 +15,7 @@ const VIEWPORT: [u32; 2] = [128, 128];
 
 type Params<'a> = &'a [(&'a str, ParamValue)];
 
-/// What a preset answers, per pixel, and what is true of it.
+/// Answers of a preset per pixel, and the truth.
 struct Seen {
     visibility: Vec<f32>,
     position: Vec<Vec3>,
@@ -81,7 +81,7 @@ impl Seen {
             .collect()
     }
 
-    /// Of the pixels well inside of shadows: how many get more light than this.
+    /// Counts the pixels well inside of shadows that get more light than this.
     fn leaks(&self, by: i32, more_than: f32) -> usize {
         let pixels = self.inside(Class::Shadow, by);
         assert!(pixels.len() > 1000, "{} in shadow", pixels.len());
@@ -118,7 +118,7 @@ fn vsm_bleeds_behind_two_occluders_and_less_when_it_is_cut() {
         bleeding[1] < bleeding[0] && bleeding[2] * 10 < bleeding[0],
         "{bleeding:?}"
     );
-    // What compares with every depth does not.
+    // A filter that compares with every depth does not leak.
     let compared = leaks("pcf", &[map(512), number("radius", 4)]);
     assert_eq!(compared, 0);
 }
@@ -268,7 +268,7 @@ fn the_device_filters_as_the_shaders_do() {
     }
 }
 
-/// Of nothing but lit receivers and of maps of one texel, too.
+/// Holds also for nothing but lit receivers and for maps of one texel.
 #[test]
 fn a_lit_floor_does_not_shade_itself() {
     let scene = case("near_and_far");

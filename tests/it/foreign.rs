@@ -106,7 +106,7 @@ fn every_document_is_checked_without_a_fault_or_a_warning() {
     }
 }
 
-/// What is not empty of the files of a folder.
+/// Counts the lines of a folder's files that are not empty.
 fn lines(folder: &str, ending: &str) -> usize {
     let files = std::fs::read_dir(Path::new(FOLDER).join(folder)).expect("the folder is there");
     let paths = files.map(|file| file.expect("it can be listed").path());
@@ -142,7 +142,7 @@ fn the_lines_of_the_readme_are_those_of_the_files() {
 
 const PARK: [u32; 2] = [256, 256];
 
-/// What the oracle says of the park's first view.
+/// Returns the oracle's answer for the park's first view.
 fn truth(scene: &Arc<Scene>, light: &DirectionalLight) -> GroundTruthPixels {
     let mut provider = provider(scene, &scene.views[0], PARK);
     let plan = plan("pipelines/shared/gbuffer.ron", &provider, PARK, |request| {
@@ -194,7 +194,7 @@ fn each_method_is_as_wrong_on_park_as_its_author_has_measured() {
         ("reach", ParamValue::F32(80.0)),
     ];
     let half = [("map_size", ParamValue::U32(512))];
-    // What rasterisers may see otherwise is far below a hundredth of these figures.
+    // Differences between rasterisers are far below a hundredth of these figures.
     for (path, params, percent) in [
         ("pipelines/nsm.ron", &[][..], 8.27),
         ("vsm/vsm.ron", &[], 11.44),
@@ -300,7 +300,7 @@ fn one() -> Arc<Scene> {
     })
 }
 
-/// What a probe writes into the texel in this column and row.
+/// Value that a probe writes into the texel in this column and row.
 type Texel = fn(usize, usize) -> f32;
 
 /// Column of the pixel's centre: what `pass.wgsl` writes.
@@ -391,7 +391,7 @@ fn imports() -> [(String, Import); 2] {
     [("uvs".to_owned(), uvs), ("albedo".to_owned(), albedo)]
 }
 
-/// What a scene with a material would hand over: 0.25 and 0.5.
+/// Imports the values of a scene with a material: 0.25 and 0.5.
 fn import(gpu: &skiagraph_gpu::device::Gpu, executor: &mut Executor) {
     let uvs = gpu
         .device

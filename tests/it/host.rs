@@ -88,7 +88,7 @@ fn view(time: f64) -> View {
     }
 }
 
-/// Of the same meshes, but moved by hand.
+/// Returns the same meshes, but moved by hand.
 fn moved(of: &[&Mesh], places: &[DAffine3]) -> Mesh {
     let mut all: Option<Mesh> = None;
     for (mesh, place) in of.iter().zip(places) {
@@ -190,7 +190,7 @@ fn a_light_and_a_camera_that_are_none_are_errors() {
     }
 }
 
-/// Of a texture of u32.
+/// Returns the texels of a texture of u32.
 fn texels(gpu: &Gpu, mut encoder: wgpu::CommandEncoder, texture: &wgpu::Texture) -> Vec<u32> {
     let (width, height) = (texture.width(), texture.height());
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {

@@ -40,7 +40,7 @@ fn replay(target: &str, run: fn(&[u8]) -> String) {
     }
 }
 
-/// What numbers are replaced by.
+/// Replacements of numbers.
 const NUMBERS: &[&str] = &[
     "0",
     "-1",

@@ -17,7 +17,7 @@ use std::sync::Arc;
 use wgpu::util::DeviceExt;
 
 const VIEWPORT: [u32; 2] = [160, 120];
-/// What f32 may be off by in a depth.
+/// Bound on the f32 error of a depth.
 const DEPTH_ERROR: f64 = 4e-6;
 
 fn scene(mesh: Mesh, direction: DVec3) -> Arc<Scene> {
@@ -491,7 +491,7 @@ fn no_uncertain_pixel_is_no_ray_and_no_workgroup() {
             &provider,
             VIEWPORT,
             |request| {
-                // What fix_pixels and trace_rays are dispatched by.
+                // Arguments of the indirect dispatch of fix_pixels and trace_rays.
                 request.captures.push(Capture {
                     material: "ray_groups".into(),
                     after: None,

@@ -155,7 +155,7 @@ pub(crate) fn mixed(seed: u64) -> Arc<Scene> {
     scene(joined(solids, &soup(300, size, seed)), eye, light)
 }
 
-/// Of the receivers in reach of the light: what a list must hold, and what it may.
+/// Checks for the receivers in reach of the light which casters a list must hold, and which it may.
 #[test]
 #[ignore = "a suite: `./test.sh --all` runs it"]
 fn lists_hold_each_caster_that_shades_a_receiver_and_no_stranger() {
@@ -181,8 +181,8 @@ fn lists_hold_each_caster_that_shades_a_receiver_and_no_stranger() {
 /// Checks all lists, keys and covers; returns how many pairs of a receiver and a caster there were,
 /// how many covered texels, and how many receivers on a border of texels.
 fn check_lists(scene: &Scene, fit: &MapFit, report: &FrameReport) -> [usize; 3] {
-    // Of a texel: the depth of its farthest receiver, the length of its list, where that begins,
-    // and the depth of its cover, inverted.
+    // Head of a texel: the depth of its farthest receiver, the length of its list, where that
+    // begins, and the depth of its cover, inverted.
     let (heads, entries) = (values(report, "texels"), values(report, "entries"));
     let own = values(report, "primitive");
     let map_size = fit.size;
@@ -290,9 +290,9 @@ fn check_lists(scene: &Scene, fit: &MapFit, report: &FrameReport) -> [usize; 3] 
     [shading, covered, border]
 }
 
-/// Whether an entry's key lets a receiver at `offset` from the texel's centre ask its caster: 16
-/// bits of depth, and two lines of which x, y and the distance from the centre have 8 bits each, in
-/// 127ths; what is below a distance counts as its fraction.
+/// Returns true if an entry's key lets a receiver at `offset` from the texel's centre ask its
+/// caster: 16 bits of depth, and two lines of which x, y and the distance from the centre have 8
+/// bits each, in 127ths; a depth below a distance counts as its fraction.
 fn key_passes(key: [u32; 2], offset: DVec2, depth: f64) -> bool {
     let byte = |word: u32, shift: u32| f64::from((word >> shift) as u8 as i8);
     let distance = |word: u32| f64::from(word as i32) / f64::from(1 << 24);
@@ -316,7 +316,7 @@ fn greatest_over(caster: &TexelTriangle, corner: DVec2) -> Option<f64> {
     })
 }
 
-/// Whether a triangle touches a texel that is larger by so much on every side.
+/// Returns true if a triangle touches a texel that is larger by so much on every side.
 fn touches(caster: &TexelTriangle, centre: DVec2, by: f64) -> bool {
     let shrunk = 1.0 / (1.0 + 2.0 * by);
     let corners = caster.corners.map(|corner| {
@@ -431,7 +431,8 @@ fn a_list_that_is_too_long_to_look_at_is_a_ray() {
     }
 }
 
-/// 100,000 casters in a texel, and every pixel's receiver in the same one: nobody walks its list.
+/// 100,000 casters in a texel, and every pixel's receiver in the same one: no receiver walks its
+/// list.
 #[test]
 fn a_crowded_texel_is_exact_and_takes_no_more_room_than_others() {
     let crowd = crowd(0.3);
@@ -506,7 +507,7 @@ fn long_lists_are_walked() {
     }
 }
 
-/// More parts of large triangles than there is room for: nobody knows whose lists lack them.
+/// More parts of large triangles than there is room for: the lists that lack them are not known.
 #[test]
 #[ignore = "a suite: `./test.sh --all` runs it"]
 fn parts_without_room_leave_all_to_rays() {

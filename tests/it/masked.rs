@@ -65,7 +65,7 @@ fn exact_methods_are_right_on_masked_triangles() {
             );
             assert_eq!(wrong.total, wrong.in_band, "{preset} {params:?}");
             assert!(pixels.lit > 1000 && pixels.shadow > 1000, "{pixels:?}");
-            // What hangs on the rounding of a mask is little.
+            // Few pixels hang on the rounding of a mask.
             assert!(100 * counts.band < pixels.facing_light, "{}", counts.band);
         }
     }

@@ -55,7 +55,7 @@ fn shown(gpu: &Gpu, executor: &mut Executor) -> Vec<u32> {
     values(&graphs::frame(gpu, executor, &["visibility"]), "visibility")
 }
 
-/// What was made: names, how, how often.
+/// Returns the resources that were made: names, how, how often.
 fn made(provider: &SceneProvider) -> Vec<(&'static str, How, u32)> {
     let built = provider.built().iter();
     let mut made: Vec<_> = built.map(|it| (it.name, it.how, it.times)).collect();

@@ -94,7 +94,7 @@ fn seen(executor: &mut Executor) -> Vec<u32> {
     values(&executor.finish().unwrap(), "visibility")
 }
 
-/// What an executor of its own shows of a mesh that never moved.
+/// Renders a mesh that never moved by an executor of its own.
 fn alone(gpu: &Gpu, preset: &str, mesh: Mesh, light: LightKind, camera: f64) -> Vec<u32> {
     let mut provider = SceneProvider::of_mesh(mesh, light);
     provider.set_camera(&view(camera).camera(VIEWPORT));

@@ -183,7 +183,7 @@ fn the_gpu_answers_as_some_allowed_arithmetic_does() {
             "{said}"
         );
         let area = numbers[0] as f32 - numbers[1] as f32;
-        // What either may err by, as the shader says.
+        // Error bound of either, as the shader says.
         let away = (point[0] - p[0]).hypot(point[1] - p[1]);
         let near = |a: Arithmetic| {
             let expected = a.inward_distance([p, q], point, area, 0);

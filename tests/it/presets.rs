@@ -35,7 +35,7 @@ fn scene() -> Arc<Scene> {
     })
 }
 
-/// What a pixel shows.
+/// Answer of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum GroundTruthPixel {
     Background,

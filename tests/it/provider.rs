@@ -1,4 +1,4 @@
-//! What the provider describes and builds, and what it refuses.
+//! Resources that the provider describes and builds, and those that it refuses.
 
 use crate::support::{
     graphs::{self, open},
@@ -48,7 +48,7 @@ fn buffers_are_as_large_as_described() {
             let described = provider.describe(&name).unwrap();
             let size = build(&mut provider, &gpu, &name).unwrap().size();
             match described.items {
-                // What a mesh has none of is one zero item.
+                // A buffer without items is one zero item.
                 Some(items) => assert_eq!(size, items.max(1) * described.stride, "{name}"),
                 None => assert_eq!(size % described.stride, 0, "{name}"),
             }

@@ -1,4 +1,4 @@
-//! What the README tells its readers to type works as it stands there.
+//! Checks that the README's commands and code work as they stand there.
 
 use crate::support::graphs::open;
 use skiagraph_gpu::{Executor, Frame};
@@ -81,8 +81,8 @@ fn the_method_of_the_readme_is_complete_and_runs() {
     assert!(values(1).contains(&1) && values(1).contains(&2));
 }
 
-/// What is shown as Rust stands word for word, in one piece, in code that the tests or `.ci/run`
-/// run.
+/// Every piece of Rust in it stands word for word, in one piece, in code that the tests or
+/// `.ci/run` run.
 #[test]
 fn the_rust_of_the_documents_is_code_that_runs() {
     let read = |path: &str| fs::read_to_string(root().join(path)).unwrap();

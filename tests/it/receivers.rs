@@ -61,7 +61,7 @@ fn in_f32(
 #[derive(Default)]
 struct Off {
     judged: u32,
-    /// Of the oracle's bound.
+    /// Farthest receiver, as a share of the oracle's bound.
     farthest: f64,
     /// n · l, of the oracle's bound.
     most_turned: f64,

@@ -57,7 +57,7 @@ fn layout(path: &str, name: &str) -> (Vec<(String, u32)>, u32) {
         .find(|(_, ty)| ty.name.as_deref() == Some(name))
         .unwrap();
     let naga::TypeInner::Struct { members, span } = &ty.inner else {
-        panic!("{name} is no struct")
+        panic!("{name} is not a struct")
     };
     let members = members
         .iter()

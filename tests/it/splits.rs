@@ -185,7 +185,7 @@ fn the_shaders_trapezoid_is_the_papers() {
     }
 }
 
-/// What they are for: on a scene 2,000 units long a map of 1024² does not do, warped or split it
+/// Purpose of splits: on a scene 2,000 units long a map of 1024² does not do, warped or split it
 /// does better.
 #[test]
 fn warped_and_split_maps_are_right_more_often() {
@@ -202,7 +202,7 @@ fn warped_and_split_maps_are_right_more_often() {
     }
 }
 
-/// What is proven does not depend on the split that a receiver asks.
+/// Proven answers do not depend on the split that a receiver asks.
 #[test]
 #[ignore = "a suite: `./test.sh --all` runs it"]
 fn split_maps_are_exact_where_one_map_is() {
@@ -265,7 +265,7 @@ fn distances(scene: &Arc<Scene>, viewport: [u32; 2]) -> Vec<f64> {
         .collect()
 }
 
-/// Of the pixels that face the light at such a distance, the share that is wrong.
+/// Returns the share of wrong pixels among those that face the light at such a distance.
 fn wrong_share(answers: &Answers, distances: &[f64], between: [f64; 2]) -> f64 {
     let (mut wrong, mut all) = (0.0, 0.0);
     for (pixel, class) in answers.truth.classes.iter().enumerate() {

@@ -206,7 +206,7 @@ fn only_the_counted_rays_are_traced() {
     // A count beyond the buffers is cut off at their ends.
     for (count, traced) in [(0, 0), (1, 1), (64, 64), (65, 65), (200, 200), (1000, 200)] {
         let hits = trace(&mesh, &[ray; 200], None, count, "Any");
-        // What is not traced stays as the graph made it: zeros.
+        // Pixels that are not traced stay as the graph made them: zeros.
         assert!(
             hits[..traced].iter().all(|hit| hit.t > 0.9 && hit.t < 1.5),
             "{count}"

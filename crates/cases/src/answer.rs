@@ -22,7 +22,7 @@ pub(crate) fn among(point: DVec3, light: DVec3, blocks: &[Block], margin: f64) -
     )
 }
 
-/// The same under a light at a place; boxes beyond it shade nobody.
+/// The same under a light at a place; boxes beyond it cast no shadow.
 pub(crate) fn among_at(point: DVec3, place: DVec3, blocks: &[Block], margin: f64) -> Option<bool> {
     let way = place - point;
     let inside = |&block: &Block| in_block_before(point, way.normalize(), way.length(), block);

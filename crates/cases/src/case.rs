@@ -1,4 +1,4 @@
-//! What a case is.
+//! One hard case.
 
 use glam::DVec3;
 use skiagraph_scene::Scene;
@@ -8,19 +8,19 @@ use skiagraph_scene::Scene;
 pub struct HardCase {
     /// Name on the command line: lower case, words joined by `_`.
     pub name: &'static str,
-    /// What it provokes, in one line.
+    /// Error that it provokes, in one line.
     pub reason: &'static str,
-    /// What its casters are, which decides what may be asked of methods that cull front faces.
+    /// Kind of its casters, which decides how methods that cull front faces are tested.
     pub casters: Casters,
     /// Most indeterminate pixels, as a share of the pixels that face the light.
     pub indeterminate_cap: f64,
-    /// What its picture shows.
+    /// Answers that its picture shows.
     pub shows: Shows,
     build: fn() -> Scene,
     lit: Option<fn(DVec3) -> Option<bool>>,
 }
 
-/// What the casters of a scene are.
+/// Kinds of casters in a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Casters {
     /// Closed surfaces wound outward that do not pass through each other: no lit surface is its own
@@ -31,7 +31,7 @@ pub enum Casters {
     Open,
 }
 
-/// What the pixels of a case's picture are.
+/// Answers of the pixels of a case's picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shows {
     /// Some lit, some in shadow.
@@ -100,13 +100,13 @@ impl HardCase {
         }
     }
 
-    /// Whether light reaches a point of a surface that faces the light, told from the geometry;
-    /// `None` where it is too close to call or the case has no such answer.
+    /// Returns true if light reaches a point of a surface that faces the light, told from the
+    /// geometry; `None` where it is too close to call or the case has no such answer.
     pub fn lit(&self, point: DVec3) -> Option<bool> {
         self.lit.and_then(|lit| lit(point))
     }
 
-    /// Whether [`HardCase::lit`] has answers at all.
+    /// Returns true if [`HardCase::lit`] has answers at all.
     pub fn is_analytic(&self) -> bool {
         self.lit.is_some()
     }

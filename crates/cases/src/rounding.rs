@@ -26,7 +26,7 @@ fn stack_scene(gap: f32) -> Scene {
         .scene([2.5, 4.1, 2.9], [0.5, 1.1, 0.3], LIGHT)
 }
 
-/// Of numbers from 1 to 2.
+/// Unit in the last place of numbers from 1 to 2.
 const ULP: f32 = f32::EPSILON;
 
 const LID: [[f32; 2]; 2] = [[-1.0, -0.8], [0.9, 1.1]];

@@ -1,4 +1,4 @@
-//! What the cases are built from.
+//! Shapes that the cases are built from.
 
 use glam::{DVec3, Vec3};
 use skiagraph_scene::{DirectionalLight, Light, LightKind, Mesh, Scene, View, weld::Welder};

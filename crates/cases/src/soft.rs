@@ -1,4 +1,4 @@
-//! What maps that are filtered get wrong, each by its own means.
+//! Cases that filtered maps get wrong, each map by its own means.
 
 use crate::{
     answer::among,

@@ -10,7 +10,7 @@ use crate::{
 };
 use plotters::prelude::*;
 
-/// Of a group's width, what its bars take.
+/// Share of a group's width that its bars take.
 const FILL: f64 = 0.84;
 /// Above the highest bar, as a share of it: a mark stands on it.
 const MARGIN: f64 = 0.06;

@@ -1,4 +1,4 @@
-//! What everything is drawn on and with.
+//! Drawing area, colours and text of all figures.
 
 use crate::{
     error::Error,
@@ -11,7 +11,7 @@ use plotters::{
 };
 use std::fmt;
 
-/// What is drawn on, in pixels.
+/// Drawing area, in pixels.
 pub(crate) type Root<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Width of every figure, pixels.
@@ -23,7 +23,7 @@ pub(crate) const GUIDE: RGBColor = RGBColor(120, 120, 120);
 /// plotters writes text of this share of the size that it is told.
 const TOLD: f64 = 1.24;
 
-/// What the library says, as an error of ours.
+/// Turns an error of the drawing library into ours.
 pub(crate) fn failed(error: impl fmt::Display) -> Error {
     Error::Drawing(error.to_string())
 }

@@ -1,4 +1,4 @@
-//! What a chart is made of.
+//! Parts of a chart.
 
 /// A picture of panels under one title and one legend.
 #[derive(Clone, Debug, PartialEq)]
@@ -7,17 +7,17 @@ pub struct Figure {
     pub title: String,
     /// Lines below the title: under which conditions the figures hold. Long ones are wrapped.
     pub notes: Vec<String>,
-    /// What the sizes of marks stand for, smallest first; none if they are all alike.
+    /// Meanings of the sizes of marks, smallest first; none if they are all alike.
     pub sizes: Vec<String>,
     /// Names of series that look the same in all figures with this list, whichever of them are
     /// drawn.
     pub looks: Vec<String>,
-    /// What is drawn, row by row. Panels in which a series has the same name give it the same
-    /// colour and shape.
+    /// Panels of the figure, row by row. Panels in which a series has the same name give it the
+    /// same colour and shape.
     pub panels: Vec<Panel>,
     /// Panels beside each other, at least 1.
     pub columns: usize,
-    /// Whether panels beside each other have the same axes, so that heights can be compared.
+    /// True if panels beside each other have the same axes, so that heights can be compared.
     pub shared_axes: bool,
 }
 
@@ -38,19 +38,19 @@ impl Default for Figure {
 /// One pair of axes: logarithmic, or those of [`Kind::Bars`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// What stands above it.
+    /// Heading above it.
     pub title: String,
-    /// What is drawn beside the marks.
+    /// Kind of the panel, which decides the lines beside the marks.
     pub kind: Kind,
-    /// What grows to the right, with its unit.
+    /// Label of the horizontal axis, with its unit.
     pub x: String,
-    /// What grows upwards, with its unit.
+    /// Label of the vertical axis, with its unit.
     pub y: String,
-    /// What is drawn, in the order of the legend.
+    /// Series in the order of the legend.
     pub series: Vec<Series>,
 }
 
-/// What a panel shows.
+/// Kinds of panels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Costs in both directions, less is better: the Pareto front. Zero is allowed upwards and has

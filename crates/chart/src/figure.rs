@@ -78,7 +78,7 @@ impl Figure {
         Ok(svg)
     }
 
-    /// Of a series: by its place in the list of looks, the others' behind these.
+    /// Returns the look of a series: by its place in the list of looks, the others' behind these.
     fn look(&self, names: &[&str], name: &str) -> Look {
         let is_listed = |name: &str| self.looks.iter().any(|known| known == name);
         let others = names.iter().copied().filter(|name| !is_listed(name));
@@ -96,7 +96,7 @@ impl Figure {
         }
     }
 
-    /// Of all series, in the order in which they first appear.
+    /// Returns the names of all series, in the order in which they first appear.
     fn names(&self) -> Vec<&str> {
         let mut names = Vec::new();
         for series in self.panels.iter().flat_map(|panel| &panel.series) {

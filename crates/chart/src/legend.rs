@@ -15,7 +15,7 @@ const GAP: i32 = 16;
 /// Height of a row.
 const ROW: i32 = 22;
 
-/// What stands before the words.
+/// Sign before the words.
 #[derive(Clone, Copy)]
 pub(crate) enum Sign {
     Series(Look),

@@ -52,7 +52,7 @@ pub(crate) struct Look {
 }
 
 impl Look {
-    /// Of the series that stands at `index` in the legend.
+    /// Creates the look of the series that stands at `index` in the legend.
     pub fn new(index: usize) -> Self {
         Self {
             colour: COLOURS[index % COLOURS.len()],
@@ -60,7 +60,7 @@ impl Look {
         }
     }
 
-    /// Of no series in particular.
+    /// Creates the look that belongs to no series.
     pub fn neutral() -> Self {
         Self {
             colour: RGBColor(90, 90, 90),

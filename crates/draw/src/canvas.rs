@@ -12,7 +12,7 @@ impl Canvas {
         self.0.push('\n');
     }
 
-    /// What is drawn `inside`, and what a reader is told who points at it.
+    /// Groups the drawing made `inside` under a style, with a title shown under the pointer.
     pub fn group(&mut self, style: &str, title: &str, inside: impl FnOnce(&mut Self)) {
         self.add(format!("<g {style}><title>{}</title>", xml(title)));
         inside(self);

@@ -58,7 +58,7 @@ pub(crate) struct Column<'a> {
     pub end: f64,
 }
 
-/// What a pass does with a material, whatever parts of it.
+/// Accesses of a pass to a material, over all of its parts.
 pub(crate) struct Mark {
     /// Number of its row.
     pub row: usize,

@@ -48,7 +48,7 @@ fn render(drawing: &Drawing) -> Vec<String> {
     lines
 }
 
-/// What stands below one prefix.
+/// Nodes and inner clusters below one prefix.
 #[derive(Default)]
 struct Cluster {
     inner: BTreeMap<String, Cluster>,
@@ -77,7 +77,7 @@ impl Cluster {
     }
 }
 
-/// Whether the dots in a name are those of the document's includes and groups.
+/// Returns true if the dots in a name are those of the document's includes and groups.
 fn is_own(material: &Material, materials: &HashMap<&str, &Material>) -> bool {
     match material.origin {
         Origin::Declared | Origin::Constant | Origin::Scratch => true,
@@ -135,7 +135,7 @@ fn material_node(material: &Material) -> String {
     )
 }
 
-/// What a pass reads or writes, with the part if it is not the whole.
+/// Returns the edge of an access, with the part if it is not the whole.
 fn link(access: &Access, material: Option<&&Material>) -> String {
     let (pass, of) = (id("pass", &access.pass), id("material", &access.material));
     let ends = match (access.reads, access.writes) {

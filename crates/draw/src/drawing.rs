@@ -17,7 +17,8 @@ pub struct Drawing {
     pub materials: Vec<Material>,
     /// Which pass reads and writes which part of which material; a pass has one entry per part.
     pub accesses: Vec<Access>,
-    /// What must come before what. Of passes that do not run only whose results they would read.
+    /// Order of the passes. For a pass that does not run, only the passes whose results it would
+    /// read.
     pub edges: Vec<Edge>,
     /// Bytes of the graph's own textures and buffers.
     pub memory_bytes: u64,
@@ -63,7 +64,7 @@ pub struct Pass {
     pub run: Option<String>,
 }
 
-/// What a material is.
+/// Kinds of materials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -97,17 +98,17 @@ pub enum Origin {
     Imported,
     /// The graph's own uniform `frame`: number and seconds of the frame.
     Frame,
-    /// What another material held at the end of the frame before.
+    /// Content of another material at the end of the frame before.
     Previous,
 }
 
 impl Origin {
-    /// Whether it has its content before the frame begins.
+    /// Returns true if it has its content before the frame begins.
     pub fn is_given(self) -> bool {
         !matches!(self, Self::Declared | Self::Scratch | Self::Capture)
     }
 
-    /// Whether it takes memory of the graph.
+    /// Returns true if it takes memory of the graph.
     pub fn is_made(self) -> bool {
         !self.is_given() || self == Self::Constant
     }
@@ -118,7 +119,7 @@ impl Origin {
 pub struct Material {
     /// Full name.
     pub name: String,
-    /// What it is.
+    /// Kind of the material.
     pub kind: Kind,
     /// Where it comes from.
     pub origin: Origin,
@@ -130,7 +131,7 @@ pub struct Material {
     pub mips: u32,
     /// Layers of a texture, or slices of a 3D texture's mip 0; 1 otherwise.
     pub layers: u32,
-    /// Whether the layers are slices of a 3D texture.
+    /// True if the layers are slices of a 3D texture.
     pub is_3d: bool,
     /// Samples of each texel of a texture; 1 otherwise.
     pub samples: u32,
@@ -155,9 +156,9 @@ pub struct Access {
     pub pass: String,
     /// Name of the material.
     pub material: String,
-    /// Whether it reads.
+    /// True if it reads.
     pub reads: bool,
-    /// Whether it writes.
+    /// True if it writes.
     pub writes: bool,
     /// The part of a texture or buffer; `None` = the whole material.
     pub part: Option<Part>,
@@ -174,7 +175,7 @@ pub struct Part {
     pub aspect: Option<Aspect>,
 }
 
-/// What a texel of a depth-stencil texture consists of.
+/// Aspects of a depth-stencil texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Aspect {
@@ -207,7 +208,7 @@ impl Edge {
 /// Why one pass must come before another.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Reason {
-    /// What would go wrong in another order.
+    /// Hazard in another order.
     pub hazard: Hazard,
     /// Names of the materials through which it would.
     pub materials: Vec<String>,

@@ -138,7 +138,7 @@ fn material(resource: &Resource) -> Material {
     material
 }
 
-/// What a pass reads and writes, with one entry for each part.
+/// Returns the accesses of a pass, with one entry for each part.
 fn accesses(pass: &LinkedPass, plan: &Plan) -> Vec<Access> {
     let mut drawn: Vec<Access> = Vec::new();
     // In the place of attachments there is what is neither read nor written.
@@ -166,7 +166,7 @@ fn accesses(pass: &LinkedPass, plan: &Plan) -> Vec<Access> {
     drawn
 }
 
-/// What a range leaves out; `None` if that is nothing.
+/// Returns the part that a range selects; `None` if it leaves nothing out.
 fn part(range: &SubresourceRange, kind: &ResourceKind) -> Option<Part> {
     let some = |range: &Range<u32>, all: u32| (*range != (0..all)).then(|| range.clone());
     let part = match kind {
@@ -192,8 +192,7 @@ fn edges(plan: &Plan, positions: &[Option<usize>]) -> Vec<Edge> {
     let runs = |pass: PassId| positions[pass.index()].is_some();
     let mut found = plan.dependences(runs);
     if positions.contains(&None) {
-        // A pass that does not run keeps nobody waiting; only what it would have read is of
-        // interest.
+        // A pass that does not run delays no other; only its reads are of interest.
         let mut all = plan.dependences(|_| true);
         all.retain(|&(from, to, hazard), _| {
             hazard == Hazard::ReadAfterWrite && !(runs(from) && runs(to))

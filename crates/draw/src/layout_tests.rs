@@ -230,7 +230,7 @@ fn notes_do_not_run_into_the_next_column() {
     }
 }
 
-/// What is too long for a picture loses what stands before it first.
+/// A name too long for a picture loses its prefix first.
 #[test]
 fn long_names_are_cut_where_it_hurts_least() {
     let owned = |[before, own]: [&str; 2]| Label {

@@ -1,4 +1,4 @@
-//! What the signs of a chart mean; only those that occur in it.
+//! Legend of a chart, with only the signs that occur in it.
 
 use crate::{
     drawing::{Drawing, Kind, Material},

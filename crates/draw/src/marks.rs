@@ -1,4 +1,4 @@
-//! What stands on the grid of the chart: marks, names where materials begin, brackets.
+//! Marks on the grid of the chart, names where materials begin, brackets.
 
 use crate::{
     chart::{Chart, Column, Group, Mark, numbers},
@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 const FAR: usize = 12;
 
 impl Chart<'_> {
-    /// What every pass does with every material, and the room that it takes.
+    /// Adds a mark for each pass and material with accesses, and the room that it takes.
     pub fn mark(&mut self, accesses: &[Access]) {
         let rows = numbers(self.rows.iter().map(|row| &*row.pass.name));
         let columns = numbers(self.columns.iter().map(|column| &*column.material.name));

@@ -9,7 +9,7 @@ pub(crate) fn implied(nodes: usize, edges: &[[usize; 2]]) -> BTreeSet<[usize; 2]
         next[from].push(to);
     }
     let mut implied = BTreeSet::new();
-    // What each node leads to, one bit per node.
+    // Nodes reached from each node, one bit per node.
     let mut reached: Vec<Vec<u64>> = vec![vec![0; nodes.div_ceil(64)]; nodes];
     for from in (0..nodes).rev() {
         let mut mine = std::mem::take(&mut reached[from]);

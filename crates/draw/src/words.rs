@@ -1,4 +1,4 @@
-//! What charts and graphs say about passes and materials.
+//! Words of charts and graphs about passes and materials.
 
 use crate::{
     drawing::{Access, Aspect, Drawing, Edge, Kind, Material, Origin, Part, Pass, Reason},
@@ -16,8 +16,8 @@ pub(crate) const MOST: usize = 36;
 /// How the name of what a material held in the frame before ends.
 pub(crate) const PREVIOUS: &str = ".previous";
 
-/// What stands before a name, with its dot, and the name itself: `sample[3].` and `trace_rays`.
-/// Nothing stands before the two names of a capture (`rays@sample[3].trace_rays`).
+/// Splits a name behind its prefix, which ends with a dot: `sample[3].` and `trace_rays`. Nothing
+/// stands before the two names of a capture (`rays@sample[3].trace_rays`).
 pub(crate) fn split(name: &str) -> (&str, &str) {
     let latest = name.strip_suffix(PREVIOUS).unwrap_or(name);
     let dot = latest.rfind('.').filter(|_| !name.contains('@'));
@@ -44,7 +44,7 @@ impl Label {
     }
 }
 
-/// What a material is, in a few words.
+/// Returns the kind of a material, in a few words.
 pub(crate) fn detail(material: &Material) -> String {
     let mut words = vec![match (material.kind, &material.format, material.size) {
         (Kind::Texture, Some(format), Some([width, height])) => {
@@ -84,7 +84,7 @@ pub(crate) fn detail(material: &Material) -> String {
     words.join(", ")
 }
 
-/// What a material has parts of.
+/// Unit of a material's parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Unit {
     Mip,
@@ -115,7 +115,7 @@ impl Unit {
         }
     }
 
-    /// What the layers of a material's parts are.
+    /// Returns the unit of the layers of a material.
     fn from_material(material: &Material) -> Self {
         match material.kind {
             Kind::Buffer => Self::Item,
@@ -125,12 +125,12 @@ impl Unit {
     }
 }
 
-/// What a pass does with a material.
+/// Returns the verb for a pass's access to a material.
 pub(crate) fn verb(access: &Access) -> &'static str {
     match (access.reads, access.writes) {
         (true, true) => "reads and writes",
         (false, true) => "writes",
-        // A sampler is bound, and nobody calls that reading; but neither is it anything else.
+        // A sampler is bound rather than read, but no other verb fits better.
         _ => "reads",
     }
 }
@@ -144,7 +144,7 @@ pub(crate) fn consequence(hazard: Hazard) -> &'static str {
     }
 }
 
-/// What a part is narrowed to: some mips, layers or items, or one aspect.
+/// Returns the narrowing of a part: some mips, layers or items, or one aspect.
 pub(crate) fn narrowed<'a>(
     part: &'a Part,
     material: &Material,

@@ -110,7 +110,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let texels = readback
             .content
             .as_f32()
-            .ok_or("it is no texture of floats")?;
+            .ok_or("it is not a texture of floats")?;
         println!("{}:", readback.name);
         for row in texels.chunks(64) {
             let shade = |texel: &f32| char::from(b" .:-=+*#%@"[(texel * 9.99) as usize]);

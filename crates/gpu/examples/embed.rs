@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let plan = graph.plan(&request)?;
     let mut executor = Executor::new(&host.device, &host.queue, plan, &mut host.scene)?;
 
-    // What is wrong comes back before the encoder is touched, so the host can go on with it.
+    // Errors come back before the encoder is touched, so the host can go on with it.
     let mut encoder = host.device.create_command_encoder(&Default::default());
     let Err(error) = executor.encode(&mut encoder, &Frame::default()) else {
         return Err("a missing import went unnoticed".into());
@@ -120,7 +120,7 @@ fn expect(what: &str, report: &FrameReport, skipped: &[&str]) -> Result<(), Box<
     }
 }
 
-/// What the graph is given by name, instead of importing it, described for planning.
+/// Describes the resources that the graph gets by name, instead of importing them, for planning.
 impl Describe for Scene {
     fn names(&self) -> Vec<String> {
         vec!["scene.vertices".to_owned(), "light".to_owned()]

@@ -17,7 +17,7 @@ pub struct Gpu {
     pub device: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
-    /// Bytes for the textures and buffers of a graph, where somebody knows: for
+    /// Bytes for the textures and buffers of a graph, where they are known: for
     /// [`PlanRequest::memory_limit`](skiagraph_graph::PlanRequest::memory_limit).
     pub memory: Option<u64>,
     /// How long a frame may take, where there is a limit: for
@@ -25,7 +25,7 @@ pub struct Gpu {
     pub timeout: Option<Duration>,
 }
 
-/// Which device to open. What is left out is chosen.
+/// Which device to open. Fields left out are chosen automatically.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Wanted<'a> {
     /// A part of the adapter's name, in any case. `None`: `WGPU_ADAPTER_NAME`, else any name.

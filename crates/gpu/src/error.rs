@@ -1,4 +1,4 @@
-//! What can go wrong on a device, and the scopes that bring it back as errors.
+//! Errors of a device, and the scopes that catch them.
 
 use skiagraph_graph::{Diagnostics, Panicked, Plan, Provided, caught};
 use std::time::Duration;
@@ -41,7 +41,7 @@ pub enum ExecuteError {
     OutOfMemory {
         /// The resource or pass.
         name: String,
-        /// What of the graph takes the most: [`Plan::memory_table`].
+        /// Largest resources of the graph: [`Plan::memory_table`].
         table: String,
     },
     /// A provided resource could not be built.
@@ -84,17 +84,17 @@ pub enum ExecuteError {
     NoSuchImport {
         /// The name.
         name: String,
-        /// What there is.
+        /// Names that exist.
         known: String,
     },
-    /// What changed is neither an import nor a provided resource.
+    /// The changed name is neither an import nor a provided resource.
     #[error(
         "neither an import nor a provided resource is called `{name}`; live passes use {known}"
     )]
     NotOfHost {
         /// The name.
         name: String,
-        /// What there is.
+        /// Names that exist.
         known: String,
     },
     /// An import is not what the plan was made for.
@@ -121,7 +121,7 @@ pub enum ExecuteError {
         /// The pass's place in the document.
         place: String,
     },
-    /// What was asked for cannot be planned.
+    /// The request cannot be planned.
     #[error("{0}")]
     Plan(Box<Diagnostics>),
     /// A readback that the plan does not know.
@@ -129,7 +129,7 @@ pub enum ExecuteError {
     NoSuchOutput {
         /// The name.
         name: String,
-        /// What there is.
+        /// Names that exist.
         known: String,
     },
     /// A readback of something that the host made for other purposes.
@@ -137,7 +137,7 @@ pub enum ExecuteError {
     NotReadable {
         /// The output.
         name: String,
-        /// What it lacks.
+        /// Usage that it lacks.
         usage: &'static str,
     },
     /// A readback did not arrive.

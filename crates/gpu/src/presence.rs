@@ -1,4 +1,4 @@
-//! Whether a device is still there, asked before each frame without making anything.
+//! Checks before each frame that a device is still there, without making anything.
 
 use crate::{
     error::{ExecuteError, scoped},

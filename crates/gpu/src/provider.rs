@@ -1,9 +1,9 @@
-//! What a graph does not make itself, built when a live pass binds it.
+//! Resources that a graph does not make itself, built when a live pass binds them.
 
 use skiagraph_graph::{Describe, NoProvider};
 
 /// Gives what a graph does not make itself: scene buffers, camera and light uniforms, acceleration
-/// structures. What they are is described by [`Describe`], which needs no device.
+/// structures. [`Describe`] describes them, which needs no device.
 pub trait Provider: Describe {
     /// Counts the changes of what stands behind a name.
     /// [`Executor::refresh`](crate::Executor::refresh) builds anew what has another version than
@@ -75,8 +75,6 @@ impl Provider for NoProvider {
         _: &wgpu::Device,
         _: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
-        Err(ProviderError(format!(
-            "nothing is provided under the name `{name}`"
-        )))
+        Err(ProviderError(format!("`{name}` is not provided")))
     }
 }

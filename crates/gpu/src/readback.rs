@@ -1,4 +1,4 @@
-//! What comes back of outputs and captures.
+//! Contents of outputs and captures, read back.
 
 /// An output or capture on the host.
 #[derive(Clone, Debug, PartialEq)]
@@ -120,7 +120,7 @@ impl Content {
     }
 }
 
-/// What the channels of a format are.
+/// Number types of a format's channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Uint,

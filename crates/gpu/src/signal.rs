@@ -1,4 +1,4 @@
-//! Whether what was asked of the GPU has come: said by wgpu's callbacks, looked at without waiting.
+//! Signals from wgpu's callbacks that work of the GPU is done, polled without waiting.
 
 use std::sync::{
     Arc,
@@ -18,7 +18,7 @@ pub(crate) enum Progress {
     Dropped,
 }
 
-/// Of a signal that was never waited for, too.
+/// State of finished work, and of a signal that was never waited for.
 const DONE: u8 = 0;
 const UNDER_WAY: u8 = 1;
 const FAILED: u8 = 2;
@@ -69,7 +69,7 @@ impl Signal {
         });
     }
 
-    /// What was under way before must be over.
+    /// Returns the teller of new work; earlier work must be over.
     fn teller(&self) -> Teller {
         self.0.store(UNDER_WAY, Ordering::Release);
         Teller(self.0.clone())

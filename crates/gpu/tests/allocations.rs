@@ -1,4 +1,4 @@
-//! What a frame allocates on the host. An allocation is that of the crate whose code asked for it:
+//! Allocations of a frame on the host. An allocation is that of the crate whose code asked for it:
 //! the innermost function on the stack that is neither of the standard library nor of a small
 //! container. So what wgpu and the profiler allocate inside their calls is theirs, but what these
 //! crates do inside a callback of wgpu's is ours. Counted are `encode`, `poll`, `touch`, `grow` and
@@ -80,7 +80,7 @@ fn stacks(what: impl FnOnce()) -> Vec<Stack> {
     NOTES.take().unwrap_or_default()
 }
 
-/// What is no owner of an allocation: it asks on behalf of its caller.
+/// Crates that own no allocation: they ask on behalf of their callers.
 const ON_BEHALF: [&str; 7] = [
     "std",
     "core",
@@ -122,10 +122,10 @@ fn owner_of(name: &str, file: Option<&str>) -> Option<Owner> {
     }
 }
 
-/// What was found out of return addresses.
+/// Owners and functions found for return addresses.
 type Known = HashMap<*mut c_void, Option<(Owner, String)>>;
 
-/// Who asked for an allocation, and in which function.
+/// Returns the owner of an allocation, and the function that asked for it.
 fn owner(
     stack: &Stack,
     known: &mut HashMap<*mut c_void, Option<(Owner, String)>>,
@@ -224,7 +224,7 @@ fn frame(executor: &mut Executor, wanted: &Frame<'_>, count: &mut dyn FnMut(&mut
     count(&mut || {
         let grown = executor.grow(&mut Triangle);
         assert!(grown.unwrap_or_else(|error| panic!("{error}")).is_none());
-        // What is handed out is the host's.
+        // A report that is handed out is memory of the host.
         if wanted.read.is_empty() && !wanted.timing {
             let none = executor.poll().unwrap_or_else(|error| panic!("{error}"));
             assert!(none.is_none());
@@ -249,7 +249,7 @@ fn a_steady_frame_allocates_nothing_of_ours() {
         ..Frame::default()
     };
     let mut executor = made(&everything());
-    // What is counted is seen: a plan that is made anew allocates.
+    // A self-check of the counter: a plan that is made anew allocates.
     let seen = stacks(|| {
         let resized = executor.resize([9, 9], &mut Triangle);
         resized.unwrap_or_else(|error| panic!("{error}"));
@@ -287,8 +287,8 @@ fn a_thousand_frames_are_as_large_as_one() {
         }
         BYTES.load(Ordering::Relaxed)
     };
-    // What wgpu and the harness keep goes up and down: the least of several times tells. A word for
-    // each frame would be 4,000 bytes between them.
+    // The memory that wgpu and the harness keep goes up and down: the least of several times tells.
+    // A word for each frame would be 4,000 bytes between them.
     let mut least = || (0..5).map(|_| after(100)).min().unwrap_or(0);
     let (first, last) = (least(), least());
     assert!(last < first + 2000, "{first} bytes became {last}");

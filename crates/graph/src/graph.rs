@@ -47,9 +47,9 @@ pub struct Graph {
     pub(crate) shaders: Arc<Shaders>,
     pub(crate) pictures: Arc<Pictures>,
     include_sites: Arc<Vec<IncludeSite>>,
-    /// What the documents require.
+    /// Features that the documents require.
     pub(crate) required: wgt::Features,
-    /// What they ask for by `has`, or their passes can make use of.
+    /// Features that they ask for by `has`, or that their passes can make use of.
     asked_for: wgt::Features,
     warnings: Vec<Diagnostic>,
 }
@@ -90,12 +90,12 @@ pub enum ParamError {
         graph: String,
         /// The name.
         name: String,
-        /// What was expected.
+        /// The expected type or range.
         why: ParamFault,
     },
 }
 
-/// What a method promises of itself, for whoever judges it: the graph knows no meaning of it.
+/// Promise of a method about itself. The graph knows no meaning of it: its caller judges it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Claim {
     /// The promise, a word that the judge knows.
@@ -104,7 +104,7 @@ pub struct Claim {
     pub condition: String,
     /// Why it holds, as the document says.
     pub because: String,
-    /// Whether the condition holds for these values of params.
+    /// True if the condition holds for these values of params.
     pub holds: bool,
 }
 
@@ -146,7 +146,7 @@ impl Graph {
     /// origin. It reads as the document does.
     ///
     /// # Errors
-    /// What is wrong with one of the documents, or with an edit.
+    /// Mistakes in one of the documents, or in an edit.
     pub fn flat(path: &str, sources: &dyn Sources) -> Result<String, Diagnostics> {
         let mut reports = Reports::default();
         let registry = Registry::default();
@@ -164,13 +164,14 @@ impl Graph {
         }
     }
 
-    /// What is wrong with the graph; in other documents with the place where they are asked for.
+    /// Collects the mistakes of the graph. Those in other documents get the place where they are
+    /// asked for.
     pub(crate) fn diagnostics(&self, mut list: Vec<Diagnostic>) -> Diagnostics {
         label(&mut list, self.path(), &self.include_sites);
         Diagnostics::new(list)
     }
 
-    /// What could be read of a document, and what is wrong with it.
+    /// Reads a document. Returns its readable part, and the mistakes.
     pub(crate) fn read(
         path: &str,
         registry: &Registry,
@@ -208,7 +209,7 @@ impl Graph {
             include_sites: Arc::new(asked),
             warnings: Vec::new(),
         };
-        // With a shader missing nobody can say what it would have used.
+        // The uses of a missing shader are not known.
         if reports.errors() == 0 {
             graph.unused(&mut reports);
         }
@@ -223,7 +224,7 @@ impl Graph {
         &self.document.file.name
     }
 
-    /// What the document says about itself.
+    /// Returns the document's description of itself.
     pub fn description(&self) -> &str {
         &self.document.description
     }
@@ -270,7 +271,7 @@ impl Graph {
         self.required | self.asked_for
     }
 
-    /// What is suspicious in the document.
+    /// Returns the warnings about the document.
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.warnings
     }
@@ -344,8 +345,8 @@ impl Graph {
         }
     }
 
-    /// What nothing in a shader of the document's own passes uses, whatever modules it imports,
-    /// with the shader.
+    /// Returns the unused items of the shaders of the document's own passes, whatever modules they
+    /// import, each with its shader.
     fn unused_in_shaders(&self) -> Vec<(unused::Unused, String)> {
         let mut found: Vec<(unused::Unused, String)> = Vec::new();
         let mut finder = unused::UnusedFinder::default();
@@ -382,7 +383,7 @@ impl Graph {
     }
 }
 
-/// What a document names somewhere.
+/// Names that a document uses.
 #[derive(Default)]
 struct Used {
     materials: BTreeSet<String>,

@@ -6,8 +6,8 @@
 //! includes), `shader`, `instantiate`, `link`, `flow`, `plan`. `language` has the two small
 //! grammars inside of strings, `errors` what can be wrong in each phase and how it is told.
 //!
-//! The crate knows no scenes and no shadows: what a graph does not make itself is described by
-//! somebody who does ([`Describe`]), and made on a device by the crate `skiagraph-gpu`.
+//! The crate knows no scenes and no shadows. A provider describes the resources that a graph does
+//! not make itself ([`Describe`]); the crate `skiagraph-gpu` makes them on a device.
 
 mod compose;
 pub mod diagnostics;

@@ -7,7 +7,7 @@ use std::{
     sync::Once,
 };
 
-/// A panic that was caught: what was said, and where in the library's source.
+/// A panic that was caught: its message, and its place in the library's source.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message} ({place})")]
 pub struct Panicked {

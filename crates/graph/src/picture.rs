@@ -3,7 +3,7 @@
 use crate::source::sources::Picture;
 use wgt::TextureFormat as F;
 
-/// What a channel of a texel is made of.
+/// Type of a channel of a texel.
 enum Channel {
     Byte,
     Half,
@@ -26,7 +26,7 @@ fn channels(format: F) -> Option<(usize, Channel)> {
     })
 }
 
-/// Whether a texture of this format can hold a picture.
+/// True if a texture of this format can hold a picture.
 pub(crate) fn can_hold(format: F) -> bool {
     channels(format).is_some()
 }

@@ -1,5 +1,5 @@
-//! What a graph does not make itself: described by name for planning. (What builds it is the GPU
-//! crate's affair.)
+//! Resources that a graph does not make itself, described by name for planning. (The GPU crate
+//! builds them.)
 
 use crate::{document::materials::Filter, provided_kind::ProvidedKind};
 use std::collections::BTreeMap;
@@ -13,7 +13,8 @@ pub trait Describe {
     /// Every name that [`Describe::describe`] knows, for suggestions.
     fn names(&self) -> Vec<String>;
 
-    /// What stands behind a name: enough to plan with. Must be cheap, and must not build anything.
+    /// Describes the resource behind a name: enough to plan with. Must be cheap, and must not build
+    /// anything.
     fn describe(&self, name: &str) -> Option<Provided>;
 }
 
@@ -31,7 +32,7 @@ pub struct Provided {
 }
 
 impl Provided {
-    /// What shaders see as `acceleration_structure`.
+    /// Resource that shaders see as `acceleration_structure`.
     pub const ACCELERATION_STRUCTURE: Self = Self {
         items: None,
         stride: 0,
@@ -79,11 +80,11 @@ pub enum Import {
         mips: u32,
         /// Number of layers, or of slices of a 3D texture.
         layers: u32,
-        /// Whether it is a 3D texture.
+        /// True for a 3D texture.
         is_3d: bool,
         /// Samples of each texel.
         samples: u32,
-        /// What it was made for.
+        /// Usages that it was made with.
         usage: wgt::TextureUsages,
     },
     /// A buffer.
@@ -92,20 +93,20 @@ pub enum Import {
         bytes: u64,
         /// Number of items, where a pass is dispatched over them or counts them.
         items: Option<u64>,
-        /// What it was made for.
+        /// Usages that it was made with.
         usage: wgt::BufferUsages,
     },
     /// A sampler.
     Sampler {
-        /// Whether it filters.
+        /// Filtering of the sampler.
         filter: Filter,
-        /// Whether it compares.
+        /// True if it compares.
         compare: bool,
     },
 }
 
 impl Import {
-    /// What it is, for messages.
+    /// Returns the kind in words, for messages.
     pub(crate) fn describe(&self) -> &'static str {
         match self {
             Self::Texture { .. } => "a texture",

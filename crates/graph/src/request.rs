@@ -1,4 +1,4 @@
-//! What a plan is asked for.
+//! Requests for plans.
 
 use crate::{
     document::params::ParamValue,
@@ -7,8 +7,8 @@ use crate::{
 };
 use std::collections::BTreeMap;
 
-/// A backend that gives less than WebGPU: what is checked and proven of a graph elsewhere need not
-/// hold there.
+/// A backend that gives less than WebGPU. Checks and proofs of a graph elsewhere need not hold
+/// there.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PartialBackend {
     /// The word by which documents list it in `proven_on`.
@@ -17,7 +17,7 @@ pub struct PartialBackend {
     pub lacks: String,
 }
 
-/// What a plan is made for.
+/// Request for a plan.
 #[derive(Clone, Debug)]
 pub struct PlanRequest<'a> {
     /// Width and height in pixels.
@@ -40,7 +40,7 @@ pub struct PlanRequest<'a> {
     /// refused with a table of what takes the most, before anything is allocated. `None`: whatever
     /// the device gives. (wgpu does not tell how much memory there is.)
     pub memory_limit: Option<u64>,
-    /// What the host will import for the inputs of the root document, by name.
+    /// Imports of the host for the inputs of the root document, by name.
     pub imports: BTreeMap<String, Import>,
     /// Items that buffers with `grow`, and layers that textures with it, are known to need, by full
     /// name: they are made as large, up to their `max`. A graph that was loaded again goes on with
@@ -51,8 +51,8 @@ pub struct PlanRequest<'a> {
     /// Fills memory between uses with a pattern made of this byte: a graph whose outputs change
     /// with it reads what it has not written. Costs time; for finding mistakes.
     pub poison: Option<u8>,
-    /// It is not known on which device the graph will run: what is beyond `limits` and `features`
-    /// is told as a warning.
+    /// True if the device that will run the graph is not known: exceeding `limits` and `features`
+    /// is then a warning.
     pub any_adapter: bool,
     /// Describes the provided resources.
     pub provider: &'a dyn Describe,
@@ -124,7 +124,7 @@ impl Request {
         }
     }
 
-    /// Whether the host imports or provides something under this name.
+    /// True if the host imports or provides something under this name.
     pub fn offers(&self, name: &str) -> bool {
         self.imports.contains_key(name) || self.provider.0.contains_key(name)
     }

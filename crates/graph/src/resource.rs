@@ -23,15 +23,15 @@ impl ResourceId {
 pub struct Resource {
     /// Its full name.
     pub name: String,
-    /// Where it is declared; what the host gives and a pass's own buffers are not.
+    /// Place where it is declared; resources of the host and a pass's own buffers have none.
     pub declared: Option<Span>,
-    /// What it is.
+    /// Kind of the resource.
     pub kind: ResourceKind,
     /// Whose content it holds.
     pub origin: Origin,
     /// How it grows between frames.
     pub growth: Option<Growth>,
-    /// Whether its content stays from frame to frame until a pass overwrites it.
+    /// True if its content stays from frame to frame until a pass overwrites it.
     pub keep: bool,
 }
 
@@ -44,11 +44,11 @@ pub enum Origin {
     Constant,
     /// The host's: an import or a provided resource. It has content before the first pass.
     Host,
-    /// What another resource held at the end of the frame before.
+    /// Content of another resource at the end of the frame before.
     Previous(ResourceId),
 }
 
-/// What a resource is.
+/// Kind of a resource.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ResourceKind {
     /// A texture.
@@ -77,7 +77,7 @@ pub(crate) const CLOCK_BYTES: u32 = 8;
 pub(crate) const FRAME: &str = "frame";
 
 impl ResourceKind {
-    /// What it is, for messages.
+    /// Returns the kind in words, for messages.
     pub(crate) fn describe(&self) -> &'static str {
         match self {
             Self::Texture(_) => "a texture",
@@ -111,7 +111,7 @@ pub struct Texture {
     pub size: [u32; 2],
     /// Layers of an array, or slices of a 3D texture's mip 0.
     pub layers: u32,
-    /// Whether the layers are slices of a 3D texture.
+    /// True if the layers are slices of a 3D texture.
     pub is_3d: bool,
     /// Mip levels.
     pub mips: u32,
@@ -136,7 +136,7 @@ impl Texture {
         }
     }
 
-    /// What its texels take.
+    /// Returns the bytes of its texels.
     pub fn bytes(&self) -> u64 {
         let footprint = |format: wgt::TextureFormat| {
             format.theoretical_memory_footprint(wgt::Extent3d::default())
@@ -194,7 +194,7 @@ pub struct Sampler {
     pub filter: Filter,
     /// Addressing in all directions.
     pub address: Address,
-    /// What a comparison sampler compares by.
+    /// Comparison of a comparison sampler.
     pub compare: Option<wgt::CompareFunction>,
 }
 
@@ -217,7 +217,7 @@ impl SubresourceRange {
         aspect: wgt::TextureAspect::All,
     };
 
-    /// Whether the two have something in common.
+    /// True if the two have something in common.
     pub(crate) fn overlaps(&self, other: &Self) -> bool {
         use wgt::TextureAspect::{DepthOnly, StencilOnly};
         let meet = |a: &Range<u32>, b: &Range<u32>| a.start < b.end && b.start < a.end;
@@ -228,7 +228,7 @@ impl SubresourceRange {
         !apart && meet(&self.mips, &other.mips) && meet(&self.layers, &other.layers)
     }
 
-    /// Whether it is one mip of one layer.
+    /// True if it is one mip of one layer.
     pub(crate) fn is_single(&self) -> bool {
         self.mips.len() == 1 && self.layers.len() == 1
     }

@@ -1,4 +1,4 @@
-//! What documents may be, as a JSON Schema made from the types that read them.
+//! JSON Schema of documents, made from the types that read them.
 
 use crate::{
     document::{
@@ -80,12 +80,12 @@ written!(Expr, "Expression", generator => {
 written!(Load, "Load", generator => {
     let value = generator.subschema_for::<Expr>();
     json_schema!({
-        "description": "What is done to an attachment before the first draw.",
+        "description": "Operation on an attachment before the first draw.",
         "oneOf": [
-            { "const": "Load", "description": "Keeps what is there." },
+            { "const": "Load", "description": "Keeps the content." },
             {
                 "type": "object",
-                "description": "Keeps what is there under a condition, and clears else.",
+                "description": "Keeps the content under a condition, and clears else.",
                 "properties": { "LoadIf": value },
                 "required": ["LoadIf"],
                 "additionalProperties": false,
@@ -132,16 +132,16 @@ written!(ClaimEntry, "Claim", generator => {
 });
 
 impl Registry {
-    /// What documents of these kinds may be, as a JSON Schema (draft 2020-12). RON has no schemas
-    /// of its own; for it `Kind(field: value)` is `{"Kind": {"field": value}}`, a bare word is a
-    /// text, a tuple is a list. Which names there are, and what expressions come to, it does not
-    /// know: `skiagraph check` does.
+    /// Returns the JSON Schema (draft 2020-12) of documents of these kinds. RON has no schemas of
+    /// its own; for it `Kind(field: value)` is `{"Kind": {"field": value}}`, a bare word is a text,
+    /// a tuple is a list. The schema knows neither names nor values of expressions:
+    /// `skiagraph check` does.
     pub fn schema(&self) -> Value {
         document(self.all())
     }
 }
 
-/// What documents of these kinds may be.
+/// Returns the schema of documents of these kinds.
 fn document(kinds: &[Kind]) -> Value {
     let mut generator = SchemaGenerator::default();
     let mut sections = Map::new();
@@ -171,7 +171,7 @@ fn document(kinds: &[Kind]) -> Value {
     document
 }
 
-/// What may be left out need not be null, too; descriptions have no line breaks.
+/// Simplifies a schema: optional fields need not be null, too; descriptions have no line breaks.
 fn plain(schema: &mut Value) {
     match schema {
         Value::Object(fields) => {
@@ -223,7 +223,7 @@ fn tagged(tags: impl IntoIterator<Item = (String, Value)>) -> Value {
 /// `Remove(name: …)` of a section.
 fn removed() -> (String, Value) {
     let removed = json!({
-        "description": "What the extended document has of this name is left out.",
+        "description": "Leaves out the item of this name of the extended document.",
         "type": "object",
         "properties": { "name": { "description": "Its name.", "type": "string" } },
         "required": ["name"],
@@ -235,7 +235,7 @@ fn removed() -> (String, Value) {
 struct Kinds<'k> {
     kinds: &'k [Kind],
     generator: &'k mut SchemaGenerator,
-    /// What entries of `passes` may be, and what they have in common.
+    /// Schemas of the entries of `passes`, with their common fields.
     entries: Map<String, Value>,
 }
 
@@ -287,7 +287,7 @@ impl Kinds<'_> {
 
     fn passes(&mut self) -> Value {
         let every_entry = self.every_entry();
-        let every_pass = self.fields::<PassFields>("What every pass has.");
+        let every_pass = self.fields::<PassFields>("Fields of every pass.");
         let mut tags = Vec::new();
         let mut entry = |tag: &str, own: Value, common: &[&Value], entries: &mut Map<_, _>| {
             entries.insert(tag.to_owned(), joined(tag, own, common));
@@ -337,16 +337,17 @@ impl Kinds<'_> {
         reference("Entries")
     }
 
-    /// What a type's fields may be, with another sentence about them.
+    /// Returns the schema of a type's fields, with another sentence about them.
     fn fields<T: JsonSchema>(&mut self, description: &str) -> Value {
         let mut fields = T::json_schema(self.generator).to_value();
         fields["description"] = description.into();
         fields
     }
 
-    /// What every entry has: the fields that are read with it, its maps, and its place in an edit.
+    /// Returns the fields of every entry: those that are read with it, its maps, and its place in
+    /// an edit.
     fn every_entry(&mut self) -> Value {
-        let mut every = self.fields::<Header>("What every entry has.");
+        let mut every = self.fields::<Header>("Fields of every entry.");
         let properties = &mut every["properties"];
         properties["bind"] = self.map::<Reference>();
         properties["bind"]["description"] =

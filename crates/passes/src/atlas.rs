@@ -14,7 +14,7 @@ pub struct MaterialRecord {
     pub first_texel: u32,
     /// Width and height of its texture; 0 without one.
     pub size: [u32; 2],
-    /// What it is beyond its edges, for u and v: 0 repeats, 1 mirrors, 2 clamps.
+    /// Wrapping beyond its edges, for u and v: 0 repeats, 1 mirrors, 2 clamps.
     pub wrap: [u32; 2],
 }
 

@@ -1,4 +1,4 @@
-//! What was uploaded, by name, each with the version of what is in it.
+//! Uploaded buffers by name, each with the version of its content.
 
 use crate::{error::Error, names::*};
 use std::collections::BTreeMap;
@@ -27,7 +27,8 @@ impl Buffers {
         held.map(|(buffer, _)| buffer)
     }
 
-    /// What is in the buffer of that name, if there is one, is of that version, too.
+    /// Marks the content of the buffer of that name, if there is one, as being also of that
+    /// version.
     pub fn still_hold(&mut self, name: &str, version: u64) {
         if let Some((_, of)) = self.held.get_mut(name) {
             *of = version;

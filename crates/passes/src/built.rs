@@ -1,4 +1,4 @@
-//! What was made for a graph, how, and in what time.
+//! Resources made for a graph, how, and in what time.
 
 use std::time::Duration;
 
@@ -7,15 +7,15 @@ use std::time::Duration;
 pub struct Built {
     /// Its name.
     pub name: &'static str,
-    /// What was done.
+    /// Kind of work.
     pub how: How,
-    /// What that took on the CPU, uploads included.
+    /// Time that it took on the CPU, uploads included.
     pub time: Duration,
     /// How often it was made, this time included.
     pub times: u32,
 }
 
-/// What was done for a resource.
+/// Kinds of work for a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum How {
     /// Made of what is set.

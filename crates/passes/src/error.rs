@@ -7,9 +7,9 @@ pub enum Error {
     /// The provider has nothing of that name.
     #[error("the scene provides no `{name}`; it has {}", known.join(", "))]
     Unknown {
-        /// What was asked for.
+        /// Requested name.
         name: String,
-        /// What there is.
+        /// Known names.
         known: Vec<String>,
     },
     /// The device's acceleration structures hold fewer triangles.
@@ -55,7 +55,7 @@ pub enum Error {
     /// A light that shines nowhere.
     #[error("{0}")]
     Light(
-        /// What is wrong with it.
+        /// Reason.
         String,
     ),
     /// A camera that sees nothing.

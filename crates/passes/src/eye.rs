@@ -22,7 +22,7 @@ const FARTHEST: f64 = 65536.0;
 /// A camera by its matrices: perspective or orthographic, symmetric or not, jittered, with a far
 /// plane or without.
 ///
-/// What is reconstructed from a depth buffer (`shared/from_depth.ron`) is right for any of them.
+/// Positions reconstructed from a depth buffer (`shared/from_depth.ron`) are right for any of them.
 /// Fits to the eye's frustum (`fit: camera`, `pssm`) are laid over a symmetric one that holds it;
 /// one without a far plane counts as ending at 65,536 times its near plane. `shared/gbuffer.ron`
 /// draws that symmetric frustum, too, in reversed depth whatever the host's is.
@@ -62,8 +62,9 @@ pub enum EyeError {
 }
 
 impl Eye {
-    /// Of a camera's matrices for column vectors, as glam and shaders have them: `view` from the
-    /// world to the eye, `projection` (with its jitter) from the eye to wgpu's clip space.
+    /// Creates an eye from a camera's matrices for column vectors, as glam and shaders have them:
+    /// `view` from the world to the eye, `projection` (with its jitter) from the eye to wgpu's clip
+    /// space.
     ///
     /// # Errors
     /// Matrices that are no camera's.
@@ -173,7 +174,7 @@ impl Frustum {
         } else if far.is_infinite() {
             far = FARTHEST * near;
         }
-        // Of an infinite far plane that is taken for the near one it is no number.
+        // `near` is NaN if an infinite far plane is taken for the near one.
         if !is_parallel && (near <= 0.0 || near.is_nan() || far < near) {
             return Err(EyeError::Depth(depth));
         }

@@ -35,7 +35,8 @@ pub(crate) struct Words {
 }
 
 impl Hierarchies {
-    /// Of a mesh whose topology is that of the last time, or after [`forget`](Self::forget).
+    /// Returns the tree of a mesh; its topology is that of the last time, unless after
+    /// [`forget`](Self::forget).
     pub fn bvh(&mut self, mesh: &Mesh, most: usize, keep: bool) -> Words {
         if let Some(kept) = &mut self.bvh
             && kept.refit(mesh)
@@ -81,7 +82,7 @@ impl Hierarchies {
             let (direction, mut kept) = self.light_spaces.remove(at);
             if kept.refit(mesh) {
                 let nodes = space.refit(&kept.bvh, mesh).ok_or_else(too_large)?;
-                // Of another direction are those of the last time.
+                // If the last direction was another, so are its primitives.
                 let primitives = (!is_last).then(|| kept.bvh.primitives.clone());
                 self.light_spaces.push((direction, kept));
                 return Ok(Words {

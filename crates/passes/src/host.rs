@@ -1,4 +1,4 @@
-//! What a host program gives to a preset, from what it has.
+//! Inputs of a preset from a host program's own resources.
 
 use crate::provider::SceneProvider;
 use skiagraph_scene::{Indexed, IndexedError, Light, LightKind, Mesh, Movable, Scene};
@@ -41,7 +41,7 @@ pub struct GpuMesh<'a> {
     pub normal: Option<usize>,
     /// Three indices for each triangle, in a buffer with `COPY_SRC`.
     pub indices: wgpu::BufferSlice<'a>,
-    /// What an index is.
+    /// Type of an index.
     pub format: wgpu::IndexFormat,
 }
 

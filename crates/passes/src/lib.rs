@@ -1,4 +1,4 @@
-//! What Skiagraph's graphs need of a scene, the tracer, and the shadow presets.
+//! Scene resources for Skiagraph's graphs, the tracer, and the shadow presets.
 //!
 //! - [`SceneProvider`] uploads a [`skiagraph_scene::Scene`] piece by piece, as live passes ask for
 //!   it.

@@ -34,7 +34,7 @@ pub(crate) fn names(count: usize) -> impl Iterator<Item = String> {
     })
 }
 
-/// What stands behind one of these names.
+/// Describes the resource behind one of these names.
 pub(crate) fn describe(name: &str, lights: &[LightKind]) -> Option<Provided> {
     let (list, number) = parse(name)?;
     let bytes = match list {

@@ -14,7 +14,8 @@ pub(crate) const BVH_PRIMITIVES: &str = "scene.bvh_primitives";
 pub(crate) const LIGHT_SPACE_NODES: &str = "scene.light_space_nodes";
 pub(crate) const LIGHT_SPACE_PRIMITIVES: &str = "scene.light_space_primitives";
 pub(crate) const TLAS: &str = "scene.tlas";
-/// What `shared/masks.wgsl` reads: no items in a scene where no triangle is masked or double-sided.
+/// Name of the buffer that `shared/masks.wgsl` reads: no items in a scene where no triangle is
+/// masked or double-sided.
 pub const MASKS: &str = "scene.masks";
 pub(crate) const UVS: &str = "scene.uvs";
 pub(crate) const UV_INDICES: &str = "scene.uv_indices";
@@ -53,8 +54,8 @@ pub(crate) const NAMES: [&str; 20] = [
     LIGHT_AREA,
 ];
 
-/// A number that no provider of this process has counted yet: two that are equal are of the same
-/// content, whoever gives it.
+/// Returns a number that no provider of this process has counted yet: equal versions mean equal
+/// content, across all providers.
 pub(crate) fn next_version() -> u64 {
     static LAST: AtomicU64 = AtomicU64::new(0);
     LAST.fetch_add(1, Ordering::Relaxed) + 1
@@ -183,7 +184,7 @@ impl Versions {
     }
 }
 
-/// Whether a resource is made of the places of the mesh's corners.
+/// Returns true if a resource is made from the positions of the mesh's corners.
 pub(crate) fn is_of_shape(name: &str) -> bool {
     matches!(
         name,

@@ -46,16 +46,16 @@ use std::{collections::BTreeMap, sync::Arc, time::Instant};
 /// | `light_area` | [`LightAreaUniform`] |
 /// | `lights`, `light_areas` | the same of all lights, arrays; `lights[2]` alone is a uniform |
 ///
-/// What was built stays and is shared by all graphs that are executed with the same provider, which
-/// therefore belongs to the device that it was first used with. What is set (camera, light, mesh)
+/// Resources once built stay and are shared by all graphs that are executed with the same provider,
+/// which therefore belongs to the device that it was first used with. A new camera, light or mesh
 /// is seen by executors that are made from then on, and by others from their next
-/// [`refresh`](skiagraph_gpu::Executor::refresh) on, which makes anew what follows from it as far
-/// as a live pass reads it. No buffer is written once it was handed out, so any number of executors
+/// [`refresh`](skiagraph_gpu::Executor::refresh) on, which makes its consequences anew as far as a
+/// live pass reads them. No buffer is written once it was handed out, so any number of executors
 /// may be refreshed and encoded for one submission, each with a light, a camera and a mesh of its
 /// own; and what is set as it was before is no change for those that have seen it. wgpu binds no
-/// buffer of size zero: an array of an empty scene holds one
-/// zero item, its hierarchy one leaf around a triangle without area, which no ray hits;
-/// [`Describe::describe`] still says 0 items, so that nothing is drawn.
+/// buffer of size zero: an array of an empty scene holds one zero item, its hierarchy one leaf
+/// around a triangle without area, which no ray hits; [`Describe::describe`] still says 0 items, so
+/// that nothing is drawn.
 pub struct SceneProvider {
     pub(crate) scene: Arc<Scene>,
     pub(crate) eye: Eye,
@@ -132,7 +132,7 @@ impl SceneProvider {
                 // It is asked for again when it can be made.
                 _ if self.missing(name).is_some() => {}
                 TLAS => drop(self.build_acceleration_structure(name, device, queue)?),
-                // What the executor keeps of the frame before is not ours.
+                // Resources that the executor keeps of the frame before are not ours.
                 _ if self.describe(name).is_some() => drop(self.build(name, device, queue)?),
                 _ => {}
             }

@@ -25,7 +25,7 @@ pub(crate) fn build(
             most,
         });
     }
-    // wgpu does not look at indices, and what lies behind the positions is anybody's memory.
+    // wgpu does not look at indices, and the memory behind the positions may belong to anything.
     let corners = mesh.positions.len();
     let mut used = mesh.triangles.as_flattened().iter();
     if let Some(&index) = used.find(|index| **index as usize >= corners) {

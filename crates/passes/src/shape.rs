@@ -13,8 +13,8 @@ pub(crate) struct Shape {
     pub maps: Vec<DAffine3>,
     /// True for each part whose triangles are wound the other way than at rest.
     pub mirrored: Vec<bool>,
-    /// Whether the parts are in spaces of their own and were never given places.
+    /// True if the parts are in spaces of their own and were never given places.
     pub is_unplaced: bool,
-    /// Whether the mesh moves, so that trees are worth their memory.
+    /// True if the mesh moves, so that trees are worth their memory.
     pub is_deformed: bool,
 }

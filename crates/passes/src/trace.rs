@@ -20,7 +20,7 @@ pub enum Mode {
     Closest,
 }
 
-/// What walks the rays through the scene.
+/// Structure that walks the rays through the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Engine {
@@ -34,7 +34,7 @@ pub enum Engine {
     LightSpace,
 }
 
-/// What all rays of a pass have in common.
+/// Property that all rays of a pass share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Direction {
@@ -66,7 +66,7 @@ impl Engine {
         }
     }
 
-    /// What of a device it cannot do without.
+    /// Returns the device features that it cannot do without.
     fn features(self) -> wgpu::Features {
         match self {
             Self::Hierarchy | Self::LightSpace => wgpu::Features::empty(),
@@ -121,7 +121,7 @@ pub struct Trace {
     skip: Option<Reference>,
     /// Which hit is recorded.
     mode: Mode,
-    /// What walks the rays, `Hierarchy` without it, or in quotes a `Choice` of `hierarchy`,
+    /// Engine that walks the rays, `Hierarchy` without it, or in quotes a `Choice` of `hierarchy`,
     /// `ray_query`, `light_space`. Rays of `RayQuery` need t_min ≥ 0 and finite numbers; others hit
     /// nothing.
     #[serde(default = "hierarchy")]

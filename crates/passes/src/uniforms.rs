@@ -1,4 +1,4 @@
-//! What shaders know of the camera and the light. The structs of `shaders/shared/camera.wgsl` and
+//! Uniforms of the camera and the light. The structs of `shaders/shared/camera.wgsl` and
 //! `light.wgsl` are laid out alike; a test compares both with what naga makes of them.
 
 use glam::{DMat4, DVec3, Mat3, Mat4, Vec2, Vec3};
@@ -12,7 +12,7 @@ pub struct CameraUniform {
     pub eye: Vec3,
     /// Near plane distance.
     pub near: f32,
-    /// What rounding the eye left over, so that corners far from the origin keep their distance to
+    /// Remainder of rounding the eye, so that corners far from the origin keep their distance to
     /// the eye.
     pub eye_low: Vec3,
     /// Far plane distance.
@@ -65,7 +65,7 @@ pub struct UnprojectionUniform {
     pub origin: Vec3,
     /// 1 if depth 1 is near, else 0.
     pub is_reversed: u32,
-    /// What rounding the eye left over.
+    /// Remainder of rounding the origin.
     pub origin_low: Vec3,
     /// Unused.
     pub padding: f32,
@@ -77,8 +77,8 @@ pub struct UnprojectionUniform {
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LightUniform {
     /// From a position relative to `centre` to the light's clip space (w stays 1; z in 0..1 grows
-    /// away from the light). Of a spot light, from what is relative to the light to x, y and w, of
-    /// which w, the distance along the axis, is the half width of the map, and z, its share of
+    /// away from the light). For a spot light, maps positions relative to the light to x, y and w,
+    /// of which w, the distance along the axis, is the half width of the map, and z, its share of
     /// `range`.
     pub clip_from_relative: Mat4,
     /// Unit vector towards the light; of a spot light, against its axis; of a point light, 0.
@@ -99,7 +99,7 @@ pub struct LightUniform {
     pub position: Vec3,
     /// Cosine of the angle between a spot light's axis and the edge of its cone.
     pub edge_cosine: f32,
-    /// What rounding the position left over.
+    /// Remainder of rounding the position.
     pub position_low: Vec3,
     /// No point of the scene is farther from a spot or point light.
     pub range: f32,

@@ -1,4 +1,4 @@
-//! What share of a light that is an area each receiver sees: stratified samples in f64.
+//! Share of an area light that each receiver sees: stratified samples in f64.
 
 use crate::{
     error::Error,
@@ -24,9 +24,9 @@ struct Emitter {
     centre: DVec3,
     /// From there to its rim, along two axes.
     across: [DVec3; 2],
-    /// Whether its points are places, or directions alone.
+    /// True if its points are places, false if directions alone.
     is_place: bool,
-    /// What contains all of it.
+    /// Cone that contains all of it.
     cone: Cone,
 }
 
@@ -138,7 +138,7 @@ impl<'a> Oracle<'a> {
             let Some(receiver) = receiver else {
                 return Ok((Answer::BACKGROUND, [0.0; 2]));
             };
-            // Of the light's centre, for what is indeterminate.
+            // Answer for the light's centre, for indeterminate pixels.
             let mut answer = self.answer(&receiver, mode, stack);
             if answer.class == Class::FacingAway {
                 return Ok((answer, [0.0; 2]));
@@ -217,7 +217,7 @@ impl<'a> Oracle<'a> {
             let ray = Ray::new(origin, way.direction, max_distance, 0.0).ending(way.distance);
             let blocks = |caster: &Caster| caster.hit(&ray).is_some_and(|hit| ray.reaches(hit.t));
             let blocker = casters.iter().position(blocks);
-            // What blocks one ray is likely to block the next.
+            // The blocker of one ray is likely to block the next.
             if let Some(blocker) = blocker {
                 casters.swap(0, blocker);
             }

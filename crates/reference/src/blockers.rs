@@ -1,4 +1,4 @@
-//! What stands between the light and the pixels that a method is certain and wrong of.
+//! Blockers between the light and the pixels that a method is certain and wrong of.
 //!
 //! A method that culls front faces knows a caster by its back faces. A closed part has one behind
 //! each front face; an open part, such as a leaf or a curtain, may have none, and what it shadows
@@ -27,7 +27,7 @@ pub struct BlockerCounts {
     pub none: u64,
 }
 
-/// Of one pixel.
+/// Blocker of one pixel.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Blocker {
     OpenPart,
@@ -50,8 +50,8 @@ impl FromIterator<Blocker> for BlockerCounts {
 }
 
 impl Oracle<'_> {
-    /// What blocks each of `pixels`, places in the buffer `primitives`; the other arguments are
-    /// those of [`shade`](Self::shade).
+    /// Finds the blockers of each of `pixels`, places in the buffer `primitives`; the other
+    /// arguments are those of [`shade`](Self::shade).
     ///
     /// # Errors
     /// [`Error::UnknownPrimitive`].

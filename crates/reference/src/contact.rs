@@ -1,4 +1,4 @@
-//! Whether a shadow ray's answer is indeterminate: whether it flips when receiver or casters move
+//! Decides if a shadow ray's answer is indeterminate: if it flips when receiver or casters move
 //! within their f32 error bounds.
 //!
 //! A caster is *touched* when some admissible displacement of the receiver, or of the caster's
@@ -17,7 +17,7 @@ use glam::DVec3;
 use skiagraph_scene::Towards;
 use skiagraph_scene::mask::Asked;
 
-/// What a shadow ray has to do with a caster.
+/// Relation of a shadow ray to a caster.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Contact {
     /// No displacement makes it a hit.
@@ -58,7 +58,7 @@ pub(crate) struct FuzzyRay<'a> {
     towards: Towards,
     uncertainty: &'a Uncertainty,
     sheared_segments: [DVec3; 3],
-    /// What the ray's end may be off by.
+    /// Bound on the displacement of the ray's end.
     end_error: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What f32 may move receivers and casters by, as lengths and as displacements.
+//! Bounds on the f32 error of receivers and casters, as lengths and as displacements.
 
 use glam::DVec3;
 use skiagraph_scene::Towards;
@@ -52,7 +52,7 @@ impl Uncertainty {
         self.reach() + caster_error(max_distance, towards)
     }
 
-    /// What f32 may move the end of a shadow ray by, along it: of one that ends at its light.
+    /// Bounds the f32 error of a shadow ray's end, along the ray, if it ends at its light.
     pub(crate) fn end_error(&self, towards: &Towards) -> f64 {
         if towards.distance.is_finite() {
             END_ROUNDINGS * F32_ROUNDING * towards.distance + self.reach()

@@ -12,9 +12,9 @@ use serde::{Deserialize, Serialize};
 /// How a picture of shares, 0 in shadow to 1 in light, compares with the reference.
 ///
 /// Judged are the pixels that face the light by the reference (PFL); in all others no light
-/// arrives, whatever the visibility. What is no share is counted in `invalid`, and judged as a
-/// texture of 0 to 1 would hold it: infinities and what is outside are clamped. NaN counts as 1
-/// off.
+/// arrives, whatever the visibility. Values outside of 0 to 1 are counted in `invalid`, and judged
+/// as a texture of 0 to 1 would hold them: infinities and values outside are clamped. NaN counts as
+/// 1 off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Graded {
     /// Root of the mean squared error over PFL.

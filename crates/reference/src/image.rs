@@ -1,4 +1,4 @@
-//! Pictures as RGB bytes; whoever needs a file encodes them.
+//! Pictures as RGB bytes; the caller encodes them if it needs a file.
 
 use crate::{
     error::Error,
@@ -51,7 +51,7 @@ pub const FULL_COLOUR: f64 = 0.25;
 /// Ambient light of [`Image::shaded`], as a share of the light's own at normal incidence.
 const AMBIENT: f32 = 0.2;
 
-/// What a pixel shows of the light: 0 or 1, or a share of it.
+/// Light that a pixel shows: 0 or 1, or a share of it.
 pub trait Shown: Copy {
     /// 0 in shadow to 1 in light; what is no share is clamped, NaN is shadow.
     fn share(self) -> f32;
@@ -93,8 +93,8 @@ impl Image {
     /// Where a method is wrong: blue = wrongly lit, red = wrongly in shadow, both paler where
     /// indeterminate, over the reference's shadows in pale grey. As many pixels are coloured as are
     /// wrong. In pictures of 256 pixels and more in which few are wrong, a thin dark ring points to
-    /// those that have no others near; it hides right pixels alone. What counts as wrong is said at
-    /// [`Statistics`](crate::Statistics).
+    /// those that have no others near; it hides right pixels alone.
+    /// [`Statistics`](crate::Statistics) defines wrong pixels.
     ///
     /// # Errors
     /// Those of [`Statistics::judged`](crate::Statistics::judged).

@@ -15,9 +15,9 @@ const UV_ROUNDINGS: f64 = 16.0;
 /// Roundings of a wrapped coordinate on its way to a texel, in units of the whole texture.
 const TEXEL_ROUNDINGS: f64 = 4.0;
 
-/// What the edge functions of a shader are off by, in units of what [`FuzzyRay`] takes them to be:
-/// it counts 8 roundings of the corners, their products and the bound within which a shader takes
-/// an edge function for 0 are 6 more.
+/// Error of a shader's edge functions, in units of the error that [`FuzzyRay`] assumes: it counts 8
+/// roundings of the corners, their products and the bound within which a shader takes an edge
+/// function for 0 are 6 more.
 ///
 /// [`FuzzyRay`]: crate::contact::FuzzyRay
 const EDGE_ERROR: f64 = 1.75;
@@ -30,19 +30,19 @@ pub(crate) struct Masked<'a> {
 }
 
 impl<'a> Masked<'a> {
-    /// Of a triangle that has one.
+    /// Returns the mask of a triangle that has one.
     pub(crate) fn new(mesh: &'a Mesh, primitive: u32) -> Option<Self> {
         let mask = mesh.surfaces.mask(primitive)?;
         let uvs = mesh.surfaces.corner_uvs(primitive).map(|uv| uv.as_dvec2());
         Some(Self { mask, uvs })
     }
 
-    /// Whether it is there at the weights of its corners.
+    /// Returns true if it is opaque at the weights of its corners.
     pub(crate) fn is_opaque(&self, weights: [f64; 3]) -> bool {
         self.mask.ask(self.uv(weights), DVec2::ZERO).opaque
     }
 
-    /// What it says where edge functions are `edges`, each off by up to `errors`.
+    /// Asks it where edge functions are `edges`, each off by up to `errors`.
     pub(crate) fn ask(&self, edges: [f64; 3], errors: [f64; 3]) -> Asked {
         let determinant: f64 = edges.iter().sum();
         let errors = errors.map(|error| EDGE_ERROR * error);

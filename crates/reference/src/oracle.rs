@@ -63,7 +63,7 @@ impl FromStr for OracleMode {
 }
 
 impl fmt::Display for OracleMode {
-    /// What [`FromStr`] reads.
+    /// Writes the form that [`FromStr`] reads.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Exact => f.write_str("exact"),
@@ -79,16 +79,16 @@ const MOST_EXTENTS: f64 = 1e6;
 pub struct Oracle<'a> {
     pub(crate) mesh: &'a Mesh,
     pub(crate) tree: Tree<'a>,
-    /// Of the mesh, once somebody asks for blockers.
+    /// Parts of the mesh, found at the first request for blockers.
     pub(crate) parts: OnceLock<Parts>,
 }
 
-/// What the oracle says of a ray.
+/// Oracle's answer for a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Occlusion {
-    /// Whether a triangle stands in its way.
+    /// True if a triangle stands in its way.
     pub blocked: bool,
-    /// Whether that changes when the triangles move by what f32 makes of their corners, seen from
+    /// True if that changes when the triangles move by the f32 rounding of their corners, seen from
     /// the ray's origin.
     pub indeterminate: bool,
 }
@@ -105,7 +105,7 @@ impl<'a> Oracle<'a> {
         Self { mesh, tree, parts }
     }
 
-    /// What it traces.
+    /// Returns the mesh that it traces.
     pub fn mesh(&self) -> &'a Mesh {
         self.mesh
     }
@@ -169,7 +169,7 @@ impl<'a> Oracle<'a> {
         Ok(GroundTruthPixels::new(viewport, &answers, base_colors))
     }
 
-    /// Whether a light can be traced.
+    /// Checks that a light can be traced.
     pub(crate) fn check(&self, light: &LightKind, mode: OracleMode) -> Result<(), Error> {
         light.check().map_err(Error::Light)?;
         if let OracleMode::Offset(length) = mode {
@@ -230,7 +230,7 @@ impl<'a> Oracle<'a> {
         }
     }
 
-    /// Whether the receiver is in shadow, and whether that is indeterminate.
+    /// Returns two answers: if the receiver is in shadow, and if that is indeterminate.
     fn visibility(
         &self,
         origin: DVec3,
@@ -287,7 +287,7 @@ impl<'a> Oracle<'a> {
         }
     }
 
-    /// Whether any triangle but `excluded` stands between `origin` and the light.
+    /// Returns true if any triangle but `excluded` stands between `origin` and the light.
     pub(crate) fn occluded(
         &self,
         origin: DVec3,
@@ -311,8 +311,8 @@ impl<'a> Oracle<'a> {
     }
 }
 
-/// What each pixel of a G-buffer shows as if nothing cast shadows: whatever faces the light is lit.
-/// It needs no hierarchy. `primitives` as for [`Oracle::shade`].
+/// Shades each pixel of a G-buffer as if nothing cast shadows: every receiver that faces the light
+/// is lit. It needs no hierarchy. `primitives` as for [`Oracle::shade`].
 ///
 /// # Errors
 /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Light`], [`Error::Interrupted`].
@@ -337,7 +337,7 @@ pub fn unshadowed(
     ))
 }
 
-/// What the pixels of a G-buffer are made of; nothing where the mesh has no materials.
+/// Returns the base colours of the pixels of a G-buffer; nothing where the mesh has no materials.
 pub(crate) fn base_colors(mesh: &Mesh, camera: &Camera, primitives: &[u32]) -> Vec<[f32; 3]> {
     let surfaces = &mesh.surfaces;
     if surfaces.materials.is_empty() {

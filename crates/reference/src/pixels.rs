@@ -58,7 +58,7 @@ pub fn per_pixel<T: Send>(
     Ok(rows.into_iter().flatten().collect())
 }
 
-/// Whether the buffer `name` holds one value per pixel.
+/// Checks that the buffer `name` holds one value per pixel.
 ///
 /// # Errors
 /// [`Error::PixelCount`].

@@ -23,8 +23,8 @@ pub(crate) struct Ray {
     pub(crate) shear: [f64; 3],
     /// By how much boxes are widened on every side.
     pad: f64,
-    /// What f64 rounding may have moved the origin by along the ray: a surface met sooner is the
-    /// origin's own, beyond an edge.
+    /// Bound on the f64 rounding of the origin along the ray: a surface met sooner is the origin's
+    /// own, beyond an edge.
     pub(crate) nearest: f64,
     /// Where it ends: what is farther away is not in its way.
     pub(crate) end: f64,
@@ -93,7 +93,7 @@ impl Ray {
         Self { end, ..self }
     }
 
-    /// Whether what is met at this distance is in the ray's way.
+    /// Returns true if a surface at this distance is in the ray's way.
     pub(crate) fn reaches(&self, t: f64) -> bool {
         t > self.nearest && t < self.end
     }

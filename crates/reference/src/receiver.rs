@@ -48,9 +48,9 @@ pub struct Receiver {
     pub position: DVec3,
     /// The way to the light.
     pub towards: Towards,
-    /// Whether it lies outside of a spot light's cone.
+    /// True if it lies outside of a spot light's cone.
     pub outside_cone: bool,
-    /// Whether f32 may take `outside_cone` for the contrary.
+    /// True if f32 may take `outside_cone` for the contrary.
     pub on_cone_edge: bool,
     /// Interpolated, unnormalised vertex normal · unit vector towards the light.
     pub n_dot_l: f64,

@@ -21,7 +21,7 @@ pub struct Shimmer {
     /// Pixels whose receiver faces the light and had the same ground truth a frame before (to 1/255
     /// of an area light), both outside the band.
     pub compared: u64,
-    /// Of these, the ones whose visibility the method changed by more than 1/16.
+    /// Compared pixels whose visibility the method changed by more than 1/16.
     pub changed: u64,
 }
 
@@ -87,7 +87,7 @@ fn hit(mesh: &Mesh, primitive: u32, camera: &Camera, [x, y]: [u32; 2]) -> Option
 fn earlier(place: DVec3, primitive: u32, before: &Mesh, now: &Mesh) -> DVec3 {
     let corners = now.corners(primitive);
     let corners_before = before.corners(primitive);
-    // What stands is where it is, without rounding.
+    // A triangle that stands still is where it is, without rounding.
     if corners == corners_before {
         return place;
     }

@@ -35,9 +35,9 @@ pub struct PixelCounts {
     pub facing_away: u64,
     /// Face the light (PFL), the denominator of every share.
     pub facing_light: u64,
-    /// Of `facing_light`: see the light.
+    /// Pixels of `facing_light` that see the light.
     pub lit: u64,
-    /// Of `facing_light`: do not.
+    /// Pixels of `facing_light` that do not.
     pub shadow: u64,
 }
 
@@ -59,9 +59,9 @@ pub struct WrongCounts {
     pub shadow: u64,
     /// `lit + shadow`, indeterminate pixels included.
     pub total: u64,
-    /// Of `total`: the method called them certain, and they are not indeterminate.
+    /// Pixels of `total` that the method called certain, and that are not indeterminate.
     pub certain: u64,
-    /// Of `total`: indeterminate, the answer being within the f32 error bound.
+    /// Pixels of `total` that are indeterminate, the answer being within the f32 error bound.
     pub in_band: u64,
 }
 
@@ -74,11 +74,11 @@ pub struct ClassSplit {
     pub certain_right: u64,
     /// Called certain, and wrong.
     pub certain_wrong: u64,
-    /// Of `certain_wrong`: not indeterminate.
+    /// Pixels of `certain_wrong` that are not indeterminate.
     pub certain_wrong_outside_band: u64,
     /// Called uncertain.
     pub uncertain: u64,
-    /// Of `uncertain`: wrong in the final picture.
+    /// Pixels of `uncertain` that are wrong in the final picture.
     pub uncertain_wrong: u64,
 }
 
@@ -273,7 +273,7 @@ pub(crate) enum Verdict {
     WronglyShadowed,
 }
 
-/// Whether the method called the pixel certain and is wrong of it outside the band.
+/// Returns true if the method called the pixel certain and is wrong of it outside the band.
 fn is_certain_wrong(status: u32, indeterminate: bool, verdict: Verdict) -> bool {
     let certain = matches!(status, status::CERTAIN_LIGHT | status::CERTAIN_SHADOW);
     certain && !indeterminate && verdict != Verdict::Right

@@ -96,7 +96,7 @@ mod tests {
             assert_eq!(points.len(), count as usize);
             assert_eq!(points, strata.points([3, 5, 7]).collect::<Vec<_>>());
             assert_ne!(points, strata.points([5, 3, 7]).collect::<Vec<_>>());
-            // Of n points in equal parts, the share left of any x is off by a column at most.
+            // With n points in equal parts, the share left of any x is off by a column at most.
             for bound in [0.1, 0.3, 0.5, 0.9] {
                 for axis in 0..2 {
                     let below = points.iter().filter(|point| point[axis] < bound).count();

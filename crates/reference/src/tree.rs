@@ -22,7 +22,7 @@ pub(crate) struct Caster<'a> {
     pub(crate) open: [bool; 3],
     /// Where it is there at all, if not everywhere.
     pub(crate) masked: Option<Masked<'a>>,
-    /// Whether its back face is seen, too.
+    /// True if its back face is seen, too.
     pub(crate) double_sided: bool,
 }
 
@@ -35,18 +35,18 @@ impl Caster<'_> {
     }
 }
 
-/// What lies within an angle of an axis.
+/// Cone of the directions within an angle of an axis.
 pub(crate) struct Cone {
     /// Unit vector.
     pub(crate) axis: DVec3,
-    /// Of the angle, which is no more than a right one.
+    /// Sine of the angle, which is no more than a right one.
     pub(crate) sin: f64,
     pub(crate) cos: f64,
 }
 
 impl Cone {
-    /// Whether it could meet the ball around the box of two opposite corners, both relative to its
-    /// apex: by its distance to the cone's side, with room for rounding.
+    /// Returns true if it could meet the ball around the box of two opposite corners, both relative
+    /// to its apex: by its distance to the cone's side, with room for rounding.
     fn meets_ball(&self, low: DVec3, high: DVec3) -> bool {
         let centre = (low + high) * 0.5;
         let room = 1e-12 * (low.abs().max_element() + high.abs().max_element());

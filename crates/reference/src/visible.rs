@@ -85,7 +85,7 @@ impl Oracle<'_> {
         nearest.1
     }
 
-    /// Whether no rasteriser may show this primitive at the sample.
+    /// Returns true if no rasteriser may show this primitive at the sample.
     fn is_wrong(&self, sample: &Sample, shown: u32, stack: &mut Vec<u32>) -> bool {
         let end = match shown {
             BACKGROUND => sample.camera.far * (1.0 - 16.0 * F32_ROUNDING),
@@ -136,8 +136,8 @@ impl<'a> Sample<'a> {
         }
     }
 
-    /// Whether a triangle may cover some of the square: false only where all of it is beyond one
-    /// edge, whichever side is seen.
+    /// Returns true if a triangle may cover some of the square: false only where all of it is
+    /// beyond one edge, whichever side is seen.
     fn may_touch(&self, corners: &Corners) -> bool {
         let edges = self.edges(corners);
         [1.0, -1.0]
@@ -161,8 +161,8 @@ impl<'a> Sample<'a> {
         least - self.distance_error(corners, least)
     }
 
-    /// Whether a rasteriser shows this triangle at a sample anywhere in the square, or what is
-    /// before it: it covers all of the square, between the near plane and `end`.
+    /// Returns true if a rasteriser shows this triangle, or something before it, at a sample
+    /// anywhere in the square: it covers all of the square, between the near plane and `end`.
     fn surely_shows(&self, caster: &Caster<'_>, end: f64) -> bool {
         let mut span = [f64::INFINITY, 0.0f64];
         for ray in &self.rays {
@@ -181,7 +181,7 @@ impl<'a> Sample<'a> {
         span[0] - error > self.camera.near && span[1] + error < end
     }
 
-    /// Whether a triangle's mask says different things within the square.
+    /// Returns true if a triangle's mask says different things within the square.
     fn mask_may_flip(&self, caster: &Caster<'_>) -> bool {
         caster.masked.as_ref().is_some_and(|masked| {
             let [centre, corners @ ..] = self.edges(&caster.corners);

@@ -3,7 +3,7 @@
 use crate::mesh::Mesh;
 use std::collections::HashMap;
 
-/// What [`Adjacency::opposite`] holds for an edge that has not exactly two triangles.
+/// Value of [`Adjacency::opposite`] for an edge that has not exactly two triangles.
 pub const NO_NEIGHBOUR: u32 = u32::MAX;
 
 /// Edge adjacency of a mesh over its welded positions: the *corner table* of Rossignac, Safonova
@@ -27,8 +27,9 @@ enum Edge {
 }
 
 impl Adjacency {
-    /// Of a mesh, in time linear in its triangles. Triangles that name a position twice have no
-    /// area whatever their place, and no neighbours: what lies on both sides of one is adjacent.
+    /// Finds the neighbours in a mesh, in time linear in its triangles. Triangles that name a
+    /// position twice have no area whatever their place, and no neighbours: what lies on both sides
+    /// of one is adjacent.
     pub fn new(mesh: &Mesh) -> Self {
         let mut opposite = vec![NO_NEIGHBOUR; 3 * mesh.triangles.len()];
         let mut edges = HashMap::with_capacity(3 * mesh.triangles.len() / 2);

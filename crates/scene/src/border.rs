@@ -5,13 +5,13 @@ use std::{
     panic::{AssertUnwindSafe, catch_unwind},
 };
 
-/// Calls a library's parser. What makes it panic is kept from it where that is known; a panic that
-/// is not known yet is an error like any other.
+/// Calls a library's parser. Known causes of panics are kept from it; an unknown panic is an error
+/// like any other.
 ///
 /// # Errors
 /// Names the library, and what it said.
 pub(crate) fn caught<T>(library: &str, parse: impl FnOnce() -> T) -> Result<T, String> {
-    // What the parser was filling is dropped with the error.
+    // The parser's unfinished results are dropped with the error.
     catch_unwind(AssertUnwindSafe(parse)).map_err(|payload| {
         let said = message(payload.as_ref());
         format!("the library `{library}` failed on it ({said}): save the file in another program")

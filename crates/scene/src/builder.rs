@@ -89,9 +89,9 @@ impl MeshBuilder {
     }
 }
 
-/// Whether the corners lie on a line. Differences of `f32` corners are exact in `f64` (unless their
-/// exponents lie more than 29 apart); the products are compared with their rounding errors, so that
-/// no tiny area is taken for none.
+/// Returns true if the corners lie on a line. Differences of `f32` corners are exact in `f64`
+/// (unless their exponents lie more than 29 apart); the products are compared with their rounding
+/// errors, so that no tiny area is taken for none.
 pub(crate) fn has_no_area([a, b, c]: [DVec3; 3]) -> bool {
     let (u, v) = (b - a, c - a);
     let equal = |p: f64, q: f64, r: f64, s: f64| {

@@ -75,10 +75,10 @@ impl View {
         }
     }
 
-    /// Whether a camera can be made of this view, and its light has a direction.
+    /// Checks that a camera can be made of this view, and that its light has a direction.
     ///
     /// # Errors
-    /// What is wrong with it, naming the view.
+    /// The first mistake, naming the view.
     pub fn check(&self) -> Result<(), String> {
         let name = &self.name;
         if !self.eye.is_finite() {

@@ -19,7 +19,7 @@ pub enum SceneError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the operating system said, or which bound it exceeds.
+        /// Error of the operating system, or the bound that is exceeded.
         reason: io::Error,
     },
     /// A line of an OBJ file could not be understood.
@@ -29,7 +29,7 @@ pub enum SceneError {
         path: PathBuf,
         /// Line, from 1.
         line: u32,
-        /// What was found and what was expected.
+        /// Found and expected text.
         reason: String,
     },
     /// Faces of an OBJ file that name vertices which do not exist or are not finite.
@@ -42,16 +42,16 @@ pub enum SceneError {
         /// Number of faulty faces.
         total: usize,
     },
-    /// What an OBJ file says of its materials cannot be had.
+    /// The materials of an OBJ file cannot be read.
     #[error("{}: {place}: {reason}; {way_out}", path.display())]
     Material {
         /// The OBJ file.
         path: PathBuf,
         /// The file of materials, or the material in it.
         place: String,
-        /// What is wrong.
+        /// Reason.
         reason: String,
-        /// What to do about it.
+        /// Way out.
         way_out: &'static str,
     },
     /// A glTF file that cannot be used.
@@ -61,7 +61,7 @@ pub enum SceneError {
         path: PathBuf,
         /// Where in it.
         place: String,
-        /// What is wrong, and what to do about it.
+        /// Reason, and the way out.
         reason: String,
     },
     /// A group to be left out is not in the OBJ file.
@@ -152,7 +152,7 @@ pub enum SceneError {
         folder.display(), builtin.join(", ")
     )]
     UnknownScene {
-        /// What was asked for.
+        /// Requested argument.
         argument: String,
         /// The folder of scene files that was searched.
         folder: PathBuf,
@@ -162,7 +162,7 @@ pub enum SceneError {
     /// A number of triangles was given for a scene that cannot have it.
     #[error("{argument:?}: {reason}")]
     Size {
-        /// What was asked for.
+        /// Requested argument.
         argument: String,
         /// Why it cannot be had.
         reason: String,
@@ -181,7 +181,7 @@ pub enum SceneError {
          --light …) can only be given with a mesh file"
     )]
     ViewNotWanted {
-        /// What was asked for.
+        /// Requested argument.
         argument: String,
     },
     /// A view or a light given by the caller makes no camera or no light.
@@ -189,7 +189,7 @@ pub enum SceneError {
     BadView {
         /// The OBJ file it was given for.
         path: PathBuf,
-        /// What is wrong.
+        /// Reason.
         reason: String,
     },
 }
@@ -225,11 +225,11 @@ impl fmt::Display for FaceRef {
 pub struct FaceFault {
     /// The face.
     pub face: FaceRef,
-    /// What is wrong with it.
+    /// Problem of the face.
     pub problem: FaceProblem,
 }
 
-/// What is wrong with a face.
+/// Problems of a face.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FaceProblem {
@@ -371,14 +371,14 @@ fn shorten(names: &[String]) -> String {
     text
 }
 
-/// What is wrong at a place of a scene file.
+/// Error at a place of a scene file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneMistake {
     /// Line, from 1.
     pub line: usize,
     /// Column, from 1.
     pub column: usize,
-    /// What is wrong.
+    /// Reason.
     pub reason: String,
 }
 

@@ -144,7 +144,7 @@ impl<'a> Reader<'a> {
                     }
                     left_out.push(name);
                 }
-                // What is missing then is what was misspelt, or could not be read.
+                // The missing field is then the misspelt one, or one that could not be read.
                 (None, RonError::MissingStructField { field, .. })
                     if misspelt || left_out.contains(field) =>
                 {
@@ -171,7 +171,7 @@ fn bare(raw: &RawValue) -> &str {
 /// Offset in `part` of what ron is about.
 fn place(part: &str, error: &SpannedError) -> usize {
     let start = &error.span.start;
-    // What a value says of itself is said at its beginning; ron stands at its end then.
+    // An error about a value itself belongs to its beginning; ron stands at its end then.
     if matches!(
         error.code,
         RonError::Message(_) | RonError::MissingStructField { .. }

@@ -22,7 +22,7 @@ pub struct Indexed<'a> {
 #[non_exhaustive]
 pub enum IndexedError {
     /// The last triangle lacks corners.
-    #[error("{0} indices are no triangles: they are not divisible by 3")]
+    #[error("{0} indices do not form triangles: they are not divisible by 3")]
     Corners(
         /// Number of indices.
         usize,
@@ -40,7 +40,7 @@ pub enum IndexedError {
     Index {
         /// Which of the indices.
         at: usize,
-        /// What it is.
+        /// Index found.
         index: u32,
         /// Number of positions.
         positions: usize,
@@ -52,7 +52,7 @@ pub enum IndexedError {
         what: &'static str,
         /// Which one.
         at: usize,
-        /// What it is.
+        /// Value found.
         value: [f32; 3],
     },
 }

@@ -1,8 +1,8 @@
-//! What stands between keyframes.
+//! Interpolation between keyframes.
 
 use glam::DVec3;
 
-/// What is wrong with the order of keys.
+/// Returns the mistake in the order of keys, if there is one.
 pub(crate) fn not_later<K>(keys: &[K], time: fn(&K) -> f64) -> Option<String> {
     let mut pairs = keys.windows(2).map(|pair| [time(&pair[0]), time(&pair[1])]);
     let late = pairs.find(|[before, after]| !(before < after && after.is_finite()))?;
@@ -35,7 +35,7 @@ pub(crate) fn spline<K>(
         (of(after) - of(before)) / (time(after) - time(before))
     };
     let (before, after) = (slope(from), slope(from + 1));
-    // What stands is the same to the last bit in every frame.
+    // A key that stands still is the same to the last bit in every frame.
     if of(a) == of(b) && before == DVec3::ZERO && after == DVec3::ZERO {
         return of(a);
     }

@@ -41,7 +41,7 @@ const BUILT_IN: [(&str, &str); 9] = [
     ("sponza_masked", include_str!("../scenes/sponza_masked.ron")),
 ];
 
-/// What a user asked for.
+/// Request of a user.
 #[derive(Clone, Debug, Default)]
 pub struct SceneRequest {
     /// A built-in name, a name in `scenes/`, the path of a `.ron` file, or the path of an `.obj`,
@@ -53,7 +53,7 @@ pub struct SceneRequest {
     pub obj: Option<ObjSetup>,
 }
 
-/// What a bare mesh file lacks to be a scene.
+/// Settings that a bare mesh file lacks to be a scene.
 #[derive(Clone, Debug)]
 pub struct ObjSetup {
     /// The only view.
@@ -79,7 +79,7 @@ pub struct SceneListing {
     pub views: Vec<String>,
     /// Names of its camera paths.
     pub paths: Vec<String>,
-    /// Whether its mesh is at hand: generated, or found on disk.
+    /// True if its mesh is at hand: generated, or found on disk.
     pub mesh_found: bool,
     /// The scene file, or `None` for a built-in scene.
     pub file: Option<PathBuf>,
@@ -285,7 +285,7 @@ impl SceneLibrary {
         file: Option<&Path>,
     ) -> Result<PathBuf, SceneError> {
         let places = self.mesh_places(mesh, file);
-        // What is neither file nor folder is there as well; reading it says what is wrong with it.
+        // A path that is neither file nor folder is there as well; reading it tells the error.
         let place = places.iter().find(|place| place.is_file()).or_else(|| {
             places
                 .iter()

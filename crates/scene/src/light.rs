@@ -32,7 +32,7 @@ impl DirectionalLight {
         }
     }
 
-    /// Whether it is an area, whose shadows have a penumbra.
+    /// Returns true if it is an area, whose shadows have a penumbra.
     pub fn has_extent(&self) -> bool {
         self.angle_degrees > 0.0
     }
@@ -54,10 +54,10 @@ impl DirectionalLight {
         -self.direction.normalize()
     }
 
-    /// Whether the light has a direction, and an angle below a half turn.
+    /// Checks that the light has a direction, and an angle below a half turn.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The first mistake.
     pub fn check(&self) -> Result<(), String> {
         if self.direction.try_normalize().is_none() {
             return Err(format!(

@@ -8,11 +8,11 @@ use glam::DVec3;
 pub struct Light {
     /// Small letters, digits and `_`; no two of a scene are alike.
     pub name: String,
-    /// What it is.
+    /// Kind of the light.
     pub kind: LightKind,
 }
 
-/// What a light is.
+/// Kinds of lights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightKind {
     /// Infinitely far away.
@@ -62,7 +62,7 @@ pub const ONLY_LIGHT: &str = "light";
 const FARTHEST: f64 = 1e18;
 
 /// The share of a shadow ray's way that it stays short of a positional light. So a surface on which
-/// the light lies shades nobody, instead of being decided by rounding.
+/// the light lies casts no shadow, instead of being decided by rounding.
 pub const LIGHT_GAP: f64 = 1.0 / 65536.0;
 
 impl Light {
@@ -74,10 +74,10 @@ impl Light {
         }
     }
 
-    /// Whether the name and the light are of use.
+    /// Checks that the name and the light can be used.
     ///
     /// # Errors
-    /// What is wrong.
+    /// The first mistake.
     pub fn check(&self) -> Result<(), String> {
         let starts = |c: char| c.is_ascii_lowercase();
         let goes_on = |c: char| starts(c) || c.is_ascii_digit() || c == '_';
@@ -116,7 +116,7 @@ impl LightKind {
         }
     }
 
-    /// Whether it is an area, whose shadows have a penumbra.
+    /// Returns true if it is an area, whose shadows have a penumbra.
     pub fn has_extent(&self) -> bool {
         match self {
             Self::Directional(light) => light.has_extent(),
@@ -153,10 +153,10 @@ impl LightKind {
         }
     }
 
-    /// Whether the light can be.
+    /// Checks that the light can exist.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The first mistake.
     pub fn check(&self) -> Result<(), String> {
         if let Some(position) = self.position()
             && (position.is_nan() || position.abs().max_element() > FARTHEST)

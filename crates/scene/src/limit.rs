@@ -9,14 +9,14 @@ use std::{
 
 const MIB: u64 = 1 << 20;
 
-/// What a kind of file may have at most.
+/// Limit on the size of a kind of file.
 #[derive(Clone, Copy, Debug)]
 pub struct Limit {
     /// The kind, with its article: "an .obj file".
     pub of: &'static str,
     /// Most MiB that are read.
     pub mib: u64,
-    /// What to do with a longer one.
+    /// Way out for a longer one.
     pub way_out: &'static str,
 }
 
@@ -24,8 +24,8 @@ impl Limit {
     /// The bytes of the file at `path`.
     ///
     /// # Errors
-    /// What the system said; a folder, a device or a pipe, none of which is opened (that alone can
-    /// block); a file beyond the limit. The message does not name the file.
+    /// An error of the system; a folder, a device or a pipe, none of which is opened (that alone
+    /// can block); a file beyond the limit. The message does not name the file.
     pub fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         let found = std::fs::metadata(path)?;
         if found.is_dir() {
@@ -33,8 +33,8 @@ impl Limit {
         }
         if !found.is_file() {
             return Err(io::Error::other(
-                "it is a device, a pipe or a socket, whose length nobody knows: copy what it \
-                 gives into a file, and name that",
+                "it is a device, a pipe or a socket, of unknown length: copy its content \
+                 into a file, and name that",
             ));
         }
         let most = self.mib * MIB;
@@ -57,7 +57,7 @@ impl Limit {
     /// As [`Self::read`]; and bytes that are no UTF-8.
     pub fn read_text(&self, path: &Path) -> io::Result<String> {
         String::from_utf8(without_mark(&self.read(path)?).into_owned())
-            .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is no text in UTF-8"))
+            .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is not UTF-8 text"))
     }
 
     fn exceeded(&self, length: &str) -> io::Error {

@@ -13,18 +13,18 @@ use glam::DVec2;
 pub struct Mask {
     /// Width and height in texels, neither 0.
     pub size: [u32; 2],
-    /// What it is beyond its edges, for u and v.
+    /// Wrapping beyond its edges, for u and v.
     pub wrap: [Wrap; 2],
     /// Opaque texels as bits, row by row from the top left, the lowest bit first.
     pub opaque: Vec<u32>,
 }
 
-/// What a mask says within some distance of a place.
+/// Answer of a mask within some distance of a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Asked {
-    /// Whether the place's own texel is opaque.
+    /// True if the place's own texel is opaque.
     pub opaque: bool,
-    /// Whether another one within the distance is not as the place's own.
+    /// True if another texel within the distance differs from the place's own.
     pub flips: bool,
 }
 
@@ -32,7 +32,7 @@ pub struct Asked {
 const MOST_LOOKED_AT: f64 = 4096.0;
 
 impl Mask {
-    /// Of what `is_opaque` says of each texel.
+    /// Creates a mask from the answer of `is_opaque` for each texel.
     ///
     /// # Panics
     /// If an edge is 0.
@@ -49,7 +49,7 @@ impl Mask {
         Self { size, wrap, opaque }
     }
 
-    /// Of a texture: opaque where `opacity` of a texel is `cutoff` at least.
+    /// Creates a mask from a texture: opaque where `opacity` of a texel is at least `cutoff`.
     #[cfg(feature = "files")]
     pub(crate) fn from_texels(
         texels: &crate::texels::Texels,
@@ -63,7 +63,7 @@ impl Mask {
         })
     }
 
-    /// Whether all of it is opaque.
+    /// Returns true if all of it is opaque.
     pub fn is_solid(&self) -> bool {
         let texels = self.size[0] as usize * self.size[1] as usize;
         let opaque: u32 = self.opaque.iter().map(|word| word.count_ones()).sum();
@@ -78,7 +78,7 @@ impl Mask {
     /// Asks it at texture coordinates that may be off by `error`, each on its own.
     pub fn ask(&self, uv: DVec2, error: DVec2) -> Asked {
         let (uv, error) = (uv.to_array(), error.to_array());
-        // Of each axis the texels from low to high, before they are wrapped.
+        // Texels of each axis from low to high, before they are wrapped.
         let spans: [_; 2] = std::array::from_fn(|axis| {
             let size = f64::from(self.size[axis]);
             let low = ((uv[axis] - error[axis]) * size).floor();

@@ -1,4 +1,4 @@
-//! What the surfaces of a mesh are made of.
+//! Materials of the surfaces of a mesh.
 
 use crate::{mask::Mask, texture::Texture};
 use glam::{DVec2, Vec2};
@@ -15,7 +15,7 @@ pub struct Material {
     pub texture: Option<Texture>,
     /// Where it is there at all; everywhere without it.
     pub mask: Option<Arc<Mask>>,
-    /// Whether its back faces are seen, too.
+    /// True if its back faces are seen, too.
     pub double_sided: bool,
 }
 
@@ -82,13 +82,13 @@ impl Surfaces {
         self.material(primitive)?.mask.as_deref()
     }
 
-    /// Whether a triangle's back face is seen, too.
+    /// Returns true if a triangle's back face is seen, too.
     pub fn is_double_sided(&self, primitive: u32) -> bool {
         self.material(primitive)
             .is_some_and(|material| material.double_sided)
     }
 
-    /// Whether any triangle is masked or double-sided.
+    /// Returns true if any triangle is masked or double-sided.
     pub fn need_care(&self) -> bool {
         let cared = |material: &Material| material.mask.is_some() || material.double_sided;
         let mut used = self.of.iter();

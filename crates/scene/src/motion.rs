@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 pub struct PartMotion {
     /// OBJ groups and objects, glTF nodes, parts of a generated mesh.
     pub part: String,
-    /// What it does.
+    /// Its motion.
     pub motion: Motion,
 }
 
@@ -24,7 +24,7 @@ pub enum Motion {
     Rigid {
         /// Stays where it is while the part turns, world space.
         pivot: DVec3,
-        /// Of the turn, any length but zero.
+        /// Axis of the turn, of any length but zero.
         axis: DVec3,
         /// At least one, in the order of times. Before the first and behind the last it stands.
         keys: Vec<RigidKey>,
@@ -55,10 +55,10 @@ pub struct RigidKey {
 }
 
 impl PartMotion {
-    /// Whether it is a motion.
+    /// Checks that it is a motion.
     ///
     /// # Errors
-    /// What is wrong with it, naming the part.
+    /// The first mistake, naming the part.
     pub fn check(&self) -> Result<(), String> {
         let wrong = |what: String| Err(format!("moves: {:?}: {what}", self.part));
         let is_axis = |axis: DVec3| axis.is_finite() && axis.length_squared() > 0.0;
@@ -153,7 +153,7 @@ impl PartMotion {
     }
 }
 
-/// Whether a sway turns the top of its part inside out: the determinant of its derivative,
+/// Returns true if a sway turns the top of its part inside out: the determinant of its derivative,
 /// 1 + 2 (h / H) tan(a) (axis · up), is not above 0 everywhere.
 fn folds(axis: DVec3, up: DVec3, degrees: f64) -> bool {
     let along = axis.normalize().dot(up.normalize()).abs();

@@ -14,7 +14,7 @@ pub struct Movable {
     is_joined: bool,
 }
 
-/// What one part is made of.
+/// Triangles and positions of one part.
 #[derive(Clone, Debug)]
 struct Part {
     /// Primitive ids.
@@ -29,16 +29,16 @@ struct Part {
 pub struct MovedPart {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
-    /// Whether it was mirrored, so that its triangles are wound the other way than at rest.
+    /// True if it was mirrored, so that its triangles are wound the other way than at rest.
     pub is_mirrored: bool,
 }
 
 /// Changes that [`Movable::put`] made to a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartChange {
-    /// Whether a position or normal is another one.
+    /// True if a position or normal is another one.
     pub is_elsewhere: bool,
-    /// Whether triangles are wound the other way.
+    /// True if triangles are wound the other way.
     pub is_turned: bool,
 }
 
@@ -116,7 +116,8 @@ impl Movable {
     }
 
     /// Several meshes as one, each a part in a space of its own, such as the instances of one mesh:
-    /// the n-th is moved by the n-th map. What has no material gets a plain one if another has one.
+    /// the n-th is moved by the n-th map. A mesh without materials gets a plain one if another has
+    /// one.
     pub fn joined(meshes: &[&Mesh]) -> Self {
         let mut rest = Mesh::default();
         let has_materials = meshes.iter().any(|mesh| !mesh.surfaces.of.is_empty());

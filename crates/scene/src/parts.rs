@@ -13,7 +13,7 @@ use crate::mesh::Mesh;
 pub struct Parts {
     /// The part of each triangle, numbered from 0 in the order of their first triangles.
     pub of: Vec<u32>,
-    /// Whether each part is open.
+    /// True for each part that is open.
     pub open: Vec<bool>,
 }
 
@@ -22,8 +22,8 @@ pub struct Parts {
 type Side = ([u32; 2], bool, u32);
 
 impl Parts {
-    /// Of a mesh. A triangle that names a position twice has no area: it closes nothing, and is an
-    /// open part of its own.
+    /// Finds the parts of a mesh. A triangle that names a position twice has no area: it closes
+    /// nothing, and is an open part of its own.
     pub fn new(mesh: &Mesh) -> Self {
         let mut sides = sides(mesh);
         sides.sort_unstable();
@@ -53,7 +53,7 @@ impl Parts {
         parts
     }
 
-    /// Whether a triangle belongs to an open part.
+    /// Returns true if a triangle belongs to an open part.
     ///
     /// # Panics
     /// If the mesh has no triangle of that id.

@@ -20,7 +20,7 @@ const MOST_FRAMES: f64 = 10_000.0;
 /// stands. Its light may move likewise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraPath {
-    /// What stays on the way, and the name; eye and direction are those of the first keyframe.
+    /// Constants along the path, and the name; eye and direction are those of the first keyframe.
     pub view: View,
     /// Frames per second of the path's own time.
     pub frames_per_second: f64,
@@ -138,7 +138,7 @@ impl CameraPath {
         }
     }
 
-    /// Whether the keys of the light are of the kind that the view's own light is.
+    /// Checks that the keys of the light are of the kind that the view's own light is.
     fn check_light(&self) -> Result<(), String> {
         let name = &self.view.name;
         if let Some(late) = not_later(&self.light_keys, |key| key.at) {
@@ -186,10 +186,10 @@ impl CameraPath {
         (0..self.frames()).map(|frame| self.view(frame))
     }
 
-    /// Whether every frame makes a camera.
+    /// Checks that every frame makes a camera.
     ///
     /// # Errors
-    /// What is wrong with it, naming the path.
+    /// The first mistake, naming the path.
     pub fn check(&self) -> Result<(), String> {
         let name = &self.view.name;
         let keys = &self.keys;

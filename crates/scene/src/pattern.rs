@@ -3,7 +3,7 @@
 use crate::{mask::Mask, texture::Wrap};
 use serde::Deserialize;
 
-/// What a made mask shows. It repeats without a seam.
+/// Pattern of a made mask. It repeats without a seam.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub enum Pattern {
     /// Leaves on twigs, half of it open.

@@ -1,4 +1,4 @@
-//! What an import did to a mesh, for those who want to know what they are looking at.
+//! Changes of a mesh by its import, and content that was left out.
 
 use crate::error::{FACES_SHOWN, FaceRef, plural};
 use std::{fmt, path::PathBuf};
@@ -28,7 +28,7 @@ pub struct ImportReport {
     pub dropped: Degenerate,
     /// Triangles kept although their area is zero (three different points on a line).
     pub zero_area: Degenerate,
-    /// What could not be read of colours.
+    /// Colours that could not be read.
     pub colours_missing: Vec<String>,
     /// Parts that were passed over, or read in a way that a user may not expect: one sentence each,
     /// none of them twice.
@@ -87,7 +87,7 @@ impl ImportReport {
         }
     }
 
-    /// Whether the file held anything that a user may want to mend.
+    /// Returns true if the file held anything that a user may want to mend.
     pub fn has_warnings(&self) -> bool {
         self.dropped.triangles
             + self.zero_area.triangles

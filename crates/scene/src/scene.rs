@@ -1,4 +1,4 @@
-//! What is drawn.
+//! Scenes to draw.
 
 use crate::{
     camera::View,

@@ -35,7 +35,7 @@ use glam::DVec3;
 use serde::{Deserialize, Deserializer, de::Error};
 use std::collections::HashSet;
 
-/// What a scene file says. Everything in it is checked, but no mesh is loaded yet.
+/// Content of a scene file. Everything in it is checked, but no mesh is loaded yet.
 #[derive(Clone, Debug)]
 pub struct SceneFile {
     /// Name shown in tables and results.
@@ -85,7 +85,7 @@ pub enum MeshSource {
         /// How polygons are split.
         #[serde(default)]
         quads: QuadDiagonal,
-        /// What becomes of concave ones.
+        /// Treatment of concave ones.
         #[serde(default)]
         concave: Concave,
         /// Materials of it that are read.
@@ -200,11 +200,11 @@ fn named<'a, T: Item>(reader: &mut Reader<'a>, list: &'a str) -> Option<Vec<T>> 
     complete.then_some(read)
 }
 
-/// What stands in a list of a scene file.
+/// Item in a list of a scene file.
 trait Item: Sized {
     /// The list's name.
     const LIST: &str;
-    /// Whether it may not be empty.
+    /// True if it may not be empty.
     const NEEDED: bool;
     fn read<'a>(reader: &mut Reader<'a>, part: &'a str) -> Option<Self>;
     fn name(&self) -> &str;

@@ -9,7 +9,7 @@ pub struct Texels {
     pub size: [u32; 2],
     /// Red, green, blue, alpha, row by row from the top left; the colours are sRGB.
     pub rgba: Vec<[u8; 4]>,
-    /// Whether alpha means anything.
+    /// True if alpha means anything.
     pub has_alpha: bool,
 }
 

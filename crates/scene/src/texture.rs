@@ -1,11 +1,11 @@
-//! Colour textures, decoded when somebody first looks at their texels.
+//! Colour textures, decoded when their texels are first looked at.
 
 use crate::texels::Texels;
 #[cfg(feature = "files")]
 use crate::texture_file::{decode, read};
 use std::sync::{Arc, OnceLock};
 
-/// What a texture is beyond its edges.
+/// Wrapping of a texture beyond its edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
     /// It begins anew.
@@ -71,11 +71,11 @@ impl Source {
 /// A colour texture.
 #[derive(Clone, Debug)]
 pub struct Texture {
-    /// What it is called in messages.
+    /// Its name in messages.
     pub name: String,
     /// Where it is.
     pub source: Source,
-    /// What it is beyond its edges, for u and v.
+    /// Wrapping beyond its edges, for u and v.
     pub wrap: [Wrap; 2],
     texels: Arc<OnceLock<Result<Arc<Texels>, String>>>,
 }

@@ -14,7 +14,7 @@ const TEXTURE_FILE: Limit = Limit {
 /// Longest edge of a texture, texels.
 const LONGEST_EDGE: u32 = 16384;
 
-/// Of a file.
+/// Reads the texels of a file.
 pub(crate) fn read(path: &Path) -> Result<Texels, String> {
     let bytes = TEXTURE_FILE.read(path).map_err(|why| why.to_string())?;
     let tga = path
@@ -32,7 +32,7 @@ pub(crate) fn check_format(bytes: &[u8]) -> Result<(), String> {
     }
 }
 
-/// Of its content; `format`: of a file whose first bytes do not tell.
+/// Decodes the content of a file; `format` is for a file whose first bytes do not tell.
 pub(crate) fn decode(bytes: &[u8], format: Option<ImageFormat>) -> Result<Texels, String> {
     let mut reader = ImageReader::new(Cursor::new(bytes));
     match format {

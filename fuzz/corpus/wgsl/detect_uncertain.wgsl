@@ -46,7 +46,8 @@ fn compare(receiver: vec3<f32>) -> u32 {
     return select(select(STATUS_UNCERTAIN, STATUS_SHADOW, shadowed), STATUS_LIGHT, lit);
 }
 
-// What rounding may move a point by in light space, in shares of the map's edge and of its depth: 4 ulp of all that is summed up.
+// Bound on the rounding of a point in light space, in shares of the map's edge and of its depth: 4
+// ulp of all that is summed up.
 fn rounding(position: vec3<f32>) -> vec2<f32> {
     let matrix = transpose(light.clip_from_relative);
     let size = abs(position) + abs(light.centre.xyz);

@@ -58,8 +58,8 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>, @builtin(local_invocat
     ray_pixels[slot] = select(NO_PIXEL, pixel.y * viewport.x + pixel.x, asks);
 }
 
-// What rounding may have moved the receiver by, half an ulp of its distance to the origin and to the eye: a surface that is met
-// sooner is the receiver's own, beyond an edge.
+// Bound on the rounding of the receiver, half an ulp of its distance to the origin and to the eye:
+// a surface that is met sooner is the receiver's own, beyond an edge.
 fn own_rounding(receiver: vec3<f32>) -> f32 {
     return 5.9604645e-8 * (length(receiver) + length(receiver - camera.eye));
 }

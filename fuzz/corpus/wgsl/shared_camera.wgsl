@@ -3,7 +3,8 @@
 struct Camera {
     eye: vec3<f32>,
     near: f32,
-    // What rounding the eye to f32 left over: corners far from the origin keep their distance to the eye.
+    // Remainder of rounding the eye to f32: corners far from the origin keep their distance to the
+    // eye.
     eye_low: vec3<f32>,
     far: f32,
     // Unit vectors; half_width and half_height are the image's half extents at distance 1.

@@ -1,4 +1,4 @@
-//! What throws shadows and under which light, on its way from Bevy's world to the graph.
+//! Casters and the light, on their way from Bevy's world to the graph.
 
 use crate::Caster;
 use bevy::{

@@ -24,7 +24,7 @@ use bevy::{
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct Caster;
 
-/// What the directional light is multiplied by, as an image of the camera's size: 0 or 1.
+/// Factor of the directional light, as an image of the camera's size: 0 or 1.
 #[derive(Resource, Clone, ExtractResource)]
 #[extract_app(RenderApp)]
 pub struct Visibility(pub Handle<Image>);

@@ -101,7 +101,7 @@ fn update(app: &mut App) -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Of the picture where it shows a place.
+/// Returns the brightness of the picture where it shows a place.
 fn brightness(
     app: &mut App,
     image: &Image,

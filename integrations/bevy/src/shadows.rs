@@ -48,7 +48,7 @@ struct Running {
     parts: Arc<Movable>,
 }
 
-/// What Bevy's prepass has drawn.
+/// Textures that Bevy's prepass has drawn.
 struct Prepass<'a> {
     depth: &'a wgpu::Texture,
     normal: &'a wgpu::Texture,

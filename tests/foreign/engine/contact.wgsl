@@ -1,5 +1,5 @@
-// Stage to march from each pixel that faces the light towards it, in the depth buffer. What it
-// finds in shadow is so, whatever a map says of it; all other pixels stay as they are.
+// Stage to march from each pixel that faces the light towards it, in the depth buffer. A pixel that
+// it finds in shadow is so, whatever a map says of it; all other pixels stay as they are.
 
 #import "shared/camera.wgsl"
 #import "shared/light.wgsl"

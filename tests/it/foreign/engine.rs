@@ -57,7 +57,7 @@ impl Bench {
             .unwrap_or_else(|error| panic!("{error}"))
     }
 
-    /// What the last of some frames shows.
+    /// Returns the report of the last of some frames.
     fn frames(&self, path: &str, params: Params, frames: usize, outputs: &[&str]) -> FrameReport {
         let mut provider = self.provider();
         let plan = plan(path, &provider, VIEWPORT, |request| {

@@ -35,7 +35,7 @@ fn fragment(corner: Corner) -> Seen {
 }
 ";
 
-/// What such a host has drawn.
+/// Buffers that such a host has drawn.
 pub struct GBuffer {
     pub depth: wgpu::Texture,
     pub normal: wgpu::Texture,

@@ -10,7 +10,7 @@ use skiagraph_reference::{
 use skiagraph_scene::{Scene, View};
 use std::sync::Arc;
 
-/// What a preset answers, pixel by pixel, and the oracle.
+/// Answers of a preset, pixel by pixel, and the oracle.
 pub struct Answers {
     pub visibility: Vec<u32>,
     pub status: Vec<u32>,
@@ -57,7 +57,7 @@ impl<'a> Bench<'a> {
         self.provider.set_view(view, self.viewport);
     }
 
-    /// What the oracle says of a preset's outputs, for the primitives that the preset saw itself.
+    /// Judges a preset's outputs by the oracle, for the primitives that the preset saw itself.
     pub fn judge(&mut self, preset: &str, params: &[(&str, ParamValue)]) -> Statistics {
         self.answers(preset, params).counts
     }

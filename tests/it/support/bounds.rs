@@ -1,4 +1,4 @@
-//! What a hostile input may cost: used by the tests of several crates.
+//! Bounds on the cost of a hostile input: used by the tests of several crates.
 
 use std::{
     io::Write as _,
@@ -11,7 +11,7 @@ use std::{
 /// were each compared with as many.
 const LONGEST: Duration = Duration::from_secs(10);
 
-/// What runs longer than this is taken for endless: the process ends with the input's name.
+/// A longer run is taken for endless: the process ends with the input's name.
 const ENDLESS: Duration = Duration::from_secs(120);
 
 /// Peak of the whole process, whatever else its tests hold meanwhile: less than 0.2 GiB.

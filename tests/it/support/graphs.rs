@@ -232,7 +232,7 @@ pub fn run(plan: Plan, provider: &mut dyn Provider, read: &[&str]) -> FrameRepor
     run_on(&open(), plan, provider, read)
 }
 
-/// What the tests of engines ask for beyond the baseline.
+/// Features that the tests of engines ask for beyond the baseline.
 pub const RAY_QUERY: wgpu::Features = wgpu::Features::EXPERIMENTAL_RAY_QUERY;
 
 /// Lets a plan use ray queries where the device has them.

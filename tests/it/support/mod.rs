@@ -1,4 +1,4 @@
-//! What the tests share.
+//! Items that the tests share.
 #![allow(dead_code)]
 
 pub mod bench;

@@ -46,7 +46,7 @@ pub struct Arithmetic {
     pub rounding: Rounding,
     /// Which product of a sum is not.
     pub fused: Fused,
-    /// Whether subnormal results are flushed to zero.
+    /// True if subnormal results are flushed to zero.
     pub flushed: bool,
     /// In which order sums of three terms are.
     pub order: Order,

@@ -59,8 +59,8 @@ impl<'a> Casters<'a> {
         &self.triangles[primitive as usize]
     }
 
-    /// Whether the primitive is in the map, which its winding for the light decides; one seen
-    /// edge-on is. `leeway` as for [`TexelTriangle`].
+    /// Returns true if the primitive is in the map, which its winding for the light decides; one
+    /// seen edge-on is. `leeway` as for [`TexelTriangle`].
     pub fn casts(&self, primitive: u32, leeway: f64) -> bool {
         let triangle = self.triangle(primitive);
         let culled = match self.cull {

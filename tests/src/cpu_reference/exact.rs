@@ -12,9 +12,9 @@ fn square(centre: DVec2) -> [DVec2; 4] {
     [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)].map(|(x, y)| centre + DVec2::new(x, y))
 }
 
-/// Whether the triangle and the closed texel around `centre` have a point in common. Separating
-/// axes: a line that parts two convex polygons can be taken along an edge of one of them. Zero-area
-/// triangles are segments and points.
+/// Returns true if the triangle and the closed texel around `centre` have a point in common.
+/// Separating axes: a line that parts two convex polygons can be taken along an edge of one of
+/// them. Zero-area triangles are segments and points.
 pub fn touches(triangle: &TexelTriangle, centre: DVec2) -> bool {
     let (low, high) = triangle.bounds();
     let half = DVec2::splat(0.5);
@@ -37,7 +37,7 @@ pub fn touches(triangle: &TexelTriangle, centre: DVec2) -> bool {
     })
 }
 
-/// Whether the closed texel around `centre` lies in the triangle: its four corners do.
+/// Returns true if the closed texel around `centre` lies in the triangle: its four corners do.
 pub fn wholly_covers(triangle: &TexelTriangle, centre: DVec2) -> bool {
     let sides = (0..3).map(|i| {
         let (p, edge) = triangle.edge(i);

@@ -9,8 +9,8 @@ use std::f64::consts::SQRT_2;
 /// (3), of which not all align.
 const ROUNDINGS: f64 = 4.0;
 
-/// What a rasteriser may move a corner by, texels: it keeps eight bits of each coordinate's
-/// fraction, rounded to the nearest.
+/// Bound on the displacement of a corner by a rasteriser, texels: it keeps eight bits of each
+/// coordinate's fraction, rounded to the nearest.
 const SNAP: f64 = SQRT_2 / 512.0;
 
 /// The light space of a mesh in texels of a square map.
@@ -29,7 +29,7 @@ impl LightSpace {
         Self::from_fit(light.fit(mesh.corner_positions()), mesh, map_size)
     }
 
-    /// Of a given fit.
+    /// Creates the space of a given fit.
     pub fn from_fit(fit: LightFit, mesh: &Mesh, map_size: u32) -> Self {
         let (min, max) = mesh.bounds().unwrap_or((Vec3::ZERO, Vec3::ZERO));
         let (min, max) = (min.as_dvec3(), max.as_dvec3());
@@ -77,14 +77,14 @@ impl LightSpace {
         DVec3::new(sum(rows.x_axis), sum(rows.y_axis), sum(rows.z_axis))
     }
 
-    /// What rounding may move a transformed point by across, texels: in clip space, and on the way
-    /// to texels.
+    /// Bounds the rounding of a transformed point across, texels: in clip space, and on the way to
+    /// texels.
     pub fn across_error(&self) -> f64 {
         let clip = self.summands(self.half).truncate().max_element();
         ROUNDINGS * F32_ROUNDING * (clip + 1.0) * 0.5 * self.size
     }
 
-    /// What rounding may move its depth by.
+    /// Bounds the rounding of its depth.
     pub fn depth_error(&self) -> f64 {
         ROUNDINGS * F32_ROUNDING * (self.summands(self.half).z + 1.0)
     }
@@ -94,9 +94,8 @@ impl LightSpace {
         self.across_error() + SNAP
     }
 
-    /// What the status's own comparison takes a receiver and its casters' corners to be off by
-    /// together, in texels and as depth. CPU reference of the function of this name in
-    /// shaders/shared/light.wgsl.
+    /// Returns the status's own bound on a receiver and its casters' corners together, in texels
+    /// and as depth. CPU reference of the function of this name in shaders/shared/light.wgsl.
     pub fn light_space_error_bound(&self, position: DVec3) -> (f64, f64) {
         let clip = self.summands(position.abs() + self.centre.abs());
         let across = ROUNDINGS * F32_ROUNDING * (clip.truncate().max_element() + 1.0);

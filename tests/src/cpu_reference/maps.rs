@@ -14,7 +14,7 @@ use std::f64::consts::SQRT_2;
 /// Rows that one task draws; each goes through all triangles.
 const ROWS: usize = 16;
 
-/// What a layer holds of each triangle.
+/// Content of a layer for each triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Layer {
     /// Texels whose centre it contains, at its plane's depth: a standard shadow map.
@@ -142,7 +142,7 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Whether the rasteriser has a say in what the layer covers.
+    /// Returns true if the layer's coverage depends on the rasteriser.
     fn by_rasteriser(&self) -> bool {
         !matches!(self.layer, Layer::Outer(..) | Layer::Inner(..))
     }

@@ -77,9 +77,9 @@ impl Casters<'_> {
         self.contains_once(&patch, centre, leeway).then_some(patch)
     }
 
-    /// Whether exactly one member contains the centre. On an edge between two of them one does,
-    /// whichever arithmetic says so, because both see the same sign; near a corner the signs of
-    /// several edges may not fit together.
+    /// Returns true if exactly one member contains the centre. On an edge between two of them one
+    /// does, whichever arithmetic says so, because both see the same sign; near a corner the signs
+    /// of several edges may not fit together.
     fn contains_once(&self, patch: &Patch, centre: DVec2, leeway: f64) -> bool {
         let members = || patch.members().iter();
         if leeway == 0.0 {
@@ -97,8 +97,8 @@ impl Casters<'_> {
         perhaps == 1 && surely == 1 || perhaps == 2 && surely == 0
     }
 
-    /// Whether a primitive contains a point; of two that lie on opposite sides of an edge through
-    /// the point, one does.
+    /// Returns true if a primitive contains a point; of two that lie on opposite sides of an edge
+    /// through the point, one does.
     fn contains(&self, primitive: u32, point: DVec2) -> bool {
         let indices = self.mesh.triangles[primitive as usize];
         let triangle = self.triangle(primitive);
@@ -113,9 +113,9 @@ impl Casters<'_> {
     }
 }
 
-/// Whether an edge overlaps the closed texel around `centre` grown by [`SLACK`]. Separating axes of
-/// a segment and a square. What overlaps a texel stands against covering it, so leeway makes the
-/// texel smaller.
+/// Returns true if an edge overlaps the closed texel around `centre` grown by [`SLACK`]. Separating
+/// axes of a segment and a square. An overlap stands against covering the texel, so leeway makes
+/// the texel smaller.
 fn edge_overlaps_texel(triangle: &TexelTriangle, edge: usize, centre: DVec2, leeway: f64) -> bool {
     let half = 0.5 + SLACK - 2.0 * leeway;
     let (p, along) = triangle.edge(edge);

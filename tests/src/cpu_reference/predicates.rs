@@ -38,8 +38,8 @@ impl Arithmetic {
         }
     }
 
-    /// Whether a triangle around the origin, edges and corners included, would be hit: `intersect`
-    /// of `ray_triangle.wgsl` but for the distance.
+    /// Returns true if a triangle around the origin, edges and corners included, would be hit:
+    /// `intersect` of `ray_triangle.wgsl` but for the distance.
     pub fn hits(self, corners: [Point; 3]) -> bool {
         Self::hits_by([self; 3], corners)
     }

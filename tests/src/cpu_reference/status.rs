@@ -15,13 +15,13 @@ use skiagraph_reference::{
 };
 use skiagraph_scene::{Adjacency, Camera, DirectionalLight, LightKind, Mesh};
 
-/// What a preset's `status` must be. Both buffers have one entry per pixel, row by row from the top
+/// Required `status` of a preset. Both buffers have one entry per pixel, row by row from the top
 /// left.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Classification {
     /// One of [`status`](mod@skiagraph_reference::statistics::status).
     pub status: Vec<u32>,
-    /// Whether rounding and snapping may yield another status; nothing is said of these pixels.
+    /// True where rounding and snapping may yield another status; nothing is said of these pixels.
     pub indeterminate: Vec<bool>,
 }
 

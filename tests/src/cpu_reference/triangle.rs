@@ -23,7 +23,7 @@ pub struct TexelTriangle {
     pub corners: [DVec3; 3],
 }
 
-/// What f32 may lose of an area, in shares of the longest edge's square: 4 ulp, as the shaders
+/// Bound on the f32 error of an area, in shares of the longest edge's square: 4 ulp, as the shaders
 /// allow for.
 const AREA_ROUNDING: f64 = 2.384_185_8e-7;
 
@@ -99,25 +99,25 @@ impl TexelTriangle {
         }
     }
 
-    /// Whether there is anything to shrink.
+    /// Returns true if there is anything to shrink.
     fn has_inside(&self, leeway: f64) -> bool {
         leeway > 0.0 || self.area() != 0.0
     }
 
-    /// Whether corners off by `leeway` may turn the triangle over.
+    /// Returns true if corners off by `leeway` may turn the triangle over.
     pub(crate) fn winding_is_open(&self, leeway: f64) -> bool {
         leeway != 0.0 && self.height() <= NOISE * leeway.abs()
     }
 
-    /// Whether the triangle contains the point, its border included.
+    /// Returns true if the triangle contains the point, its border included.
     pub fn contains(&self, point: DVec2, leeway: f64) -> bool {
         self.holds(point, leeway, |inward| inward.iter().all(|&d| d >= 0.0))
     }
 
-    /// Whether the triangle grown by `cell` texels, cut to its box grown by half a texel and
-    /// [`SLACK`], covers the texel around `centre`. With `cell` ≥ √½ that is every texel that the
-    /// triangle overlaps (proof: the centre is no farther than √½ from a point of the triangle in
-    /// the texel, and no farther than ½ per axis).
+    /// Returns true if the triangle grown by `cell` texels, cut to its box grown by half a texel
+    /// and [`SLACK`], covers the texel around `centre`. With `cell` ≥ √½ that is every texel that
+    /// the triangle overlaps (proof: the centre is no farther than √½ from a point of the triangle
+    /// in the texel, and no farther than ½ per axis).
     pub fn outer_covers(&self, centre: DVec2, cell: f64, leeway: f64) -> bool {
         let (low, high) = self.bounds();
         let margin = DVec2::splat(0.5 + SLACK + leeway);
@@ -126,15 +126,15 @@ impl TexelTriangle {
             && self.holds(centre, leeway, |inward| inward.iter().all(|&d| d >= -cell))
     }
 
-    /// Whether the triangle shrunk by `cell` texels covers the texel around `centre`. With `cell` ≥
-    /// √½ it covers no texel that the triangle does not cover as a whole.
+    /// Returns true if the triangle shrunk by `cell` texels covers the texel around `centre`. With
+    /// `cell` ≥ √½ it covers no texel that the triangle does not cover as a whole.
     pub fn inner_covers(&self, centre: DVec2, cell: f64, leeway: f64) -> bool {
         self.has_inside(leeway)
             && self.holds(centre, leeway, |inward| inward.iter().all(|&d| d >= cell))
     }
 
-    /// Whether the triangle that shrinks at all edges but the `kept` ones, and is cut at corners
-    /// between two of those, covers the texel around `centre`. Other than its neighbours, a
+    /// Returns true if the triangle that shrinks at all edges but the `kept` ones, and is cut at
+    /// corners between two of those, covers the texel around `centre`. Other than its neighbours, a
     /// triangle that meets such a corner alone is unknown, hence the cut, of a texel's diagonal at
     /// least: a corner in the texel may be half of one from either edge's line. This is no proof:
     /// see docs/methods.md.
@@ -217,8 +217,8 @@ impl TexelTriangle {
         value.clamp(0.0, 1.0)
     }
 
-    /// What the plane's depth at a point may be off by: a corner moves it by its weight there, in
-    /// the moved triangle, times the slope; then what f32 loses on the way, where areas are
+    /// Bounds the error of the plane's depth at a point: a corner moves it by its weight there, in
+    /// the moved triangle, times the slope; then the f32 errors on the way, where areas are
     /// differences of products as long as the triangle.
     fn plane_doubt(&self, point: DVec2, slope: DVec2, range: f64, error: DepthError) -> f64 {
         if error.bound.is_none() {
@@ -248,12 +248,12 @@ impl TexelTriangle {
     }
 }
 
-/// What a depth is asked with.
+/// Error bounds of a depth.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DepthError {
-    /// What each corner may be off by across, texels.
+    /// Error bound of each corner across, texels.
     pub across: f64,
-    /// What each corner's depth may be off by.
+    /// Error bound of each corner's depth.
     pub depth: f64,
     /// Which end of what these leave open; `None`: they are 0.
     pub bound: Option<Bound>,

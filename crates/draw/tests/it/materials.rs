@@ -1,4 +1,4 @@
-//! What charts and graphs say of every kind of material, and of parts of them.
+//! Words of charts and graphs about every kind of material, and parts of them.
 
 use crate::support::{Files, Triangle, load, right};
 use skiagraph_draw::{Drawing, Origin};
@@ -188,7 +188,7 @@ fn what_is_there_before_the_frame_is_so_from_its_beginning() {
     assert_eq!(tops.len(), 1, "{tops:?}");
 }
 
-/// What the graph does not make takes none of its memory, and constants do.
+/// Materials that the graph does not make take none of its memory, and constants do.
 #[test]
 fn the_bytes_of_all_materials_are_those_of_the_plan() {
     let drawing = drawing();
@@ -200,8 +200,8 @@ fn the_bytes_of_all_materials_are_those_of_the_plan() {
     assert_eq!(bytes, drawing.memory_bytes + drawing.saved_bytes);
 }
 
-/// What groups and includes put before a name is grey; neither a capture nor a material of the
-/// frame before has such a thing.
+/// The prefix of groups and includes is grey; neither a capture nor a material of the frame before
+/// has one.
 #[test]
 fn a_name_is_told_from_what_stands_before_it() {
     let svg = drawing().to_svg();

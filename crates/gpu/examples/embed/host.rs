@@ -207,7 +207,7 @@ impl Host {
     }
 }
 
-/// What the host draws before the graph's passes run.
+/// Buffers that the host draws before the graph's passes run.
 pub struct GBuffer {
     pub depth: wgpu::Texture,
     pub position: wgpu::Texture,

@@ -9,19 +9,19 @@ use crate::memory::physical::{PingPong, Versions};
 use skiagraph_graph::{Origin, Plan, ResourceId, When};
 use std::collections::BTreeMap;
 
-/// What the resources of a plan hold, as far as it can be told without looking.
+/// Contents of the resources of a plan, as far as they can be told without looking.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contents {
-    /// Of every resource of the plan, by id.
+    /// Version of every resource of the plan, by id.
     versions: Vec<u64>,
     clock: u64,
     /// Which of its two allocations holds a resource that has two.
     latest: BTreeMap<ResourceId, usize>,
-    /// Of each copy of a provided resource, as it was in the frame before: what it is a copy of.
+    /// Version that each copy of a provided resource, as it was in the frame before, is a copy of.
     copied: BTreeMap<ResourceId, u64>,
     /// The provided resources that are read as they were in the frame before, and their copies.
     host_copies: Vec<HostCopy>,
-    /// What the versions were before a frame.
+    /// Versions before the frame.
     before: Vec<u64>,
 }
 
@@ -68,7 +68,7 @@ impl Contents {
         }
     }
 
-    /// Whether each pass of the schedule runs. A group runs if one of its passes has a reason to.
+    /// Decides which passes of the schedule run. A group runs if one of its passes has a reason to.
     pub fn running(&self, plan: &Plan, passes: &[GpuPass], all: bool, runs: &mut Vec<bool>) {
         let conditions = &plan.schedule().conditions;
         let groups = &conditions.group;
@@ -118,7 +118,7 @@ impl Contents {
     /// Whose turn it is in a frame in which these passes run.
     pub fn ping_pong(&self, plan: &Plan, runs: &[bool], turn: &mut PingPong) {
         let writers = &plan.schedule().conditions.writers;
-        // What there is stays in its place: every frame comes here.
+        // Entries that exist stay in their place: every frame comes here.
         turn.retain(|id, _| self.latest.contains_key(id));
         for (&id, &latest) in &self.latest {
             let is_written = writers[id.index()].is_some_and(|group| runs[group]);
@@ -144,7 +144,8 @@ impl Contents {
             self.touch(id);
         }
         // Only now: what a pass has read and another writes below is another part of the same
-        // resource, else they were one group. What is kept it has read as it was in its place.
+        // resource, else they were one group. A pass with `keep` has read its material as it was in
+        // its place.
         let mut kept = written.filter(|(_, id)| is_kept(*id)).peekable();
         for (at, pass) in passes.iter_mut().enumerate() {
             while let Some(&(_, id)) = kept.next_if(|(by, _)| *by <= at) {
@@ -161,7 +162,7 @@ impl Contents {
             } = &mut pass.input_versions;
             let seen = versions.get_or_insert_default();
             seen.clear();
-            // Of what two allocations take turns in, the pass saw what the frame began with.
+            // If two allocations take turns, the pass saw the one that the frame began with.
             seen.extend(inputs.iter().map(|id| match counted(plan, *id) {
                 Some(base) => self.before[base.index()],
                 None => self.versions[id.index()],
@@ -197,8 +198,8 @@ impl Contents {
     }
 }
 
-/// What a resource is last frame's version of, if its content is counted there: two allocations
-/// take turns. Copies of what the host provides are counted by themselves.
+/// Returns the resource that another is last frame's version of, if its content is counted there:
+/// two allocations take turns. Copies of what the host provides are counted by themselves.
 fn counted(plan: &Plan, id: ResourceId) -> Option<ResourceId> {
     match plan.resource(id).origin {
         Origin::Previous(base) if plan.resource(base).origin == Origin::Own => Some(base),
@@ -206,7 +207,7 @@ fn counted(plan: &Plan, id: ResourceId) -> Option<ResourceId> {
     }
 }
 
-/// What the host provides and a live pass reads as it was in the frame before.
+/// Returns the provided resources that a live pass reads as they were in the frame before.
 fn host_copies(plan: &Plan) -> impl Iterator<Item = HostCopy> + '_ {
     let copy = |id: &ResourceId| match plan.resource(*id).origin {
         Origin::Previous(base) if plan.resource(base).origin == Origin::Host => Some((base, *id)),

@@ -7,7 +7,7 @@ use crate::{
 use skiagraph_graph::step::{Dispatch, Draw, DrawCall, Groups, Step};
 use smallvec::SmallVec;
 
-/// What is taken of a pass.
+/// Timer and counters of a pass.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Meters<'t> {
     pub timer: Option<&'t Timer>,
@@ -226,7 +226,7 @@ fn color_attachment<'v>(
     })
 }
 
-/// What a draw does to depths or stencils.
+/// Effects of a draw on depths or stencils.
 #[derive(Clone, Copy)]
 struct Ops<V> {
     clear: Option<V>,

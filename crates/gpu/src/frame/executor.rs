@@ -96,7 +96,7 @@ impl Executor {
     }
 
     /// Encodes a frame, which the host submits; returns its number. It never waits: any number of
-    /// frames may be under way. What has `grow` and was too small for a frame of before, as
+    /// frames may be under way. A resource with `grow` that was too small for an earlier frame, as
     /// submissions have told since, is larger from this frame on: see [`Plan::grown`].
     ///
     /// # Errors
@@ -196,9 +196,9 @@ impl Executor {
         state.contents.copies(&mut copy_host);
     }
 
-    /// What a frame brought that asked for times or contents, if it is done: the oldest one that
-    /// was not handed out yet. It never waits. Each such frame brings one report, in the order of
-    /// encoding, but for those whose encoders were dropped and not submitted.
+    /// Returns the report of a frame that asked for times or contents, if it is done: the oldest
+    /// one that was not handed out yet. It never waits. Each such frame brings one report, in the
+    /// order of encoding, but for those whose encoders were dropped and not submitted.
     ///
     /// # Errors
     /// If the device was lost, or something could not be read back or timed: that frame brings no

@@ -19,7 +19,7 @@ use std::{ops::Range, sync::Arc};
 pub(super) struct Readable {
     name: String,
     target: Target,
-    /// Of a texture.
+    /// Copies of a texture's mips.
     mips: Vec<MipCopy>,
 }
 
@@ -65,7 +65,7 @@ impl Readable {
         memory: &Memory,
         ping_pong: &PingPong,
     ) -> Result<Source, ExecuteError> {
-        // What the graph made can be copied from; what the host made may not.
+        // Resources that the graph made can be copied from; the host's may not.
         let refuse = |usage: &'static str| ExecuteError::NotReadable {
             name: self.name.clone(),
             usage,
@@ -87,10 +87,10 @@ impl Readable {
     }
 }
 
-/// What is read back.
+/// Source of a readback.
 enum Source {
     Texture(wgpu::Texture),
-    /// Of a buffer these bytes.
+    /// These bytes of a buffer.
     Buffer(wgpu::Buffer, Range<u64>),
 }
 
@@ -273,7 +273,7 @@ fn mips(texture: &Texture, target: &Target) -> Vec<MipCopy> {
     target.part.mips.clone().map(mip).collect()
 }
 
-/// What stands in a staging buffer, without the padding between rows.
+/// Returns the content of a staging buffer, without the padding between rows.
 fn unpadded(format: wgpu::TextureFormat, mips: &[MipCopy], staging: &[u8]) -> Content {
     let texel = format.block_copy_size(None).unwrap_or(4);
     let (mut parts, mut bytes) = (Vec::new(), Vec::new());

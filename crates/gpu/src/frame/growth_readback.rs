@@ -24,7 +24,7 @@ pub(super) struct GrowthReadback {
     growth: Growth,
     staging: wgpu::Buffer,
     mapped: Signal,
-    /// Whether a counter is on its way.
+    /// True if a counter is on its way.
     is_asked: bool,
 }
 
@@ -98,7 +98,7 @@ impl GrowthReadback {
         self.is_asked = true;
     }
 
-    /// Whether a counter is on its way.
+    /// Returns true if a counter is on its way.
     pub fn is_asked(&self) -> bool {
         self.is_asked
     }

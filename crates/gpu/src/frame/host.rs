@@ -1,4 +1,4 @@
-//! What the host and an executor hand each other: imports, provided resources, outputs.
+//! Exchange between the host and an executor: imports, provided resources, outputs.
 
 use super::executor::{Executor, list};
 use crate::{
@@ -167,9 +167,9 @@ impl Executor {
         Ok(())
     }
 
-    /// An output or capture as the last frame left it, for the host to bind. What is also read as
-    /// it was in the frame before has another view in every frame, and [`resize`](Self::resize) and
-    /// the like make new ones.
+    /// An output or capture as the last frame left it, for the host to bind. A resource that is
+    /// also read as it was in the frame before has another view in every frame, and
+    /// [`resize`](Self::resize) and the like make new ones.
     pub fn output_view(&self, name: &str) -> Option<wgpu::TextureView> {
         let target = self.readable(name)?;
         let dimension = match &self.plan().resource(target.id).kind {

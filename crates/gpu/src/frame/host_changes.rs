@@ -1,15 +1,15 @@
-//! Whether the scene, its lights or the memory are others than in the frame before: the flags of
-//! the uniform `frame`.
+//! Flags of the uniform `frame`: the scene, its lights or the memory are others than in the frame
+//! before.
 
 use crate::provider::Provider;
 use std::collections::BTreeMap;
 
-/// Of each whether something of it has changed.
+/// True for each in which something has changed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Changed {
     pub scene: bool,
     pub light: bool,
-    /// Whether something that stays from frame to frame is in new memory.
+    /// True if something that stays from frame to frame is in new memory.
     pub memory: bool,
 }
 
@@ -35,7 +35,7 @@ impl Changed {
     }
 }
 
-/// What has changed since the frame that was encoded last.
+/// Changes since the frame that was encoded last.
 #[derive(Debug)]
 pub(super) struct HostChanges {
     /// Versions of all that the provider lists; `None` while no live pass reads `frame`.

@@ -23,10 +23,10 @@ use std::{collections::VecDeque, sync::Arc, time::Duration};
 pub(super) struct FrameInFlight {
     pub index: u32,
     done: Signal,
-    /// Of a frame that is timed, and kept for the next one that is.
+    /// Timer of a timed frame, kept for the next timed one.
     pub timer: Option<Timer>,
     pub is_timed: bool,
-    /// Of a frame of which it is asked how often its shaders run.
+    /// Counters of a frame that asks how often its shaders run.
     pub counters: Option<Counters>,
     /// If it is timed: the passes that run, with the time that encoding them took. Names, because
     /// the next plan may have other passes.
@@ -120,13 +120,13 @@ impl FramesInFlight {
             match frame_in_flight.done.progress() {
                 Progress::UnderWay => {
                     self.under_way.push_front(frame_in_flight);
-                    // Nobody says that what was under way on a lost device will not come.
+                    // A lost device does not report that work under way will never come.
                     presence.check()?;
                     return Ok(None);
                 }
                 Progress::Done => {}
                 Progress::Failed | Progress::Dropped => {
-                    // What was written into its queries is for nobody.
+                    // Results already written into its queries are dropped.
                     frame_in_flight.timer = None;
                     self.recycle(frame_in_flight);
                     presence.check()?;
@@ -138,7 +138,7 @@ impl FramesInFlight {
                     Ok(Some(timing)) => Some(timing),
                     Ok(None) => {
                         self.under_way.push_front(frame_in_flight);
-                        // Of a device that is lost meanwhile they never come.
+                        // They never come from a device that is lost meanwhile.
                         presence.check()?;
                         return Ok(None);
                     }

@@ -1,4 +1,4 @@
-//! One pass on the device: pipelines, params, and what is bound whoever's turn it is.
+//! One pass on the device: pipelines, params, and bindings for either turn.
 
 use super::encode::{Meters, encode_all};
 use crate::{
@@ -19,9 +19,9 @@ use std::sync::Arc;
 /// A pass with everything it needs on the device.
 pub(super) struct GpuPass {
     pub name: Arc<str>,
-    /// Of each step.
+    /// Pipeline of each step.
     pipelines: Vec<Option<Pipeline>>,
-    /// Of each step: the uniform `params`.
+    /// Uniform `params` of each step.
     params: Vec<Option<wgpu::Buffer>>,
     /// The resources with two versions that it touches.
     ping_pong: Vec<ResourceId>,
@@ -29,17 +29,17 @@ pub(super) struct GpuPass {
     variants: Vec<(Vec<Versions>, Vec<Step<Handles>>)>,
     /// The states for which the device has taken it as it is but for the content of buffers.
     tried: Vec<Vec<Versions>>,
-    /// What decides whether it runs again.
+    /// Versions that decide if it runs again.
     pub input_versions: InputVersions,
 }
 
-/// What a pass reads, and the versions of it when the pass ran last.
+/// Resources that a pass reads, and their versions when the pass ran last.
 #[derive(Clone, Debug, Default)]
 pub(super) struct InputVersions {
     pub inputs: Vec<ResourceId>,
     /// `None` if it has not run, or what it made is lost.
     pub versions: Option<Vec<u64>>,
-    /// Whether its params or state are others than when it ran.
+    /// True if its params or state are others than when it ran.
     pub stale: bool,
 }
 
@@ -94,7 +94,7 @@ impl GpuPass {
         })
     }
 
-    /// Whether the pass is bound for this state of the ping-pong.
+    /// Returns true if the pass is bound for this state of the ping-pong.
     pub fn is_bound(&self, ping_pong: &PingPong) -> bool {
         self.steps(ping_pong).is_some()
     }
@@ -206,7 +206,8 @@ fn two_versions(plan: &Plan, pass: &LinkedPass) -> Vec<ResourceId> {
     touched
 }
 
-/// What a pass reads that neither it nor the passes that run together with it write.
+/// Returns the resources that a pass reads and neither it nor the passes that run together with it
+/// write.
 fn inputs(plan: &Plan, at: usize) -> Vec<ResourceId> {
     let conditions = &plan.schedule().conditions;
     let group = conditions.group[at];

@@ -1,5 +1,5 @@
-//! Memory filled with a pattern before a resource is first used in a frame. What then reads
-//! something that it has not written reads the pattern, and outputs differ between two patterns.
+//! Memory filled with a pattern before a resource is first used in a frame. A pass that then reads
+//! something unwritten reads the pattern, and outputs differ between two patterns.
 
 use super::encode::clear_view;
 use crate::{
@@ -24,7 +24,8 @@ enum Fill {
     Buffer(wgpu::Buffer),
     /// A texture with bytes of a row and size of each mip, all layers.
     Texture(wgpu::Texture, Vec<(u32, wgpu::Extent3d)>),
-    /// What nothing can be copied to is cleared: depths, and texels of several samples.
+    /// Attachments that nothing can be copied to are cleared: depths, and texels of several
+    /// samples.
     Views(Vec<GpuAttachment>, wgpu::TextureFormat, [f64; 4]),
 }
 
@@ -74,9 +75,9 @@ impl Fill {
 }
 
 impl Poison {
-    /// `None` if the plan asks for none. What outlives the frame is not filled; of a resource with
-    /// two allocations that is last frame's, while the one that is written holds what is left of
-    /// the frame before that.
+    /// `None` if the plan asks for none. Resources that outlive the frame are not filled. With two
+    /// allocations, last frame's is not filled; the one that is written, which holds the content of
+    /// the frame before that, is.
     pub fn new(
         plan: &Plan,
         memory: &Memory,

@@ -1,5 +1,5 @@
 //! The next graph, made ready on another thread: its shader modules and pipelines, which take most
-//! of the time. What stands on the memory that there is comes when it is put in.
+//! of the time. Parts that depend on existing memory are made when it is put in.
 
 use super::{executor::Executor, replan::ReplanReport};
 use crate::{
@@ -11,8 +11,8 @@ use crate::{
 use skiagraph_graph::{Ids, Plan, step::Step};
 use std::collections::HashMap;
 
-/// What an executor has, as far as its next graph can use it: of [`Executor::preparer`], for
-/// another thread.
+/// Parts of an executor that its next graph can use: from [`Executor::preparer`], for another
+/// thread.
 pub struct Preparer {
     device: wgpu::Device,
     pipelines: Pipelines,
@@ -30,7 +30,7 @@ impl Preparer {
     /// Makes the shader modules and pipelines of a plan that the executor does not have yet.
     ///
     /// # Errors
-    /// What the device refuses, with the pass and its place, or that it is lost.
+    /// The device refuses a step, named with its pass and place, or it is lost.
     pub fn prepare(self, plan: Plan) -> Result<Prepared, ExecuteError> {
         let Self {
             device,
@@ -56,8 +56,8 @@ impl Preparer {
 }
 
 impl Executor {
-    /// What another thread needs to [`prepare`](Preparer::prepare) the next graph while this one
-    /// is drawn.
+    /// Returns the [`Preparer`] with which another thread [`prepare`s](Preparer::prepare) the next
+    /// graph while this one is drawn.
     pub fn preparer(&self) -> Preparer {
         let steps =
             |pass: &skiagraph_graph::LinkedPass| (pass.name.value.clone(), pass.steps.clone());
@@ -68,8 +68,8 @@ impl Executor {
         }
     }
 
-    /// [`replace_graph`](Self::replace_graph) with a plan whose pipelines are there. What the plan
-    /// has changed since the [`preparer`](Self::preparer) was taken is made now.
+    /// [`replace_graph`](Self::replace_graph) with a plan whose pipelines are there. Parts that the
+    /// plan has changed since the [`preparer`](Self::preparer) was taken are made now.
     ///
     /// # Errors
     /// Those of [`replace_graph`](Self::replace_graph). The executor is as it was then.

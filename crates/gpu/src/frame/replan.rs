@@ -1,5 +1,5 @@
-//! Another plan on the same device: a new size, another value of a param, another graph. What can
-//! be kept is kept.
+//! Another plan on the same device: a new size, another value of a param, another graph. Everything
+//! that can be kept is kept.
 //!
 //! Why it is kept matters: a program that changes a param in every frame must not make a pipeline
 //! in every frame, a shadow map that a later pass does not touch must not be drawn again, and a
@@ -26,7 +26,7 @@ use crate::{
 use skiagraph_graph::{Ids, LinkedPass, ParamValue, Plan, ResourceId, ResourceKind, step::Step};
 use std::collections::{BTreeMap, HashMap};
 
-/// What a change of an executor's plan came to.
+/// Result of a change of an executor's plan.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ReplanReport {
     /// Passes whose params were uploaded.
@@ -184,7 +184,7 @@ impl Executor {
             &mut self.state.growth_readbacks,
             std::mem::take(&mut before.growth_readbacks),
         );
-        // What was to be copied into a buffer that has grown again is copied on from there.
+        // Content due for a buffer that has grown again is copied on from there.
         self.state.grown.splice(..0, before.grown);
         if has_new_memory {
             self.host_changes.note_new_memory();
@@ -214,7 +214,7 @@ impl Executor {
     }
 }
 
-/// Whether all steps of a pass have the pipelines that they had.
+/// Returns true if all steps of a pass have the pipelines that they had.
 fn has_same_pipelines(old: &LinkedPass, new: &LinkedPass) -> bool {
     let is_same = |(old, new): (&Step<Ids>, &Step<Ids>)| {
         old.program().is_none() && new.program().is_none() || same_pipeline(old, new)
@@ -222,18 +222,18 @@ fn has_same_pipelines(old: &LinkedPass, new: &LinkedPass) -> bool {
     old.steps.len() == new.steps.len() && old.steps.iter().zip(&new.steps).all(is_same)
 }
 
-/// Whether all steps of a pass have the bytes of params that they had.
+/// Returns true if all steps of a pass have the bytes of params that they had.
 fn has_same_params(old: &LinkedPass, new: &LinkedPass) -> bool {
     let old = old.steps.iter().map(Step::params);
     old.eq(new.steps.iter().map(Step::params))
 }
 
-/// What of an executor's state a new plan keeps.
+/// Parts of an executor's state that a new plan keeps.
 struct Reused<'a> {
     old: &'a State,
     plan: &'a Plan,
     memory: &'a Memory,
-    /// Of each pass of the plan: its position before.
+    /// Former position of each pass of the plan.
     positions: Vec<Option<usize>>,
     /// The resources that are in the memory that they were in before, or go on with its content in
     /// a larger buffer, or are the provider's and as large as before; and what they were then.
@@ -280,7 +280,7 @@ impl<'a> Reused<'a> {
         }
     }
 
-    /// What the pass at `at` was before.
+    /// Returns the former state of the pass at `at`.
     fn before(&self, at: usize) -> Option<(&'a LinkedPass, &'a GpuPass)> {
         let position = self.positions[at]?;
         let linked = self
@@ -332,7 +332,7 @@ impl<'a> Reused<'a> {
             .collect()
     }
 
-    /// Whether something that stays from frame to frame is in new memory.
+    /// Returns true if something that stays from frame to frame is in new memory.
     fn has_new_memory(&self) -> bool {
         let schedule = self.plan.schedule();
         let is_lasting =
@@ -370,8 +370,8 @@ impl<'a> Reused<'a> {
         is_there.then_some([pass, old])
     }
 
-    /// Of each group: whether its passes still do what they did, whatever their params. Then what
-    /// they made is still there.
+    /// Tells of each group if its passes still do the same, whatever their params. Then what they
+    /// made is still there.
     fn groups(&self) -> Vec<bool> {
         let shader = |step: &Step<Ids>| step.program().map(|program| program.shader.clone());
         let is_kept = |[pass, old]: [&LinkedPass; 2]| {
@@ -381,7 +381,7 @@ impl<'a> Reused<'a> {
         let now = &self.plan.schedule().conditions.group;
         let before = &self.old.plan.schedule().conditions.group;
         let mut reused = vec![true; now.len()];
-        // Of each group: which one it was.
+        // Former number of each group.
         let mut former: Vec<Option<usize>> = vec![None; now.len()];
         let mut is_there = vec![false; before.len()];
         for (at, &group) in now.iter().enumerate() {
@@ -392,7 +392,7 @@ impl<'a> Reused<'a> {
                 is_there[position] = true;
             }
         }
-        // What a pass of the group made that is gone would be left in what the others write; a
+        // If a pass of the group is gone, its results would be left in the output of the others; a
         // capture leaves nothing.
         let mut gone = vec![false; before.len()];
         for (position, pass) in self.old.plan.live().enumerate() {
@@ -419,7 +419,7 @@ impl<'a> Reused<'a> {
         self.positions[at].filter(|_| same_steps && same_numbers)
     }
 
-    /// What a pass saw of its inputs when it ran last.
+    /// Returns the versions of its inputs that a pass saw when it ran last.
     fn seen(&self, inputs: &[ResourceId], old: &InputVersions) -> Option<Vec<u64>> {
         let seen = old.inputs.iter().zip(old.versions.as_ref()?);
         let seen: BTreeMap<ResourceId, u64> = seen.map(|(id, seen)| (*id, *seen)).collect();

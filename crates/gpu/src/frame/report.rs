@@ -1,11 +1,11 @@
-//! What is asked of a frame, and what it brought.
+//! Requests to a frame, and its report.
 
 use crate::{
     readback::Readback,
     timing::{statistics::PassStatistics, times::FrameTiming},
 };
 
-/// What a frame is asked for.
+/// Requests to a frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Frame<'a> {
     /// Take GPU timestamps.
@@ -21,7 +21,7 @@ pub struct Frame<'a> {
     pub seconds: f32,
 }
 
-/// What a frame brought.
+/// Report of a frame.
 #[derive(Clone, Debug, Default)]
 pub struct FrameReport {
     /// Which frame: its `frame.index` in the shaders, and what
@@ -29,8 +29,7 @@ pub struct FrameReport {
     pub index: u32,
     /// Times, if they were asked for.
     pub timing: Option<FrameTiming>,
-    /// What was counted of the passes that ran, in schedule order, if it was asked for and the
-    /// device counts.
+    /// Counts of the passes that ran, in schedule order, if asked for and supported by the device.
     pub statistics: Option<Vec<PassStatistics>>,
     /// The passes that did not run because their run condition said so, in schedule order.
     pub skipped: Vec<String>,

@@ -31,7 +31,7 @@ pub(super) struct State {
     pub poison: Option<Poison>,
     /// Buffers and textures that may grow.
     pub growth_readbacks: Vec<GrowthReadback>,
-    /// What can be read back.
+    /// Resources that can be read back.
     pub readables: Vec<Arc<Readable>>,
     /// The uniform `frame`, if a live pass reads it.
     pub uniform: Option<ResourceId>,
@@ -39,10 +39,10 @@ pub(super) struct State {
     pub grown: Vec<Grown>,
 }
 
-/// What a frame does: made anew for each, in the same memory.
+/// Work of a frame: made anew for each, in the same memory.
 #[derive(Default)]
 pub(super) struct FrameDecision {
-    /// Of each pass of the schedule.
+    /// True for each pass of the schedule that runs.
     pub runs: Vec<bool>,
     pub ping_pong: PingPong,
 }
@@ -141,7 +141,8 @@ impl State {
         self.contents.ping_pong(&self.plan, runs, ping_pong);
     }
 
-    /// Encodes the passes that run; the others are `skipped`. Of a timed flight it takes the times.
+    /// Encodes the passes that run; the others are `skipped`. In a timed flight, their times are
+    /// taken.
     pub fn encode(
         &self,
         decision: &FrameDecision,

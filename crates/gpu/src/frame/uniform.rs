@@ -9,10 +9,10 @@ use crate::{
 };
 use skiagraph_graph::FRAME_BYTES;
 
-/// What the uniform is copied from.
+/// Source buffers of the uniform.
 pub(super) struct FrameUniform {
     staging: wgpu::Buffer,
-    /// Whether it is mapped again, after the frame that it was last written for.
+    /// Raised when it is mapped again, after the frame that it was last written for.
     mapped: Signal,
 }
 

@@ -146,7 +146,7 @@ fn fill(version: &Physical, resource: &Resource, queue: &wgpu::Queue) {
     }
 }
 
-/// What of another plan a larger one goes on with: one with `keep` that grows.
+/// Returns the allocation of another plan that a larger one continues: one with `keep` that grows.
 fn grown(of: &Plan, allocation: &GpuAllocation, resource: &Resource) -> Option<Physical> {
     let goes_on = |it: &Resource| it.keep && it.growth.is_some();
     let known = was(of, resource).filter(|known| goes_on(known) && goes_on(resource))?;
@@ -176,7 +176,7 @@ fn was<'p>(of: &'p Plan, resource: &Resource) -> Option<&'p Resource> {
     resources.find(|known| known.name == resource.name)
 }
 
-/// Whether another plan's resource of the same name holds the same content.
+/// Returns true if another plan's resource of the same name holds the same content.
 fn holds_the_same(of: &Plan, resource: &Resource) -> bool {
     let known = was(of, resource);
     match known.map(|known| (&known.kind, &resource.kind)) {
@@ -186,7 +186,7 @@ fn holds_the_same(of: &Plan, resource: &Resource) -> bool {
     }
 }
 
-/// Whether a texture or buffer is what a plan says of a resource.
+/// Returns true if a texture or buffer matches a plan's resource.
 fn is_made(physical: &Physical, resource: &Resource) -> bool {
     match (physical, &resource.kind) {
         (Physical::Texture(made), ResourceKind::Texture(wanted)) => {

@@ -1,4 +1,4 @@
-//! What the host hands over, held against what it said that it would.
+//! Checks the host's imports against their declarations.
 
 use super::physical::Physical;
 use skiagraph_graph::Import;

@@ -19,7 +19,7 @@ use std::{collections::BTreeMap, ops::Range};
 pub(crate) struct Memory {
     allocations: Vec<GpuAllocation>,
     of: BTreeMap<ResourceId, usize>,
-    /// What a resource is last frame's version of, where two allocations take turns.
+    /// Resource that another is last frame's version of, where two allocations take turns.
     bases: BTreeMap<ResourceId, ResourceId>,
     /// Provided resources, copies of them from the frame before, the uniform `frame`, and imports;
     /// the latter from when the host has handed them over.
@@ -36,7 +36,7 @@ pub(crate) struct Memory {
 /// A buffer or texture, and the larger one that goes on with its content.
 pub(crate) type Grown = (Physical, Physical);
 
-/// Who makes memory.
+/// Maker of memory.
 pub(crate) struct ResourceFactory<'a> {
     pub device: &'a wgpu::Device,
     pub queue: &'a wgpu::Queue,
@@ -45,7 +45,7 @@ pub(crate) struct ResourceFactory<'a> {
 
 impl Memory {
     /// Makes every resource with a lifetime; provided ones are asked of the provider, and only
-    /// here. What `old` has of the same name and make is taken over with its content.
+    /// here. Resources of `old` with the same name and make are taken over with their content.
     pub fn new(
         plan: &Plan,
         old: Option<(&Plan, &Memory)>,
@@ -164,14 +164,14 @@ impl Memory {
         Ok(())
     }
 
-    /// What stands behind a name of the host's.
+    /// Returns the resource behind a name of the host's.
     fn host_by_name(&self, plan: &Plan, name: &str) -> Option<(ResourceId, &Physical)> {
         let mut host = self.host.iter();
         let known = host.find(|(id, _)| plan.resource(**id).name == name);
         known.map(|(id, physical)| (*id, physical))
     }
 
-    /// What is behind a resource in a frame; `None` for an import that is not there yet.
+    /// Returns the memory of a resource in a frame; `None` for an import that is not there yet.
     fn find(&self, id: ResourceId, ping_pong: &PingPong) -> Option<&Physical> {
         if let Some(host) = self.host.get(&id) {
             return Some(host);
@@ -338,7 +338,7 @@ impl Memory {
         self.missing.get(&id).map(String::as_str)
     }
 
-    /// What the host gave for a provided resource or an import.
+    /// Returns the host's memory for a provided resource or an import.
     pub fn host(&self, id: ResourceId) -> Option<&Physical> {
         self.host.get(&id)
     }
@@ -353,8 +353,8 @@ impl Memory {
         self.spare.insert(name.to_owned(), physical);
     }
 
-    /// Whether a provided buffer of one state of an executor and that of another are of one make,
-    /// so that passes which were bound to one can be bound to the other.
+    /// Returns true if a provided buffer of one state of an executor and that of another are of one
+    /// make, so that passes which were bound to one can be bound to the other.
     pub fn is_alike(one: Option<&Physical>, other: Option<&Physical>) -> bool {
         match (one, other) {
             (Some(Physical::Buffer(one)), Some(Physical::Buffer(other))) => {
@@ -364,7 +364,7 @@ impl Memory {
         }
     }
 
-    /// Whether a resource is larger than before, with the same content.
+    /// Returns true if a resource is larger than before, with the same content.
     pub fn is_grown(&self, id: ResourceId) -> bool {
         let allocation = self.of.get(&id).map(|at| &self.allocations[*at]);
         allocation.is_some_and(|allocation| allocation.grown_from.is_some())
@@ -379,7 +379,8 @@ impl Memory {
         grown.collect()
     }
 
-    /// Whether a resource has the very memory in two states of an executor, and so its content.
+    /// Returns true if a resource has the very memory in two states of an executor, and so its
+    /// content.
     pub fn same(&self, id: ResourceId, other: &Memory, of_other: ResourceId) -> bool {
         let versions = |memory: &Memory, id: ResourceId| -> Option<Vec<Physical>> {
             if let Some(host) = memory.host.get(&id) {
@@ -400,7 +401,7 @@ fn is_copyable(built: &Physical) -> bool {
     }
 }
 
-/// Whether a live pass reads a provided resource as it was in the frame before.
+/// Returns true if a live pass reads a provided resource as it was in the frame before.
 fn is_read_as_before(id: ResourceId, plan: &Plan) -> bool {
     let mut live = plan.schedule().lifetimes.keys();
     live.any(|other| plan.resource(*other).origin == Origin::Previous(id))

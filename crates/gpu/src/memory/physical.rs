@@ -1,4 +1,4 @@
-//! What stands behind a resource on the device, and which of two takes its turn.
+//! Memory of a resource on the device, and the turns that two allocations take.
 
 use skiagraph_graph::ResourceId;
 use std::collections::BTreeMap;

@@ -1,4 +1,4 @@
-//! What is bound to the pipelines: bind groups, attachments, sources and targets of copies.
+//! Bindings of the pipelines: bind groups, attachments, sources and targets of copies.
 
 use super::{
     handles::{GpuAttachment, GpuOperand, GpuProgram, Handles},

@@ -16,14 +16,14 @@ impl Stage for Handles {
     type Canvas = GpuAttachment;
 }
 
-/// What is drawn to: a view, and the slice of it that a 3D texture has.
+/// Attachment of a draw: a view, and the slice of it that a 3D texture has.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct GpuAttachment {
     pub view: wgpu::TextureView,
     pub slice: Option<u32>,
 }
 
-/// What is copied or cleared.
+/// Source or target of a copy or a clear.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum GpuOperand {
     Texture {

@@ -19,7 +19,7 @@ pub(crate) struct Pipeline {
 #[derive(Clone, Default)]
 pub(crate) struct Pipelines {
     modules: HashMap<String, (Arc<Shader>, wgpu::ShaderModule)>,
-    /// Of passes of the next plan, by name, those of their steps that another thread has made.
+    /// Steps of passes of the next plan, by the pass's name, that another thread has made.
     prepared: HashMap<String, Vec<Option<Pipeline>>>,
 }
 
@@ -111,7 +111,7 @@ impl Pipelines {
     }
 }
 
-/// Whether the pipeline of one step serves for another.
+/// Returns true if the pipeline of one step serves for another.
 pub(crate) fn same_pipeline(a: &Step<Ids>, b: &Step<Ids>) -> bool {
     match (a, b) {
         (Step::Draw(a), Step::Draw(b)) => {

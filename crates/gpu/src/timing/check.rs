@@ -1,4 +1,4 @@
-//! Whether an adapter's timestamps are true.
+//! Checks that an adapter's timestamps are true.
 
 use crate::{
     device::partial,
@@ -12,7 +12,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Whether an adapter's timestamps can be believed.
+/// Verdict on an adapter's timestamps.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Trust {
     /// They agree with wall time.

@@ -22,7 +22,7 @@ pub struct PassStatistics {
     pub threads: u64,
 }
 
-/// What is counted: wgpu writes one u64 for each, in this order.
+/// Counted quantities: wgpu writes one u64 for each, in this order.
 const COUNTED: wgpu::PipelineStatisticsTypes =
     wgpu::PipelineStatisticsTypes::VERTEX_SHADER_INVOCATIONS
         .union(wgpu::PipelineStatisticsTypes::CLIPPER_PRIMITIVES_OUT)
@@ -48,7 +48,7 @@ impl Counters {
     pub fn new(plan: &Plan, device: &wgpu::Device) -> Result<Option<Self>, ExecuteError> {
         let steps = plan.live().flat_map(|pass| &pass.steps);
         let counted = steps.filter(|step| matches!(step, Step::Draw(_) | Step::Dispatch(_)));
-        // What is beyond is not counted.
+        // Passes beyond that are not counted.
         let count = counted.take(wgpu::QUERY_SET_MAX_QUERIES as usize).count() as u32;
         let features = device.features();
         if count == 0 || !features.contains(wgpu::Features::PIPELINE_STATISTICS_QUERY) {

@@ -10,12 +10,12 @@ use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
 /// and of more than it was made for it drops some.
 pub(crate) struct Timer {
     profiler: GpuProfiler,
-    /// One query that nobody reads. Mesa 22.3's lavapipe takes the begin timestamp of a compute
+    /// One query that is never read. Mesa 22.3's lavapipe takes the begin timestamp of a compute
     /// pass that follows a render pass only when the dispatch is over, unless the pass itself
     /// begins with a timestamp.
     spare: Option<wgpu::QuerySet>,
     period: f32,
-    /// Whether the mapping of the frame's timestamps was started.
+    /// True if the mapping of the frame's timestamps was started.
     is_ended: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What another param, another size, another graph come to; and that what fails changes nothing.
+//! Changes of a param, the size or the graph; and failed changes, which alter nothing.
 
 use crate::host::{GPU, encoder, executor, frame, numbers, planned, request, words};
 use crate::support::Files;
@@ -159,7 +159,7 @@ fn a_param_costs_what_follows_from_it() {
         let values = numbers(&mut executor, "image");
         assert_eq!(values, [image; 64], "{name} = {value}");
     }
-    // What these changes were for has happened.
+    // The changes took effect.
     let report = frame(&mut executor, &["depth", "list", "sometimes", "sum"]);
     assert_eq!(report.skipped, ["switch"]);
     let depth = report.readbacks[0].content.as_f32().unwrap();

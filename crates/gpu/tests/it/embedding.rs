@@ -1,4 +1,4 @@
-//! What a host program relies on: views of outputs, provided resources, a lost device, threads.
+//! Needs of a host program: views of outputs, provided resources, a lost device, threads.
 
 use crate::given::{KIND, SAMPLED, STORAGE, buffer, content, sums, sums_request};
 use crate::host::{GPU, encoder, executor, frame, numbers, planned, request};
@@ -184,7 +184,7 @@ fn provided_resources_change_when_the_host_says_so() {
     executor.refresh(&mut provider).unwrap();
     step(&mut executor, false, 100);
     provider.version = 1;
-    step(&mut executor, false, 100); // nobody has said so yet
+    step(&mut executor, false, 100); // not refreshed yet
     provider.is_there = false;
     let error = executor.refresh(&mut provider).expect_err("it fails");
     assert!(
@@ -223,7 +223,7 @@ fn a_lost_device_comes_back_as_an_error() {
     lose_the_device(false);
 }
 
-/// What [`sums`] reads, on another device.
+/// Makes the inputs of [`sums`] on another device.
 fn made(device: &wgpu::Device) -> (wgpu::Texture, wgpu::Buffer) {
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: None,
@@ -276,7 +276,7 @@ fn lose_the_device(before: bool) {
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
 
     gpu.device.destroy();
-    // What was done in time may still come.
+    // Work done in time may still come.
     if early.is_none() {
         let said =
             std::iter::repeat_with(|| executor.poll()).find(|said| !matches!(said, Ok(None)));

@@ -216,7 +216,8 @@ fn a_dispatch_may_come_from_a_buffer() {
     assert_eq!(words(&files, "visited"), [8 * (6 + 5)]);
 }
 
-/// What Vulkan leaves open, a driver that hangs included: the device was opened with wgpu's check.
+/// Cases that Vulkan leaves open, a hanging driver included: the device was opened with wgpu's
+/// check.
 #[test]
 fn an_indirect_dispatch_of_more_groups_than_there_may_be_does_nothing() {
     let files = Files::graph(
@@ -271,7 +272,7 @@ fn a_graph_knows_its_frame_and_what_was_before() {
         @compute @workgroup_size(1) fn main() { total = total_previous + 10u + frame.index; }";
     let files = files.with("add.wgsl", format!("{frame}{add}"));
     let mut running = Running::new(&files.with("tick.wgsl", format!("{frame}{tick}")));
-    // Of the first frames nobody reads anything back.
+    // The first frames are not read back.
     for (seconds, read, history, total) in [
         (0.5, true, [0.0, 0.5], 10),
         (0.25, false, [1.0, 0.75], 21),

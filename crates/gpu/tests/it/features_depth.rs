@@ -1,5 +1,4 @@
-//! What decides whether something is drawn: faces, depths and stencils, each feature by itself on
-//! the device, to the bit.
+//! Tests of a draw: faces, depths and stencils, each feature by itself on the device, to the bit.
 
 use crate::featured::{GPU, VALUE, floats, words};
 use crate::support::Files;
@@ -71,7 +70,7 @@ fn depths_are_compared_with_what_stands_there() {
     }
 }
 
-/// What stands in the depth afterwards.
+/// Compares the depth after the draw.
 #[test]
 fn a_depth_is_cleared_kept_and_written_as_its_fields_say() {
     for (fields, expected) in [

@@ -463,7 +463,7 @@ fn items_of_a_buffer_are_cleared_and_copied_one_by_one() {
     assert_eq!(running.words("two"), [105, 50, 1, 10]);
 }
 
-/// Of the frame before.
+/// Binds parts of the version of the frame before.
 #[test]
 fn parts_of_what_was_before_are_bound() {
     let files = Files::graph(

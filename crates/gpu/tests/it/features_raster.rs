@@ -1,4 +1,4 @@
-//! What draws: targets, vertices and stages, each feature by itself on the device, to the bit.
+//! Drawing passes: targets, vertices and stages, each feature by itself on the device, to the bit.
 
 use crate::featured::{Running, VALUE, buffer_floats, floats};
 use crate::support::Files;

@@ -1,4 +1,4 @@
-//! Several frames under way at once: each brings what was asked of it, and nobody waits.
+//! Several frames under way at once: each reports its own requests, without waiting.
 
 use crate::support::{Files, Triangle, load, right};
 use crate::tiny::{self, image, u32s};
@@ -56,7 +56,7 @@ fn slow() -> Files {
     )
 }
 
-/// What the slow pass takes at least.
+/// Least duration of the slow pass.
 const LONG: Duration = Duration::from_millis(150);
 
 /// An executor whose frames take long on the GPU, and how long.

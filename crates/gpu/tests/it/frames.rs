@@ -1,5 +1,5 @@
-//! What passes find from frame to frame: last frame's versions, skipped passes; and random
-//! documents against an interpreter.
+//! State from frame to frame: last frame's versions, skipped passes; and random documents against
+//! an interpreter.
 
 use crate::buffers::{INPUT, OLD, SEED, SEED_PARAM, compute, document, writes};
 use crate::host::{self, GPU, executor, frame, request, set, submit, words};
@@ -67,7 +67,7 @@ fn last_frame_is_zero_after_a_resize() {
 /// ```text
 /// seed ─▶ make ─▶ b ;  b.previous ─▶ watch ─▶ c
 /// ```
-/// What nobody wrote in a frame is still what it was at the end of the frame before.
+/// Content not written in a frame is still that of the end of the frame before.
 #[test]
 fn a_version_that_was_not_written_stays_the_last_one() {
     let files = document(

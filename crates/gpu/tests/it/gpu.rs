@@ -119,8 +119,8 @@ var depth: texture_depth_2d;
     );
 }
 
-/// Of a shader with two fragment stages, a pass without colour targets runs the one without
-/// colours; it discards and sets depths.
+/// If a shader has two fragment stages, a pass without colour targets runs the one without colours;
+/// it discards and sets depths.
 #[test]
 fn a_depth_only_pass_runs_the_fragment_stage_without_colours() {
     let files = Files::graph(

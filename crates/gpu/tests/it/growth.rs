@@ -79,7 +79,8 @@ fn grown_with(
     panic!("no counter says that a buffer has no room")
 }
 
-/// What the frame writes into so many items of which it wants so many; the rest is zero.
+/// Returns the items that the frame writes if it wants `wanted` of them and has room for `items`;
+/// the rest is zero.
 fn numbered(wanted: u32, items: u32) -> Vec<u32> {
     let number = |item: u32| if item < wanted { 100 + item } else { 0 };
     (0..items).map(number).collect()
@@ -178,7 +179,7 @@ fn frames_in_flight_are_not_waited_for() {
     for encoder in encoders {
         GPU.queue.submit([encoder.finish()]);
     }
-    // What was submitted before is done behind this, or not; a frame between does no harm.
+    // Earlier submissions may be done behind this, or not; a frame between does no harm.
     frame(&mut executor, &[]);
     grow(&mut executor);
     assert_eq!(executor.plan().grown()["items"], 12);
@@ -204,7 +205,7 @@ fn a_count_on_its_way_outlives_a_change_of_the_plan() {
     grown(&mut executor);
     shows(&mut executor, 11, 12);
     assert_eq!(grow(&mut executor), None);
-    // Of a frame that is encoded and not submitted, too.
+    // The same for a frame that is encoded and not submitted.
     set(&mut executor, "wanted", ParamValue::U32(20));
     let mut encoder = encoder();
     executor.encode(&mut encoder, &Frame::default()).unwrap();
@@ -406,7 +407,7 @@ fn the_layers_of_a_texture_grow_as_items_do() {
     set(&mut executor, "wanted", ParamValue::U32(10));
     shows_layers(&mut executor, 10, 4);
     let report = grown(&mut executor);
-    // What is counted by its layers follows; pipelines stay.
+    // A count taken from its layers follows; pipelines stay.
     assert_eq!(report.pipelines, [""; 0]);
     assert_eq!(report.resources, ["sums", "items"]);
     for _ in 0..3 {

@@ -1,5 +1,5 @@
-//! What frames know of each other: the uniform `frame`, `.previous` of what the host provides, and
-//! what is still there after another plan.
+//! Knowledge between frames: the uniform `frame`, `.previous` of provided resources, and content
+//! that survives another plan.
 
 use crate::buffers::{OUT, compute, document, shader, writes};
 use crate::host::{GPU, encoder, executor, frame, numbers, planned, request, submit, words};

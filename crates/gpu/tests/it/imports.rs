@@ -1,5 +1,5 @@
-//! What the host hands over: textures and buffers by name, checked against what was planned for,
-//! missing ones told before anything is encoded.
+//! Imports: textures and buffers by name, checked against the plan, missing ones told before
+//! anything is encoded.
 
 use crate::given::{KIND, Kind, SAMPLED, STORAGE, buffer, content, sums, sums_request, texture};
 use crate::host::{GPU, encoder, executor, frame, numbers, planned, request};
@@ -159,7 +159,7 @@ fn a_pass_that_writes_for_the_host_runs() {
     assert_eq!(content(&counter, encoder()), [25, 6]);
 }
 
-/// An output may be an import. Whether it can be read back is up to the host, and said before
+/// An output may be an import. The host decides if it can be read back, and an error comes before
 /// anything is encoded.
 #[test]
 fn an_import_is_read_back_if_it_was_made_for_that() {

@@ -82,7 +82,7 @@ fn a_buffer_is_counted_up_over_frames() {
     }
 }
 
-/// What is made anew is zero, also under poison, and the frame says so once.
+/// Memory made anew is zero, also under poison, and the frame says so once.
 #[test]
 fn new_memory_is_zero_and_fresh() {
     let passes = [
@@ -128,7 +128,7 @@ fn new_memory_is_zero_and_fresh() {
         assert!(executor.resize([0, 4], &mut NoProvider).is_err());
         expect(&mut executor, 1.0, 111, 4);
         expect(&mut executor, 2.0, 0, 4);
-        // What was there without `keep` is not gone on with.
+        // Content made without `keep` is not carried on.
         let without = files
             .clone()
             .edited("graph.ron", ", keep: true", "")
@@ -183,7 +183,7 @@ fn passes_that_are_not_run_leave_it() {
     set(&mut executor, "seed", ParamValue::U32(2));
     step(&mut executor, [1502, 1703], &["reset"]);
     set(&mut executor, "on", ParamValue::Bool(false));
-    // What the frame before left is new to `before`, and not to `after`.
+    // Content left by the frame before is new to `before`, and not to `after`.
     step(
         &mut executor,
         [1703, 1703],

@@ -59,9 +59,9 @@ fn memory_is_shared_by_what_is_not_needed_at_once() {
     assert_eq!(pool(&files), (3 * texture, 2 * texture));
     let mut chained = executor(&files, &request(&NoProvider));
     assert_eq!([0; 2].map(|_| number(&mut chained, "e")), [4, 4]);
-    // What a skipped pass keeps is nobody else's.
+    // Memory that a skipped pass keeps is not shared.
     assert_eq!(pool(&chain(&NAMES, "run: OnChange,")), (5 * texture, 0));
-    // What a capture or an output hands out is not written again in the frame.
+    // Memory handed out by a capture or an output is not written again in the frame.
     let mut wanted = request(&NoProvider);
     wanted.captures.push(Capture {
         material: "b".to_owned(),

@@ -1,5 +1,5 @@
-//! What a host provides and changes between frames that are submitted together, what it has not set
-//! yet, and what is no longer what was planned for.
+//! Provided resources: changed between frames that are submitted together, not set yet, or no
+//! longer as planned.
 
 use crate::buffers::{INPUT, compute, document, writes};
 use crate::host::{GPU, encoder, frame, numbers, planned, request};
@@ -186,7 +186,7 @@ fn what_is_not_set_yet_is_asked_for_again() {
     frame(&mut executor, &[]);
     assert_eq!(numbers(&mut executor, "seen"), [5]);
     assert_eq!(numbers(&mut executor, "seen_before"), [5]);
-    // What is taken back is not shown as it was.
+    // A resource that is taken back is not shown as it was.
     provider.value = None;
     executor.refresh(&mut provider).unwrap();
     assert!(executor.encode(&mut encoder(), &READ).is_err());

@@ -13,7 +13,7 @@ var<uniform> params: Params;
     return 1000u * params.mip + 100u * params.layer + 10u * at.y + at.x;
 }";
 
-/// What [`PLACE`] writes into a mip of a layer.
+/// Returns the texels that [`PLACE`] writes into a mip of a layer.
 fn place(mip: u32, layer: u32, [width, height]: [u32; 2]) -> Vec<u32> {
     tiny::pixels([width, height], |x, y| {
         1000 * mip + 100 * layer + 10 * y + x

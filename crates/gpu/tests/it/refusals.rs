@@ -1,5 +1,4 @@
-//! What a device or a provider refuses comes back as an error with names, before anything is
-//! encoded.
+//! Refusals by a device or a provider: an error with names, before anything is encoded.
 
 use crate::support::{Files, load, right};
 use crate::tiny::{GPU, encoder, executor, image, made, request};
@@ -90,7 +89,7 @@ impl Provider for Broken {
     }
 }
 
-/// What a provider hands out is checked when it is bound; what it refuses is told in its words.
+/// A provider's resource is checked when it is bound; the provider's refusal is told in its words.
 #[test]
 fn a_provider_that_fails() {
     let files = Files::graph(

@@ -1,4 +1,4 @@
-//! What plans must also run, or be refused with an error.
+//! Odd plans that must also run, or be refused with an error.
 
 use crate::everything::files;
 use crate::support::{Files, Triangle, load};
@@ -11,7 +11,7 @@ use skiagraph_gpu::{Executor, Frame};
 use skiagraph_graph::{Plan, PlanRequest};
 use std::cell::Cell;
 
-/// What may stand in the place of something in the document or its shaders, and often still plans.
+/// Replacements for parts of the document or its shaders that often still plan.
 const OTHERS: &[(&str, &[&str])] = &[
     (
         "R32Float",
@@ -204,7 +204,7 @@ fn runs(plan: Plan) -> Result<bool, TestCaseError> {
     Ok(true)
 }
 
-/// wgpu's own answer to an error that nobody catches is a panic.
+/// wgpu's own answer to an uncaught error is a panic.
 #[test]
 fn what_plans_runs_or_is_refused() {
     let ran = Cell::new(0);

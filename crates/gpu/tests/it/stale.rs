@@ -99,7 +99,7 @@ fn provided(files: &Files, provider: &mut Updated) -> Executor {
     Executor::new(&GPU.device, &GPU.queue, plan, provider).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// What the provider changed in place is seen also if a change of the plan is what asks for it.
+/// A change in place by the provider is seen even if it arrives with a change of the plan.
 #[test]
 fn a_change_in_place_is_seen_through_a_change_of_the_plan() {
     let take = compute(
@@ -266,7 +266,7 @@ fn another_part_written_below_is_no_change() {
     );
 }
 
-/// What runs once does not run again because something that it does not touch comes or goes.
+/// A pass that runs once does not run again because something that it does not touch comes or goes.
 #[test]
 fn once_stays_once_when_other_materials_come_and_go() {
     let inner = r#"
@@ -428,8 +428,8 @@ fn calls_out_of_turn_are_no_panics() {
     assert_eq!(numbers(&mut executor, "n"), [5]);
 }
 
-/// What a pass leaves unwritten of a material with a history is not last frame's: the pattern shows
-/// it.
+/// Texels that a pass leaves unwritten in a material with a history are not last frame's: the
+/// pattern shows it.
 #[test]
 fn poison_shows_what_a_write_leaves_of_a_material_with_a_history() {
     let files = document(

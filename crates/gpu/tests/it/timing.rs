@@ -116,8 +116,7 @@ fn a_frame_that_is_not_done_in_time_is_waited_for_again() {
     assert_eq!(u32s(&report.readbacks[0].content), sums);
 }
 
-/// What the shaders of each pass did is counted where the device can; no frame has another's
-/// counts.
+/// Shader invocations of each pass are counted where the device can; no frame has another's counts.
 #[test]
 fn runs_of_shaders_are_counted_by_pass() {
     let files = Files::graph(

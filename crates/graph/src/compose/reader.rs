@@ -194,7 +194,7 @@ impl<'a> Reader<'a> {
                 What::Include(include) => {
                     include.document = Some(self.include(include));
                     let document = include.document();
-                    // What could not be read was reported, and is not too deep besides.
+                    // A document that could not be read was reported; it counts as depth 0.
                     document.map_or(0, |document| document.include_depth + 1)
                 }
                 What::Group(entries) => self.attach(entries),

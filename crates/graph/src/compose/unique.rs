@@ -94,7 +94,7 @@ fn check_entries(
                 let prefix = format!("{prefix}{name}.");
                 materials.add(name, span, reports);
                 match entry.repeat {
-                    // What is made in a repetition has a name of its own outside.
+                    // Materials of a repetition have names of their own outside.
                     Some(_) => {
                         let mut inside = Names::new("material");
                         check_entries(inner, &mut inside, passes, &prefix, reports);
@@ -158,7 +158,7 @@ impl Names {
         }
     }
 
-    /// Whether the name was free.
+    /// Adds a name. True if it was free.
     fn add(&mut self, name: &str, span: &Span, reports: &mut Reports) -> bool {
         let spelling = match self.what {
             "material" => wgsl_identifier(name),

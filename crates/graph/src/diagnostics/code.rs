@@ -2,8 +2,8 @@
 
 macro_rules! codes {
     ($($(#[doc = $doc:literal])+ $name:ident = $text:literal, $remedy:literal;)+) => {
-        /// What kind of mistake a [`Diagnostic`](crate::Diagnostic) is about; stable names for
-        /// scripts.
+        /// Kind of mistake that a [`Diagnostic`](crate::Diagnostic) is about, with a stable name
+        /// for scripts.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[non_exhaustive]
         pub enum Code { $($(#[doc = $doc])+ $name,)+ }
@@ -17,7 +17,7 @@ macro_rules! codes {
                 match self { $(Code::$name => $text,)+ }
             }
 
-            /// What kind of mistake it is, in a sentence.
+            /// Describes the kind of mistake in a sentence.
             pub fn description(self) -> &'static str {
                 match self { $(Code::$name => concat!($($doc),+).trim_ascii(),)+ }
             }
@@ -139,7 +139,7 @@ codes! {
     /// Passes that must run or be skipped together have different run conditions.
     RunCondition = "run-condition",
         "Give the passes the same `run`, or one of them another material.";
-    /// What the host imports does not serve what passes do with it.
+    /// An import of the host lacks a usage that a pass needs.
     Import = "import",
         "Make the texture or buffer with the usages that the help names.";
     /// A limit of the adapter.

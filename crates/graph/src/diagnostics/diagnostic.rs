@@ -1,4 +1,4 @@
-//! One mistake: what is wrong, where, and the way out.
+//! One mistake: its message, its places, and the way out.
 
 use super::{code::Code, suggest::suggestion};
 use crate::source::span::Span;
@@ -17,7 +17,7 @@ pub enum Severity {
 pub struct Label {
     /// The place.
     pub span: Span,
-    /// What is to be said; may be empty.
+    /// Text of the label; may be empty.
     pub text: String,
 }
 
@@ -28,11 +28,11 @@ pub struct Diagnostic {
     pub code: Code,
     /// Error or warning.
     pub severity: Severity,
-    /// What is wrong, naming the thing.
+    /// The mistake, with the name of the thing.
     pub message: String,
     /// Where; the first label is the place itself, others explain.
     pub labels: Vec<Label>,
-    /// What to do about it.
+    /// The way out, if there is one.
     pub help: Option<String>,
 }
 
@@ -86,7 +86,7 @@ impl Diagnostic {
         }
     }
 
-    /// What diagnostics are sorted by: errors first, then the place.
+    /// Key for sorting diagnostics: errors first, then by place.
     pub(super) fn key(&self) -> (Severity, &str, usize) {
         let first = self.labels.first();
         (

@@ -3,7 +3,7 @@
 use super::diagnostic::{Diagnostic, Label, Severity};
 use std::fmt;
 
-/// More diagnostics than anybody reads; each is printed with a piece of its file.
+/// Most diagnostics that are printed, each with a piece of its file.
 const MOST_SHOWN: usize = 200;
 
 /// A non-empty list of diagnostics, errors first, in source order.

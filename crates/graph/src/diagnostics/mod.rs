@@ -1,4 +1,4 @@
-//! What is wrong with a document or shader: collected, located, printed in source order.
+//! Mistakes in documents and shaders: collected, located, printed in source order.
 //!
 //! The phases report typed mistakes; `errors/` puts them into words.
 

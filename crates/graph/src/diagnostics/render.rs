@@ -132,7 +132,7 @@ fn clamp(span: &Span) -> Range<usize> {
     start..border(span.range.end).max(start)
 }
 
-/// Whether miette would have to print a line that is too long, or too many of them. It shows a line
+/// True if miette would have to print a line that is too long, or too many lines. It shows a line
 /// before and after a label.
 fn is_too_wide(span: &Span) -> bool {
     let text = &span.file.text;

@@ -6,7 +6,7 @@ use super::{
 };
 use std::{collections::BTreeSet, fmt::Display};
 
-/// With so many mistakes nobody misses those further down.
+/// Number of mistakes at which the search for more ends.
 const ENOUGH: usize = 1000;
 
 /// Mistakes for which a document's names are searched: it may hold as many misspelt names as names,
@@ -31,7 +31,7 @@ pub(crate) trait IntoDiagnostic: Display {
     }
 }
 
-/// The proof that something is wrong and was reported: who has one need not report it again.
+/// The proof that something is wrong and was reported, so that it need not be reported again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ErrorGuaranteed(());
 
@@ -40,11 +40,10 @@ pub(crate) struct ErrorGuaranteed(());
 pub(crate) struct Reports {
     list: Vec<Diagnostic>,
     errors: usize,
-    /// What the adapter is asked for beyond its limits is told as a warning: it is not known which
-    /// adapter that will be.
+    /// True if the adapter is not known yet: exceeding its limits is then a warning.
     pub any_adapter: bool,
-    /// Params of the root document that the plan depends on: what was found with another value
-    /// might be something else.
+    /// Params of the root document that the plan depends on: other values might lead to other
+    /// mistakes.
     pub depends_on: BTreeSet<String>,
 }
 
@@ -94,7 +93,7 @@ impl Reports {
         self.list.len() > ENOUGH
     }
 
-    /// What was reported so far.
+    /// Returns the diagnostics reported so far.
     pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
         self.list.iter()
     }

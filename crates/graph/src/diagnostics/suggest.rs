@@ -17,7 +17,7 @@ pub fn closest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
     }
     let known = known.into_iter().filter(|name| name.len() <= LONGEST);
     let known: Vec<&str> = known.take(COMPARED).collect();
-    // What a named include exposes has the include's name in front.
+    // A name that a named include exposes begins with the include's name.
     let mut exposed = known.iter().filter(|name| {
         let own = name.rsplit_once('.').map(|(_, own)| own);
         own == Some(word)

@@ -46,14 +46,14 @@ pub(super) fn read(
     raw.into_iter().map(read).collect()
 }
 
-/// What every entry has.
+/// Fields that every entry has.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct Header {
-    /// What it is called; an include without one has the name of its file.
+    /// Name of the entry; an include without one has the name of its file.
     #[serde(default)]
     name: Option<Located<Name>>,
-    /// Whether it is there.
+    /// Condition under which the entry exists.
     #[serde(default, rename = "if")]
     condition: Option<Expr>,
     /// How often it stands here one after another, each time with its `index`.
@@ -64,17 +64,17 @@ pub(crate) struct Header {
     run: Option<Run>,
 }
 
-/// What every pass has beside its kind's fields.
+/// Fields that every pass has beside those of its kind.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct PassFields {
     /// The shader without folder and ending; the pass's name without it.
     #[serde(default)]
     shader: Option<Located<String>>,
-    /// What the pass writes in every texel or item, which no reflection sees.
+    /// Materials that the pass writes in every texel or item, which reflection cannot see.
     #[serde(default)]
     overwrites: Vec<Reference>,
-    /// The materials that it reads, all of them; what the scene gives is left out.
+    /// The materials that it reads, all of them; those of the scene are left out.
     #[serde(default)]
     reads: Option<Vec<Reference>>,
 }
@@ -86,8 +86,8 @@ pub(crate) struct PassFields {
 pub(crate) struct IncludeFields {
     /// The document: the name of a preset, or a path.
     graph: Located<String>,
-    /// Leaves the document open: whoever runs the graph may name another under this name, and
-    /// `graph` is the one without that.
+    /// Leaves the document open: a run may put another one under this name; without that it is
+    /// `graph`.
     #[serde(default)]
     open: Option<Located<Name>>,
     /// Its params that are params here, too: a list, or `All` that are not set.

@@ -16,7 +16,7 @@ const REMOVE: &str = "Remove";
 /// Where an entry that is no edit comes to stand.
 pub(crate) const PLACES: [&str; 3] = ["before", "after", "instead"];
 
-/// `base` with the edits of `own`. What cannot be done is reported and left out.
+/// Applies the edits of `own` to `base`. An edit that cannot be made is reported and left out.
 pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports) -> RawDocument {
     let mut document = RawDocument {
         file: own.file,
@@ -36,8 +36,7 @@ pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports)
             own.outputs
         },
         set: base.set,
-        // What a method takes and promises holds of it as it is written, not of what others make
-        // of it.
+        // Lights and claims belong to a method as written, not to methods that extend it.
         lights: own.lights,
         proven_on: own.proven_on,
         claims: own.claims,
@@ -90,7 +89,7 @@ fn redefine(base: RawMap, own: RawMap) -> RawMap {
     values
 }
 
-/// What narrows a param narrows it again, and gives no word back.
+/// Narrows params of the base further. A word that the base has taken away stays away.
 fn narrower(base: RawMap, own: RawMap, reports: &mut Reports) -> RawMap {
     for (name, node) in &own {
         let Some((first, before)) = base.iter().find(|(known, _)| **known == **name) else {
@@ -113,7 +112,8 @@ fn narrower(base: RawMap, own: RawMap, reports: &mut Reports) -> RawMap {
     redefine(base, own)
 }
 
-/// What has the same name is replaced or, by `Remove`, taken out; the rest is added.
+/// Merges two lists. An item of the same name is replaced or, by `Remove`, taken out; the rest is
+/// added.
 fn merge(base: Vec<RawItem>, own: Vec<RawItem>, reports: &mut Reports) -> Vec<RawItem> {
     let mut merged = base;
     for item in own {

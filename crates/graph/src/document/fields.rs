@@ -1,4 +1,4 @@
-//! What may stand in a field: names, expressions, references, words of the language.
+//! Types of fields: names, expressions, references, words of the language.
 
 use super::ron::{Node, raw, read, refuse};
 use crate::{
@@ -114,8 +114,8 @@ impl<'de> Deserialize<'de> for Expr {
     }
 }
 
-/// A word of the language, or an expression that comes to a word: what a field of a pass kind may
-/// hold that [`Lowering::word`](crate::Lowering::word) reads.
+/// A word of the language, or an expression that comes to a word. A type for fields of pass kinds;
+/// [`Lowering::word`](crate::Lowering::word) reads it.
 #[derive(Clone, Debug)]
 pub enum Chosen<T> {
     /// Written out.
@@ -165,8 +165,8 @@ where
     }
 }
 
-/// What is done to an attachment before the first draw: `Load`, `LoadIf("index > 0")`, `Clear(v)`
-/// for all channels, `Clear(r, g, b, a)`.
+/// Operation on an attachment before the first draw: `Load`, `LoadIf("index > 0")`, `Clear(v)` for
+/// all channels, `Clear(r, g, b, a)`.
 #[derive(Clone, Debug)]
 pub(crate) enum Load {
     Clear(Vec<Expr>),

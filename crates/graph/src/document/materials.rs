@@ -33,7 +33,7 @@ impl Material {
         }
     }
 
-    /// Whether its content stays from frame to frame.
+    /// True if its content stays from frame to frame.
     pub fn keeps(&self) -> bool {
         match self {
             Self::Texture(texture) => texture.keep,
@@ -76,12 +76,12 @@ impl Material {
     }
 }
 
-/// A texture: what passes draw into, write and read.
+/// A texture, which passes draw into, write and read.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TextureEntry {
-    /// What passes and shaders call it.
+    /// Name for passes and shaders.
     pub name: Located<Name>,
     /// Its texels.
     pub format: FormatEntry,
@@ -104,8 +104,7 @@ pub(crate) struct TextureEntry {
     /// The picture that the texture holds; it is never written then.
     #[serde(default)]
     pub file: Option<Located<String>>,
-    /// Whether its content stays from frame to frame until a pass overwrites it; `false` without
-    /// it.
+    /// Keeps its content from frame to frame until a pass overwrites it; `false` without it.
     #[serde(default)]
     pub keep: bool,
 }
@@ -156,7 +155,7 @@ impl<'de> Deserialize<'de> for FormatEntry {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct BufferEntry {
-    /// What passes and shaders call it.
+    /// Name for passes and shaders.
     pub name: Located<Name>,
     /// Number of items of the runtime-sized array that the shaders see; none where they see a fixed
     /// size.
@@ -168,8 +167,7 @@ pub(crate) struct BufferEntry {
     /// How it grows between frames.
     #[serde(default)]
     pub grow: Option<GrowEntry>,
-    /// Whether its content stays from frame to frame until a pass overwrites it; `false` without
-    /// it.
+    /// Keeps its content from frame to frame until a pass overwrites it; `false` without it.
     #[serde(default)]
     pub keep: bool,
 }
@@ -230,12 +228,12 @@ fn flatten(tuple: &Node, numbers: &mut Vec<f64>) -> Option<()> {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SamplerEntry {
-    /// What passes and shaders call it.
+    /// Name for passes and shaders.
     pub name: Located<Name>,
     /// Minification, magnification and mip filter; `Nearest` without it.
     #[serde(default)]
     pub filter: Filter,
-    /// What lies outside, in all directions; `ClampToEdge` without it.
+    /// Addressing outside of the texture, in all directions; `ClampToEdge` without it.
     #[serde(default)]
     pub address: Address,
     /// Makes it a comparison sampler.
@@ -254,7 +252,7 @@ pub enum Filter {
     Linear,
 }
 
-/// What lies outside a texture.
+/// Addressing outside of a texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Address {
@@ -267,7 +265,7 @@ pub enum Address {
     MirrorRepeat,
 }
 
-/// What a document asks its includer, or the host, for.
+/// Material that a document asks its includer, or the host, for.
 #[derive(Clone, Debug)]
 pub(crate) struct Input {
     pub name: Located<Name>,
@@ -285,7 +283,7 @@ pub(crate) enum InputKind {
 }
 
 impl InputKind {
-    /// What is asked for, for messages.
+    /// Returns the kind of input in words, for messages.
     pub fn describe(&self) -> &'static str {
         match self {
             Self::Texture(_) => "a texture",
@@ -309,7 +307,7 @@ impl InputKind {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TextureInput {
-    /// What it is called here.
+    /// Name of the input in this document.
     name: Located<Name>,
     /// The format that it must have; any without it.
     #[serde(default)]
@@ -321,7 +319,7 @@ pub(crate) struct TextureInput {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct BufferInput {
-    /// What it is called here.
+    /// Name of the input in this document.
     name: Located<Name>,
 }
 
@@ -330,9 +328,9 @@ pub(crate) struct BufferInput {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SamplerInput {
-    /// What it is called here.
+    /// Name of the input in this document.
     name: Located<Name>,
-    /// Whether it is a comparison sampler.
+    /// True for a comparison sampler.
     #[serde(default)]
     compare: bool,
 }

@@ -95,13 +95,13 @@ pub struct Param {
     pub name: Located<String>,
     /// Type.
     pub ty: ParamType,
-    /// Value where nothing else is asked for; `None`: somebody must be asked.
+    /// Value where nothing else is asked for; `None` if a value must be given.
     pub default: Option<Expr>,
     /// Least value of a number (each component of a vector).
     pub min: Option<f64>,
     /// Greatest value of a number (each component of a vector).
     pub max: Option<f64>,
-    /// What it does.
+    /// Description of its effect.
     pub description: String,
     /// Words of a [`ParamType::Choice`] that `narrow` took away, each with the reason.
     pub refused: BTreeMap<String, String>,
@@ -128,8 +128,8 @@ pub(crate) struct ParamFields {
     /// The words of a `Choice`.
     #[serde(default)]
     words: Vec<Located<Name>>,
-    /// The value where nothing else is asked for. It may name the params above it and the viewport;
-    /// without one somebody is asked.
+    /// Value where nothing else is asked for. It may name the params above it and the viewport.
+    /// Without it, a value must be given.
     #[serde(default)]
     default: Option<Expr>,
     /// Least value of a number, or of each component of a vector.
@@ -138,7 +138,7 @@ pub(crate) struct ParamFields {
     /// Greatest value of a number, or of each component of a vector.
     #[serde(default)]
     max: Option<f64>,
-    /// What it does, shown to who may set it.
+    /// Description of its effect, for those who set it.
     #[serde(default, deserialize_with = "prose")]
     description: String,
 }
@@ -282,7 +282,7 @@ impl Param {
                     _ => None,
                 };
                 let known = words.iter().flat_map(|words| words.iter());
-                // What was checked is one of the words; else it is none, and compares so.
+                // A checked value is one of the words. Any other equals none of them.
                 match known.clone().find(|known| ***known == **word).cloned() {
                     Some(word) => Value::Word(Word { word, of: words }),
                     None => Value::Bool(false),
@@ -291,8 +291,7 @@ impl Param {
         }
     }
 
-    /// What stands for a value where nobody is there to give one: `min`, else 1, false, the first
-    /// word.
+    /// Returns a value where none is given: `min`, else 1, false, the first word.
     pub(crate) fn stand_in(&self) -> ParamValue {
         let number = self
             .min
@@ -312,7 +311,7 @@ impl Param {
         }
     }
 
-    /// Whether every value of `other` is one of this param.
+    /// True if every value of `other` is a value of this param.
     pub(crate) fn holds_all_of(&self, other: &Param) -> bool {
         let within = match (self.min, other.min) {
             (Some(least), Some(other)) => least <= other,
@@ -333,7 +332,7 @@ impl Param {
     /// `1,2,3`.
     ///
     /// # Errors
-    /// What was expected.
+    /// The expected type or range.
     pub fn parse(&self, text: &str) -> Result<ParamValue, ParamFault> {
         let wrong = || ParamFault::Type(self.ty.to_string());
         let scalar = |text: &str| {
@@ -373,10 +372,10 @@ impl Param {
         self.check(&value).map(|()| value)
     }
 
-    /// Whether a value has the param's type and lies in its range.
+    /// Checks that a value has the param's type and lies in its range.
     ///
     /// # Errors
-    /// What was expected.
+    /// The expected type or range.
     pub fn check(&self, value: &ParamValue) -> Result<(), ParamFault> {
         let numbers: Vec<f64> = match (&self.ty, value) {
             (ParamType::F32, ParamValue::F32(v)) => vec![f64::from(*v)],

@@ -1,5 +1,5 @@
-//! A document as sections of raw pieces: what [`extend`](super::extend) edits, and
-//! [`typed`](super::typed) reads.
+//! A document as sections of raw pieces. [`extend`](super::extend) edits them, and
+//! [`typed`](super::typed) reads them.
 
 use super::ron::{Field, Node};
 use crate::{
@@ -41,7 +41,7 @@ pub(crate) struct RawDocument {
     pub claims: RawMap,
     /// A param could not be read: nothing of the document has a size then.
     pub invalid_params: Option<ErrorGuaranteed>,
-    /// A list or an item of it could not be read, and nobody knows which names it would have given.
+    /// A list or one of its items could not be read, so some names are unknown.
     pub incomplete: Option<ErrorGuaranteed>,
 }
 
@@ -63,8 +63,8 @@ pub(crate) struct RawEntry {
     pub passes: Option<Vec<Result<RawEntry, Invalid>>>,
 }
 
-/// An entry that could not be read, which was reported: what it would have written is not known,
-/// nor, of an include, what it would have brought.
+/// An entry that could not be read, which was reported. Its writes are not known, nor the content
+/// of an include.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Invalid {
     pub is_include: bool,
@@ -138,9 +138,12 @@ pub(crate) const SECTIONS: [(&str, &str); 16] = [
         "Modules that shaders import in the place of others.",
     ),
     ("inputs", "Materials that the includer gives, or the host."),
-    ("materials", "What passes share."),
-    ("passes", "What is done, in this order."),
-    ("outputs", "What comes out."),
+    (
+        "materials",
+        "Textures, buffers and samplers that passes share.",
+    ),
+    ("passes", "Steps of the method, in this order."),
+    ("outputs", "Materials that the graph gives."),
     ("lights", "The kinds of light that the method takes."),
     (
         "proven_on",
@@ -148,11 +151,11 @@ pub(crate) const SECTIONS: [(&str, &str); 16] = [
     ),
     (
         "claims",
-        "What the method promises, by `exact` and `certain`.",
+        "Promises of the method, by `exact` and `certain`.",
     ),
 ];
 
-/// Splits a document into its sections. What is wrong with some of them is reported.
+/// Splits a document into its sections. Mistakes in some of them are reported.
 pub(crate) fn split(
     file: SourceFile,
     reports: &mut Reports,

@@ -25,8 +25,8 @@ use crate::{
 };
 use std::collections::BTreeSet;
 
-/// Reads what a document holds. What is wrong is reported; what could be read is returned all the
-/// same, so that later phases find more mistakes in one go.
+/// Reads a document and reports its mistakes. Its readable part is returned all the same, so that
+/// later phases find more mistakes in one go.
 pub(crate) fn document(
     mut raw: RawDocument,
     registry: &Registry,

@@ -81,7 +81,7 @@ fn read_part<T: DeserializeOwned>(text: &str) -> Result<T, ron::Error> {
     })
 }
 
-/// What a ron error is about, in bytes: `text` begins at `base`.
+/// Returns the place of a ron error, in bytes: `text` begins at `base`.
 fn place_of(text: &str, error: &ron::error::SpannedError, base: usize) -> Range<usize> {
     let start = offset(text, error.span.start.line, error.span.start.col);
     let end = offset(text, error.span.end.line, error.span.end.col).max(start);
@@ -176,7 +176,7 @@ impl Node {
         }
     }
 
-    /// What stands in a place.
+    /// Returns the node at a place.
     pub fn at(span: &Span) -> Self {
         Self { span: span.clone() }
     }
@@ -563,7 +563,7 @@ mod tests {
             "{diagnostic:?}"
         );
         assert_eq!(diagnostic.labels[0].span.range, 4..5);
-        // What is read next is read as ever.
+        // Later reads work as before.
         assert_eq!(node().parse::<u32>().ok(), Some(1));
     }
 }

@@ -50,9 +50,9 @@ pub(crate) struct Document {
     pub broken_materials: Vec<(String, ErrorGuaranteed)>,
     /// A param could not be read: nothing of the document has a size then.
     pub invalid_params: Option<ErrorGuaranteed>,
-    /// Something could not be read, and nobody knows which names it would have given.
+    /// Something could not be read, so some names are unknown.
     pub incomplete: Option<ErrorGuaranteed>,
-    /// An output could not be read: nobody knows what it would have been called.
+    /// An output could not be read, so its name is unknown.
     pub broken_outputs: Option<ErrorGuaranteed>,
     /// The outputs that are values.
     pub gives_values: BTreeSet<String>,
@@ -89,12 +89,12 @@ pub(crate) struct ImportEntry {
     pub of: Located<String>,
     /// The module that they get.
     pub is: Located<String>,
-    /// Whether it stands in; always without it.
+    /// Condition under which it stands in; always without it.
     #[serde(default, rename = "if")]
     pub condition: Option<Expr>,
 }
 
-/// What a method promises: `(if: "n >= 0.5", because: "…")`, or the condition alone.
+/// Promise of a method: `(if: "n >= 0.5", because: "…")`, or the condition alone.
 #[derive(Clone, Debug)]
 pub(crate) struct ClaimEntry {
     /// `None`: always.
@@ -102,7 +102,7 @@ pub(crate) struct ClaimEntry {
     pub because: String,
 }
 
-/// What a method promises, with the reason.
+/// Promise of a method, with the reason.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename = "claim", deny_unknown_fields)]
@@ -132,26 +132,26 @@ impl<'de> Deserialize<'de> for ClaimEntry {
     }
 }
 
-/// What includer and host see.
+/// Output for the includer and the host.
 #[derive(Clone, Debug)]
 pub(crate) struct Output {
     pub name: Located<Name>,
     pub material: Reference,
-    /// Whether it is there.
+    /// Condition under which it exists.
     pub condition: Option<Expr>,
 }
 
-/// What comes out.
+/// Output of a document.
 #[derive(Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct OutputFields {
-    /// What includer and host call it.
+    /// Name for the includer and the host.
     name: Located<Name>,
     /// The material; the one of that name without it.
     #[serde(default)]
     material: Option<Reference>,
-    /// Whether it is there.
+    /// Condition under which it exists.
     #[serde(default, rename = "if")]
     condition: Option<Expr>,
 }
@@ -178,7 +178,7 @@ impl<'de> Deserialize<'de> for Output {
 #[derive(Debug)]
 pub(crate) struct Entry {
     pub name: Located<Name>,
-    /// Whether it is there.
+    /// Condition under which it exists.
     pub condition: Option<Expr>,
     /// How often it is instantiated; `None` = once, without an index.
     pub repeat: Option<Expr>,
@@ -196,13 +196,13 @@ pub(crate) enum What {
     Group(Vec<Result<Entry, Invalid>>),
 }
 
-/// A pass: what every kind has, and the kind's own body.
+/// A pass: the fields of every kind, and the kind's own body.
 #[derive(Debug)]
 pub(crate) struct Pass {
     pub shader: Option<Located<String>>,
-    /// What the author promises that the pass writes in every texel or item.
+    /// Materials that the pass writes in every texel or item, as its author promises.
     pub overwrites: Vec<Reference>,
-    /// What the author says that the pass reads, if he does.
+    /// Materials that the pass reads, if its author lists them.
     pub reads: Option<Vec<Reference>>,
     pub kind: &'static str,
     pub body: Arc<dyn PassKind>,
@@ -210,7 +210,7 @@ pub(crate) struct Pass {
     pub shaders: Vec<ShaderUse>,
     /// The features that it can make use of.
     pub features: wgt::Features,
-    /// What its fields name.
+    /// Names in its fields.
     pub mentions: Mentions,
 }
 
@@ -221,7 +221,7 @@ pub(crate) struct Include {
     pub graph: Located<String>,
     /// The name under which another document can be asked for.
     pub open: Option<Located<Name>>,
-    /// Whether it has a name of its own, which stands before what it gives.
+    /// True if it has a name of its own, which stands before the names that it gives.
     pub is_named: bool,
     /// Params of the included document that are params here, too; those of `All` are written out
     /// once that document is read.

@@ -7,14 +7,14 @@ use crate::{
 
 #[derive(Clone, Debug, thiserror::Error)]
 pub(crate) enum ComposeError {
-    #[error("there is no document `{0}`")]
+    #[error("document `{0}` not found")]
     NoDocument(String, Option<String>),
     #[error("the document `{0}` cannot be read: {1}")]
     Unreadable(String, String),
     #[error("the document `{}` lies outside the folders of documents", **.0)]
     Outside(Located<String>),
     /// Where it was looked for, and what it may have been meant to be.
-    #[error("there is no document `{}`", **.0)]
+    #[error("document `{}` not found", **.0)]
     NoInclude(Located<String>, Vec<String>, Option<String>),
     #[error("the document `{}` cannot be read", **.0)]
     UnreadableInclude(Located<String>, String),
@@ -52,18 +52,18 @@ pub(crate) enum ComposeError {
     },
     #[error("`{}` is a param here already", **name)]
     ExposedTwice { name: Located<String>, first: Span },
-    #[error("`{}` is no `Choice`, and has no words to narrow", **name)]
+    #[error("`{}` is not a `Choice`: it has no words to narrow", **name)]
     NarrowOfOther {
         name: Located<String>,
         declared: Span,
     },
-    #[error("`{}` is no word that is left to narrow", **word)]
+    #[error("`{}` is not a word that is left to narrow", **word)]
     NarrowWord {
         word: Located<String>,
         declared: Span,
         known: Vec<String>,
     },
-    #[error("the value `{}` is called as a word of the param `{param}`", **name)]
+    #[error("the value `{}` has the name of a word of the param `{param}`", **name)]
     ValueIsWord {
         name: Located<String>,
         param: String,
@@ -77,7 +77,7 @@ pub(crate) enum ComposeError {
     Unused { what: Unused, name: Located<String> },
 }
 
-/// What of a document nothing uses.
+/// Part of a document that nothing uses.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Unused {
     Value,
@@ -112,7 +112,7 @@ impl Unused {
     }
 }
 
-/// What is wrong with two names that are one.
+/// Describes a clash of two names.
 fn same_name(name: &str, known: &str, what: &str) -> String {
     if name == known {
         format!("two of the name `{name}`: every {what} needs its own")

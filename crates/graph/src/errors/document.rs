@@ -7,7 +7,7 @@ use crate::{
     source::span::{Located, SourceFile, Span},
 };
 
-/// What is wrong with the text of a document.
+/// Mistakes in the text of a document.
 #[derive(Clone, Debug, thiserror::Error)]
 pub(crate) enum DocumentError {
     #[error("the file `{}` holds no document", .0.name)]
@@ -57,11 +57,11 @@ pub(crate) enum DocumentError {
         count: usize,
         most: usize,
     },
-    #[error("`{1}` is no name: {2}")]
+    #[error("`{1}` is not a name: {2}")]
     Name(Span, String, NameFault),
     #[error("`{}` is a word of the language and names no material, group or include", **.0)]
     Reserved(Located<Name>),
-    #[error("`{1}` is no name: give the include one, `name: \"…\"`")]
+    #[error("`{1}` is not a name: give the include one, `name: \"…\"`")]
     Unnamed(Span, String),
     #[error("`{1}` has no value")]
     BareWord(Span, String),
@@ -69,11 +69,11 @@ pub(crate) enum DocumentError {
     Expose(Span),
     #[error("a name in quotes is needed here")]
     NoString(Span),
-    #[error("this is no tuple of numbers")]
+    #[error("a tuple of numbers is needed here")]
     NoTuple(Span),
-    #[error("this is no `load`")]
+    #[error("this is not a value of `load`")]
     Load(Span),
-    #[error("this is no write mask")]
+    #[error("a write mask is needed here")]
     WriteMask(Span),
     #[error("an area is four whole numbers: `(x, y, width, height)`")]
     Area(Span),
@@ -81,7 +81,7 @@ pub(crate) enum DocumentError {
     Canvas(Span),
     #[error("clearing knows no area")]
     ClearInArea { clear: Span, area: Span },
-    #[error("this is no list of items")]
+    #[error("a list of items is needed here")]
     Data(Span),
     #[error("an input's format is written out")]
     InputFormat(Span),
@@ -94,7 +94,7 @@ pub(crate) const PARAM_TYPES: [&str; 8] = [
     "F32", "I32", "U32", "Bool", "Vec2", "Vec3", "Vec4", "Choice",
 ];
 
-/// What an entry of a section looks like, and the kinds that there are.
+/// Returns an example of an entry of a section, and the kinds that it may have.
 fn kinds(section: &str) -> (&'static str, &'static [&'static str]) {
     match section {
         "params" => ("for example `U32(name: \"…\", default: 1)`", &PARAM_TYPES),
@@ -175,7 +175,7 @@ impl IntoDiagnostic for DocumentError {
     }
 }
 
-/// What changed since format 2, for its authors.
+/// Changes since format 2, for its authors.
 const FORMAT_2: &str = "this is format 3 (docs/authoring.md): write `format: 3`; `refused` of a \
     param is `narrow` of the document; shadow maps come from `shared/create_shadow_map.ron` and \
     their place from `shared/fit_map.ron`, which give `map_layers` and `map_is_projective`, too: \
@@ -183,7 +183,7 @@ const FORMAT_2: &str = "this is format 3 (docs/authoring.md): write `format: 3`;
     `eye` is `camera`, `tighten` is `fit_to_receivers`, `focus` is `warp`; a shader `x_masked` is \
     `x` with `imports`";
 
-/// What changed since format 1.
+/// Changes since format 1.
 const FORMAT_1: &str = "this is format 3 (docs/authoring.md): a param is `U32(name: …)`, an \
     expression stands in quotes (`size: \"map_size\"`, `count: \"scene.indices.count\"`), \
     `\"x.previous\"` and `\"x.mip[1]\"` are references, included documents state `inputs` and \
@@ -211,7 +211,7 @@ impl DocumentError {
             Self::Expose(span) => diagnostic.at(span, "").help(
                 "write `expose: [\"map_size\"]`, or `expose: All` for every param that is not set",
             ),
-            Self::Unnamed(span, _) => diagnostic.at(span, "the include would be called so"),
+            Self::Unnamed(span, _) => diagnostic.at(span, "this would be its name"),
             Self::BareWord(span, _) => diagnostic.at(span, "").help(
                 "an expression stands in quotes, `\"viewport.size / 2\"`; a word of a Choice has \
                  small letters",

@@ -19,7 +19,7 @@ pub(crate) enum EditError {
         name: Located<String>,
         known: Vec<String>,
     },
-    #[error("`{}` is no word of `{}` any more", **word, **name)]
+    #[error("`narrow` brings back the word `{}` of `{}`", **word, **name)]
     Widens {
         name: Located<String>,
         word: Located<Name>,

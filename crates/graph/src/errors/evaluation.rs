@@ -29,7 +29,7 @@ pub(crate) enum EvaluationError {
     DivisionByZero(Span),
     #[error("the result is larger than a number can be")]
     Overflow(Span),
-    #[error("`{word}` is none of the words")]
+    #[error("`{word}` is not one of the words")]
     NoSuchWord {
         span: Span,
         word: String,
@@ -87,7 +87,7 @@ impl EvaluationError {
             what: if is_material {
                 format!("`{name}` is a material: name an attribute of it, `{name}.size`")
             } else {
-                format!("no param is called `{name}`")
+                format!("unknown param `{name}`")
             },
             word: name.to_owned(),
             known: if is_material { Vec::new() } else { known },

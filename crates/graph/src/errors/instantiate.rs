@@ -1,4 +1,4 @@
-//! What is wrong between documents: params, inputs, outputs, names.
+//! Mistakes between documents: params, inputs, outputs, names.
 
 use crate::{
     diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
@@ -95,7 +95,7 @@ impl IntoDiagnostic for ParamError {
                 declared,
                 ..
             } => diagnostic
-                .at(span, "no param here is called so")
+                .at(span, "no param here has this name")
                 .at(declared, "it has no default")
                 .help(format!(
                     "declare one, or give it a value: `set: {{\"{name}\": …}}`"
@@ -104,7 +104,7 @@ impl IntoDiagnostic for ParamError {
     }
 }
 
-/// What does not pass between two documents.
+/// Mistakes at the border between two documents.
 #[derive(Clone, Debug, thiserror::Error)]
 pub(crate) enum InterfaceError {
     /// Two includes of one content, between which a pass writes what they read or write.
@@ -116,7 +116,7 @@ pub(crate) enum InterfaceError {
         span: Span,
         by: Span,
     },
-    #[error("`{}` is a value, and no material", **.0)]
+    #[error("`{}` is a value, not a material", **.0)]
     IsValue(Located<String>),
     #[error("`{document}` asks for `{name}`, {kind}")]
     NoInput {
@@ -144,7 +144,7 @@ pub(crate) enum InterfaceError {
         expected: String,
         found: String,
     },
-    #[error("the input `{}` is written, and is no output", **.0)]
+    #[error("the input `{}` is written, but is not an output", **.0)]
     WrittenInput(Located<String>, Span),
     #[error("`{document}` has no input, output or param `{}`", **name)]
     Unused {
@@ -165,10 +165,10 @@ pub(crate) enum InterfaceError {
         why: String,
         declared: Span,
     },
-    #[error("nothing is called `{}`", **name)]
+    #[error("unknown material `{}`", **name)]
     Unknown {
         name: Located<String>,
-        /// What the file gives that holds the name, where it is a document that was included.
+        /// File in which the name stands.
         document: String,
         known: Vec<String>,
     },
@@ -180,7 +180,7 @@ pub(crate) enum InterfaceError {
     },
     #[error("`{}` has no content of its own", **.0)]
     Namespace(Located<String>),
-    #[error("there is no `{text}`")]
+    #[error("`{text}` does not exist")]
     Range {
         text: String,
         span: Span,
@@ -248,7 +248,7 @@ impl IntoDiagnostic for InterfaceError {
                 known,
                 ..
             } => diagnostic
-                .at(span, "nothing here is called so")
+                .at(span, "nothing here has this name")
                 .at(declared, "asked for here")
                 .suggest(&name, known)
                 .help(format!("bind what is meant: `bind: {{\"{name}\": \"…\"}}`")),
@@ -276,7 +276,7 @@ impl IntoDiagnostic for InterfaceError {
                 .at(name.span.clone(), "an input")
                 .at(by, "written here")
                 .help(format!(
-                    "name it among the `outputs`, so that who includes it knows; or make it a \
+                    "name it among the `outputs`, so that its includers know; or make it a \
                      material, and take the input of an extended document out: \
                      `inputs: [Remove(name: \"{}\")]`",
                     *name

@@ -14,7 +14,7 @@ use crate::{
 pub(crate) enum SyntaxFault {
     #[error("`{1}` has no meaning here")]
     Sign(Span, char),
-    #[error("this is no number")]
+    #[error("`{}` is not a number", text(.0))]
     Number(Span),
     #[error("the expression is too long")]
     TooLong(Span, usize),
@@ -24,9 +24,9 @@ pub(crate) enum SyntaxFault {
         found: String,
         expected: String,
     },
-    #[error("`{}` is no name", text(.0))]
+    #[error("`{}` is not a name", text(.0))]
     Name(Span, NameFault),
-    #[error("no function is called `{}`", **.0)]
+    #[error("unknown function `{}`", **.0)]
     Function(Located<String>),
     #[error("wgpu has no feature `{}`", **.0)]
     Feature(Located<String>),
@@ -37,7 +37,7 @@ pub(crate) enum SyntaxFault {
         expected: usize,
         found: usize,
     },
-    /// What stands at the end of a reference stands elsewhere, or in an expression.
+    /// End of a reference that stands elsewhere, or in an expression.
     #[error("`{}` does not stand here", text(.0))]
     Part(Span, &'static str),
     #[error("strings of the language have no escapes")]
@@ -77,12 +77,14 @@ impl IntoDiagnostic for SyntaxFault {
                 diagnostic.at(name.span.clone(), "").suggest(&name, known)
             }
             Self::Part(span, "number") => diagnostic
-                .at(span, "a part of a material is no number")
+                .at(span, "a part of a material is not a number")
                 .help(format!("ask for an attribute of it: {}", attributes())),
             Self::Part(span, "attribute") => {
                 diagnostic.at(span, "an attribute, where a material is named")
             }
-            Self::Part(span, "mip") => diagnostic.at(span, "a mip of what?"),
+            Self::Part(span, "mip") => {
+                diagnostic.at(span, "`.mip[…]` follows the name of a material")
+            }
             Self::Part(span, _) => diagnostic.at(
                 span,
                 "`.previous` and `.mip[…]` end a reference, in this order",

@@ -80,7 +80,7 @@ pub(crate) enum LinkError {
         size: u64,
         span: Span,
     },
-    #[error("pass `{}` binds `{global}`, but nothing is called so", **pass)]
+    #[error("pass `{}` binds the unknown material `{global}`", **pass)]
     UnknownGlobal {
         global: String,
         span: Span,
@@ -128,7 +128,7 @@ pub(crate) enum LinkError {
     },
     #[error("the override `{}` has no value", **.0)]
     OverrideWithout(Located<String>),
-    #[error("`{word}` is no word of `{name}`")]
+    #[error("`{name}` has no word `{word}`")]
     UnknownWord {
         name: String,
         word: String,
@@ -142,7 +142,7 @@ pub(crate) enum LinkError {
         found: String,
         span: Span,
     },
-    #[error("no param is called `{member}`, which the shader's `params` holds")]
+    #[error("unknown param `{member}` in the shader's `params`")]
     UnknownMember {
         member: String,
         span: Span,
@@ -152,7 +152,7 @@ pub(crate) enum LinkError {
     },
     #[error("`params.index` is the number of the repetition, a u32")]
     IndexMember(Span),
-    #[error("`params.{member}` is no number and no vector, and cannot be set")]
+    #[error("`params.{member}` cannot be set: it is neither a number nor a vector")]
     MemberIsNoVector { member: String, span: Span },
     #[error(
         "param `{}` is {width} × {scalar} in a shader, `params.{member}` is not", *param.name
@@ -356,7 +356,7 @@ pub(crate) enum TextureMisfit {
     StorageSamples(u32),
     #[error("it has several mips, a storage texture is one")]
     StorageMips,
-    #[error("it is no 3D texture")]
+    #[error("it is not a 3D texture")]
     Flat,
     #[error("it is a 3D texture")]
     Solid,
@@ -511,7 +511,7 @@ impl IntoDiagnostic for LinkError {
             Self::OverrideWithout(name) => diagnostic
                 .at(
                     name.span.clone(),
-                    "no param that is a single number is called so",
+                    "no param that is a single number has this name",
                 )
                 .help(format!(
                     "declare a param `{0}` with a single number, `set` it, or write \
@@ -549,7 +549,7 @@ impl IntoDiagnostic for LinkError {
 }
 
 impl LinkError {
-    /// What a document says that a pass reads.
+    /// Explains mistakes in the `reads` of a pass.
     fn explain_reads(self, diagnostic: Diagnostic) -> Diagnostic {
         match self {
             Self::ReadsNot { name, .. } => diagnostic

@@ -1,4 +1,4 @@
-//! What can be wrong, phase by phase, and how it is told: kind, words, places, the way out.
+//! Mistakes of each phase and their messages: kind, words, places, the way out.
 //!
 //! A phase reports a variant; nothing else knows how it reads.
 

@@ -1,4 +1,4 @@
-//! What a plan is asked for and cannot give.
+//! Requests that a plan cannot meet.
 
 use crate::{
     diagnostics::{code::Code, diagnostic::Diagnostic, reports::IntoDiagnostic},
@@ -19,7 +19,7 @@ pub(crate) enum OutputError {
         name: String,
         known: Vec<String>,
     },
-    #[error("there is no pass `{name}` to read a material after")]
+    #[error("unknown pass `{name}` to read a material after")]
     NoPass { name: String, known: Vec<String> },
     #[error("`{0}` cannot be read back")]
     Unsized(String),

@@ -61,7 +61,7 @@ pub(crate) enum SizeError {
     LayersOf3d(Located<String>),
     #[error("the file brings its {1}")]
     FileHas(Located<String>, &'static str),
-    #[error("there is no picture `{}`", **.0)]
+    #[error("picture `{}` not found", **.0)]
     NoPicture(Located<String>, Vec<String>),
     #[error("the picture `{}` cannot be read", **.0)]
     Picture(Located<String>, String),

@@ -12,7 +12,7 @@ pub(crate) enum ImportError {
     #[error("the shader `{}` lies outside the shader folders", **.0)]
     Outside(Located<String>),
     /// Where it was looked for, and what it may have been meant to be.
-    #[error("there is no shader `{}.wgsl`", **.0)]
+    #[error("shader `{}.wgsl` not found", **.0)]
     NoShader(Located<String>, Vec<String>, Option<String>),
     #[error("the shader `{}.wgsl` cannot be read", **.0)]
     Unreadable(Located<String>, String),
@@ -20,7 +20,7 @@ pub(crate) enum ImportError {
     Unquoted(Span),
     #[error("the import `{}` leaves the shader folder", **.0)]
     Leaves(Located<String>),
-    #[error("there is no file `{}` to import", **.0)]
+    #[error("imported file `{}` not found", **.0)]
     NoFile(Located<String>, Vec<String>, Option<String>),
     #[error("`{}` cannot be read", **.0)]
     UnreadableFile(Located<String>, String),
@@ -101,7 +101,7 @@ pub(crate) enum ShaderError {
     TooDeep { file: String, most: usize, at: Span },
     #[error("`{file}` has more than {most} declarations, those of its imports included")]
     TooManyDeclarations { file: String, most: usize, at: Span },
-    /// What naga says, with its places.
+    /// Message of naga, with its places.
     #[error("{file} {what}")]
     Naga {
         /// In backquotes, with the shader that imports it if it is not that itself.

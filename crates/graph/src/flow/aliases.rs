@@ -31,8 +31,8 @@ pub struct Aliases {
 
 /// Gives every own texture and buffer with a lifetime its allocation.
 ///
-/// Memory is handed on only to a resource whose first use provably overwrites all of it: what is
-/// left of another's content can then not be read. `kept` ones are needed beyond the frame and have
+/// Memory is handed on only to a resource whose first use provably overwrites all of it. So the
+/// rest of another's content cannot be read. `kept` ones are needed beyond the frame and have
 /// memory of their own.
 pub(crate) fn aliases(
     view: GraphView<'_>,
@@ -89,7 +89,7 @@ pub(crate) fn aliases(
     found
 }
 
-/// Whether a pass overwrites everything of a resource before it reads any of it.
+/// True if a pass overwrites all of a resource before it reads any of it.
 fn overwritten(pass: &LinkedPass, resource: &Resource, id: ResourceId) -> bool {
     let uses = || {
         pass.accesses
@@ -102,7 +102,7 @@ fn overwritten(pass: &LinkedPass, resource: &Resource, id: ResourceId) -> bool {
     };
     let texture = match &resource.kind {
         ResourceKind::Texture(texture) => texture,
-        // Of items by themselves nobody knows whether they are all there are.
+        // Items that are used one by one may not be all there are.
         _ => {
             let whole = uses().all(|access| access.part.items().is_none());
             return whole && covers_first(&mut uses());
@@ -130,7 +130,7 @@ fn overwritten(pass: &LinkedPass, resource: &Resource, id: ResourceId) -> bool {
     (0..texture.mips).all(|mip| (0..texture.mip_layers(mip)).all(|layer| covers(mip, layer)))
 }
 
-/// Whether two resources would be made the same way.
+/// True if two resources would be made the same way.
 fn alike(a: &Resource, of_a: &Lifetime, b: &Resource, of_b: &Lifetime) -> bool {
     let same = match (&a.kind, &b.kind) {
         (ResourceKind::Texture(a), ResourceKind::Texture(b)) => a == b,

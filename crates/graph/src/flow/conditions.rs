@@ -25,7 +25,7 @@ pub enum When {
     Follows,
 }
 
-/// What the run conditions of a schedule come to. Every frame reads it, hence it is flat.
+/// Run conditions of a schedule, worked out. They are flat because every frame reads them.
 #[derive(Clone, Debug, Default)]
 pub struct Conditions {
     /// For every position in the schedule, the first position of its group. A group runs or is
@@ -44,13 +44,13 @@ pub struct Conditions {
 }
 
 impl Conditions {
-    /// Whether a pass of a group writes a resource.
+    /// True if a pass of a group writes a resource.
     pub fn is_written_by(&self, group: usize, id: ResourceId) -> bool {
         let mut written = self.written.iter();
         written.any(|(at, of)| *of == id && self.group[*at] == group)
     }
 
-    /// Whether, of the groups that run, a pass writes a resource before the pass at `at` reads it.
+    /// True if a pass of the groups that run writes a resource before the pass at `at` reads it.
     pub fn is_written_before(
         &self,
         (id, keep): (ResourceId, bool),
@@ -185,7 +185,7 @@ fn join(group: &mut [usize], a: usize, b: usize) {
 }
 
 fn check([a, b]: [&LinkedPass; 2], name: &str, reports: &mut Reports) {
-    // What is captured between two writes runs when these do.
+    // A capture between two writes runs when these do.
     if a.run == b.run || [a, b].iter().any(|pass| pass.is_capture()) {
         return;
     }

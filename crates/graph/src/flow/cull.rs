@@ -4,8 +4,8 @@ use super::order::{Hazard, Order};
 use crate::link::pass::PassId;
 use petgraph::{Direction, graph::NodeIndex, visit::EdgeRef};
 
-/// Whether each pass is live: it makes one of the `roots`, or something that a live pass reads in
-/// this frame or, by `keeps`, in the next one.
+/// Finds the live passes. A live pass makes one of the `roots`, or something that a live pass reads
+/// in this frame or, by `keeps`, in the next one.
 pub(crate) fn live<K: IntoIterator<Item = PassId>>(
     order: &Order,
     roots: impl IntoIterator<Item = PassId>,

@@ -1,4 +1,5 @@
-//! What the live passes use each resource for; what none of them uses is never made.
+//! Lifetimes and usages of resources, from the live passes. A resource that none of them uses is
+//! never made.
 
 use super::view::GraphView;
 use crate::{
@@ -13,9 +14,9 @@ pub type Lifetimes = BTreeMap<ResourceId, Lifetime>;
 /// Uses of one resource by the passes of a schedule.
 #[derive(Clone, Debug)]
 pub struct Lifetime {
-    /// What a texture is used for.
+    /// Usages of a texture.
     pub textures: wgt::TextureUsages,
-    /// What a buffer is used for.
+    /// Usages of a buffer.
     pub buffers: wgt::BufferUsages,
     /// Position in the schedule of the first pass that uses it.
     pub first: usize,

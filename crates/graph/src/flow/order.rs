@@ -57,9 +57,9 @@ struct State {
     readers: BTreeSet<PassId>,
 }
 
-/// The order of all passes, from which follows which of them are live. Reads of what nobody wrote
-/// are reported for the passes of the valid prefix: below it a pass is missing that might have
-/// written it.
+/// Orders all passes, from which follows which of them are live. A read before any write is
+/// reported for the passes of the valid prefix only: below it a missing pass might have written the
+/// content.
 pub(crate) fn order(view: GraphView<'_>, first_invalid: usize, reports: &mut Reports) -> Order {
     let (order, uninitialized) = walk(view, |_| true);
     for (pass, access) in uninitialized
@@ -77,13 +77,13 @@ pub(crate) fn order_of_live(view: GraphView<'_>, live: &[bool]) -> Order {
     walk(view, |pass| live[pass.0]).0
 }
 
-/// What the passes that run depend on, and through which resources.
+/// Finds the passes that the running ones depend on, and the resources that cause it.
 pub(crate) fn dependences(view: GraphView<'_>, runs: impl Fn(PassId) -> bool) -> Dependences {
     walk(view, runs).0.dependences
 }
 
-/// Runs through the file as a sequential program and notes what depends on what, and the reads of
-/// what nobody wrote.
+/// Runs through the file as a sequential program. Notes the dependences of passes, and reads before
+/// any write.
 fn walk<'p>(
     view: GraphView<'p>,
     runs: impl Fn(PassId) -> bool,
@@ -165,7 +165,7 @@ fn explain(reader: PassId, access: &Access, view: GraphView<'_>, order: &Order) 
             other.writes && other.resource == access.resource && other.part.overlaps(&access.part)
         })
     };
-    // A pass that changes what it reads depends on no pass below, whoever else changes it there: it
+    // A pass that changes its own input depends on no pass below, even if one changes it there: it
     // lacks a beginning.
     let itself = access.writes
         || pass

@@ -13,7 +13,7 @@ use std::{
 pub struct Schedule {
     /// The passes; a *position* is a place in this list.
     pub passes: Vec<PassId>,
-    /// What each resource is used for, from where to where.
+    /// Use of each resource: for what, and from which pass to which.
     pub lifetimes: Lifetimes,
     /// Which passes run or are skipped together, and when.
     pub conditions: Conditions,

@@ -185,7 +185,7 @@ fn edges_of_each_hazard() {
             vec![vec![whole(0, Write)], vec![whole(0, Write)]],
             vec![(0, 1, WAW)],
         ),
-        // What p1 does not write is still p0's: p1 needs p0.
+        // p1 leaves some of p0's content in place: p1 needs p0.
         (
             "p0 ─▶ r0 ◀─overwrites some─ p1",
             vec![vec![whole(0, Write)], vec![whole(0, Partly)]],
@@ -265,7 +265,7 @@ fn only_what_the_outputs_need_runs() {
             vec![whole(0, Read)],
             vec![0],
         ),
-        // A covered version is nobody's: p0 is not run though p1 writes after it.
+        // No pass uses a covered version: p0 is not run though p1 writes after it.
         (
             "p0 ─▶ r0 ◀─covers─ p1 ; out r0",
             vec![vec![whole(0, Write)], vec![whole(0, Write)]],
@@ -335,7 +335,7 @@ fn only_what_the_outputs_need_runs() {
 /// ```text
 /// p0 ─writes all─▶ r0 ◀─covers mip 0─ p1 ◀─covers mip 0─ p2 ; p3 reads r0
 /// ```
-/// p1 is nobody's, but that p0 comes before p2 was known through p1 only.
+/// No pass needs p1, but p0 was known to come before p2 through p1 only.
 #[test]
 fn order_through_a_culled_pass() {
     let case = case(&[
@@ -360,7 +360,7 @@ fn reads_of_nothing() {
             vec![Code::ReadBeforeWrite],
         ),
         (
-            "p0 counts in r0, which nobody cleared",
+            "p0 counts in r0, which was not cleared",
             vec![vec![whole(0, Change)]],
             vec![Code::ReadBeforeWrite],
         ),
@@ -387,9 +387,9 @@ fn reads_of_nothing() {
             ],
             vec![Code::ReadBeforeWrite],
         ),
-        // Neither needs the other's result: what both lack is a beginning.
+        // Neither needs the other's result: both lack a beginning.
         (
-            "p0 adds to r0 ; p1 adds to r0 : nobody cleared it",
+            "p0 adds to r0 ; p1 adds to r0 : it was not cleared",
             vec![vec![whole(0, Change)], vec![whole(0, Change)]],
             vec![Code::ReadBeforeWrite],
         ),
@@ -398,7 +398,7 @@ fn reads_of_nothing() {
             vec![vec![whole(0, Write)], vec![(0, Read, 0..2, 0..1)]],
             vec![Code::ReadBeforeWrite],
         ),
-        // Some of a buffer that nobody wrote before is no read.
+        // A partial write of a buffer does not read its earlier content.
         (
             "p0 ─partly─▶ r0 ─▶ p1",
             vec![vec![whole(0, Partly)], vec![whole(0, Read)]],
@@ -455,11 +455,11 @@ fn ten_thousand_passes() {
 
 type Cell = (usize, u32, u32);
 
-/// Who wrote what a pass sees in a cell.
+/// Writer of the content that a pass sees in a cell.
 type Seen = BTreeMap<(usize, Cell), Option<usize>>;
 
-/// What each pass of `sequence` sees in the cells that it reads, when the passes run in that
-/// sequence: who wrote it.
+/// Runs the passes in the order of `sequence`. Returns the writers of the cells that each pass
+/// reads, and the last writer of each cell.
 fn interpret(passes: &[LinkedPass], sequence: &[usize]) -> (Seen, BTreeMap<Cell, usize>) {
     let mut memory: BTreeMap<Cell, usize> = BTreeMap::new();
     let mut seen = BTreeMap::new();
@@ -526,7 +526,7 @@ proptest! {
         wanted in prop::collection::vec(0..RESOURCES, 0..3),
         rank in prop::collection::vec(any::<u32>(), 11),
     ) {
-        // What nobody wrote is cleared by a first pass.
+        // A first pass clears everything, so that no read comes before a write.
         let clears = (0..RESOURCES).map(|resource| (resource, Write, 0..2, 0..2)).collect();
         let uses: Vec<Vec<Use>> = std::iter::once(clears).chain(uses).collect();
         let case = case(&uses);

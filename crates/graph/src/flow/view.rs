@@ -1,4 +1,4 @@
-//! What the phases of this folder look at: linked passes, and the resources that they use.
+//! Input of the phases of this folder: linked passes, and the resources that they use.
 
 use crate::{
     link::pass::{LinkedPass, PassId},
@@ -29,13 +29,13 @@ impl<'p> GraphView<'p> {
     }
 }
 
-/// What has versions: mips and layers of textures, of one aspect; of buffers the stretches of items
-/// that accesses tell apart.
+/// Parts that have versions: mips and layers of textures, of one aspect; of buffers the stretches
+/// of items that accesses tell apart.
 #[derive(Debug)]
 pub(crate) struct Subresources {
     /// Where stretches of layers or items begin and end, for resources of which parts are used.
     cuts: BTreeMap<ResourceId, Vec<u32>>,
-    /// Of each resource, how far its layers or items reach.
+    /// Extent of each resource in layers or items.
     reach: Vec<Reach>,
 }
 
@@ -56,7 +56,7 @@ impl Reach {
                 let is_combined = texture.format.is_combined_depth_stencil_format();
                 (texture.layers, texture.is_3d, is_combined)
             }
-            // Of a buffer without a count nobody knows where its items end.
+            // Without a count the end of a buffer's items is not known.
             ResourceKind::Buffer(buffer) => {
                 let items = buffer
                     .count
@@ -115,7 +115,7 @@ impl Subresources {
             (wgt::TextureAspect::All, true) => 0..2,
             _ => 0..1,
         };
-        // A part that nobody uses by itself is among those that somebody does.
+        // A part without an access of its own consists of parts that have one.
         let covers =
             move |begin: &u32, end: &u32| *begin < part.layers.end && part.layers.start < *end;
         let stretches = cuts.iter().zip(cuts.iter().skip(1));

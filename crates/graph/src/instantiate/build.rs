@@ -34,15 +34,14 @@ use std::{
 };
 
 /// Most passes (groups and includes among them), and most materials, of a graph. A guard against
-/// documents that double with each include: what is above takes memory and time that nobody means
-/// to spend.
+/// documents that double with each include: more would take absurd time and memory.
 const MOST: usize = 16_384;
 
-/// What is around an entry.
+/// Surroundings of an entry.
 #[derive(Clone)]
 pub(super) struct EntryContext<'a> {
     pub scope: ScopeId,
-    /// What names of passes begin with.
+    /// Prefix of the names of passes.
     pub prefix: String,
     pub run: Option<(Run, bool)>,
     pub bind: Vec<Inherited<'a, Reference>>,
@@ -60,8 +59,8 @@ impl<'a> EntryContext<'a> {
         }
     }
 
-    /// What is around the entries of an included document: nothing that groups outside say of
-    /// names, for these are not its own.
+    /// Returns the surroundings of the entries of an included document. Groups outside say nothing
+    /// of its names, for these are not their own.
     pub fn inside(&self, scope: ScopeId) -> Self {
         Self {
             prefix: self.prefix.clone(),
@@ -77,11 +76,11 @@ pub(super) struct Builder<'a, 'r> {
     first_invalid: Option<usize>,
     pub interfaces: Vec<Interface>,
     plan_inputs: PlanInputs,
-    /// Whether includes of one content are one.
+    /// True if includes of one content are one.
     pub(super) merges: bool,
     pub(super) sites: Vec<Site>,
     pub(super) merged: Vec<Merge>,
-    /// What groups say, and whether something in them asks for it.
+    /// Settings of groups: the group, the name, and true if something in the group asks for it.
     said: Vec<(&'a Located<Name>, &'a Located<String>, bool)>,
     spent: usize,
     full: Option<ErrorGuaranteed>,
@@ -140,7 +139,7 @@ impl<'a> Builder<'a, '_> {
                     document: document.file.name.to_string(),
                     feature: feature.clone(),
                 };
-                // Whoever may not go on is told so by the report.
+                // The report suffices: nothing here depends on the result.
                 let _ = self.reports.unsupported(error);
             }
         }
@@ -326,7 +325,7 @@ impl<'a> Builder<'a, '_> {
         self.first_invalid.get_or_insert(above);
     }
 
-    /// Whether an entry or output is there.
+    /// True if an entry or output exists.
     pub fn is_there(
         &mut self,
         condition: Option<&Expr>,
@@ -567,7 +566,7 @@ impl<'a> Builder<'a, '_> {
         said
     }
 
-    /// What groups say that somebody asks for.
+    /// Returns the settings of groups that are asked for.
     pub fn asked<T>(
         &self,
         said: &[Inherited<'a, T>],
@@ -587,7 +586,7 @@ impl<'a> Builder<'a, '_> {
         }
     }
 
-    /// Whether a shader of a pass has such a global that the pass itself says nothing of.
+    /// True if a shader of a pass has this global and the pass itself does not bind it.
     fn asks_global(&self, scope: ScopeId, entry: &Entry, name: &str) -> bool {
         let said = entry.bind.iter().any(|(own, _)| **own == *name);
         !said
@@ -638,7 +637,7 @@ impl<'a> Builder<'a, '_> {
         // Finding one may add others.
         while number < self.symbols.resources.len() {
             let id = self.symbols.id(number);
-            // Who names one that is broken is told so by what it gets instead.
+            // A broken one is stored as such, and its users find that.
             let _ = self.symbols.resolve_size(id, self.reports);
             number += 1;
         }
@@ -660,7 +659,7 @@ impl<'a> Builder<'a, '_> {
         }
     }
 
-    /// What the root document gives and takes.
+    /// Notes the inputs and outputs of the root document.
     fn root_interface(&mut self, document: &Document, instance: InstanceId, scope: ScopeId) {
         let mut read_only = Vec::new();
         for input in &document.inputs {

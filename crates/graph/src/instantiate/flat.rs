@@ -1,4 +1,4 @@
-//! What the tree of entries becomes: one list of passes.
+//! The tree of entries made flat: one list of passes.
 
 use super::{
     scopes::{InstanceId, Position},
@@ -53,7 +53,7 @@ pub(crate) struct Flat<'a> {
 pub(crate) struct Merge {
     /// The numbers of the passes between the end of the one that stands there and this one.
     pub between: Range<usize>,
-    /// What it reads from outside.
+    /// Resources from outside that it reads.
     pub inputs: Vec<ResourceId>,
     /// The resources of the one that stands there.
     pub owned: Range<usize>,
@@ -71,13 +71,13 @@ pub(crate) struct FlatPass<'a> {
     pub run: Run,
     /// The value of the expression in [`Run::When`]; true without one.
     pub enabled: bool,
-    /// What groups around it say of its shader's globals.
+    /// Bindings of its shader's globals by groups around it.
     pub bind: Vec<Inherited<'a, Reference>>,
-    /// What groups around it say of its shader's params.
+    /// Values of its shader's params from groups around it.
     pub set: Vec<Inherited<'a, Expr>>,
 }
 
-/// What a group says, with the place where it says it.
+/// Setting of a group, with its place.
 pub(crate) struct Inherited<'a, T> {
     pub name: &'a Located<String>,
     pub value: &'a T,
@@ -94,7 +94,7 @@ impl<T> Clone for Inherited<'_, T> {
 
 impl<T> Copy for Inherited<'_, T> {}
 
-/// What a document gives and takes, to be held against what its passes do.
+/// Inputs and outputs of a document, to be compared with the accesses of its passes.
 pub(crate) struct Interface {
     pub instance: InstanceId,
     pub outputs: Vec<(Located<Name>, Target)>,
@@ -102,7 +102,7 @@ pub(crate) struct Interface {
     pub read_only: Vec<(Located<Name>, Target)>,
 }
 
-/// What decides which entries are there.
+/// Values that decide which entries exist.
 #[derive(Debug, Default)]
 pub(crate) struct PlanInputs {
     pub params: BTreeSet<String>,

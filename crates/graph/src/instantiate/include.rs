@@ -27,7 +27,7 @@ use std::{collections::BTreeMap, sync::Arc};
 /// A material here that an output is written into, with the place that says so.
 type Bound = (Located<String>, Result<Target, ErrorGuaranteed>);
 
-/// What an include says of names of its document, its own words first.
+/// Settings of an include for names of its document, its own before those of groups.
 struct Overrides<'e> {
     bind: Vec<(&'e Located<String>, &'e Reference, Position)>,
     set: Vec<(&'e Located<String>, &'e Expr, Position)>,
@@ -210,7 +210,8 @@ impl<'a> Builder<'a, '_> {
         Ok(())
     }
 
-    /// What an include says, and groups around it of names that its document asks for.
+    /// Returns the settings of an include, and those of groups around it for names that its
+    /// document asks for.
     fn said<'e>(
         &mut self,
         entry: &'e Entry,
@@ -358,8 +359,8 @@ impl<'a> Builder<'a, '_> {
         }
     }
 
-    /// What an include binds besides inputs: outputs, which are written into a material here, and
-    /// names of the scene.
+    /// Returns the bindings of an include besides inputs: outputs, which are written into a
+    /// material here, and names of the scene.
     fn outside(
         &mut self,
         entry: &Entry,
@@ -416,8 +417,8 @@ impl<'a> Builder<'a, '_> {
         (scene, overrides)
     }
 
-    /// What the includer of the document around says of what an include gives: where that passes on
-    /// an output, it is written into the material that its own was bound to.
+    /// Returns the outputs of an include that the document around it passes on. The include writes
+    /// such an output into the material that the document's own output was bound to.
     fn passed_on<'d>(
         &self,
         entry: &Entry,
@@ -548,8 +549,8 @@ impl<'a> Builder<'a, '_> {
         })
     }
 
-    /// What a document gives, by name; and every output with what it is, to be held against what is
-    /// written.
+    /// Returns the names that a document gives, and every output with its target, to be compared
+    /// with the writes.
     fn outputs(
         &mut self,
         document: &Document,
@@ -581,7 +582,7 @@ impl<'a> Builder<'a, '_> {
             if let Ok(target) = &target {
                 outputs.push((name.clone(), target.clone()));
             }
-            // What is bound has its name here already.
+            // A bound output has its name here already.
             let path = output.material.path();
             let is_input = document
                 .inputs

@@ -1,4 +1,4 @@
-//! Sizes of materials: found when somebody first asks for one, each once.
+//! Sizes of materials, each found once, when it is first asked for.
 
 use super::{
     scopes::{Position, Symbol},
@@ -25,9 +25,9 @@ use std::{collections::BTreeSet, sync::Arc};
 const NESTED: usize = 8;
 
 impl SymbolTable<'_> {
-    /// Sees to it that the size of a resource is known. What it is made of comes first, so that no
-    /// chain of sizes is as deep as the stack; only a material that stands in an expression, and is
-    /// made of what the expression is of in turn, is found on the way.
+    /// Finds the size of a resource if it is not known yet. Materials that it is made of come
+    /// first, so that no chain of sizes is as deep as the stack. The exception is a material in an
+    /// expression that is itself made of the expression's material: it is found on the way.
     pub fn resolve_size(
         &mut self,
         id: ResourceId,
@@ -48,7 +48,8 @@ impl SymbolTable<'_> {
     }
 
     fn circular(&self, id: ResourceId, reports: &mut Reports) -> ErrorGuaranteed {
-        // The walk began with the one that is evaluated last: what the first asks for.
+        // The walk began with the one that is evaluated last, which is the one that the first asks
+        // for.
         let mut found = self.evaluating.iter().skip_while(|found| **found != id);
         let resource = self.get(found.nth(1).copied().unwrap_or(id));
         let span = resource.declared.clone();
@@ -75,7 +76,7 @@ impl SymbolTable<'_> {
         }
     }
 
-    /// The materials that the size of one is made of, those whose size nobody has asked for yet.
+    /// Returns the materials that the size of one is made of, if their own sizes are not found yet.
     fn parts(&self, id: ResourceId) -> Vec<ResourceId> {
         let State::Declared(declared) = &self.states[id.index()] else {
             return Vec::new();

@@ -24,7 +24,7 @@ pub(super) struct Content {
     document: *const Document,
     params: Vec<ParamContent>,
     pub inputs: Vec<Target>,
-    /// What stands for names of the scene, the nearest first.
+    /// Targets of names of the scene; the nearest one counts.
     scene: BTreeMap<String, Target>,
     replaced: Replaced,
     run: Option<(Run, bool)>,
@@ -72,7 +72,7 @@ impl Content {
 }
 
 impl Scopes {
-    /// What stands for names of the scene in an instance.
+    /// Returns the targets of names of the scene in an instance.
     pub(super) fn bound_scene(
         &self,
         id: InstanceId,

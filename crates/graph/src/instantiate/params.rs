@@ -100,7 +100,7 @@ impl Params {
     }
 }
 
-/// What defaults and claims may ask besides params.
+/// Values besides params that defaults and claims may ask for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surroundings {
     pub viewport: [u32; 2],
@@ -221,7 +221,7 @@ pub(crate) fn root(
     params
 }
 
-/// What an include sets a param to.
+/// Value that an include sets a param to.
 pub(crate) struct SetParam {
     pub expr: Located<Expr>,
     pub value: Result<Value, ErrorGuaranteed>,
@@ -229,9 +229,9 @@ pub(crate) struct SetParam {
     pub roots: BTreeSet<String>,
 }
 
-/// What an include says of the params of its document.
+/// Settings of an include for the params of its document.
 pub(crate) struct Given<'a> {
-    /// What the params are called where they are exposed: with the include's name, if it has one.
+    /// Names of the params where they are exposed: with the include's name, if it has one.
     pub exposed: BTreeMap<&'a str, String>,
     pub outer: &'a Params,
     /// The include's own place.
@@ -400,8 +400,8 @@ impl Graph {
         wrong.or(bad.copied()).map_or(Ok(params), Err)
     }
 
-    /// What the document promises of itself for these values of params and this viewport, on a
-    /// device with these features.
+    /// Returns the promises of the document about itself for these values of params and this
+    /// viewport, on a device with these features.
     ///
     /// # Errors
     /// If a value does not fit, or a condition has no value.

@@ -17,7 +17,7 @@ use crate::{
 };
 use std::{ops::Range, sync::Arc};
 
-/// What names of an expression stand for at a place of a document.
+/// Meaning of the names of an expression at a place of a document.
 pub(crate) struct At<'w, 'a, 'r> {
     symbols: &'w mut SymbolTable<'a>,
     position: Position,

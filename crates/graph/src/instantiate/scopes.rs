@@ -1,5 +1,5 @@
-//! What a name means in a document: its own materials and inputs, what its includes give, and what
-//! the scene gives. Nothing else crosses the border between two documents.
+//! Meaning of names in a document: its own materials and inputs, and names from its includes and
+//! the scene. Nothing else crosses the border between two documents.
 
 use super::params::Params;
 use crate::{
@@ -32,7 +32,7 @@ pub(crate) struct InstanceId(usize);
 pub(crate) struct Instance {
     pub document: Arc<Document>,
     pub params: Arc<Params>,
-    /// What stands for names of the scene in here, besides what the scene gives itself.
+    /// Targets of names of the scene in here, besides those from the scene itself.
     pub scene: BTreeMap<String, Result<Target, ErrorGuaranteed>>,
     /// Where it is included; `None` for the root.
     pub outer: Option<Outer>,
@@ -48,9 +48,9 @@ pub(crate) struct Instance {
 #[derive(Debug)]
 pub(crate) struct Outer {
     pub scope: ScopeId,
-    /// What stands before the names of its outputs there: `left.`, `lamp[2].`.
+    /// Prefix of the names of its outputs there: `left.`, `lamp[2].`.
     pub namespace: Option<String>,
-    /// What full names of everything else in it begin with.
+    /// Prefix of the full names of everything else in it.
     pub private: String,
 }
 
@@ -60,7 +60,7 @@ struct Scope {
     instance: InstanceId,
     /// The frame around it in the same document.
     parent: Option<ScopeId>,
-    /// What stands before its names in the document: `sample[3].`.
+    /// Prefix of its names in the document: `sample[3].`.
     path: String,
     names: Names,
     /// Their spellings in shaders, those of parts of namespaces included.
@@ -74,7 +74,7 @@ struct Scope {
 /// Names and what they mean.
 pub(crate) type Names = BTreeMap<Name, Symbol>;
 
-/// What a name of a document means.
+/// Meaning of a name of a document.
 #[derive(Clone, Debug)]
 pub(crate) enum Symbol {
     Target(Target),
@@ -82,14 +82,14 @@ pub(crate) enum Symbol {
     Value(ValueId),
     /// Declared with a mistake.
     Invalid(ErrorGuaranteed),
-    /// What a named include gives.
+    /// Names that a named include gives.
     Namespace(Names),
-    /// What each repetition of an entry gives.
+    /// Names that each repetition of an entry gives.
     Repeated(Vec<Names>),
 }
 
 impl Symbol {
-    /// What a name behind a dot may mean; of repetitions, in each of them.
+    /// Returns the meanings of a name behind a dot: of repetitions, one for each of them.
     pub fn named<'m>(&'m self, name: &Name) -> Vec<&'m Self> {
         match self {
             Self::Target(_) | Self::Value(_) | Self::Invalid(_) => Vec::new(),
@@ -160,7 +160,7 @@ impl Scopes {
         self.instance(self.instance_of(scope))
     }
 
-    /// What stands before a frame's names in its document.
+    /// Returns the prefix of a frame's names in its document.
     pub fn path(&self, scope: ScopeId) -> &str {
         &self.scopes[scope.0].path
     }
@@ -212,7 +212,7 @@ impl Scopes {
         self.outwards(scope).find_map(|scope| scope.names.get(name))
     }
 
-    /// What a shader's global of that spelling means.
+    /// Finds the target of a shader's global by its spelling.
     pub fn find_wgsl_name(
         &self,
         scope: ScopeId,
@@ -275,7 +275,7 @@ impl Scopes {
             .find_map(|id| self.instance(id).scene.get(name).cloned())
     }
 
-    /// Whether one instance stands in another one.
+    /// True if one instance stands in another one.
     pub fn is_within(&self, inner: InstanceId, outer: InstanceId) -> bool {
         self.outer_instances(inner).any(|id| id == outer)
     }

@@ -9,13 +9,13 @@ use crate::{
 };
 use std::sync::Arc;
 
-/// Whether the size of a resource is known.
+/// State of a resource's size.
 #[derive(Clone, Debug)]
 pub(super) enum State {
     Known,
-    /// Nobody has asked for it yet.
+    /// Its size has not been asked for yet.
     Declared(Declared),
-    /// It is being found: who asks for it now is what it is made of.
+    /// It is being found: if it is asked for now, it is made of itself.
     Resolving,
     Invalid(ErrorGuaranteed),
 }

@@ -32,7 +32,7 @@ pub(crate) struct SymbolTable<'a> {
     pub request: &'a PlanRequest<'a>,
     pub scopes: Scopes,
     pub resources: Vec<Resource>,
-    /// Of each resource: whether its size is known.
+    /// State of each resource's size.
     pub(super) states: Vec<State>,
     /// The materials whose sizes are being found, each for the sake of the one before.
     pub(super) evaluating: Vec<ResourceId>,
@@ -85,7 +85,7 @@ impl<'a> SymbolTable<'a> {
         ResourceId(self.resources.len() - 1)
     }
 
-    /// Adds a material whose size is found when somebody asks for it.
+    /// Adds a material whose size is found when it is first asked for.
     pub(super) fn declare(&mut self, name: String, declared: Declared) -> ResourceId {
         self.resources.push(Resource {
             name,
@@ -224,7 +224,7 @@ impl<'a> SymbolTable<'a> {
         Target { id, part }
     }
 
-    /// What a reference of a document names.
+    /// Resolves a reference of a document.
     pub fn resolve(
         &mut self,
         reference: &Reference,
@@ -267,7 +267,8 @@ impl<'a> SymbolTable<'a> {
         Ok(target)
     }
 
-    /// What the names of a reference stand for, and the selection behind the last of them.
+    /// Resolves the names of a reference. Returns their meanings, and the selection behind the last
+    /// name.
     fn named<'r>(
         &mut self,
         reference: &'r Reference,
@@ -356,7 +357,7 @@ impl<'a> SymbolTable<'a> {
         })
     }
 
-    /// What a reference names of the scene.
+    /// Resolves a reference to a name of the scene.
     fn of_scene<'r>(
         &mut self,
         reference: &'r Reference,
@@ -412,7 +413,7 @@ impl<'a> SymbolTable<'a> {
         }))
     }
 
-    /// What a name of the scene stands for in a frame.
+    /// Finds the target of a name of the scene in a frame.
     pub fn find_scene(
         &mut self,
         name: &str,
@@ -466,7 +467,7 @@ impl<'a> SymbolTable<'a> {
         self.provided_kind(&name, scope)
     }
 
-    /// What a shader's global of that name stands for in a frame.
+    /// Finds the target of a shader's global of that name in a frame.
     pub fn find_global(
         &mut self,
         global: &str,
@@ -522,8 +523,8 @@ impl<'a> SymbolTable<'a> {
         }
     }
 
-    /// What a command calls so: a resource by its full name, or a part of what the root document
-    /// knows. `None` if nothing is called so.
+    /// Finds the target of a name in a command: a resource by its full name, or a part of one that
+    /// the root document knows. `None` if the name is unknown.
     pub fn find_full(
         &mut self,
         name: &str,
@@ -572,7 +573,8 @@ impl<'a> SymbolTable<'a> {
         resource.keep.then(|| resource.name.clone())
     }
 
-    /// The resource that is last frame's version of another one; what that one is if there is none.
+    /// The resource that is last frame's version of another one; if there is none, the kind of that
+    /// one.
     fn previous(&mut self, base: ResourceId) -> Result<ResourceId, String> {
         if let Some(id) = self.previous.get(&base) {
             return Ok(*id);

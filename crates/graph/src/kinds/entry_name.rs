@@ -15,7 +15,7 @@ pub(crate) enum EntryName {
     Choice(Expr),
 }
 
-/// What stands for no entry point in an [`EntryName`].
+/// Word for no entry point in an [`EntryName`].
 const NO_ENTRY: &str = "none";
 
 impl<'de> Deserialize<'de> for EntryName {

@@ -1,4 +1,4 @@
-//! What a pass kind is: a type that deserialises its own body and lowers it to [`Step`]s.
+//! Pass kinds: types that deserialise their own body and lower it to [`Step`]s.
 
 use super::step::{Names, Operand, Program, Scratch, ShaderUse, Step, Threads};
 use crate::{
@@ -37,12 +37,12 @@ pub(crate) const OF_PASS: [&str; 9] = [
     "reads",
 ];
 
-/// What a [`PassKind`] lowers with: the pass's name, shader and values in, steps and diagnostics
-/// out.
+/// Surroundings in which a [`PassKind`] lowers: the pass's name, shader and values in, steps and
+/// diagnostics out.
 pub struct Lowering<'a> {
     pub(crate) name: &'a Located<Name>,
     pub(crate) shader: Option<&'a Located<String>>,
-    /// What the pass says of its own shader's globals.
+    /// Bindings of the pass for its own shader's globals.
     pub(crate) bind: &'a [(Located<String>, Reference)],
     /// `None` where a document is only read: nothing has a value then.
     pub(crate) environment: Option<&'a mut dyn Environment>,
@@ -142,8 +142,8 @@ impl<'a> Lowering<'a> {
         self.report(Diagnostic::error(code, what).at(expr.span.clone(), ""));
     }
 
-    /// What `of` makes of an expression in the plan's environment; `fallback` where nothing has a
-    /// value, or it is wrong, which was reported.
+    /// Applies `of` to an expression in the plan's environment. Returns `fallback` where nothing
+    /// has a value, or after a mistake, which was reported.
     fn evaluate<T>(
         &mut self,
         fallback: T,
@@ -219,8 +219,8 @@ impl<'a> Lowering<'a> {
         Threads::Texels([edge(0), edge(1), edge(2)])
     }
 
-    /// What an expression with conditions comes to before it is evaluated: the part behind the
-    /// condition that holds; the last where the document is only read.
+    /// Returns the branch of an expression whose condition holds, before it is evaluated; the last
+    /// one where the document is only read.
     pub(crate) fn branch<'e>(&mut self, expr: &'e Expr) -> &'e Expr {
         let mut expr = expr;
         while let ExprKind::Ternary(of) = &expr.kind {

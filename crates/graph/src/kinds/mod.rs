@@ -1,4 +1,4 @@
-//! Pass kinds: what an entry of `passes` may be, and what it lowers to. A kind is one file.
+//! Pass kinds: the entries that `passes` may have, and their lowering. A kind is one file.
 
 mod clear;
 mod compute;

@@ -49,14 +49,13 @@ pub(super) struct Raster {
     /// one of `ccw` and `cw` by a condition.
     #[serde(default = "counter_clockwise")]
     front_face: Chosen<Winding>,
-    /// What vertices make; `TriangleList` without it.
+    /// Primitives that vertices form; `TriangleList` without it.
     #[serde(default)]
     topology: Topology,
-    /// Whether a pixel that a triangle touches anywhere counts, not only one whose centre it
-    /// covers.
+    /// Counts every pixel that a triangle touches, not only those whose centre it covers.
     #[serde(default)]
     conservative: bool,
-    /// Whether what lies before the near or behind the far plane is drawn, its depth clamped.
+    /// Draws what lies before the near or behind the far plane, its depth clamped.
     #[serde(default)]
     unclipped: bool,
     /// The vertex entry point, where the shader has several.
@@ -132,7 +131,7 @@ enum Winding {
     Cw,
 }
 
-/// What vertices make.
+/// Primitives that vertices form.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 enum Topology {

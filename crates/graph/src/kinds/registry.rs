@@ -22,12 +22,12 @@ type Parse = fn(&[Field], &Span) -> Result<Arc<dyn PassKind>, Diagnostic>;
 pub(crate) struct Kind {
     pub name: &'static str,
     pub parse: Parse,
-    /// What its fields may be, where that was said.
+    /// Schema of its fields, where one was given.
     #[cfg(feature = "schema")]
     pub schema: Option<Described>,
 }
 
-/// What the fields of a kind may be.
+/// Function that makes the schema of a kind's fields.
 #[cfg(feature = "schema")]
 type Described = fn(&mut schemars::SchemaGenerator) -> schemars::Schema;
 

@@ -1,10 +1,10 @@
-//! What passes are made of: draws, dispatches, copies and clears. One type over names (as a pass
-//! kind lowers to them), ids (linked with resources and shaders) and handles (made on a device).
+//! Steps of passes: draws, dispatches, copies and clears. One type over names (as a pass kind
+//! lowers to them), ids (linked with resources and shaders) and handles (made on a device).
 
 use crate::{language::syntax::Reference, source::span::Located};
 use std::fmt::Debug;
 
-/// What the steps of a pass are written in: [`Names`], ids or handles.
+/// Form of the steps of a pass: [`Names`], ids or handles.
 pub trait Stage: Clone + Debug + PartialEq {
     /// An attachment: one mip of one layer of a texture.
     type Attachment: Clone + Debug + PartialEq;
@@ -87,7 +87,7 @@ pub enum Step<S: Stage> {
     },
     /// A clear of a texture or buffer.
     Clear {
-        /// What is cleared.
+        /// Target of the clear.
         target: S::Operand,
         /// Value per channel of a texture; buffers are cleared to zero.
         value: [f64; 4],
@@ -95,7 +95,7 @@ pub enum Step<S: Stage> {
 }
 
 impl<S: Stage> Step<S> {
-    /// What the step runs.
+    /// Returns the program that the step runs.
     pub fn program(&self) -> Option<&S::Program> {
         match self {
             Self::Draw(draw) => Some(&draw.program),
@@ -162,13 +162,13 @@ pub struct Draw<S: Stage> {
     pub canvas: Option<S::Canvas>,
     /// Viewport and scissor rectangle in texels: x, y, width, height. `None`: the whole target.
     pub area: Option<[u32; 4]>,
-    /// What is drawn.
+    /// The draw call.
     pub call: DrawCall<S>,
     /// Culling, topology, winding.
     pub primitive: wgt::PrimitiveState,
 }
 
-/// What a draw call draws; vertices are pulled by `vertex_index`.
+/// Draw call; vertices are pulled by `vertex_index`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DrawCall<S: Stage> {
     /// So many vertices for each of so many instances.
@@ -207,7 +207,7 @@ pub struct DepthTarget<S: Stage> {
     pub clear: Option<f32>,
     /// Depth test.
     pub compare: wgt::CompareFunction,
-    /// Whether depth is written.
+    /// True if depth is written.
     pub write: bool,
     /// Depth bias of the rasteriser.
     pub bias: wgt::DepthBiasState,
@@ -222,7 +222,7 @@ pub struct StencilTarget<S: Stage> {
     pub clear: Option<u32>,
     /// Tests and operations.
     pub state: wgt::StencilState,
-    /// What the tests compare with.
+    /// Value that the tests compare with.
     pub reference: u32,
 }
 

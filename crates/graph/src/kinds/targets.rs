@@ -36,7 +36,7 @@ pub(super) struct ColorEntry {
 pub(super) struct ColorFields {
     /// The texture, or one mip or layer of it.
     target: Reference,
-    /// What is done to it before the first draw; cleared to zero without it.
+    /// Operation before the first draw; cleared to zero without it.
     #[serde(default)]
     load: Option<Load>,
     /// How what is drawn is mixed with what is there; it replaces it without this.
@@ -155,16 +155,16 @@ pub(super) struct DepthEntry {
 pub(super) struct DepthFields {
     /// The texture, or one mip or layer of it.
     target: Reference,
-    /// What is done to it before the first draw; cleared to one without it.
+    /// Operation before the first draw; cleared to one without it.
     #[serde(default)]
     load: Option<Load>,
     /// Which depths pass; smaller ones without it.
     #[serde(default)]
     compare: Compare,
-    /// Whether depth is written.
+    /// Writes depth; `true` without it.
     #[serde(default = "yes")]
     write: bool,
-    /// What the rasteriser adds to depth.
+    /// Bias that the rasteriser adds to depth.
     #[serde(default)]
     bias: BiasEntry,
 }
@@ -224,7 +224,7 @@ struct BiasEntry {
 pub(super) struct StencilEntry {
     /// The texture, or one mip or layer of it; the depth attachment's, where there are both.
     target: Reference,
-    /// What is done to it before the first draw; cleared to zero without it.
+    /// Operation before the first draw; cleared to zero without it.
     #[serde(default)]
     load: Option<Load>,
     /// Triangles that show their front.
@@ -239,7 +239,7 @@ pub(super) struct StencilEntry {
     /// The bits that are written.
     #[serde(default = "all_ones")]
     write_mask: u32,
-    /// What is compared with and written by `Replace`; 0 without it.
+    /// Value that the test compares with and `Replace` writes; 0 without it.
     #[serde(default)]
     reference: Option<Expr>,
 }
@@ -260,7 +260,7 @@ struct FaceEntry {
     /// The test of `reference` against what is stored; `Always` without it.
     #[serde(default = "always")]
     compare: Compare,
-    /// What is done where the test fails; `Keep` without it, as below.
+    /// Operation where the test fails; `Keep` without it, as below.
     #[serde(default)]
     fail: StencilOperation,
     /// Where it passes and that of depth fails.
@@ -286,7 +286,7 @@ fn always() -> Compare {
     Compare::Always
 }
 
-/// What is done to a stencil value; wgpu's names.
+/// Operation on a stencil value; wgpu's names.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 enum StencilOperation {

@@ -1,4 +1,4 @@
-//! What expressions come to.
+//! Values of expressions.
 
 use super::{
     name::Name,
@@ -10,7 +10,7 @@ use crate::{
     provided_kind::ProvidedKind, source::span::Span,
 };
 
-/// What names in an expression stand for at its place.
+/// Values of names in an expression at its place.
 pub(crate) trait Environment {
     /// Width and height in pixels.
     fn viewport(&self) -> [u32; 2];
@@ -363,7 +363,7 @@ fn arithmetic(operator: Binary, a: Scalar, b: Scalar) -> Option<Scalar> {
 }
 
 fn apply(function: Function, a: Scalar, b: Scalar) -> Option<Scalar> {
-    // What rounds to a whole number fits into one, or is no size anyway.
+    // A value that rounds to a whole number fits into one, or is no size anyway.
     let rounded =
         |number: f64| (number.abs() < i64::MAX as f64).then_some(Scalar::Whole(number as i64));
     match (function, a, b) {

@@ -3,7 +3,7 @@
 use crate::{errors::language::SyntaxFault, source::span::SourceFile};
 use std::ops::Range;
 
-/// Most tokens of one expression: what is parsed and evaluated calls itself for each of them.
+/// Most tokens of one expression: parser and evaluation call themselves for each of them.
 const MOST: usize = 256;
 
 #[derive(Clone, Copy, Debug, PartialEq)]

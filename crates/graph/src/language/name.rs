@@ -5,7 +5,7 @@ use std::{fmt, ops::Deref, sync::Arc};
 /// Most characters of a name.
 const LONGEST: usize = 64;
 
-/// What stands behind a dot, and so is no name of a material, group or include.
+/// Words that stand behind a dot, and so cannot name a material, group or include.
 pub(crate) const RESERVED: [&str; 13] = [
     "size", "width", "height", "layers", "mips", "samples", "count", "format", "kind", "index",
     "previous", "mip", "viewport",
@@ -24,9 +24,9 @@ pub(crate) enum NameFault {
     TooLong,
     #[error("a name begins with a small letter")]
     Start,
-    #[error("`{0}` stands in no name: small letters, digits and `_` do")]
+    #[error("`{0}` cannot stand in a name: small letters, digits and `_` can")]
     Sign(char),
-    #[error("`__` is not for names: WGSL keeps it for itself")]
+    #[error("WGSL reserves `__`")]
     DoubleUnderscore,
 }
 

@@ -154,7 +154,7 @@ impl<'a> Parser<'a> {
         Ok(Expr::new(kind, self.span(start)))
     }
 
-    /// What operators that bind at least so strongly make one of.
+    /// Parses operators that bind at least as strongly as `least` into one expression.
     fn binary(&mut self, least: u8) -> Parsed<Expr> {
         let start = self.range().start;
         let mut left = self.unary()?;

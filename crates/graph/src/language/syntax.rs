@@ -31,7 +31,7 @@ pub(crate) enum ExprKind {
     Call(Function, Vec<Expr>),
 }
 
-/// What an attribute is asked of.
+/// Subject of an attribute.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Subject {
     Viewport,
@@ -158,7 +158,7 @@ impl Function {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     pub(crate) segments: Vec<Segment>,
-    /// What it held at the end of the frame before.
+    /// True for its content at the end of the frame before.
     pub(crate) previous: bool,
     pub(crate) mips: Option<Selection>,
     /// The condition under which it is meant, and the reference that is meant else.
@@ -215,7 +215,7 @@ impl Reference {
         text(&self.span)
     }
 
-    /// Its names with dots between them, without selections: what a provider knows it by.
+    /// Its names with dots between them, without selections: the name for a provider.
     pub(crate) fn path(&self) -> String {
         let names: Vec<&str> = self
             .segments
@@ -242,7 +242,7 @@ impl Reference {
     }
 }
 
-/// What an expression is made of.
+/// Leaves of an expression.
 pub(crate) enum Leaf<'a> {
     Param(&'a str),
     Word(&'a Name),
@@ -279,8 +279,7 @@ impl Expr {
         }
     }
 
-    /// Whether it is taken from something else's count, which may be 0 through no fault of the
-    /// document.
+    /// True if it is taken from another count, which may be 0 through no fault of the document.
     pub(crate) fn is_taken(&self) -> bool {
         let mut is_taken = false;
         self.visit(&mut |leaf| is_taken |= matches!(leaf, Leaf::Material(_)));

@@ -48,7 +48,7 @@ impl PartialEq for Word {
     }
 }
 
-/// What an expression comes to.
+/// Value of an expression.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// A number.
@@ -71,7 +71,7 @@ impl Value {
 
     /// The word of a kind, among those of all its kinds.
     pub(crate) fn kind(kind: ProvidedKind) -> Self {
-        // A provider's words are names, or nobody can write them.
+        // A provider's words are names: others cannot be written.
         let name = |word: &&str| Name::new(word).ok();
         let words: Option<Arc<[Name]>> = kind.words.iter().map(name).collect();
         match Name::new(kind.word()) {
@@ -85,7 +85,7 @@ impl Value {
         Self::whole(i64::try_from(count).unwrap_or(i64::MAX))
     }
 
-    /// What it is, for messages.
+    /// Returns the type in words, for messages.
     pub(crate) fn describe(&self) -> &'static str {
         match self {
             Self::Scalar(Scalar::Whole(_)) => "a whole number",

@@ -1,5 +1,5 @@
-//! Draws: colour, depth and stencil attachments, their formats and sizes, what the fragment shader
-//! writes.
+//! Draws: colour, depth and stencil attachments, their formats and sizes, outputs of the fragment
+//! shader.
 
 use super::{
     linker::{Linker, access},
@@ -70,7 +70,7 @@ impl Linker<'_, '_> {
         Ok(linked)
     }
 
-    /// What of the rasteriser not every device has.
+    /// Checks features of the rasteriser that not every device has.
     fn features(&mut self, draw: &Draw<Names>, pass: &LinkedPass) -> Result<(), ErrorGuaranteed> {
         let asked = [
             (

@@ -19,7 +19,7 @@ use crate::{
 };
 use std::num::NonZeroU64;
 
-/// What is bound, as what, and what its resource must allow for that.
+/// Target and type of a binding, and the usage that its resource must allow.
 type Binding = (BindTarget, wgt::BindingType, Usage);
 
 impl Linker<'_, '_> {
@@ -111,7 +111,7 @@ impl Linker<'_, '_> {
     ) -> Result<Block, ErrorGuaranteed> {
         let most = self.symbols.request.limits.max_uniform_buffer_binding_size;
         let what = if members.is_empty() {
-            "is no struct"
+            "is not a struct"
         } else if size > most {
             "is too large for the adapter"
         } else {
@@ -124,7 +124,7 @@ impl Linker<'_, '_> {
         }))
     }
 
-    /// What a global stands for: what a group binds to it, else what is called so.
+    /// Finds the target of a global: bound by a group, else of that name.
     fn target(&mut self, global: &Global, pass: &LinkedPass) -> Result<Target, ErrorGuaranteed> {
         let mut said = self.pass.inherited_bind.iter();
         if let Some(&said) = said.find(|said| said.name.value == global.name) {
@@ -338,7 +338,7 @@ impl Linker<'_, '_> {
     }
 }
 
-/// Whether a program reads number or time of the uniform `frame`, which are others in every frame.
+/// True if a program reads number or time of the uniform `frame`, which differ in every frame.
 fn reads_clock(linked: &LinkedProgram, global: &Global) -> bool {
     let mut entries = linked.entries.iter();
     entries.any(|entry| {

@@ -15,7 +15,7 @@ use crate::{
 use naga::ShaderStage;
 use wgt::TextureFormat;
 
-/// What every device draws to, of one byte.
+/// Format of one byte that every device draws to.
 const FORMAT: TextureFormat = TextureFormat::R8Unorm;
 
 impl Linker<'_, '_> {

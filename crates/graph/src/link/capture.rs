@@ -57,8 +57,8 @@ impl Linker<'_, '_> {
             to: Operand::Scratch(Scratch(1)),
         }];
         let mut pass = self.steps(name, CAPTURE, &steps)?;
-        // Whether or not the pass that it comes after runs: what has changed may have been written
-        // above that one.
+        // A capture runs even if the pass that it comes after does not: the change may have been
+        // written above that one.
         pass.run = Run::OnChange;
         Ok(pass)
     }
@@ -105,7 +105,7 @@ fn written_part(
     target: &Target,
     passes: &[LinkedPass],
 ) -> Option<SubresourceRange> {
-    // What others give, and what is kept, has content before the first pass.
+    // Resources from others, and kept ones, have content before the first pass.
     if resource.origin != Origin::Own || resource.keep {
         return None;
     }

@@ -13,7 +13,7 @@ pub(super) fn within(part: &SubresourceRange, of: &SubresourceRange) -> Option<S
     })
 }
 
-/// Whether parts cover another one together.
+/// True if parts cover another one together.
 pub(super) fn fully_overwrites(
     parts: &[SubresourceRange],
     whole: &SubresourceRange,

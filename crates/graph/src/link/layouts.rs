@@ -10,7 +10,7 @@ use crate::{
 };
 use std::{collections::BTreeMap, sync::Arc};
 
-/// What shaders said about each buffer.
+/// Layouts that shaders declare for each buffer.
 #[derive(Default)]
 pub(super) struct Layouts {
     seen: BTreeMap<ResourceId, Vec<Seen>>,
@@ -123,7 +123,7 @@ impl Layouts {
         for error in errors {
             match error {
                 LayoutError::TooLarge { .. } | LayoutError::Alignment { .. } => {
-                    // Whoever may not go on is told so by the report.
+                    // The report suffices: nothing here depends on the result.
                     let _ = reports.unsupported(error);
                 }
                 error => drop(reports.report(error)),
@@ -132,7 +132,7 @@ impl Layouts {
         symbols.size_previous();
     }
 
-    /// What an import is too small for.
+    /// Checks that an import is large enough.
     fn imported(
         &self,
         id: ResourceId,
@@ -216,7 +216,7 @@ impl Layouts {
         let most = limits
             .max_buffer_size
             .min(limits.max_storage_buffer_binding_size);
-        // wgpu copies and clears in fours; nobody uses what has no size.
+        // wgpu copies and clears in fours; a buffer without a size is not used.
         let bytes = bytes.map_or(0, |bytes| {
             bytes.checked_next_multiple_of(4).unwrap_or(u64::MAX).max(4)
         });
@@ -319,7 +319,7 @@ impl Layouts {
     }
 }
 
-/// Whether a shader's view of a provided buffer is one of its items.
+/// True if a shader's view of a provided buffer is one of its items.
 fn fits(view: &Seen, provided: crate::provider::Provided) -> bool {
     let items = view
         .part
@@ -364,7 +364,7 @@ fn content(
     };
     let Some(Item { stride, fields }) = &view.item else {
         return Err(wrong(
-            "the shader's items are no plain 32-bit numbers".to_owned(),
+            "the shader's items are not plain 32-bit numbers".to_owned(),
         ));
     };
     // A fixed type is one item, or an array of so many.
@@ -383,7 +383,10 @@ fn content(
         }
         for (number, field) in item.iter().zip(fields) {
             let Some(word) = field.scalar.bits(*number) else {
-                return Err(wrong(format!("{number} is no {:?}", field.scalar)));
+                return Err(wrong(format!(
+                    "{number} does not fit into {:?}",
+                    field.scalar
+                )));
             };
             let at = index * stride + field.offset;
             if let Some(place) = bytes.get_mut(at..at + 4) {

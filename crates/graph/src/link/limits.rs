@@ -133,7 +133,7 @@ impl Linker<'_, '_> {
         let at = entry(shader, fragment);
         self.fragment(&at, shader, fragment)?;
         let most = self.symbols.request.limits.max_color_attachments;
-        // Of too many targets it is told already.
+        // Too many targets were reported already.
         if draw.colors.len() <= most as usize {
             self.locations(&at, "writes", &shader.outputs(fragment), most)?;
         }

@@ -27,25 +27,25 @@ use std::{collections::BTreeSet, sync::Arc};
 pub(crate) struct Linked<'a> {
     pub symbols: SymbolTable<'a>,
     pub passes: Vec<LinkedPass>,
-    /// Of each pass: the instance of the document that it stands in; none of a capture.
+    /// Instance of the document that each pass stands in; none for a capture.
     pub instances: Vec<Option<InstanceId>>,
-    /// Of each pass before captures are put between them, its number here.
+    /// Number here of each pass, by its number before captures are put in.
     pub numbers: Vec<usize>,
     /// Includes that others stand for.
     pub merged: Vec<Merge>,
-    /// How many of the passes stand above the first mistake, if there is one: what is written below
-    /// is not known.
+    /// How many of the passes stand above the first mistake, if there is one: writes below are not
+    /// known.
     pub first_invalid: Option<usize>,
     pub interfaces: Vec<Interface>,
     pub plan_inputs: PlanInputs,
 }
 
-/// What passes are linked against.
+/// Surroundings in which passes are linked.
 pub(super) struct Linker<'a, 'r> {
     pub symbols: SymbolTable<'a>,
     pub reports: &'r mut Reports,
     pub layouts: Layouts,
-    /// What the names of the pass mean.
+    /// Meaning of the names of the pass.
     pub pass: PassScope<'a>,
 }
 
@@ -61,7 +61,7 @@ pub(super) struct PassScope<'a> {
     pub shader: Option<Located<String>>,
     /// The bindings and values that a shader of the pass has asked for.
     pub asked: BTreeSet<String>,
-    /// What a capture copies, and where: the two operands of its step.
+    /// Source and destination of a capture: the two operands of its step.
     pub captured: Vec<Target>,
 }
 
@@ -75,7 +75,7 @@ pub(crate) fn link<'a>(lowered: Lowered<'a>, reports: &mut Reports) -> Linked<'a
         pass: PassScope::default(),
     };
     let (mut passes, mut instances) = (Vec::new(), Vec::new());
-    // What a pass with a mistake writes is not known.
+    // The writes of a pass with a mistake are not known.
     let mut first_invalid: Option<usize> = None;
     let mut numbers = Vec::new();
     for (index, pass) in lowered.passes.into_iter().enumerate() {
@@ -206,13 +206,13 @@ impl<'a> Linker<'a, '_> {
         self.reports.report(error)
     }
 
-    /// What a reference of the pass's document names.
+    /// Resolves a reference of the pass's document.
     pub fn resolve(&mut self, reference: &Reference) -> Result<Target, ErrorGuaranteed> {
         let position = self.pass.position.unwrap_or_else(|| self.symbols.root());
         self.symbols.resolve(reference, position, self.reports)
     }
 
-    /// What an operand of a step names, with its name and place for messages.
+    /// Resolves an operand of a step. Returns its name and place, too, for messages.
     pub fn operand(
         &mut self,
         operand: &Operand,
@@ -378,7 +378,7 @@ impl<'a> Linker<'a, '_> {
                 if access.writes && access.resource == target.id && access.part == target.part {
                     is_written = true;
                     access.fully_overwrites = true;
-                    // What it reads of it, it has written.
+                    // The pass reads only what it has written itself.
                     access.reads = false;
                 }
             }
@@ -439,7 +439,7 @@ impl Linked<'_> {
         })
     }
 
-    /// Whether a pass writes some of a part.
+    /// True if a pass writes some of a part.
     pub fn writes(&self, pass: usize, id: ResourceId, part: &SubresourceRange) -> bool {
         let writes =
             |access: &Access| access.writes && access.resource == id && access.part.overlaps(part);

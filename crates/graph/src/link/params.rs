@@ -34,7 +34,7 @@ impl ScalarClass {
 
 /// A value that a shader asks for by name.
 enum Asked<'e> {
-    /// What the entry or a group around it says, with its expression.
+    /// Value from the entry or a group around it, with its expression.
     Set(Value, &'e Expr),
     /// A value of the document, with its expression's place.
     Value(Value, Span),
@@ -44,7 +44,7 @@ enum Asked<'e> {
     Index(u32),
 }
 
-/// What a uniform holds of a param's value.
+/// Returns a param's value as the words of a uniform.
 pub(crate) fn words(param: &Param, value: &ParamValue) -> (ScalarClass, Vec<u32>) {
     match value {
         ParamValue::F32(value) => (ScalarClass::Float, vec![value.to_bits()]),
@@ -69,8 +69,8 @@ fn param_of((class, width): (ScalarClass, u32)) -> Option<String> {
 }
 
 impl<'a> Linker<'a, '_> {
-    /// The value of what a shader asks for: what the entry sets, else the index of a repetition,
-    /// else the param of that name.
+    /// The value that a shader asks for: set by the entry, else the index of a repetition, else the
+    /// param of that name.
     fn asked(&mut self, name: &str) -> Option<Result<Asked<'a>, ErrorGuaranteed>> {
         self.pass.asked.insert(name.to_owned());
         let position = self.pass.position?;
@@ -105,7 +105,7 @@ impl<'a> Linker<'a, '_> {
         )
     }
 
-    /// Values of overridable constants: what the pass kind gives, else what is asked for by name.
+    /// Values of overridable constants: from the pass kind, else found by name.
     pub(super) fn constants(
         &mut self,
         program: &Program,
@@ -259,7 +259,7 @@ impl<'a> Linker<'a, '_> {
         members: &[Member],
     ) -> Result<Block, ErrorGuaranteed> {
         let mut block = Block {
-            // What does not fit into memory is no uniform; it was refused before.
+            // A size beyond the memory is no uniform's; it was refused before.
             bytes: vec![0u8; usize::try_from(size).unwrap_or(0)],
             params: Vec::new(),
         };

@@ -1,4 +1,4 @@
-//! What linking makes of a pass: steps over ids, and what they read and write.
+//! Linked passes: steps over ids, with their reads and writes.
 
 use crate::{
     instantiate::flat::Run,
@@ -33,7 +33,7 @@ pub struct LinkedPass {
     pub kind: &'static str,
     /// The GPU work.
     pub steps: Vec<Step<Ids>>,
-    /// What the steps read and write.
+    /// Reads and writes of the steps.
     pub accesses: Vec<Access>,
     /// In which frames it runs.
     pub run: Run,
@@ -42,7 +42,7 @@ pub struct LinkedPass {
 }
 
 impl LinkedPass {
-    /// Whether it only keeps what another pass has made.
+    /// True if it only keeps the result of another pass.
     pub fn is_capture(&self) -> bool {
         self.kind == CAPTURE
     }
@@ -55,16 +55,16 @@ pub struct Access {
     pub resource: ResourceId,
     /// Its part.
     pub part: SubresourceRange,
-    /// Whether it is read.
+    /// True if it is read.
     pub reads: bool,
-    /// Whether it is written.
+    /// True if it is written.
     pub writes: bool,
     /// Everything in the part is overwritten.
     pub fully_overwrites: bool,
-    /// Whether another content is a change for [`Run::OnChange`]; flags of the uniform `frame` are
-    /// none.
+    /// True if other content is a change for [`Run::OnChange`]; false for flags of the uniform
+    /// `frame`.
     pub triggers: bool,
-    /// What the resource must be made for.
+    /// Usage that the resource must be made for.
     pub usage: Usage,
     /// Place in the document or the shader that causes it.
     pub span: Span,
@@ -118,7 +118,7 @@ pub struct LinkedProgram {
     pub stages: Vec<ShaderStage>,
     /// Values of pipeline-overridable constants by the key that wgpu knows them by.
     pub constants: Vec<(String, f64)>,
-    /// What is bound.
+    /// Bindings of the program.
     pub bindings: Vec<LinkedBinding>,
 }
 
@@ -129,7 +129,7 @@ pub struct LinkedBinding {
     pub group: u32,
     /// Number in the group.
     pub binding: u32,
-    /// What is bound.
+    /// Target of the binding.
     pub target: BindTarget,
     /// As what.
     pub ty: wgt::BindingType,
@@ -137,7 +137,7 @@ pub struct LinkedBinding {
     pub visibility: wgt::ShaderStages,
 }
 
-/// What is bound.
+/// Target of a binding.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BindTarget {
     /// A buffer or some of its items.
@@ -146,7 +146,7 @@ pub enum BindTarget {
     Texture {
         /// The part.
         target: Target,
-        /// What the shader sees.
+        /// Dimension that the shader sees.
         dimension: wgt::TextureViewDimension,
     },
     /// A sampler.
@@ -161,15 +161,14 @@ pub enum BindTarget {
 /// another binding.
 #[derive(Clone, Debug, Default)]
 pub struct Block {
-    /// What the shader reads.
+    /// Bytes that the shader reads.
     pub bytes: Vec<u8>,
     /// Members that are params of the root document, unchanged: their names and offsets in bytes.
     pub(crate) params: Vec<(String, usize)>,
 }
 
 impl Block {
-    /// Writes words at an offset; whether others stood there. What would lie beyond the end is left
-    /// out.
+    /// Writes words at an offset. True if others stood there. Words beyond the end are left out.
     pub(crate) fn write(&mut self, offset: usize, words: &[u32]) -> bool {
         let words = words.iter().flat_map(|word| word.to_le_bytes());
         let mut changed = false;

@@ -64,8 +64,8 @@ impl Linker<'_, '_> {
         wrong.or(checked.err()).map_or(Ok(linked), Err)
     }
 
-    /// What the entry binds must be globals of its own shader. (A kind with several shaders hands
-    /// its bindings to all of them.)
+    /// Checks that the entry binds only globals of its own shader. (A kind with several shaders
+    /// hands its bindings to all of them.)
     fn bound_globals(
         &mut self,
         program: &Program,

@@ -1,4 +1,4 @@
-//! Whether a texture can be what a shader declares: format, dimension, filtering, storage access.
+//! Fit of a texture to a shader's declaration: format, dimension, filtering, storage access.
 
 use super::{linker::Linker, pass::LinkedProgram};
 use crate::{
@@ -14,7 +14,7 @@ use crate::{
 };
 use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags, TextureUsages};
 
-/// What a shader sees of a format, of one aspect of those that have two.
+/// Returns the scalars that a shader sees in a format; of one aspect, if the format has two.
 pub(super) fn scalar_of(format: TextureFormat, aspect: TextureAspect) -> Option<ScalarClass> {
     Some(match format.sample_type(Some(aspect), None)? {
         wgt::TextureSampleType::Float { .. } | wgt::TextureSampleType::Depth => ScalarClass::Float,
@@ -86,7 +86,7 @@ impl Linker<'_, '_> {
         };
         let format = texture.format;
         let features = format.guaranteed_format_features(self.symbols.request.features);
-        // Of a texture with both, the shader's type says which is meant.
+        // For a texture with both, the shader's type says which is meant.
         let aspect = match (format.is_combined_depth_stencil_format(), scalar) {
             (false, _) => TextureAspect::All,
             (true, ScalarClass::Uint) => TextureAspect::StencilOnly,

@@ -1,4 +1,4 @@
-//! Whether a graph may run on a backend that gives less than WebGPU.
+//! Graphs on a backend that gives less than WebGPU: refused unless proven there.
 
 use super::plan::Plan;
 use crate::{

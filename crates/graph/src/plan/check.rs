@@ -21,7 +21,7 @@ use crate::{
 };
 use std::collections::BTreeMap;
 
-/// Formats that are tried where an input takes any: what a shader declares decides which fits.
+/// Formats that are tried where an input takes any: the shader's declaration decides which fits.
 const TRIED: [wgt::TextureFormat; 5] = [
     wgt::TextureFormat::Rgba16Float,
     wgt::TextureFormat::Rgba32Uint,
@@ -31,10 +31,10 @@ const TRIED: [wgt::TextureFormat; 5] = [
 ];
 
 impl Graph {
-    /// [`Graph::load`] and [`Graph::plan`] in one, for everything that is wrong at once: what could
-    /// be read of a document is planned even where something else in it is wrong, and for each
-    /// param and feature in an `if` changed alone. Inputs that the request does not import are
-    /// taken for what the document asks for.
+    /// [`Graph::load`] and [`Graph::plan`] in one, for all mistakes at once. The readable part of a
+    /// document is planned even if another part is wrong, and for each param and feature in an `if`
+    /// changed alone. Inputs that the request does not import are taken for what the document asks
+    /// for.
     ///
     /// # Errors
     /// Everything that is wrong. Reads before writes and cycles are looked for above the first pass
@@ -70,8 +70,8 @@ impl Graph {
         errors.extend(outcome.found);
         match outcome.plan {
             Some(plan) if errors.is_empty() => Ok((graph, plan)),
-            // What nobody uses may be what a misspelt name was meant to be: warnings wait until the
-            // errors are gone.
+            // A misspelt name leaves the item that it meant unused: warnings wait until the errors
+            // are gone.
             _ => Err(graph.diagnostics(errors)),
         }
     }
@@ -133,7 +133,8 @@ impl Graph {
         imports
     }
 
-    /// What is wrong for other values of what decides which entries are there, each changed alone.
+    /// Returns the mistakes for other values of the things that decide which entries exist, each
+    /// changed alone.
     fn sweep(&self, request: &PlanRequest<'_>, plan_inputs: &PlanInputs) -> Vec<Diagnostic> {
         let mut found = Vec::new();
         for name in &plan_inputs.params {
@@ -161,7 +162,7 @@ impl Graph {
         found
     }
 
-    /// What is wrong with one condition; the rest was looked at before.
+    /// Returns the mistakes of one condition; the rest was looked at before.
     fn wrong_with(&self, request: &PlanRequest<'_>, condition: &str) -> Vec<Diagnostic> {
         let outcome = self.plan_for_any(request);
         let errors = outcome

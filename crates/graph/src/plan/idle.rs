@@ -20,8 +20,8 @@ impl Plan {
         asked.filter(by_default).map(String::as_str).collect()
     }
 
-    /// Whether a frame would do the same with another value of a param. One that it cannot have is
-    /// not the same.
+    /// True if a frame would do the same with another value of a param. False for a value that it
+    /// cannot have.
     pub fn is_same_with(&self, name: &str, value: ParamValue) -> bool {
         self.with_param(name, value)
             .is_ok_and(|other| self.does_the_same_as(&other))

@@ -1,5 +1,4 @@
-//! Where the content of an output or capture comes from, so that somebody who looks at it knows how
-//! to read it.
+//! Origin of the content of an output or capture: without it the content cannot be read.
 
 use super::plan::Plan;
 use crate::{
@@ -23,7 +22,7 @@ pub struct PartSummary {
 }
 
 impl PartSummary {
-    /// Whether it is less than the whole.
+    /// True if it is less than the whole.
     pub fn is_less(&self) -> bool {
         (self.mips.len(), self.layers.len()) != (self.of[0] as usize, self.of[1] as usize)
     }
@@ -75,7 +74,7 @@ impl Plan {
     /// capture after a pass holds what has been written by then, which may be less than was named.
     pub fn part(&self, output: &str) -> Option<PartSummary> {
         let (_, target) = self.readable().iter().find(|(name, _)| name == output)?;
-        // Of a capture: what is copied.
+        // A capture holds the part that its step copies.
         let captures = self.live().filter(|pass| pass.is_capture());
         let copied = captures
             .flat_map(|pass| &pass.steps)
@@ -105,7 +104,7 @@ impl Plan {
         let (_, target) = self.readable().iter().find(|(name, _)| name == output)?;
         let mut origin = target.id;
         let mut steps: Vec<&Step<Ids>> = self.live().flat_map(|pass| &pass.steps).collect();
-        // The last copy onto it counts; what that one reads was copied before.
+        // The last copy onto it counts; its source was copied before.
         while let Some(step) = steps.pop() {
             origin = match step {
                 Step::Copy { from, to } if to.id == origin => from.id,

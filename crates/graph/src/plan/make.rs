@@ -35,8 +35,8 @@ use crate::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What came of planning: the plan, if nothing is wrong; what is; what decides which entries are
-/// there.
+/// Result of planning: the plan, if nothing is wrong; the mistakes; the values that decide which
+/// entries exist.
 pub(super) struct Outcome {
     pub plan: Option<Plan>,
     pub found: Vec<Diagnostic>,
@@ -133,13 +133,13 @@ impl Graph {
         let sequence = sequence(&order_of_live(view, &live), &live);
         let mut lifetimes = lifetimes(view, &sequence);
         unsized_buffers(&lifetimes, view, reports);
-        // Whether conditions agree must not depend on which outputs are asked for.
+        // Conditions must agree for any choice of outputs.
         let all: Vec<PassId> = view.ids().map(|(id, _)| id).collect();
         conditions(view, &all, reports);
         let conditions = conditions(view, &sequence, &mut Reports::default());
         let previous = previous(&lifetimes, view);
         for (id, base) in &previous {
-            // What the host provides is copied behind the frame, so it must be there.
+            // A resource of the host is copied behind the frame, so it must exist then.
             let lifetime = lifetimes[id].clone();
             lifetimes.entry(*base).or_insert(lifetime);
         }
@@ -227,7 +227,7 @@ impl Graph {
     }
 }
 
-/// What of a plan comes from its order.
+/// Parts of a plan that come from its order.
 struct Scheduled {
     passes: Vec<LinkedPass>,
     resources: Vec<Resource>,
@@ -272,9 +272,9 @@ impl Linked<'_> {
     }
 }
 
-/// Whether each pass is needed, by an output or by the host.
+/// Finds the passes that an output or the host needs.
 fn live(view: GraphView<'_>, readable: &[(String, Target)], order: &Order) -> Vec<bool> {
-    // What the host imports is written for the host.
+    // An import is written for the host.
     let of_host =
         |access: &Access| access.writes && view.resource(access.resource).origin == Origin::Host;
     let imports = view
@@ -379,7 +379,7 @@ fn further_uses(
             lifetime.textures |= wgt::TextureUsages::COPY_SRC | wgt::TextureUsages::COPY_DST;
         }
     }
-    // Two versions of one resource are made alike, and a version can be read although nobody asks
+    // Two versions of one resource are made alike, and a version can be read although no pass asks
     // for the other.
     for (id, base) in previous {
         let (textures, buffers) = (lifetimes[id].textures, lifetimes[id].buffers);
@@ -470,7 +470,7 @@ fn check_counters(view: GraphView<'_>, order: &Order, reports: &mut Reports) {
     }
 }
 
-/// What documents give must be written in them, and what they only take must not.
+/// Checks that documents write their outputs, and do not write inputs that are no outputs.
 fn interfaces(linked: &Linked<'_>, reports: &mut Reports) {
     for border in &linked.interfaces {
         let within = |pass: &usize| {

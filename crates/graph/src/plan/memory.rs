@@ -1,4 +1,4 @@
-//! What a plan's own textures and buffers take, and whether that is too much.
+//! Memory of a plan's own textures and buffers, and the limit on it.
 
 use super::{make::growing, plan::Plan, text};
 use crate::{
@@ -8,7 +8,7 @@ use crate::{
     resource::{Growth, ResourceId, ResourceKind},
 };
 
-/// Rows of a memory table: what does not fit is rarely found among the small ones.
+/// Rows of a memory table: the small ones rarely show what does not fit.
 const ROWS: usize = 12;
 
 /// One of the graph's own textures or buffers, and the memory it takes.
@@ -24,7 +24,7 @@ pub struct MemoryEntry {
     pub mips: u32,
     /// Array layers of a texture; 1 for a buffer.
     pub layers: u32,
-    /// What its texels or items take; drivers may add to it.
+    /// Bytes of its texels or items; drivers may add to it.
     pub bytes: u64,
     /// Materials that live in the same memory at other times of the frame; the memory is as large
     /// as the largest of them.
@@ -112,9 +112,9 @@ impl Plan {
         allocations.map(saved).fold(0, u64::saturating_add)
     }
 
-    /// What takes the most memory, for a person who must save some: a line per allocation, the
-    /// largest first, then the rest in one, then the sum. Materials that take turns in one
-    /// allocation stand together.
+    /// Returns a table of the largest uses of memory: a line per allocation, the largest first,
+    /// then the rest in one, then the sum. Materials that take turns in one allocation stand
+    /// together.
     pub fn memory_table(&self) -> String {
         let allocations = self.schedule().aliases.list.iter();
         let mut rows: Vec<(u64, [String; 3])> = allocations
@@ -184,7 +184,7 @@ impl Plan {
         [text::cut(&names, 40), size + &versions, format]
     }
 
-    /// What a plan that takes more than there is is told.
+    /// Reports a plan that takes more memory than there is.
     pub(super) fn check_memory(&self, limit: Option<u64>) -> Option<impl IntoDiagnostic + use<>> {
         let takes = self.memory_bytes();
         let limit = limit.filter(|limit| takes > *limit)?;
@@ -194,7 +194,7 @@ impl Plan {
             .list
             .iter()
             .max_by_key(|allocation| {
-                // Of equals the first one: `max_by_key` would take the last.
+                // Among equals the first one counts: `max_by_key` would take the last.
                 let first = std::cmp::Reverse(allocation.aliases[0]);
                 (self.allocation_bytes(allocation), first)
             });

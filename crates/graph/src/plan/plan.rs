@@ -81,8 +81,8 @@ impl Plan {
         &self.readable
     }
 
-    /// What passes depend on, and through which resources, as if only those ran of which `runs` is
-    /// true.
+    /// Finds the passes that passes depend on, and the resources that cause it, as if only those
+    /// ran of which `runs` is true.
     pub fn dependences(&self, runs: impl Fn(PassId) -> bool) -> Dependences {
         let view = GraphView {
             passes: &self.passes,
@@ -97,7 +97,7 @@ impl Plan {
         &self.named_values
     }
 
-    /// What the host said that it would import, by name.
+    /// Returns the imports that the host announced, by name.
     pub fn imports(&self) -> &BTreeMap<String, Import> {
         &self.request.imports
     }
@@ -113,7 +113,7 @@ impl Plan {
         self.request.poison
     }
 
-    /// Whether the host imports or provides something under this name.
+    /// True if the host imports or provides something under this name.
     pub fn offers(&self, name: &str) -> bool {
         self.request.offers(name)
     }

@@ -1,4 +1,4 @@
-//! What can be read back: outputs, captures, and why some cannot.
+//! Outputs and captures that can be read back, and why some cannot.
 
 use crate::{
     diagnostics::reports::Reports,

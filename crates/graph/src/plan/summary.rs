@@ -1,4 +1,4 @@
-//! What a plan tells of itself, and plans made from it.
+//! Summaries of a plan, and plans made from it.
 
 use super::plan::{CulledPass, Plan};
 use crate::{
@@ -65,8 +65,8 @@ impl Plan {
             .collect()
     }
 
-    /// Whether what a frame shows may hang on those before it though the host changes nothing: live
-    /// passes read what the graph left in the frame before, or the frame's number.
+    /// True if a frame may depend on those before it though the host changes nothing: live passes
+    /// read what the graph left in the frame before, or the frame's number.
     pub fn remembers(&self) -> bool {
         let used = self.schedule().lifetimes.keys();
         used.map(|id| self.resource(*id))
@@ -121,7 +121,7 @@ impl Plan {
         })
     }
 
-    /// What can be read back after a frame.
+    /// Returns the outputs that can be read back after a frame.
     pub fn outputs(&self) -> Vec<OutputSummary> {
         let summary = |(name, target): &(String, Target)| {
             let (format, size) = match &self.resource(target.id).kind {
@@ -184,9 +184,8 @@ impl Plan {
         })
     }
 
-    /// This plan with several things of its request changed at once, such as the viewport and the
-    /// imports that follow it. What the provider described is as it was, unless another provider is
-    /// put in.
+    /// Plans anew with several parts of the request changed at once, such as the viewport and the
+    /// imports that follow it. The provider's descriptions stay, unless another provider is put in.
     ///
     /// # Errors
     /// Everything that is wrong then.
@@ -199,7 +198,7 @@ impl Plan {
         self.graph.plan(&request)
     }
 
-    /// What is suspicious.
+    /// Returns the warnings.
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.warnings
     }

@@ -7,7 +7,7 @@ use crate::{
 };
 
 impl Plan {
-    /// Whether a param may have this value without planning anew: it has the type and lies in the
+    /// True if a param may have this value without planning anew: it has the type and lies in the
     /// range, and nothing but members of `var<uniform> params` follows from it.
     pub fn is_in_uniforms(&self, name: &str, value: &ParamValue) -> bool {
         self.graph.param(name).is_ok_and(|param| {
@@ -17,8 +17,9 @@ impl Plan {
         })
     }
 
-    /// Gives a param that [`is_in_uniforms`](Self::is_in_uniforms) another value; the positions in
-    /// the schedule of the passes that read other bytes now. Of other params nothing is changed.
+    /// Gives a param that [`is_in_uniforms`](Self::is_in_uniforms) another value. Returns the
+    /// positions in the schedule of the passes that read other bytes now. Other params are left as
+    /// they are.
     pub fn set_in_uniforms(&mut self, name: &str, value: ParamValue) -> Vec<usize> {
         let Ok(param) = self.graph.param(name) else {
             return Vec::new();
@@ -44,7 +45,7 @@ impl Plan {
     }
 }
 
-/// Writes the words wherever the param stands; whether any byte is another one now.
+/// Writes the words wherever the param stands. True if any byte has changed.
 fn set(block: &mut Block, name: &str, words: &[u32]) -> bool {
     let offsets = block.params.iter().filter(|(param, _)| param == name);
     let offsets: Vec<usize> = offsets.map(|(_, offset)| *offset).collect();

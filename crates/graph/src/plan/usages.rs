@@ -1,4 +1,4 @@
-//! What the host will hand over, held against what passes do with it.
+//! Usages of the host's imports, compared with the needs of passes.
 
 use crate::{
     diagnostics::reports::Reports,
@@ -11,7 +11,7 @@ use crate::{
     source::span::Located,
 };
 
-/// What the host imports must have been made for what passes do with it.
+/// Checks that the host's imports are made for the uses of passes.
 pub(super) fn check(
     view: GraphView<'_>,
     sequence: &[PassId],

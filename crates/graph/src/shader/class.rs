@@ -1,9 +1,9 @@
-//! What a resource global is: a uniform, a storage buffer of some layout, a texture, a sampler.
+//! Class of a resource global: a uniform, a storage buffer of some layout, a texture, a sampler.
 
 use naga::{AddressSpace, Handle, ImageClass, TypeInner, proc::Layouter};
 use std::fmt;
 
-/// What a global is.
+/// Class of a global.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Class {
     Uniform {
@@ -43,7 +43,7 @@ pub(crate) enum TextureClass {
     },
 }
 
-/// What one channel of a texture is to a shader.
+/// Type of one channel of a texture in a shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ScalarClass {
     Float,
@@ -248,8 +248,8 @@ fn only_scalar(module: &naga::Module, members: &[naga::StructMember]) -> Option<
 }
 
 fn write_layout(module: &naga::Module, ty: Handle<naga::Type>, text: &mut String, depth: usize) {
-    // A struct of structs of structs … doubles with every level; what is longer than this is the
-    // same for our purpose.
+    // A struct of structs of structs … doubles with every level; all that are longer than this are
+    // the same for our purpose.
     const LONGEST: usize = 4096;
     const DEEPEST: usize = 32;
     let scalar = |scalar: naga::Scalar| match scalar.kind {

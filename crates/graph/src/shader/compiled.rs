@@ -73,8 +73,8 @@ fn immediate(module: &Module, source: &Expanded) -> Option<ShaderError> {
     })
 }
 
-/// A document is checked against the language: what a device lacks is said when a pipeline is made
-/// for it.
+/// A document is checked against the language. Features that a device lacks are reported when a
+/// pipeline is made for it.
 fn validator() -> Validator {
     Validator::new(ValidationFlags::all(), Capabilities::all())
 }
@@ -86,7 +86,7 @@ pub(super) struct Specialised<'a> {
 }
 
 /// Puts the values of overrides in and writes the entry point as SPIR-V, which Vulkan devices are
-/// handed: what naga cannot do there is found before there is a device. The words are thrown away.
+/// handed. So naga's own gaps are found before there is a device. The words are thrown away.
 pub(super) fn specialised<'a>(
     (module, info): (&'a Module, &'a ModuleInfo),
     (stage, name): (ShaderStage, &str),
@@ -117,7 +117,7 @@ pub(super) fn specialised<'a>(
     }
 }
 
-/// Writes as wgpu does for Vulkan. What the writer says of features is for the device to say.
+/// Writes as wgpu does for Vulkan. The writer's errors about features are left to the device.
 fn write(module: &Module, info: &ModuleInfo, pipeline: Option<&PipelineOptions>) {
     let options = spv::Options {
         lang_version: (1, 6),

@@ -74,7 +74,7 @@ impl Expanded {
         self.text.push_str(text);
     }
 
-    /// Whether a place in the expanded text belongs to an imported module.
+    /// True if a place in the expanded text belongs to an imported module.
     pub fn is_imported(&self, at: usize) -> bool {
         self.locate(at..at).file != self.file
     }
@@ -203,7 +203,8 @@ impl<'a> ShaderFiles<'a> {
             let (path, replaced) = paths(rest).ok_or_else(unquoted)?;
             let mut imported = self.import(file, path, &place)?;
             let path_asked = Arc::clone(&imported.name);
-            // What stands in for a module may import it: then it is the module itself.
+            // A module that stands in for another may import it: then the import means the module
+            // itself.
             let stands_in = modules
                 .get(&*imported.name)
                 .filter(|path| **path != *file.name);

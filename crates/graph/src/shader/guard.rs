@@ -1,6 +1,6 @@
 //! Stands between a shader's text and naga, whose reader calls itself once per operator of a long
 //! expression, per `else if` of a chain and per declaration that names a later one, with no limit
-//! of its own: what is refused here would overflow the stack.
+//! of its own. A text that is refused here would overflow the stack.
 
 use super::{expand::Expanded, text::next};
 use crate::errors::shader::ShaderError;
@@ -17,10 +17,10 @@ const MOST_DECLARATIONS: usize = 2048;
 /// unoptimised build has room too.
 const DEEPEST: usize = 500;
 
-/// What an `else` weighs beside the operators of its condition; naga takes 1.5 KiB for both.
+/// Weight of an `else` beside the operators of its condition; naga takes 1.5 KiB for both.
 const ELSE: usize = 2;
 
-/// What is inside one pair of brackets so far.
+/// Content of one pair of brackets so far.
 #[derive(Default)]
 struct Level {
     /// Operators of the current statement, or of the current argument.
@@ -40,7 +40,7 @@ impl Level {
 /// Refuses what naga cannot read in bounded stack and time.
 ///
 /// # Errors
-/// What is too much, with its place and the way out.
+/// The construct that is too much, with its place and the way out.
 pub(super) fn check(source: &Expanded) -> Result<(), ShaderError> {
     let file = source.file.name.to_string();
     let text = source.text.as_str();

@@ -10,7 +10,7 @@ pub struct Field {
     pub name: String,
     /// Bytes from the begin of the item.
     pub offset: usize,
-    /// What it is.
+    /// Type of the scalar.
     pub scalar: ItemScalar,
 }
 

@@ -4,7 +4,7 @@ use super::{footprint::called, reflect::Shader};
 use naga::{Expression, Function, GlobalVariable, Handle, TypeInner};
 
 impl Shader {
-    /// Whether an entry point reads a member of a uniform that begins in its first `bytes`, or all
+    /// True if an entry point reads a member of a uniform that begins in its first `bytes`, or all
     /// of it at once.
     pub(crate) fn reads_below(
         &self,
@@ -30,7 +30,7 @@ impl Shader {
     }
 }
 
-/// Whether a function reads a global: one of the members, or all of it.
+/// True if a function reads a global: one of the members, or all of it.
 fn reads(
     function: &Function,
     global: Handle<GlobalVariable>,

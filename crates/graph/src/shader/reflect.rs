@@ -1,5 +1,5 @@
-//! What a WGSL module binds and how: every resource global with its type, place, binding number and
-//! use per entry point.
+//! Bindings of a WGSL module: every resource global with its type, place, binding number and use
+//! per entry point.
 
 use super::{
     class::{Class, ScalarClass, TextureClass, class_of, vector},
@@ -399,7 +399,7 @@ impl Shader {
             .chain(overrides)
     }
 
-    /// Whether an entry point uses a global.
+    /// True if an entry point uses a global.
     pub(super) fn uses(&self, entry: usize, global: Handle<naga::GlobalVariable>) -> bool {
         self.info.get_entry_point(entry)[global] != GlobalUse::empty()
     }

@@ -1,4 +1,4 @@
-//! WGSL as text: what naga does not tell, or must not be asked before.
+//! WGSL as text, for questions that naga does not answer, or must not be asked before.
 
 /// WGSL's line breaks besides `\n`: a comment ends at any of them.
 pub(super) const BREAKS: [char; 6] = ['\r', '\u{b}', '\u{c}', '\u{85}', '\u{2028}', '\u{2029}'];
@@ -47,7 +47,7 @@ pub(super) fn next(text: &str) -> Option<(usize, &str)> {
         let rest = text.get(at..)?;
         let first = rest.chars().next()?;
         if rest.starts_with("//") {
-            // The line ends of WGSL: what naga reads must not be a comment here.
+            // The line ends of WGSL: code for naga must not be a comment here.
             at += rest.find(|c| matches!(c, '\n'..='\r' | '\u{85}' | '\u{2028}' | '\u{2029}'))?;
         } else if rest.starts_with("/*") {
             at += comment(rest.as_bytes());
@@ -77,7 +77,7 @@ fn comment(text: &[u8]) -> usize {
     }
 }
 
-/// What a text declares.
+/// Declarations of a text.
 #[derive(Default)]
 pub(super) struct Declared<'t> {
     /// Fields of its structs.

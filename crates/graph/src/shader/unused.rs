@@ -9,7 +9,7 @@ use crate::source::span::{Located, SourceFile};
 use naga::{Expression, TypeInner};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// One that nothing uses: what it is, and its name where it stands.
+/// Something that is not used: its kind, and its name where it stands.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Unused {
     pub what: &'static str,
@@ -66,8 +66,8 @@ pub(crate) struct UnusedFinder<'s> {
 }
 
 impl<'s> UnusedFinder<'s> {
-    /// What nothing in a shader uses: imports of all files, params and globals that its own file
-    /// declares. `constants` of it are named by the document.
+    /// Returns the unused items of a shader: imports of all files, params and globals that its own
+    /// file declares. The document names those in `constants`.
     pub fn find(&mut self, shader: &'s Shader, constants: &BTreeSet<&str>) -> Vec<Unused> {
         let mut unused = self.imports(&shader.source, constants);
         unused.extend(shader.unused_params());

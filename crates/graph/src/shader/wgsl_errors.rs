@@ -86,7 +86,7 @@ pub(super) fn parse_error(error: &naga::front::wgsl::ParseError, source: &Expand
     }
 }
 
-/// What may have been meant by a field or name that there is not.
+/// Suggests a field or name in place of an unknown one.
 fn meant(message: &str, text: &str) -> Option<String> {
     let word = message.split('`').nth(1)?;
     let declared = Declared::new(text);
@@ -127,7 +127,7 @@ fn without_handles(what: &str, module: &naga::Module) -> String {
     said + rest
 }
 
-/// What naga can only say with its own numbers and flags.
+/// Rewords an error that naga tells by its own numbers and flags.
 fn plainly(error: &ValidationError, module: &naga::Module) -> Option<String> {
     let of_function = |name: &str, fault: &FunctionError| match fault {
         FunctionError::InvalidReturnType {

@@ -62,7 +62,8 @@ pub(crate) fn folder_of(path: &str) -> &str {
     folder.and_then(Path::to_str).unwrap_or("")
 }
 
-/// Whether a path leads out of the folder it is looked for in (backslashes and drives: on Windows).
+/// True if a path leads out of the folder that it is looked for in (backslashes and drives: on
+/// Windows).
 pub(crate) fn escapes(path: &str) -> bool {
     path.split('/').any(|part| part == "..") || path.starts_with('/') || path.contains(['\\', ':'])
 }

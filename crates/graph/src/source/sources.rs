@@ -104,7 +104,7 @@ impl Sources for FolderSources {
         }
         match String::from_utf8(bytes) {
             Ok(text) => Ok(Some(text.into())),
-            Err(_) => Err("it is no text in UTF-8".to_owned()),
+            Err(_) => Err("it is not text in UTF-8".to_owned()),
         }
     }
 
@@ -146,7 +146,7 @@ impl Sources for LayeredSources {
     }
 }
 
-/// What the first store has that has something.
+/// Returns the answer of the first store that has one.
 fn first<T>(
     layers: &[Box<dyn Sources>],
     ask: impl Fn(&dyn Sources) -> Result<Option<T>, String>,

@@ -48,7 +48,7 @@ const INNER: &str = r#"
     outputs: ["result", "image"],
 "#;
 
-/// What reads the `image` that it is given.
+/// Document that reads the `image` that it is given.
 const SMOOTHER: &str = r#"
     inputs: [Texture(name: "image")],
     materials: [Texture(name: "copy", format: "image.format", size: "image.size")],
@@ -93,7 +93,7 @@ fn widths(plan: &Plan) -> Vec<(String, u32)> {
 /// A document of the viewport's size.
 const OWN: &str = r#"Texture(name: "own", format: R32Float)"#;
 
-/// What is shown, materials, passes, outputs; then the live passes and the width of the output.
+/// Point of the case, materials, passes, outputs; then the live passes and the width of the output.
 type Case<'a> = (&'a str, &'a str, &'a str, &'a str, &'a [&'a str], u32);
 
 const CASES: &[Case<'_>] = &[
@@ -192,7 +192,7 @@ const CASES: &[Case<'_>] = &[
     ),
 ];
 
-/// What an include makes of names: passes in order, and the width of the output.
+/// Names that an include makes: passes in order, and the width of the output.
 #[test]
 fn names_and_sizes_of_includes() {
     let copy = r#"materials: [Texture(name: "copy", format: R32Float)],
@@ -255,8 +255,8 @@ fn what_is_bound_goes_through_every_level() {
     assert_eq!(of_a.collect::<Vec<_>>(), expected);
 }
 
-/// What an included document does not ask for is not seen in it, and what it declares itself is its
-/// own, whatever is called so outside.
+/// An included document sees only the names that it asks for. Its own declarations stay its own,
+/// even if their names are used outside.
 #[test]
 fn nothing_else_crosses_the_border() {
     let user = r#"materials: [Texture(name: "copy", format: R32Float)],
@@ -330,7 +330,7 @@ fn history_and_conditions_in_an_include() {
     );
 }
 
-/// What the scene gives can stand for an input of an included document.
+/// A name of the scene can stand for an input of an included document.
 #[test]
 fn an_input_is_bound_to_what_the_scene_gives() {
     let inner = r#"
@@ -479,12 +479,12 @@ fn a_missing_feature_changes_defaults() {
     let none = wgt::Features::empty();
     assert_eq!(edges(SUBGROUP, None), [8, 16]);
     assert_eq!(edges(none, None), [2, 4]);
-    // What is asked for by name is not replaced in silence.
+    // A value that is asked for by name is not replaced in silence.
     assert_eq!(edges(none, Some(6)), [2, 6]);
     assert_eq!(edges(SUBGROUP, Some(6)), [8, 6]);
 }
 
-/// What a document cannot do without, its includer cannot either.
+/// A feature that a document cannot do without is required of its includer, too.
 #[test]
 fn a_required_feature_is_required_of_the_whole() {
     let needs = r#"requires: ["SUBGROUP"], materials: [Texture(name: "image", format: R32Float)],

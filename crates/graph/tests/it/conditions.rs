@@ -1,4 +1,5 @@
-//! What is there and what is not: `if`, groups, what they say of names, and what `check` looks at.
+//! Entries that exist or do not: `if`, groups, their settings of names, and the cases that `check`
+//! looks at.
 
 use crate::support::{Files, Triangle, checked, codes, load, names, plan, right};
 use skiagraph_graph::{Code, Diagnostic, PlanRequest, Run, Severity};
@@ -116,7 +117,7 @@ fn check_looks_at_every_value_of_a_condition() {
     assert_eq!(told(r#""engine == plain""#), ["with `engine` = fancy"]);
     assert_eq!(told(r#""radius < 8""#), ["with `radius` = 8"]);
     assert_eq!(told(r#""!has(SUBGROUP)""#), ["with the feature SUBGROUP"]);
-    // Of a range without an end nothing is tried there.
+    // In a range without an end no value is tried.
     assert_eq!(told(r#""value < 2.0""#), [""; 0]);
     assert_eq!(told(r#""soft || radius < 9""#), [""; 0]);
 }
@@ -172,7 +173,7 @@ fn what_a_group_says() {
             .map(|b| b[..4].to_vec()),
         Some(5f32.to_le_bytes().to_vec())
     );
-    // What the entry says itself stands, and leaves nobody who asks the group.
+    // The entry's own setting stands, and then nothing asks the group.
     let own = passes(
         r#"bind: {"image": "maps[1]"},"#,
         r#", bind: {"image": "image"}"#,
@@ -193,7 +194,7 @@ fn what_a_group_says() {
     }
 }
 
-/// A repeat of 0 is no entry at all; what is made inside is called by its number outside.
+/// A repeat of 0 is no entry at all; outside, materials of a repetition are called by their number.
 #[test]
 fn repetitions_and_their_names() {
     let take = |reference: &str, repeat: &str| {

@@ -1,4 +1,4 @@
-//! What materials hold and how shaders see it: 3D textures, pictures, constant numbers, uniform
+//! Content of materials and how shaders see it: 3D textures, pictures, constant numbers, uniform
 //! buffers, items of buffers, a pass kind's own buffers, sizes by copies.
 
 use crate::support::{Files, checked, codes, load, plan, right};
@@ -25,7 +25,7 @@ fn looking(materials: &str, passes: &str, declarations: &str, body: &str) -> Fil
 
 fn resource<'p>(plan: &'p Plan, name: &str) -> &'p Resource {
     let found = plan.resources().iter().find(|found| found.name == name);
-    found.unwrap_or_else(|| panic!("nothing is called {name}"))
+    found.unwrap_or_else(|| panic!("no material is called {name}"))
 }
 
 fn buffer<'p>(plan: &'p Plan, name: &str) -> &'p Buffer {
@@ -73,7 +73,7 @@ fn a_3d_texture_is_bound_whole_and_drawn_to_by_slices() {
     let whole = fill("fog[index].mip[0]");
     let mip = r#"bind: {"fog": "fog.mip[0]"},"#;
     for (files, code) in [
-        // The other mip is nobody's; two slices leave the third.
+        // No pass writes the other mip; two slices leave the third.
         (files(&whole, solid, ""), Code::ReadBeforeWrite),
         (
             files(&whole.replace("repeat: 3", "repeat: 2"), solid, mip),
@@ -538,7 +538,7 @@ impl PassKind for Count {
     }
 }
 
-/// A pass's own buffer is nobody else's, whatever the document calls its materials.
+/// A pass's own buffer is its alone, whatever the document calls its materials.
 #[test]
 fn a_kinds_own_buffer_is_no_material() {
     let mut registry = Registry::standard();
@@ -568,5 +568,9 @@ fn a_kinds_own_buffer_is_no_material() {
         .map(|pass| pass.accesses[0].resource.index())
         .collect();
     assert!(ids[0] == ids[1] && ids[2] != ids[0] && ids[3] != ids[0] && ids[2] != ids[3]);
-    assert_eq!(found.culled().len(), 2, "nobody needs what only they see");
+    assert_eq!(
+        found.culled().len(),
+        2,
+        "no output needs what only they see"
+    );
 }

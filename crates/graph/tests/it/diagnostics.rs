@@ -12,7 +12,7 @@ use std::{
     path::Path,
 };
 
-/// Whether a document may hold more than one mistake.
+/// True if a document may hold more than one mistake.
 fn has_several(name: &str) -> bool {
     name.starts_with("several") || name == "all_at_once"
 }
@@ -42,7 +42,7 @@ fn every_mistake_has_its_text() {
     );
 }
 
-/// What follows from a mistake is not told beside it.
+/// The consequences of a mistake are not told beside it.
 #[test]
 fn one_mistake_is_one_message() {
     let mut wrong = Vec::new();

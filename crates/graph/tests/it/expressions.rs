@@ -1,5 +1,5 @@
-//! Expressions, names and references as docs/authoring.md states them: what they come to, and what
-//! is said of those that come to nothing.
+//! Expressions, names and references as docs/authoring.md states them: their values, and the
+//! messages about those without one.
 
 use crate::support::{Files, Triangle, checked, codes, load, names, right, wrong};
 use skiagraph_graph::{Code, Plan, PlanRequest, ResourceKind, Texture};
@@ -35,7 +35,7 @@ fn planned(files: &Files) -> Result<Plan, skiagraph_graph::Diagnostics> {
     load(files)?.plan(&PlanRequest::new([20, 11], &Triangle))
 }
 
-/// What an expression comes to, as a number of items.
+/// Returns the value of an expression, as a number of items.
 #[track_caller]
 fn value(expr: &str) -> u32 {
     let plan = planned(&asking(expr));
@@ -43,7 +43,7 @@ fn value(expr: &str) -> u32 {
     plan.outputs()[0].size[0] / 4
 }
 
-/// What is said of an expression, and the text that it is said at.
+/// Returns the message about an expression, and the text that it points at.
 #[track_caller]
 fn said(expr: &str) -> (Code, String, String) {
     let errors = wrong(planned(&asking(expr)));
@@ -165,7 +165,7 @@ fn params_words_and_features() {
     assert_eq!(right(graph.plan(&request)).outputs()[0].size[0], 4);
 }
 
-/// Expressions without a value: what is said of them, and where.
+/// Expressions without a value: the message, and its place.
 const MISTAKES: &[(&str, Code, &str, &str)] = {
     use Code::{Expression, Feature, Range, Size, UnknownParam, UnknownResource};
     &[
@@ -205,20 +205,15 @@ const MISTAKES: &[(&str, Code, &str, &str)] = {
         (
             "depth == plan ? 1 : 2",
             Expression,
-            "`plan` is none of the words",
+            "`plan` is not one of the words",
             "plan",
         ),
-        (
-            "raduis",
-            UnknownParam,
-            "no param is called `raduis`",
-            "raduis",
-        ),
+        ("raduis", UnknownParam, "unknown param `raduis`", "raduis"),
         ("items", UnknownParam, "`items` is a material", "items"),
         (
             "imgae.width",
             UnknownResource,
-            "nothing is called `imgae`",
+            "unknown material `imgae`",
             "imgae",
         ),
         (
@@ -233,12 +228,17 @@ const MISTAKES: &[(&str, Code, &str, &str)] = {
             "its size is that of itself",
             "\"asked\"",
         ),
-        ("depth[2].width", Range, "there is no `depth[2]`", "2"),
-        ("depth[1..3].width", Range, "there is no `depth[1..3]`", "3"),
+        ("depth[2].width", Range, "`depth[2]` does not exist", "2"),
+        (
+            "depth[1..3].width",
+            Range,
+            "`depth[1..3]` does not exist",
+            "3",
+        ),
         (
             "depth.mip[3].width",
             Range,
-            "there is no `depth.mip[3]`",
+            "`depth.mip[3]` does not exist",
             "3",
         ),
         ("index", Expression, "nothing is repeated here", "index"),
@@ -254,12 +254,7 @@ const MISTAKES: &[(&str, Code, &str, &str)] = {
             "no feature `SUBGRUOP`",
             "SUBGRUOP",
         ),
-        (
-            "cell(1)",
-            Expression,
-            "no function is called `cell`",
-            "cell",
-        ),
+        ("cell(1)", Expression, "unknown function `cell`", "cell"),
         ("min(1)", Expression, "takes 2 arguments, not 1", "min(1)"),
         ("1 +", Expression, "is expected, not the end", ""),
         ("1 $ 2", Expression, "`$` has no meaning", "$"),
@@ -380,7 +375,7 @@ fn a_chain_of_mips_by_index_plus_one() {
     let step = |mip| vec![(false, mip), (true, mip + 1)];
     assert_eq!(mips, [vec![(true, 0)], step(0), step(1), step(2)]);
     assert_eq!(plan.outputs()[0].size, [1, 1]);
-    // Of a repetition of none nothing is there, so the last mip is the first.
+    // Nothing comes of a repetition of none, so the last mip is the first.
     let plan = right(planned(&files.edited("graph.ron", "size: 9", "size: 1")));
     assert_eq!(names(&plan), ["fill"]);
 }

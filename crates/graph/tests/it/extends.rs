@@ -49,7 +49,7 @@ fn a_document_that_edits_nothing_is_the_one_that_it_extends() {
     assert_eq!(graph.path(), "graph.ron");
 }
 
-/// What a method promises holds of it as it is written, not of what others make of it.
+/// A method's promise holds for the method as written, not for those that extend it.
 #[test]
 fn a_claim_is_never_inherited() {
     let claims = |files: &Files| {
@@ -207,7 +207,7 @@ fn entries_are_put_and_taken_where_a_path_says() {
             ),
             "both.one both.two a b over",
         ),
-        // What was put in is an entry like any other, and may be taken out again.
+        // An added entry is like any other, and may be taken out again.
         (
             [
                 clear("a", r#"after: "over""#),
@@ -427,7 +427,7 @@ fn behind_an_interface_the_whole_is_exchanged() {
     assert_eq!(all(&mine), ["base.both.one", "base.over", "copy"]);
 }
 
-/// What `show --flat` prints reads as the document does, and tells where each line comes from.
+/// The output of `show --flat` reads as the document does, and tells where each line comes from.
 #[test]
 fn the_flat_text_is_the_document() {
     let files = extending(

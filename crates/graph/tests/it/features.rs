@@ -1,4 +1,5 @@
-//! What a pass can ask of the device, as it stands in the plan: stencil, areas, masks, samples.
+//! Features that a pass can ask of the device, as they stand in the plan: stencil, areas, masks,
+//! samples.
 
 use crate::support::{Files, Triangle, checked, codes, load, names, right};
 use skiagraph_graph::{
@@ -85,8 +86,8 @@ fn tests_and_operations_of_a_stencil() {
     assert_eq!(draw.call, call);
 }
 
-/// Depth and stencil have versions of their own: who reads the one does not wait for the other, and
-/// what no field names is left alone.
+/// Depth and stencil have versions of their own: a reader of the one does not wait for the other,
+/// and a part that no field names is left alone.
 #[test]
 fn depth_and_stencil_are_versions_of_their_own() {
     let read = "var both: texture_2d<u32>;
@@ -151,7 +152,7 @@ fn a_stencil_that_cannot_be() {
     }
 }
 
-/// An area is viewport and scissor; what is outside stays, so nothing is cleared.
+/// An area is viewport and scissor; the texels outside stay, so nothing is cleared.
 #[test]
 fn an_area_of_an_atlas_for_each_repetition() {
     let tiles = |area: &str, load: &str| {
@@ -210,7 +211,7 @@ fn loads_blends_and_channels_of_a_target() {
             ),
             r#""image""#,
         );
-        // Whether what it loads is there is another matter.
+        // The content that it loads is another matter.
         let swapped = files.texts["graph.ron"].clone();
         let (first, second) = swapped.split_once("passes: [").expect("it has passes");
         let (pass, rest) = second.split_once("]),").expect("it has two");

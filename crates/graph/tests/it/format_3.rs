@@ -514,7 +514,7 @@ fn entry_points_faces_and_references_stand_behind_conditions() {
     assert!(cull.is_none() && format!("{face:?}") == "Cw");
 }
 
-/// What depends on a condition is found by `check` for each value of the params in it.
+/// `check` finds what depends on a condition for each value of the params in it.
 #[test]
 fn what_nothing_uses_is_told() {
     let files = Files::graph(
@@ -637,7 +637,7 @@ fn includes_of_one_content_are_one() {
     );
 }
 
-/// What the first of two made is written by a pass in between: two copies, and told.
+/// A pass in between writes a product of the first of two: two copies, and told.
 #[test]
 fn includes_are_two_where_something_is_written_in_between() {
     let passes = r#"
@@ -773,7 +773,7 @@ fn another_document_stands_in_an_open_include() {
     assert_eq!(of(&chosen), ([14, 5], "sun".into(), "map".into()));
     let openings: Vec<_> = chosen.openings().collect();
     assert_eq!(openings, [("method", "pipelines/soft.ron")]);
-    // What a part of it promises is no promise of the whole.
+    // A promise of one of its parts is no promise of the whole.
     let claims = own.claims(&BTreeMap::new(), [64, 64], wgt::Features::empty());
     assert!(right(claims).is_empty());
 }

@@ -70,7 +70,7 @@ fn grown<const N: usize>(plan: &Plan, items: [(&str, u64); N]) -> Plan {
 fn a_counter_is_never_culled() {
     let plan = right(plan(&counted()));
     assert_eq!(names(&plan), ["reset", "count", "fill", "copy"]);
-    // Nobody may write over it before it is read.
+    // No other material may overwrite it before it is read.
     let aliases = &plan.schedule().aliases.list;
     let (_, growth) = &plan.growing()[0];
     let mut of = aliases.iter();
@@ -84,9 +84,9 @@ fn what_is_known_of_a_frame_sizes_the_next_plan() {
     assert_eq!(count(&first, "items"), 4);
     assert_eq!(growing(&first), [("items".to_owned(), 64)]);
     let larger = grown(&first, [("items", 9), ("nothing", 7)]);
-    // What is counted by its items follows.
+    // A material that is counted by its items follows.
     assert_eq!([count(&larger, "items"), count(&larger, "copies")], [9, 9]);
-    // What changes otherwise keeps it.
+    // Other changes keep it.
     let resized = right(larger.with_viewport([5, 5]));
     assert_eq!(count(&resized, "items"), 9);
     let bounded = right(larger.with_param("most", ParamValue::U32(6)));
@@ -269,7 +269,7 @@ fn a_default_follows_the_viewport() {
     let wider = right(plan.with_viewport([20, 6]));
     assert_eq!(wider.param("grid"), Some(&ParamValue::U32(10)));
     assert_eq!(count(&wider, "items"), 60);
-    // What was set stays.
+    // A value that was set stays.
     let set = right(plan.with_param("grid", ParamValue::U32(3)));
     assert_eq!(count(&right(set.with_viewport([20, 6])), "items"), 18);
     // A value beyond the bounds is an error there, at the default.

@@ -5,7 +5,7 @@ use crate::bounds::bounded;
 use crate::support::Files;
 use skiagraph_graph::{FolderSources, Graph, Registry};
 
-/// What is said about a document, beside a shader `index`.
+/// Returns the messages about a document, beside a shader `index`.
 #[track_caller]
 fn said(document: &str) -> String {
     let shader = "var<storage, read_write> items: array<u32>;
@@ -58,7 +58,7 @@ fn lists_without_end() {
         )
     };
     let said_of = said(&document("", &many(2000, buffer), ""));
-    assert_said(&said_of, "graph.ron:2002", &["nothing is called `m2000`"]);
+    assert_said(&said_of, "graph.ron:2002", &["unknown material `m2000`"]);
 }
 
 /// For each name that nothing has, all names are searched for what was meant: not for as many as
@@ -106,10 +106,10 @@ fn as_many_misspelt_names_as_names() {
     let shader = "var<storage, read_write> items: array<u32>;
         @compute @workgroup_size(1) fn main() { items[0] = 1u; }";
     for (document, part) in [
-        (document(&params, &sized, ""), "no param is called `egde_of"),
+        (document(&params, &sized, ""), "unknown param `egde_of"),
         (
             document("", &buffers, &clears),
-            "nothing is called `bufer_of",
+            "unknown material `bufer_of",
         ),
         (bound(4000), "`index.wgsl` has no global `egde_of"),
         (bound(40_000), "the map has 40000 entries, 4096 is the most"),
@@ -121,7 +121,7 @@ fn as_many_misspelt_names_as_names() {
             given("egde", 40_000, &|_| "1".to_owned()),
             "the map has 40000 entries",
         ),
-        (given("edge", 4000, &unknown), "no param is called `egde_of"),
+        (given("edge", 4000, &unknown), "unknown param `egde_of"),
         (
             document(
                 &format!("U32(name: {}, default: 1)", endless("ab")),
@@ -136,7 +136,7 @@ fn as_many_misspelt_names_as_names() {
             ("index.wgsl", shader),
             ("inner.ron", &inner),
         ];
-        let said_of = answer(&Files::new(files)).expect_err("nothing is called so");
+        let said_of = answer(&Files::new(files)).expect_err("no material has this name");
         assert_said(&said_of.to_string(), "graph.ron:", &[part]);
     }
 }
@@ -171,7 +171,7 @@ fn more_mistakes_than_anybody_reads() {
         &said_of,
         "graph.ron:4",
         &[
-            "nothing is called `no0`",
+            "unknown material `no0`",
             "mistakes more",
             "mend those above first",
         ],
@@ -420,7 +420,7 @@ fn a_line_of_ten_thousand_columns() {
         &said_of,
         "graph.ron:1:1",
         &[
-            "nothing is called `no`",
+            "unknown material `no`",
             "declares no material or input of this name",
         ],
     );
@@ -457,10 +457,17 @@ fn files_on_disk() {
     assert_said(
         &load("graph.ron"),
         "graph.ron:2:",
-        &["the shader `index.wgsl` cannot be read", "no text in UTF-8"],
+        &[
+            "the shader `index.wgsl` cannot be read",
+            "not text in UTF-8",
+        ],
     );
     write("binary.ron", b"(format: 3, description: \"\xc3\x28\")");
-    assert_said(&load("binary.ron"), "binary.ron", &["no text in UTF-8"]);
+    assert_said(&load("binary.ron"), "binary.ron", &["not text in UTF-8"]);
     std::fs::create_dir(folder.path().join("folder.ron")).expect("it can be made");
-    assert_said(&load("folder.ron"), "folder.ron", &["there is no document"]);
+    assert_said(
+        &load("folder.ron"),
+        "folder.ron",
+        &["document `folder.ron` not found"],
+    );
 }

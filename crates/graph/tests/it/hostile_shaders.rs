@@ -27,7 +27,7 @@ fn shaders_that_nest_without_end() {
             let said_of = of_shader("", &body);
             assert_said(&said_of, "index.wgsl:", &["nested too deep", "`let`"]);
         }
-        // What naga itself counts.
+        // Naga counts these itself.
         for body in [
             format!("items[0] = u32({}1);", r("-", count)),
             format!("{}{}", r("{", count), r("}", count)),
@@ -180,7 +180,7 @@ fn shaders_that_claim_without_end() {
     answer(&files).expect_err("no workgroup is as large");
 }
 
-/// What is said about a shader `index` alone, and about one that imports `module`.
+/// Returns the messages about a shader `index` alone, and about one that imports `module`.
 fn of_files(index: &str, module: &str) -> String {
     let files = Files::new([
         ("graph.ron", COMPUTE),
@@ -269,8 +269,8 @@ fn pick(v: ptr<{space}, {ty}>, i: u32) -> i32 {{
     );
 }
 
-/// Memory that each thread or workgroup would need is summed up before a device is asked; what is
-/// not used does not count.
+/// Memory that each thread or workgroup would need is summed up before a device is asked; unused
+/// variables do not count.
 #[test]
 fn memory_that_no_device_has() {
     for (declarations, body, part) in [

@@ -1,5 +1,5 @@
-//! `Include`: a document is called as a shader is. What goes in, what comes out, and that nothing
-//! else crosses the border.
+//! `Include`: a document is called as a shader is. Its inputs and outputs, and that nothing else
+//! crosses the border.
 
 use crate::support::{Files, Triangle, checked, codes, load, names, plan, right, wrong};
 use skiagraph_graph::{Access, Code, Diagnostic, Plan, PlanRequest, SubresourceRange};
@@ -47,7 +47,7 @@ fn outer(passes: &str, outputs: &str) -> Files {
         .with("look.wgsl", LOOK)
 }
 
-/// What a pass reads and writes, by name.
+/// Returns the materials that a pass uses, by name; true for a write.
 #[track_caller]
 fn uses<'p>(plan: &'p Plan, pass: &str) -> Vec<(&'p str, bool)> {
     let found = plan.all_passes().iter().find(|found| *found.name == *pass);
@@ -108,7 +108,7 @@ fn bind_and_set_say_otherwise() {
     assert_eq!(found.outputs()[0].size, [8, 8]);
 }
 
-/// What is called like a param with a default stays another param, until it is exposed or set.
+/// A name that is also a param with a default stays another param, until it is exposed or set.
 #[test]
 fn a_param_with_a_default_is_the_included_documents_own() {
     let with_edge = |include: &str| {
@@ -154,7 +154,8 @@ fn a_param_with_a_default_is_the_included_documents_own() {
     assert_eq!(codes(&checked(&unknown)), [Code::UnknownParam]);
 }
 
-/// What an include says, what is edited (of `inner.ron` or `graph.ron`), and what is said of that.
+/// Settings of an include, edits (of `inner.ron` or `graph.ron`), and the code and message that
+/// follow.
 type Wrong<'t> = (&'t str, &'t [[&'t str; 3]], Code, &'t str);
 
 #[track_caller]
@@ -222,7 +223,7 @@ fn an_input_is_of_the_kind_and_format_that_is_asked_for() {
                 ],
             ],
             Code::Input,
-            "the input `image` is written, and is no output",
+            "the input `image` is written, but is not an output",
         ),
     ]);
 }
@@ -290,7 +291,7 @@ fn nothing_else_crosses_the_border() {
             "",
             &[output(r#"outputs: ["own"]"#)],
             Code::UnknownResource,
-            "nothing is called `own`",
+            "unknown material `own`",
         ),
         (
             r#", name: "left""#,
@@ -306,7 +307,7 @@ fn nothing_else_crosses_the_border() {
                 r#"{"image": "other[0]"}"#,
             ]],
             Code::UnknownResource,
-            "nothing is called `other`",
+            "unknown material `other`",
         ),
     ]);
 }
@@ -417,7 +418,7 @@ fn a_name_for_each() {
     assert_eq!(found.outputs()[1].size, [2, 2]);
     assert!(
         !names(&found).contains(&"lamp[0].look".to_owned()),
-        "nobody needs it"
+        "no output needs it"
     );
     // Twice without names gives one name twice.
     let twice = outer(
@@ -437,7 +438,7 @@ fn a_name_for_each() {
     assert_eq!(codes(&checked(&all)), [Code::ResourceKind]);
 }
 
-/// What the scene gives is known in every document, and may be replaced there and below.
+/// Names of the scene are known in every document, and may be replaced there and below.
 #[test]
 fn what_the_scene_gives_is_known_everywhere_and_may_be_replaced() {
     let shader = "struct Light { @size(256) bits: vec4<u32> } var<uniform> light: Light;
@@ -485,8 +486,8 @@ fn what_the_scene_gives_is_known_everywhere_and_may_be_replaced() {
     );
 }
 
-/// A document that is included passes `check` by itself: nobody is there to answer, so inputs are
-/// what it says, and params what they may be.
+/// A document that is included passes `check` by itself: no includer is there to answer, so inputs
+/// are as it declares them, and params as they may be.
 #[test]
 fn an_included_document_is_checked_alone() {
     let alone = |sections: &str| Files::graph(sections).with("look.wgsl", LOOK);

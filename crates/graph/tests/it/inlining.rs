@@ -7,7 +7,7 @@ use skiagraph_graph::{Code, Graph, NoProvider, Plan, PlanRequest, Registry};
 use std::fmt::Write as _;
 
 /// A pass over materials by number: those below [`OWN`] are the document's own, the others the
-/// other document's: what the outer one hands in as inputs, what the inner one gives as outputs.
+/// other document's: inputs from the outer one, outputs of the inner one.
 #[derive(Clone, Debug)]
 enum Pass {
     Fill(usize),
@@ -21,14 +21,14 @@ impl Pass {
         matches!(self, Self::Blur(from, to) | Self::Copy(from, to) if from == to)
     }
 
-    /// What it writes.
+    /// Returns the material that it writes.
     fn target(&self) -> usize {
         match self {
             Self::Fill(to) | Self::Draw(to) | Self::Blur(_, to) | Self::Copy(_, to) => *to,
         }
     }
 
-    /// Of the outer document: reads what the inner one has yet to write.
+    /// True if a pass of the outer document reads a material that the inner one has yet to write.
     fn reads_inner(&self) -> bool {
         matches!(self, Self::Blur(from, _) | Self::Copy(from, _) | Self::Draw(from) if *from >= OWN)
     }
@@ -69,12 +69,12 @@ fn shape() -> impl Strategy<Value = Shape> {
         passes(),
     )
         .prop_map(|((named, filled), bound, mut above, mut inner, below)| {
-            // What is given must be written.
+            // Outputs must be written.
             inner.splice(0..0, (0..OWN).map(Pass::Fill));
             // Above the include its names mean nothing yet.
             above.retain(|pass| !pass.reads_inner() && pass.target() < OWN);
             if filled {
-                // Else most documents read what nobody wrote.
+                // Otherwise most documents would read before any write.
                 above.splice(0..0, (0..OWN).map(Pass::Fill));
                 above.retain(|pass| !pass.is_loop());
                 inner.retain(|pass| !pass.is_loop());
@@ -130,7 +130,7 @@ fn outputs(names: &[String]) -> String {
 }
 
 impl Shape {
-    /// What the outer document calls the inner material of a number.
+    /// Returns the outer document's name for the inner material of a number.
     fn full(&self, number: usize) -> String {
         let namespace = if self.named { "it." } else { "" };
         match (number, self.bound) {
@@ -140,7 +140,7 @@ impl Shape {
         }
     }
 
-    /// What an outer pass calls the material of a number.
+    /// Returns an outer pass's name for the material of a number.
     fn outer(&self, number: usize) -> String {
         if number < OWN {
             format!("o{number}")
@@ -188,7 +188,7 @@ impl Shape {
             }
         };
         let names: Vec<String> = (0..OWN).map(own).collect();
-        // What is written of the inputs is given back, too.
+        // Inputs that are written are given back, too.
         let is_written = |name: &String| {
             let bound = self.bound.map(|outer| format!("o{outer}"));
             let mut targets = self.inner.iter().map(|pass| own(pass.target()));

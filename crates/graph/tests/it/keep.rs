@@ -1,5 +1,4 @@
-//! Materials with `keep: true`: who needs whom, in which order, and that nothing shares their
-//! memory.
+//! Materials with `keep: true`: dependences, order, and that nothing shares their memory.
 
 use crate::support::{Files, names, plan, right};
 use skiagraph_graph::Plan;

@@ -1,5 +1,5 @@
-//! Mistakes of files and requests rather than of a document: what is missing, no text, nested too
-//! deep, or asked for and not there.
+//! Mistakes of files and requests rather than of a document: missing files, files that are no text,
+//! deep nesting, requests for unknown things.
 
 use crate::broken::{folder, request};
 use crate::support::{Files, Triangle, load, plan, right, wrong};
@@ -158,7 +158,7 @@ fn asked() -> Files {
     Files::graph(ASKED).with("read.wgsl", READ)
 }
 
-/// What the host gives.
+/// Imports of the host.
 fn given() -> Import {
     Import::Texture {
         format: wgt::TextureFormat::R32Float,
@@ -221,7 +221,7 @@ fn requests_that_cannot_be_met() {
         ("a capture of a format of the driver's own", "depth", None),
         ("a capture of what the scene gives", "scene.stream", None),
         (
-            "a capture of what nobody has counted",
+            "a capture of items that were not counted",
             "scene.stream",
             Some("read"),
         ),

@@ -1,5 +1,5 @@
-//! Names: their grammar, what they mean where, and how shaders find materials, params and the words
-//! of choices by them.
+//! Names: their grammar, their meaning in each place, and how shaders find materials, params and
+//! the words of choices by them.
 
 use crate::support::{Files, Triangle, checked, codes, load, plan, right};
 use skiagraph_graph::{BindTarget, Code, LinkedPass, Plan, PlanRequest, Severity};
@@ -124,7 +124,7 @@ fn bound<'p>(plan: &'p Plan, pass: &str) -> Vec<(String, &'p str)> {
     bindings.collect()
 }
 
-/// Dots are underscores in a shader: outputs of includes, what the scene gives, the frame before.
+/// Dots are underscores in a shader: outputs of includes, names of the scene, the frame before.
 #[test]
 fn dots_are_underscores_in_shaders() {
     let shader = "var left_image: texture_2d<f32>;
@@ -154,7 +154,7 @@ fn dots_are_underscores_in_shaders() {
     assert_eq!(names, ["left.image", "scene.positions", "image.previous"]);
 }
 
-/// What is suggested for a misspelt global can be written there as it stands.
+/// The suggestion for a misspelt global can be written there as it stands.
 #[test]
 fn a_suggestion_is_what_may_stand_there() {
     let shader = |global: &str| {
@@ -230,7 +230,7 @@ fn two_words_of_one_constant_are_refused() {
     );
 }
 
-/// Names in capitals are scalar constants of the pass's shader, what it imports included.
+/// Names in capitals are scalar constants of the pass's shader, its imports included.
 #[test]
 fn constants_of_the_shader_stand_in_its_pass() {
     let shader = "#import \"ids.wgsl\"
@@ -260,8 +260,8 @@ fn constants_of_the_shader_stand_in_its_pass() {
     }
 }
 
-/// What is set need not be declared: the type is the shader's. What the shader does not ask for is
-/// refused, and so is a value that is none of its type.
+/// A value need not be declared to be set: the type is the shader's. A value that the shader does
+/// not ask for is refused, and so is one of another type.
 #[test]
 fn constants_for_each_pass() {
     let shader = "struct Params { direction: vec2<i32>, weight: f32, radius: u32, index: u32 }

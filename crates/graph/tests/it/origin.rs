@@ -1,4 +1,4 @@
-//! What a plan tells about the content of what is read back, and about memory.
+//! Statements of a plan about the content that is read back, and about memory.
 
 use crate::support::{Files, Triangle, load, right};
 use skiagraph_graph::{Capture, Field, ItemScalar, MemoryEntry, Plan, PlanRequest};
@@ -100,7 +100,7 @@ fn items_are_those_of_the_shader_that_declares_them() {
 fn a_capture_says_which_part_it_holds() {
     let plan = plan(&[("image", "draw"), ("items", "gather"), ("depth", "draw")]);
     let part = |name: &str| plan.part(name).unwrap();
-    // Of two mips the first was written.
+    // The first of two mips was written.
     let of_image = part("image@draw");
     assert_eq!((of_image.mips.clone(), of_image.of), (0..1, [2, 1]));
     assert!(of_image.is_less());

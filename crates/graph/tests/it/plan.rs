@@ -1,5 +1,5 @@
-//! What a plan says about a document: which passes run in which order, which do not and why, what
-//! is built for them.
+//! Statements of a plan about a document: the passes that run and their order, the culled ones and
+//! why, and the resources that are built for them.
 
 use crate::support::{Files, Triangle, load, names, right};
 use skiagraph_graph::{Capture, Plan, PlanRequest};
@@ -70,7 +70,7 @@ fn blur(name: &str, from: &str, to: &str) -> String {
 
 /// ```text
 /// scene.positions ─▶ draw ─▶ image ─▶ smooth ─▶ [result]
-/// camera ─▶ look ─▶ other ─▶ late              (nobody needs them)
+/// camera ─▶ look ─▶ other ─▶ late              (no output needs them)
 /// ```
 #[test]
 fn what_nobody_needs_neither_runs_nor_is_provided() {
@@ -107,7 +107,7 @@ fn what_nobody_needs_neither_runs_nor_is_provided() {
             ),
         ]
     );
-    // `scene.indices` only counts; no pass binds it, so nobody builds it.
+    // `scene.indices` only counts; no pass binds it, so it is not built.
     assert_eq!(culled_plan.provided(), ["scene.positions"]);
     assert_eq!(culled_plan.memory_bytes(), 2 * 8 * 4 * 4);
 
@@ -242,7 +242,7 @@ fn load_and_clear_of_a_target() {
 /// ```text
 /// first ─▶ image ◀─overwrites all─ copy ◀─ other
 /// ```
-/// A copy and a clear overwrite everything, so what was there is nobody's; a clear of one part
+/// A copy and a clear overwrite everything, so no pass needs the old content; a clear of one part
 /// leaves the rest.
 #[test]
 fn copies_and_clears_cover() {

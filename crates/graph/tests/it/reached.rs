@@ -102,7 +102,7 @@ struct Variant {
 }
 
 impl Variant {
-    /// Whether a message may be that of this variant.
+    /// True if a message may be that of this variant.
     fn says(&self, message: &str) -> bool {
         let (Some(first), Some(last)) = (self.literals.first(), self.literals.last()) else {
             return false;
@@ -122,7 +122,7 @@ impl Variant {
             })
     }
 
-    /// Whether it has enough words to be told from others.
+    /// True if it has enough words to be told from others.
     fn is_plain(&self) -> bool {
         let letters = self.literals.concat();
         letters.chars().filter(|sign| sign.is_alphabetic()).count() > 5

@@ -19,7 +19,7 @@ fn a_folder() {
     assert_eq!(sources.read("shaders"), Ok(None), "a folder is no file");
     assert_eq!(
         sources.read("shaders/a.wgsl"),
-        Err("it is no text in UTF-8".to_owned())
+        Err("it is not text in UTF-8".to_owned())
     );
     assert_eq!(sources.list("shaders"), ["a.wgsl", "b.wgsl"]);
     assert!(sources.list("nowhere").is_empty());
@@ -33,8 +33,7 @@ fn a_folder() {
     );
 }
 
-/// A device has length 0 and gives bytes for ever; to open a pipe into which nobody writes takes
-/// for ever.
+/// A device has length 0 and gives bytes for ever; to open a pipe without a writer takes for ever.
 #[test]
 #[cfg(unix)]
 fn files_without_end() {
@@ -88,7 +87,7 @@ fn the_first_layer_that_has_a_file_wins() {
     assert_eq!(layers.read("a"), Ok(Some("upper".into())));
     assert_eq!(layers.read("b"), Ok(Some("lower".into())));
     assert_eq!(layers.read("c"), Ok(None));
-    // What is there but unreadable is not silently taken from elsewhere.
+    // A file that exists but is unreadable is not silently taken from elsewhere.
     assert_eq!(layers.read("locked"), Err("locked".to_owned()));
     assert_eq!(layers.list("f"), ["x", "y"]);
 }

@@ -99,7 +99,7 @@ fn a_value_that_only_uniforms_hold_is_written_into_them() {
         if passes.is_some() {
             assert_eq!(uniforms(&set), uniforms(&anew), "{name}");
             assert_eq!(set.param(name), Some(&value), "{name}");
-            // What is planned next starts from the new value.
+            // The next plan starts from the new value.
             let wide = right(set.with_viewport([9, 9]));
             assert_eq!(wide.param(name), Some(&value), "{name}");
             assert!(set.set_in_uniforms(name, value).is_empty(), "{name}: twice");

@@ -119,7 +119,7 @@ fn an_import_is_there_once() {
     }
 }
 
-/// What stands in a comment is no import, and a comment that was closed hides none.
+/// An import in a comment is none, and a comment that was closed hides none.
 #[test]
 fn an_import_in_a_comment_is_none() {
     let main = "@fragment fn f() -> @location(0) f32 { return one(); }";
@@ -135,7 +135,7 @@ fn an_import_in_a_comment_is_none() {
         let shader = format!("{comment}\n{main}");
         let here = one_pass(&shader).with("a.wgsl", one);
         assert_eq!(load(&here).is_ok(), is_imported, "{comment}");
-        // Nobody looks for the file, either.
+        // The file is not looked for, either.
         let beside = one_pass(&format!("{shader}\n{one}"));
         assert_eq!(load(&beside).is_ok(), !is_imported, "{comment}");
     }
@@ -229,7 +229,7 @@ const WRITE_ONLY: &str = "var items: texture_storage_2d<r32uint, write>;";
 const READ_WRITE: &str = "var items: texture_storage_2d<r32uint, read_write>;";
 const SAMPLED: &str = "var items: texture_2d<u32>;";
 
-/// What a shader does to `items`, its declaration and body, and whether that needs a write before.
+/// Kind of access, declaration of `items`, body of the shader; true if a write must come before.
 const ACCESSES: &[(&str, &str, &str, bool)] = &[
     ("a read", STORAGE, "total = items[0];", true),
     (
@@ -289,11 +289,11 @@ const ACCESSES: &[(&str, &str, &str, bool)] = &[
         "total = textureDimensions(items).x;",
         false,
     ),
-    ("a global that nobody uses", SAMPLED, "", false),
+    ("a global without a use", SAMPLED, "", false),
 ];
 
-/// What a pass does to `items`, told by what the graph demands: a read or a change needs a write
-/// before.
+/// The access of a pass to `items`, told by the demands of the graph: a read or a change needs a
+/// write before.
 #[test]
 fn access_is_derived_from_the_shader() {
     let needs_clear = |declaration: &str, body: &str, clear: bool| {
@@ -418,8 +418,8 @@ fn params_and_overrides_are_laid_out() {
     assert_eq!(constants, overrides(8.0, 1.0));
 }
 
-/// Number and time of the uniform `frame` are a reason to run for `OnChange`, its flags are none:
-/// whoever reads which of them, and under which name it is bound.
+/// Number and time of the uniform `frame` are a reason to run for `OnChange`; its flags are none.
+/// That holds for each member, and for every name under which it is bound.
 #[test]
 fn flags_of_the_frame_trigger_nothing() {
     let frame = "struct Frame { index: u32, seconds: f32, changed_scene: u32, changed_light: u32 }

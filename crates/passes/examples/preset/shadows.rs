@@ -13,7 +13,7 @@ pub struct Shadows {
 }
 
 impl Shadows {
-    /// Of these meshes, for pictures of so many pixels.
+    /// Creates the shadows of these meshes, for pictures of the given size in pixels.
     pub fn new(on: (&Device, &Queue), size: [u32; 2], of: &[&Mesh]) -> Result<Self, Failed> {
         let light = DirectionalLight::new(DVec3::NEG_Y);
         let mut provider = SceneProvider::of_parts(Movable::joined(of), light);
@@ -28,7 +28,7 @@ impl Shadows {
         })
     }
 
-    /// Whether each pixel sees the light, 1 or 0; `places` has a map for each mesh.
+    /// Writes 1 for each pixel that sees the light, else 0; `places` has a map for each mesh.
     pub fn frame(
         &mut self,
         encoder: &mut CommandEncoder,

@@ -1,4 +1,4 @@
-//! What blocks certain wrong pixels: an open sheet, a closed box, nothing.
+//! Blockers of certain wrong pixels: an open sheet, a closed box, nothing.
 
 use crate::common::scenes::{add, add_rectangle, floor, from_above, light};
 use glam::Vec3;

@@ -18,7 +18,7 @@ fn point(mesh: &Mesh, primitive: u32, camera: &Camera, pixel: usize) -> DVec3 {
     camera.eye + direction * (normal.dot(a - camera.eye) / normal.dot(direction))
 }
 
-/// What is wrong with a case on a viewport, in words.
+/// Lists the errors of a case on a viewport, in words.
 fn complaints(case: &HardCase, viewport: [u32; 2]) -> Vec<String> {
     let scene = case.scene();
     let light = scene.light();
@@ -71,7 +71,7 @@ fn complaints(case: &HardCase, viewport: [u32; 2]) -> Vec<String> {
     complaints
 }
 
-/// Whether the picture lacks what it should show: a fiftieth of its pixels, or none.
+/// Complains if the picture lacks its expected pixels: a fiftieth of them, or none.
 fn unexpected(case: &HardCase, truth: &GroundTruthPixels) -> Option<String> {
     let of = |class: Class| truth.classes.iter().filter(|&&c| c == class).count();
     let (lit, shadow, enough) = (of(Class::Lit), of(Class::Shadow), truth.classes.len() / 50);

@@ -1,4 +1,4 @@
-//! What is indeterminate, and what is not.
+//! Pixels that are indeterminate, and pixels that are not.
 
 use crate::common::{
     f32_shading,

@@ -116,7 +116,7 @@ fn a_spot_light_far_away_is_directional() {
     let found = [1e2, 1e3, 1e4, 1e6, 1e8].map(others);
     let all = found.map(|[all, _]| all);
     assert!(all[0] > 100 && all.is_sorted_by(|a, b| a >= b), "{found:?}");
-    // What still differs hangs on rounding.
+    // Pixels that still differ hang on rounding.
     assert!(
         found[2..].iter().all(|[_, outside]| *outside == 0),
         "{found:?}"
@@ -180,7 +180,7 @@ proptest! {
             prop_assert_eq!(said, truth.classes[pixel], "pixel {}", pixel);
         }
         let counts = Statistics::judged(&visibility, &status, &truth).expect("valid values");
-        // Of the few pixels that a cone near the floor lights, two may lie at its edge.
+        // Among the few pixels that a cone near the floor lights, two may lie at its edge.
         let most = 0.2 * counts.pixels.facing_light as f64 + 2.0;
         // A light on a caster: whether that shades the floor hangs on the floor's own rounding.
         prop_assert!(height == 1 || counts.band as f64 <= most, "{counts:?}");

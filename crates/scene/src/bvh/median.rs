@@ -6,7 +6,7 @@ use super::tree::{Bvh, BvhNode, MAX_LEAF};
 use glam::{DVec3, Vec3};
 use obvhs::triangle::Triangle;
 
-/// Of at least one triangle.
+/// Builds a tree of at least one triangle.
 pub(super) fn build(triangles: &[Triangle]) -> Bvh {
     let corners = |id: u32| {
         let triangle = &triangles[id as usize];

@@ -4,7 +4,7 @@ use super::tree::{Bvh, BvhNode};
 use crate::mesh::Mesh;
 use glam::Vec3;
 
-/// What a box costs beside a triangle: as where the tree is built.
+/// Cost of a box beside a triangle: as where the tree is built.
 const BOX: f64 = 1.5;
 
 impl Bvh {
@@ -38,8 +38,8 @@ impl Bvh {
         }
     }
 
-    /// What a ray through the root's box costs, in triangle tests: the surface area heuristic
-    /// (MacDonald and Booth 1990).
+    /// Returns the cost of a ray through the root's box, in triangle tests: the surface area
+    /// heuristic (MacDonald and Booth 1990).
     pub fn cost(&self) -> f64 {
         let Some(root) = self.nodes.first() else {
             return 0.0;

@@ -34,7 +34,7 @@ pub struct Bvh {
 }
 
 impl Bvh {
-    /// Of nodes and primitives in order.
+    /// Creates a tree of nodes and primitives in order.
     pub(super) fn new(nodes: Vec<BvhNode>, primitives: Vec<u32>) -> Self {
         let depth = depth(&nodes);
         Self {

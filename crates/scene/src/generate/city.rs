@@ -36,9 +36,9 @@ struct House {
 }
 
 impl House {
-    /// Of a wall's or the roof's details, how many stand beside and above each other, in places
-    /// that are `cell` wide and high at least. Walls that look along z come first, then those
-    /// along x, then the roof.
+    /// Returns the numbers of details, in places at least `cell` wide and high, beside and above
+    /// each other on each wall and the roof. Walls that look along z come first, then those along
+    /// x, then the roof.
     fn cells(&self, cell: f64) -> [[u32; 2]; 3] {
         let [x, z] = self.half.map(|half| (2.0 * half / cell) as u32);
         let y = (self.height / cell) as u32;

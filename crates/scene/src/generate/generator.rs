@@ -55,7 +55,9 @@ impl Generator {
         let number = text.replace('_', "").parse().ok();
         let triangles = number
             .filter(|number| TRIANGLES.contains(number))
-            .ok_or_else(|| format!("{text:?} is no number of triangles from {least} to {most}"))?;
+            .ok_or_else(|| {
+                format!("{text:?} is not a number of triangles from {least} to {most}")
+            })?;
         match self {
             Self::Park | Self::Avenue | Self::Level => {
                 Err(format!("the mesh \"{self}\" has but one size"))

@@ -23,7 +23,7 @@ pub(super) fn turned(v: DVec3, quarters: usize) -> DVec3 {
 }
 
 impl Builder {
-    /// What `draw` builds around the origin, to be copied into this mesh.
+    /// Returns the geometry that `draw` builds around the origin, to be copied into this mesh.
     pub fn stamp(&mut self, draw: impl FnOnce(&mut Self)) -> Stamp {
         let mut part = Self::default();
         draw(&mut part);

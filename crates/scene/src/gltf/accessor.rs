@@ -6,7 +6,7 @@ use gltf::accessor::{Accessor, DataType};
 /// An accessor's items as numbers, `N` each; normalised integers as fractions.
 ///
 /// # Errors
-/// What is wrong with it.
+/// The first mistake.
 pub(super) fn floats<const N: usize>(
     accessor: &Accessor<'_>,
     buffers: &Buffers,
@@ -65,7 +65,7 @@ pub(super) fn floats<const N: usize>(
 /// An accessor's items as indices.
 ///
 /// # Errors
-/// What is wrong with it.
+/// The first mistake.
 pub(super) fn indices(accessor: &Accessor<'_>, buffers: &Buffers) -> Result<Vec<u32>, String> {
     let ty = accessor.data_type();
     if accessor.dimensions().multiplicity() != 1 || accessor.sparse().is_some() {

@@ -26,7 +26,7 @@ pub(super) fn data_uri(uri: &str) -> Option<Result<Vec<u8>, String>> {
         return Some(Err(format!("the data URI is {kind:?}, expected base64")));
     }
     let decoded = STANDARD.decode(text.trim_end());
-    Some(decoded.map_err(|why| format!("the data URI is no base64: {why}")))
+    Some(decoded.map_err(|why| format!("the data URI is not base64: {why}")))
 }
 
 /// A path in a URI, whose odd characters are written as `%20`.

@@ -45,7 +45,7 @@ pub(super) fn split(bytes: &[u8]) -> Result<Parts<'_>, Fault> {
         let begin = at + 8;
         let end = begin.saturating_add(size as usize);
         let Some(chunk) = bytes.get(begin..end) else {
-            // What stands behind the length in the header is no part of the file.
+            // Bytes behind the length in the header are no part of the file.
             if at >= length && json.is_some() {
                 break;
             }

@@ -28,7 +28,7 @@ pub(super) struct Parsed {
 /// The document of a file's bytes.
 ///
 /// # Errors
-/// What is wrong with it.
+/// The first mistake.
 pub(super) fn parse(bytes: &[u8], materials: MaterialUse) -> Result<Parsed, Fault> {
     let (text, blob) = container::split(bytes)?;
     let values = text.iter().filter(|&&byte| byte == b',').count();

@@ -268,7 +268,7 @@ impl<'a> Import<'a> {
         }
         let linear = DMat3::from_mat4(transform);
         let mirrored = linear.determinant() < 0.0;
-        // Of a flattened one no normal is left; the triangle's own stands in.
+        // A flattened one leaves no normal; the triangle's own stands in.
         let of_normals = of_normals(linear);
         for (number, triangle) in (1..).zip(triangles) {
             let mut corners = Vec::with_capacity(3);

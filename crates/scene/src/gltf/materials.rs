@@ -28,7 +28,7 @@ const BASIS: &str = "KHR_texture_basisu";
 pub(super) struct Read {
     pub material: Material,
     pub uv_set: u32,
-    /// What is done to them: a matrix, then an offset.
+    /// Transform of texture coordinates: a matrix, then an offset.
     pub uv_transform: (Mat2, Vec2),
     /// Where it is masked.
     pub cut: Option<Cut>,

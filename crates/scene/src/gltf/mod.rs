@@ -1,6 +1,6 @@
 //! glTF 2.0 files, parsed by the `gltf` crate and welded into a [`Mesh`](crate::Mesh).
 //!
-//! What becomes of one: the triangles of its default scene (of the first one, else of all meshes)
+//! The mesh is made of the triangles of its default scene (of the first one, else of all meshes)
 //! with the transforms of their nodes and instances, morph targets by their weights, skins in the
 //! pose of their joints' nodes; animations stand still. `alphaMode: MASK` is a mask, which the
 //! alpha of vertices is a part of; `BLEND` counts as opaque. Primitives without normals are flat.

@@ -1,6 +1,6 @@
 //! Takes out of a document what this program has no use for, before the `gltf` crate validates it:
-//! what cannot move or cut a triangle cannot refuse a file then. What the crate does not know of,
-//! but is followed, is read here.
+//! what cannot move or cut a triangle cannot refuse a file then. Extensions that are followed but
+//! unknown to the crate are read here.
 
 use super::{
     beside::{Beside, Instances, each, index, taken},

@@ -26,7 +26,7 @@ pub(super) struct FaceRecord {
     pub number: u32,
     /// Line in the file, from 1.
     pub line: u32,
-    /// Whether every corner names a normal.
+    /// True if every corner names a normal.
     pub has_normals: bool,
     /// Index into [`Guard::materials`].
     pub material: u32,
@@ -74,7 +74,7 @@ pub(super) struct Guard<'a> {
     pub normals_absent: usize,
     /// Faces that name texture coordinates which are not there, by their place in `faces`.
     pub uvs_absent: Vec<(usize, FaceProblem)>,
-    /// Whether materials and texture coordinates are of interest.
+    /// True if materials and texture coordinates are of interest.
     with_materials: bool,
     uvs: Vec<Vec2>,
     material: u32,
@@ -155,7 +155,7 @@ impl<'a> Guard<'a> {
         }
     }
 
-    /// What `tobj` was last given to read, shortened to what fits a message.
+    /// Returns the text that `tobj` was last given to read, shortened to fit a message.
     pub fn current_line(&self) -> String {
         beginning(String::from_utf8_lossy(&self.handed_on).trim_end()).into_owned()
     }

@@ -5,8 +5,8 @@
 //! every corner is *flat*: each of its triangles takes its own geometric normal. (A smooth guess
 //! would tilt the corners of boxes, and which pixels face the light is decided by these normals.)
 //! Vertex numbers count from the beginning of the file, wherever the face stands; negative ones
-//! count back from it. Lines that are not UTF-8 are read as Windows-1252. What is passed over
-//! stands in the report.
+//! count back from it. Lines that are not UTF-8 are read as Windows-1252. Ignored parts stand in
+//! the report.
 
 mod guard;
 mod import;

@@ -25,7 +25,7 @@ impl QuadDiagonal {
     }
 }
 
-/// What becomes of a polygon that the fan from its corner does not fit.
+/// Treatment of a polygon that the fan from its corner does not fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 pub enum Concave {
     /// It is cut as its outline is, and refused where that crosses itself.
@@ -36,7 +36,7 @@ pub enum Concave {
     Fan,
 }
 
-/// What is taken of an OBJ file's materials.
+/// Parts of an OBJ file's materials that are read.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
 pub enum ObjMaterials {
     /// Nothing: files of materials and textures need not be there.
@@ -67,8 +67,8 @@ pub struct ObjOptions {
     pub leave_out: Vec<String>,
     /// How polygons are split.
     pub quads: QuadDiagonal,
-    /// What becomes of concave ones.
+    /// Treatment of concave ones.
     pub concave: Concave,
-    /// What is taken of its materials.
+    /// Parts of its materials that are read.
     pub materials: ObjMaterials,
 }

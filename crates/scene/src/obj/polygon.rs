@@ -124,7 +124,7 @@ fn ears(points: &[DVec2]) -> Vec<[usize; 3]> {
 }
 
 /// Cuts a triangle with more points on its edges: corners beside such a point, until three are
-/// left. What is cut off makes corners of its neighbours.
+/// left. Each piece cut off makes corners of its neighbours.
 fn split(mut ring: Vec<(usize, bool)>, into: &mut Vec<[usize; 3]>) {
     while ring.len() > 3 {
         let count = ring.len();

@@ -70,7 +70,7 @@ pub fn parse_obj(
         return Err(SceneError::ObjLine {
             path: path.to_owned(),
             line: 1,
-            reason: "not an OBJ file, or damaged: it holds no vertex, but bytes that are no text"
+            reason: "not an OBJ file, or damaged: it holds no vertex, but bytes that are not text"
                 .to_owned(),
         });
     }

@@ -12,7 +12,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// What becomes of a file.
+/// Fate of a file.
 enum Becomes {
     /// The floor and so many plates of twelve triangles at their places; a remark holds the words,
     /// or there is none.
@@ -459,7 +459,7 @@ fn weights_of_morph_targets_are_followed() {
 
 #[test]
 fn instances_are_turned_scaled_and_mirrored() {
-    // Of the four corners of the floor: places, and scales that mirror.
+    // Instances at the four corners of the floor: places, and scales that mirror.
     let instances = |attributes: &str| {
         let extension = format!(
             r#"{{"mesh":1,"scale":[0.5,0.5,0.5],

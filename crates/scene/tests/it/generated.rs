@@ -134,8 +134,8 @@ fn the_avenue_is_closed_and_2000_units_long() {
     }
 }
 
-/// What makes maps of it dear: sheets without an inside, few triangles, each many times as large as
-/// what a map is divided into.
+/// Meshes for which maps are dear: sheets without an inside, few triangles, each many times as
+/// large as the cells of a map.
 #[test]
 fn the_level_is_of_large_open_sheets() {
     let scene = scene("level").unwrap();
@@ -254,8 +254,8 @@ fn a_size_that_cannot_be_had_says_why() {
     insta::assert_snapshot!(
         ["city:9999", "forest:many", "park:20000", "sponza:20000"].map(told).join("\n"),
         @r#"
-    "city:9999": "9999" is no number of triangles from 10000 to 10000000
-    "forest:many": "many" is no number of triangles from 10000 to 10000000
+    "city:9999": "9999" is not a number of triangles from 10000 to 10000000
+    "forest:many": "many" is not a number of triangles from 10000 to 10000000
     "park:20000": the mesh "park" has but one size
     "sponza:20000": the mesh "sponza/sponza.obj" is a file of one size
     "#

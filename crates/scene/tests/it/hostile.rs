@@ -312,7 +312,7 @@ fn scene_files_of_nothing_and_without_end() {
     assert!(error(&many.replace("\"a\"", "\"7\"")).contains("two views are called \"7\""));
 }
 
-/// What is said about a scene file or a bare mesh on disk.
+/// Returns the message about a scene file or a bare mesh on disk.
 #[track_caller]
 fn said_of_file(path: &Path) -> String {
     let argument = path.display().to_string();
@@ -344,7 +344,7 @@ fn files_that_are_no_text_or_too_long() {
     sparse("huge.obj");
     std::fs::create_dir(file("folder.obj")).unwrap();
     for (name, said) in [
-        ("binary.ron", "it is no text in UTF-8"),
+        ("binary.ron", "it is not UTF-8 text"),
         (
             "huge.ron",
             "it has 4096 MiB, a scene file 1 at most: a mesh belongs into an .obj file of its own",
@@ -360,8 +360,8 @@ fn files_that_are_no_text_or_too_long() {
     }
 }
 
-/// A device has length 0 and gives bytes for ever; to open a pipe into which nobody writes takes
-/// for ever.
+/// A device has length 0 and gives bytes for ever; to open a pipe that is never written takes for
+/// ever.
 #[test]
 #[cfg(unix)]
 fn devices_and_pipes() {
@@ -391,8 +391,8 @@ fn devices_and_pipes() {
         assert_eq!(
             said_of_file(&file(name)),
             format!(
-                "cannot read {}: it is a device, a pipe or a socket, whose length nobody knows: \
-                 copy what it gives into a file, and name that",
+                "cannot read {}: it is a device, a pipe or a socket, of unknown length: copy its \
+                 content into a file, and name that",
                 file(read).display()
             )
         );

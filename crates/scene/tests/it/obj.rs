@@ -209,7 +209,7 @@ fn groups_are_left_out_by_name() {
         leave_out: vec!["cloth 4".into()],
         ..ObjOptions::default()
     };
-    // What is wrong with a face of a group left out is nobody's business.
+    // The faces of a group left out are not checked.
     let text = format!("{SQUARE}g a\nf 1 2 3\no cloth 4 \nf 1 2 3\nf 1 2 99\ng a\nf 1 3 4\n");
     let (mesh, report) = parse_with(text, &options).unwrap();
     assert_eq!(mesh.triangles.len(), 2);
@@ -256,7 +256,7 @@ fn broken_files_are_explained() {
     assert_snapshot!(error(b"v 0 0 0\nv 1 \xff 0\n"), @"house.obj:2: position parse error in \"v 1 \
         ÿ 0\"");
     assert_snapshot!(error(b"\x89PNG\r\n\x1a\n\0\0\0"), @"house.obj:1: not an OBJ file, or \
-        damaged: it holds no vertex, but bytes that are no text");
+        damaged: it holds no vertex, but bytes that are not text");
 }
 
 #[test]

@@ -16,7 +16,7 @@ fn sign(p: Point, q: Point) -> i32 {
 /// up and the other one down differ by more than a share of them.
 const LEAST_PRODUCT: f64 = 2.0 * f32::MIN_POSITIVE as f64;
 
-/// Whether both products of an edge function are no subnormal numbers, or are 0.
+/// Returns true if each product of an edge function is a normal number or 0.
 fn are_normal(p: Point, q: Point) -> bool {
     [(p[0], q[1]), (p[1], q[0])].iter().all(|&(a, b)| {
         let product = (f64::from(a) * f64::from(b)).abs();
@@ -170,8 +170,8 @@ proptest! {
         prop_assert!((0..rim.len()).any(hit), "{hub:?} {rim:?}");
     }
 
-    /// What is hit has the origin in it but for rounding: no thin triangle is hit beyond its
-    /// end.
+    /// A triangle that is hit has the origin in it but for rounding: no thin triangle is hit beyond
+    /// its end.
     #[test]
     fn a_hit_is_no_farther_than_rounding(
         (p, q) in nearly_collinear(),
@@ -254,8 +254,8 @@ proptest! {
         }
     }
 
-    /// What `n >= 0.51` rests on: a shrunk triangle's texel lies in it, grown by what receivers
-    /// and corners may be off by.
+    /// Ground of `n >= 0.51`: a shrunk triangle's texel lies in it, grown by the errors of
+    /// receivers and corners.
     #[test]
     fn a_texel_that_a_shrunk_triangle_takes_lies_in_it(
         either: bool,
@@ -328,8 +328,8 @@ proptest! {
         }
     }
 
-    /// Of the two triangles of an edge one has a point, whichever way each goes along it; the
-    /// right one but within rounding of the line. Both evaluated alike.
+    /// One of the two triangles of an edge has a point, whichever way each goes along it; the right
+    /// one but within rounding of the line. Both evaluated alike.
     #[test]
     fn one_of_two_triangles_has_a_point(
         (edge, point) in beside_an_edge(16384.0),
@@ -409,9 +409,9 @@ fn some_bounds_need_the_nearest_neighbour() {
             area != 0.0 && (area > 0.0) != (sign(p, q) > 0)
         }));
     }
-    // In a map of 16,384 texels points at the far end of a long diagonal: sides, and texels that
-    // n = 0.51 takes although they do not lie in the triangle. 256 seeds try each choice of
-    // neighbours of the six operations that matter. Of sides nothing is proven there, but none is
+    // In a map of 16,384 texels points at the far end of a long diagonal: sides, and texels that n
+    // = 0.51 takes although they do not lie in the triangle. 256 seeds try each choice of
+    // neighbours of the six operations that matter. Nothing is proven of sides there, but none is
     // found to be wrong.
     let half_diagonal = (0.5 + f64::from(SLACK)) * std::f64::consts::SQRT_2;
     let with_distance = |(edge, point): ([Point; 2], Point)| (edge, point, distance(edge, point).0);
@@ -435,7 +435,7 @@ fn some_bounds_need_the_nearest_neighbour() {
             count(&|seed| plain(seed).inward_distance(edge, point, 1.0, 0) >= cell())
         })
         .sum();
-    // Of two triangles that are evaluated in two ways, both or none have a point.
+    // If two triangles are evaluated in two ways, both or none have a point.
     let (mut shared, mut on_edges) = (0, 0);
     for (seed, (edge, point)) in (0..).zip(drawn(beside_an_edge(16384.0), 40_000)) {
         let [p, q] = edge;

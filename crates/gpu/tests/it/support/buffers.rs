@@ -4,11 +4,11 @@
 
 use crate::support::Files;
 
-/// What an `OnChange` pass reads, bound as `input`.
+/// Input of an `OnChange` pass, bound as `input`.
 pub const INPUT: &str = "var<storage, read> input: array<u32>;";
-/// What a pass reads of the frame before, bound as `old`.
+/// Input from the frame before, bound as `old`.
 pub const OLD: &str = "var<storage, read> old: array<u32>;";
-/// What a pass writes, bound as `out`.
+/// Output of a pass, bound as `out`.
 pub const OUT: &str = "var<storage, read_write> out: array<u32>;";
 /// The param `seed` in a shader, and in a document.
 pub const SEED: &str = "struct Params { seed: u32 } var<uniform> params: Params;";

@@ -44,7 +44,7 @@ pub struct Kind {
     pub usage: wgpu::TextureUsages,
 }
 
-/// What [`sums`] reads.
+/// Kind of the texture that [`sums`] reads.
 pub const KIND: Kind = Kind {
     format: wgpu::TextureFormat::R32Uint,
     edge: 8,

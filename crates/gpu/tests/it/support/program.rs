@@ -23,7 +23,7 @@ pub struct Pass {
     whole: bool,
     /// Run condition, if the material is kept: its writers need not have the same.
     run: usize,
-    /// Whether it adds to what is there, if the material is kept.
+    /// True if it adds to the content, if the material is kept.
     adds: bool,
     /// It is there only while the param `extra` is true.
     optional: bool,
@@ -78,7 +78,7 @@ impl Pass {
     }
 }
 
-/// What happens before a frame.
+/// Changes before a frame.
 #[derive(Clone, Copy, Debug)]
 pub enum Event {
     Nothing,
@@ -91,9 +91,9 @@ pub enum Event {
 
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// Run condition of whoever writes a material.
+    /// Run condition of each material's writer.
     runs: Vec<usize>,
-    /// Of each material whether it has `keep: true`.
+    /// True for each material that has `keep: true`.
     kept: Vec<bool>,
     passes: Vec<Pass>,
     pub outputs: Vec<usize>,
@@ -241,8 +241,8 @@ fn any_pass() -> impl Strategy<Value = Pass> {
         any::<bool>(),
     )
         .prop_map(|(mut reads, target, whole, optional, run, adds)| {
-            // A history begins with the plan in which somebody reads it: neither does a pass that
-            // comes and goes, nor are others needed or not because of it.
+            // A history begins with the first plan that reads it: so a pass that comes and goes
+            // reads none, and does not decide which others are needed.
             let whole = whole && !optional;
             let keeps = |read: &Read| !(optional && matches!(read, Read::Before(_)));
             reads.retain(keeps);
@@ -284,13 +284,13 @@ pub fn any_program() -> impl Strategy<Value = Program> {
     )
         .prop_map(
             |(runs, mut kept, mut passes, mut outputs, events, poison)| {
-                // What is read must be written, whichever passes are there.
+                // A material that is read must be written, whichever passes are there.
                 for (material, kept) in kept.iter_mut().enumerate() {
                     let writes = |pass: &Pass| pass.target == material && !pass.optional;
                     *kept &= passes.iter().any(writes);
                 }
                 for pass in &mut passes {
-                    // What is kept has no version of the frame before but itself.
+                    // A kept material has no version of the frame before but itself.
                     for read in &mut pass.reads {
                         if let Read::Before(material) = *read
                             && kept[material]
@@ -300,7 +300,8 @@ pub fn any_program() -> impl Strategy<Value = Program> {
                     }
                     let target = pass.target;
                     pass.reads.retain(|read| *read != Read::Now(target));
-                    // What ran once stays as it is only while the same passes make it.
+                    // The result of a pass that ran once stays as it is only while the same passes
+                    // make it.
                     let run = if kept[target] { pass.run } else { runs[target] };
                     pass.optional &= RUNS[run] != "Once";
                 }
@@ -315,7 +316,7 @@ pub fn any_program() -> impl Strategy<Value = Program> {
                         pass.reads.retain(|read| !matches!(read, Read::Now(_)));
                     }
                 }
-                // What only a pass reads that goes would be lost with it.
+                // A material that only a removed pass reads would be lost with it.
                 if passes.iter().any(|pass| pass.optional) {
                     outputs.extend(0..MATERIALS);
                 }

@@ -1,4 +1,5 @@
-//! What the tests of hostile files share: what is said of one, within bounds of time and memory.
+//! Common parts of the tests of hostile files: the messages about one, within bounds of time and
+//! memory.
 
 use crate::{
     bounds::bounded,
@@ -10,7 +11,7 @@ use skiagraph_graph::{Diagnostics, Graph, PlanRequest, Registry};
 pub const COMPUTE: &str = r#"(format: 3, materials: [Buffer(name: "items", count: 4)],
     passes: [Compute(name: "index", dispatch: Over("items.count"))], outputs: ["items"])"#;
 
-/// What is said about `graph.ron`, within the bounds; the longest of the files is the hostile one.
+/// Checks `graph.ron` within the bounds; the longest of the files is the hostile one.
 #[track_caller]
 pub fn answer(files: &Files) -> Result<(), Diagnostics> {
     let request = PlanRequest::new([64, 48], &Triangle);
@@ -20,8 +21,8 @@ pub fn answer(files: &Files) -> Result<(), Diagnostics> {
     })
 }
 
-/// What is said about a shader: declarations, and the body of its function, which has an array
-/// `items` of u32.
+/// Returns the messages about a shader: declarations, and the body of its function, which has an
+/// array `items` of u32.
 #[track_caller]
 pub fn of_shader(declarations: &str, body: &str) -> String {
     let shader = format!(

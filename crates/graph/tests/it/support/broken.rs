@@ -45,7 +45,7 @@ pub fn folder() -> Broken {
     Broken(FolderSources { root: root() })
 }
 
-/// What a host hands over, made for too little, and a viewport and memory to plan for.
+/// Imports of a host, made for too little, and a viewport and memory to plan for.
 pub fn request() -> PlanRequest<'static> {
     let mut request = PlanRequest::new([64, 48], &Triangle);
     request.memory_limit = Some(4 << 30);

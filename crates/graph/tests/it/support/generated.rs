@@ -10,8 +10,8 @@
 /// lightK.add ─▶ sum_0 ⇄ sum_1
 ///                └────────────────────────▶ debug (every third light; culled)
 /// ```
-/// A light is a group. The sums take turns, so that all three hazards occur. What is left over is
-/// filled with passes that nobody needs.
+/// A light is a group. The sums take turns, so that all three hazards occur. Passes without a use
+/// fill the rest.
 pub fn graph(passes: usize) -> Vec<(String, String)> {
     let mut texts = Texts::default();
     texts.texture("position", "viewport.size");

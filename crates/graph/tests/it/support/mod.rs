@@ -1,5 +1,5 @@
-//! What the test files of this crate and of `skiagraph-gpu` share: files in memory, and what a
-//! small scene gives.
+//! Common parts of the test files of this crate and of `skiagraph-gpu`: files in memory, and the
+//! resources of a small scene.
 
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
@@ -78,8 +78,8 @@ impl Sources for Files {
     }
 }
 
-/// What a scene of one triangle gives: its buffers, a camera of 64 bytes, three lights of 256, a
-/// stream of items that nobody has counted, and an acceleration structure.
+/// Resources of a scene of one triangle: its buffers, a camera of 64 bytes, three lights of 256, a
+/// stream of items without a count, and an acceleration structure.
 pub struct Triangle;
 
 impl Describe for Triangle {
@@ -139,7 +139,7 @@ pub fn plan(files: &Files) -> Result<Plan, Diagnostics> {
     load(files)?.plan(&PlanRequest::new([8, 8], &NoProvider))
 }
 
-/// What comes without mistakes.
+/// Returns the value of a result without mistakes.
 #[track_caller]
 pub fn right<T>(result: Result<T, Diagnostics>) -> T {
     result.unwrap_or_else(|errors| panic!("{errors}"))

@@ -1,4 +1,4 @@
-//! What several test files use. Not every file uses all of it.
+//! Items that several test files use. Not every file uses all of it.
 #![allow(dead_code)]
 
 pub mod f32_shading;

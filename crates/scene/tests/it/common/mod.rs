@@ -10,7 +10,7 @@ pub struct Hit {
     pub t: f64,
     /// The triangle.
     pub primitive: u32,
-    /// Whether the triangle was met from behind.
+    /// True if the triangle was met from behind.
     pub back: bool,
     u: f64,
     v: f64,

@@ -1,4 +1,4 @@
-//! What generated meshes promise: parts that are closed solids, welded, and touch nothing.
+//! Promises of generated meshes: parts that are closed solids, welded, and touch nothing.
 
 use crate::common::cast;
 use glam::{DVec3, Vec3};

@@ -28,12 +28,12 @@ TOKENS = re.compile(
 COMMENT = re.compile(r"^\s*(//[/!]?)\s?(.*)$")
 RIDDLE = re.compile(r"(?:What|Of|Whether|Whoever|Who)\b(?!')")
 PERSON = re.compile(r"\b(?:nobody|somebody|whoever|anybody)\b", re.IGNORECASE)
-MESSAGE = re.compile(r'"[^"\n]*(?:\bis no (?!longer|more)|nothing is called so)[^"\n]*"')
+MESSAGE = re.compile(r'"[^"\n]*(?:(?<!here )\bis no (?!longer|more)|nothing is called so)[^"\n]*"')
 
 
 def words(text):
     """The lines of Rust or WGSL whose comments or messages are not plain, with the reason."""
-    before = None
+    before, previous = None, ""
     for number, line in enumerate(code_without_tests(text), 1):
         comment = COMMENT.match(line)
         kind, said = comment.groups() if comment else (None, "")
@@ -47,7 +47,7 @@ def words(text):
 
 
 def code_without_tests(text):
-    """The lines of a file; those of its test module at the end are empty, as tests name what they test."""
+    """The lines of a file without its test module, which names what is tested."""
     lines = text.splitlines()
     for at, line in enumerate(lines):
         if line.startswith("#[cfg(test)]"):
@@ -187,7 +187,11 @@ def main():
             if len(line) > WIDTH:
                 failed += 1
                 print(f"{file.relative_to(ROOT)}:{number}: {len(line)} columns")
+        is_test = "tests" in file.relative_to(ROOT).parts
         for number, why in words(file.read_text()):
+            # A test says of its own values what they are.
+            if is_test and why.startswith("a message"):
+                continue
             failed += 1
             print(f"{file.relative_to(ROOT)}:{number}: {why}")
     for file in sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")]):

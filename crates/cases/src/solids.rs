@@ -73,7 +73,7 @@ pub(crate) const CASES: &[HardCase] = &[
     .with_answer(|p| among(p, LIGHT, &BY_VERTEX, 1e-3)),
     HardCase::open(
         "boxes_through_each_other",
-        "a lit face of one inside the other: what culling leaves is no surface",
+        "a lit face of one inside the other: culling leaves an open surface",
         || boxes(&CROSSING),
     )
     .with_answer(|p| among(p, LIGHT, &CROSSING, 1e-3)),

@@ -1,9 +1,9 @@
-//! The ground truth of a view: what the oracle says that each pixel shows.
+//! The ground truth of a view: the oracle's answer at each pixel.
 
 use crate::receiver::Receiver;
 use std::borrow::Cow;
 
-/// What the oracle says of a pixel.
+/// Oracle's answer for a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// Shows no geometry.
@@ -18,8 +18,8 @@ pub enum Class {
 }
 
 impl Class {
-    /// Whether the pixel is one of the *pixels facing the light* (PFL), the denominator of all
-    /// shares.
+    /// Returns true if the pixel is one of the *pixels facing the light* (PFL), the denominator of
+    /// all shares.
     pub fn faces_light(self) -> bool {
         matches!(self, Self::Lit | Self::Shadow)
     }
@@ -33,8 +33,8 @@ pub struct GroundTruthPixels {
     pub viewport: [u32; 2],
     /// The answer.
     pub classes: Vec<Class>,
-    /// Whether the answer flips when receiver or casters move within their f32 error bounds: no f32
-    /// method can be blamed for it.
+    /// True where the answer flips when receiver or casters move within their f32 error bounds: no
+    /// f32 method can be blamed for it.
     pub indeterminate: Vec<bool>,
     /// dot(interpolated vertex normal, unit vector towards the light); 0 in the background.
     pub n_dot_l: Vec<f32>,
@@ -88,18 +88,18 @@ impl AreaVisibility {
     }
 }
 
-/// What is right for one view: of a light without extent which pixels are lit, of one with extent
-/// what share of it each sees, too.
+/// Ground truth of one view: the lit pixels of a light without extent, and the visible share of a
+/// light with one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundTruth {
-    /// What each pixel shows.
+    /// Answer at each pixel.
     pub pixels: GroundTruthPixels,
     /// The shares, of a light with extent.
     pub area: Option<AreaVisibility>,
 }
 
 impl GroundTruth {
-    /// What share of the light each pixel sees.
+    /// Returns the share of the light that each pixel sees.
     pub fn shares(&self) -> Cow<'_, [f32]> {
         match &self.area {
             Some(area) => Cow::Borrowed(&area.shares),
@@ -122,11 +122,11 @@ impl Answer {
         n_dot_l: 0.0,
     };
 
-    /// Facing away, or lit as long as nobody has looked for blockers.
+    /// Returns the answer before blockers are looked for: facing away, or lit.
     pub(crate) fn facing(receiver: &Receiver) -> Self {
         let faces_away = receiver.n_dot_l <= 0.0;
         let could_turn = receiver.n_dot_l.abs() <= receiver.n_dot_l_error;
-        // What faces away does so within the cone and outside of it.
+        // A receiver that faces away does so within the cone and outside of it.
         let could_leave = receiver.on_cone_edge && (!faces_away || could_turn);
         let beyond_cone = receiver.outside_cone && !receiver.on_cone_edge;
         Self {

@@ -119,7 +119,7 @@ fn a_missing_import_leaves_the_encoder_alone() {
 }
 
 /// ```text
-/// count ─▶ counter ;  idle ─▶ nobody
+/// count ─▶ counter ;  idle ─▶ (no reader)
 /// ```
 /// Even if the host wants another output only.
 #[test]

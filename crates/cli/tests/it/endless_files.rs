@@ -115,7 +115,7 @@ fn a_device_is_refused_unopened() {
     for said in said(|file| symlink("/dev/zero", file).unwrap()) {
         assert!(
             said.starts_with("it is a device, a pipe or a socket")
-                && said.contains("copy what it gives into a file"),
+                && said.contains("copy its content into a file"),
             "{said}"
         );
     }
@@ -126,7 +126,7 @@ fn a_pipe_is_refused_unopened() {
     for said in said(|file| assert!(Command::new("mkfifo").arg(file).status().unwrap().success())) {
         assert!(
             said.starts_with("it is a device, a pipe or a socket")
-                && said.contains("copy what it gives into a file"),
+                && said.contains("copy its content into a file"),
             "{said}"
         );
     }

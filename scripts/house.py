@@ -194,7 +194,7 @@ def main():
                 continue
             failed += 1
             print(f"{file.relative_to(ROOT)}:{number}: {why}")
-    for file in sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")]):
+    for file in sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("docs/lab/*.md")]):
         if file.name in WRITTEN_BY_TESTS:
             continue
         is_quoted = False

@@ -40,7 +40,7 @@ fn caster_of(primitive: u32) -> Binned {
 
 // Bound on the difference between the tracer's view of a triangle and its corners, in any
 // direction, as a share of the longest way, twice the diagonal of the scene's box:
-// docs/light_buffer.md.
+// docs/light_buffer_errors.md.
 const TRACED: f32 = 16.0 * HALF_ULP;
 
 // How far a receiver may be beyond an edge, in texels in each direction, and the tracer not tell.

@@ -1,6 +1,6 @@
 // A grid over light space, each texel with the list of the casters that could shade a receiver in
 // it. Haines, Greenberg, "The Light Buffer: A Shadow-Testing Accelerator", IEEE CG&A 6(9), 1986.
-// Why it is exact: docs/light_buffer.md.
+// Why it is exact: docs/light_buffer_errors.md.
 
 #import "shared/light_triangle.wgsl"
 #import "shared/map_layers.wgsl"

@@ -64,7 +64,7 @@ pub enum CliError {
     /// Ctrl-C.
     #[error("stopped by Ctrl-C; {kept}")]
     Interrupted {
-        /// What of the work so far is still there.
+        /// The part of the work so far that is kept.
         kept: String,
     },
 }
@@ -99,7 +99,7 @@ impl CliError {
     }
 }
 
-/// Whether the device is of no more use after an error, for any graph.
+/// True if the device is of no more use after an error, for any graph.
 pub fn is_fatal(error: &(dyn Error + 'static)) -> bool {
     matches!(
         error.downcast_ref(),
@@ -123,7 +123,7 @@ pub fn advice(error: &(dyn Error + 'static)) -> Option<&'static str> {
     }
 }
 
-/// What to do about a file that cannot be written.
+/// Advises what to do about a file that cannot be written.
 pub fn io_advice(error: &io::Error) -> Option<&'static str> {
     use io::ErrorKind as Kind;
     Some(match error.kind() {

@@ -74,7 +74,7 @@ pub fn size([width, height]: [u32; 2]) -> String {
     format!("{width}x{height}")
 }
 
-/// What goes behind a message about a name that is not there: the [`closest`] one, if any.
+/// Returns the end of a message about a name that is not there: the [`closest`] one, if any.
 pub fn did_you_mean<'a>(wanted: &str, names: impl Iterator<Item = &'a str>) -> String {
     let hint = |name| format!("; did you mean `{name}`?");
     closest(wanted, names).map_or(String::new(), hint)

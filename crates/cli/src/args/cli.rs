@@ -23,7 +23,7 @@ use clap::{Parser, Subcommand};
         or it was lost or hangs, 130 stopped by Ctrl-C."
 )]
 pub struct Cli {
-    /// What to do.
+    /// Command to run.
     #[command(subcommand)]
     pub command: Command,
     /// Where it is done.
@@ -191,7 +191,7 @@ mod tests {
         }
     }
 
-    /// What is flattened into a command brings its flags, and not its own description.
+    /// An argument group flattened into a command brings its flags, and not its own description.
     #[test]
     fn each_command_is_described_by_itself() {
         let program = Cli::command();
@@ -201,7 +201,7 @@ mod tests {
         };
         let mut abouts: Vec<String> = program.get_subcommands().map(about).collect();
         abouts.push(about(&program));
-        for shared in ["The GPU,", "What is drawn,"] {
+        for shared in ["The GPU,", "The scene to draw,"] {
             assert!(
                 !abouts.iter().any(|about| about.starts_with(shared)),
                 "{abouts:?}"

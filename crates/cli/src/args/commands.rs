@@ -1,4 +1,4 @@
-//! What each command takes.
+//! Arguments of each command.
 
 use crate::args::{
     shared::{MethodArgs, SceneArgs},
@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use skiagraph_reference::OracleMode;
 use std::path::PathBuf;
 
-/// Samples of lights with an extent where nobody says how many.
+/// Samples of lights with an extent, unless `--reference-samples` sets their number.
 pub const REFERENCE_SAMPLES: u32 = 512;
 
 /// `skiagraph compare`.
@@ -19,7 +19,7 @@ pub struct CompareArgs {
     /// all presets, those in ./pipelines and the built-in ones.
     #[arg(value_name = "PRESET|FILE.ron[@NAME=VALUE,…]")]
     pub presets: Vec<String>,
-    /// What is drawn.
+    /// The scene and the place that it is seen from.
     #[command(flatten)]
     pub scene: SceneArgs,
     /// A camera path of the scene, or `all`: every frame is judged, and shimmer is counted, with
@@ -63,8 +63,8 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N",
           value_parser = frames(0), allow_negative_numbers = true)]
     pub cached_frames: Option<u32>,
-    /// What is right: `exact` (own primitive excluded, no offset) or `offset:LENGTH` (ray origin
-    /// moved towards the light).
+    /// The answer that counts as right: `exact` (own primitive excluded, no offset) or
+    /// `offset:LENGTH` (ray origin moved towards the light).
     #[arg(long, default_value = "exact", value_name = "MODE")]
     pub oracle: OracleMode,
     /// Shadow rays per pixel to a light that has an extent, of which the reference is made.
@@ -90,7 +90,7 @@ pub struct CompareArgs {
     /// Which pictures are written.
     #[arg(long, value_enum, default_value_t = Images::All)]
     pub images: Images,
-    /// What is printed on standard output.
+    /// Format of the results on standard output.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,
     /// Print the time of each pass, too: a table per method, a column per viewport and map.
@@ -128,7 +128,7 @@ pub struct ChartArgs {
     /// Folders that `compare --out` wrote, each with its results.json.
     #[arg(value_name = "DIR", required = true)]
     pub folders: Vec<PathBuf>,
-    /// What is drawn.
+    /// Kind of chart to draw.
     #[arg(long, value_enum, default_value_t = ChartKind::Front)]
     pub kind: ChartKind,
     /// Only runs of this viewport size. Without it: all, each in a panel of its own.
@@ -148,7 +148,7 @@ pub struct ChartArgs {
     pub out: Option<PathBuf>,
 }
 
-/// What a chart shows.
+/// Kinds of charts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ChartKind {
     /// GPU time of a frame less its G-buffer against the share of wrong pixels outside the band:
@@ -176,7 +176,7 @@ pub struct ReportArgs {
 /// `skiagraph new`.
 #[derive(Args, Debug)]
 pub struct NewArgs {
-    /// What the method is called: NAME.ron and NAME.wgsl are written.
+    /// Name of the method: NAME.ron and NAME.wgsl are written.
     pub name: String,
     /// Write a variant of this preset instead, with its params to choose from.
     #[arg(long, value_name = "PRESET")]
@@ -198,7 +198,7 @@ pub struct ShowArgs {
 /// `skiagraph schema`.
 #[derive(Args, Debug)]
 pub struct SchemaArgs {
-    /// What is printed.
+    /// Format of the description.
     #[arg(long, value_enum, default_value_t = SchemaFormat::Json)]
     pub format: SchemaFormat,
 }
@@ -215,10 +215,10 @@ pub enum SchemaFormat {
 /// `skiagraph run`.
 #[derive(Args, Debug)]
 pub struct RunArgs {
-    /// What is run.
+    /// The method to run.
     #[command(flatten)]
     pub method: MethodArgs,
-    /// What it is run on.
+    /// The scene to run it on.
     #[command(flatten)]
     pub scene: SceneArgs,
     /// Save an output, a material or a view of one, after a pass or at the end: .png a picture,
@@ -270,7 +270,7 @@ pub struct ProfileArgs {
     /// a range (bias=0..0.01/5: five values) every value is timed. May be repeated.
     #[arg(long = "set", value_name = "NAME=VALUE,…", allow_hyphen_values = true)]
     pub params: Vec<Assignment>,
-    /// What it is run on.
+    /// The scene to run the methods on.
     #[command(flatten)]
     pub scene: SceneArgs,
     /// Timed frames.
@@ -332,7 +332,7 @@ pub struct StressArgs {
     /// Folder for stress.json, written anew after every case.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// What is printed on standard output.
+    /// Format of the matrix on standard output.
     #[arg(long, value_enum, default_value_t = StressFormat::Table)]
     pub format: StressFormat,
 }
@@ -390,10 +390,10 @@ pub enum PresetsFormat {
 /// `skiagraph graph`.
 #[derive(Args, Debug)]
 pub struct GraphArgs {
-    /// What is planned.
+    /// The method to plan.
     #[command(flatten)]
     pub method: MethodArgs,
-    /// What is drawn. Without it: what the ending of --out names, else svg.
+    /// Format of the drawing. Without it: what the ending of --out names, else svg.
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub format: Option<DrawingFormat>,
     /// File to write. Without it: standard output.
@@ -422,7 +422,7 @@ pub struct ViewArgs {
     /// One or two presets by name, or graphs (.ron), each perhaps in a setting of its own.
     #[arg(value_name = "PRESET|FILE.ron[@NAME=VALUE,…]", num_args = 0..=2, default_value = "nsm")]
     pub methods: Vec<String>,
-    /// What is drawn.
+    /// The scene and the place that it is seen from.
     #[command(flatten)]
     pub scene: SceneArgs,
     /// Pixels that the methods run in; the window shows them larger or smaller.

@@ -56,7 +56,7 @@ impl From<BackendWord> for wgpu::Backends {
 /// A day: far above any frame, and far below what a clock can add.
 const MAX_SECONDS: u64 = 86_400;
 
-/// What is drawn, and from where.
+/// The scene to draw, and the place that it is seen from.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Scene")]
 pub struct SceneArgs {

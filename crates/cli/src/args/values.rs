@@ -41,7 +41,7 @@ pub fn texels() -> RangedI64ValueParser<u32> {
     value_parser!(u32).range(1..)
 }
 
-/// A number of frames. The samples of all are kept for the percentiles, and nobody waits for more.
+/// Parses a number of frames: the samples of all are kept for the percentiles, hence the limit.
 pub fn frames(least: i64) -> RangedI64ValueParser<u32> {
     value_parser!(u32).range(least..=100_000)
 }
@@ -123,7 +123,7 @@ pub fn bytes(text: &str) -> Result<u64, String> {
         "tb" => 1e12,
         _ => {
             return Err(format!(
-                "`{unit}` is no unit; expected B, KiB, MiB, GiB or TiB"
+                "unknown unit `{unit}`; expected B, KiB, MiB, GiB or TiB"
             ));
         }
     };
@@ -173,7 +173,7 @@ impl FromStr for Assignment {
     }
 }
 
-/// What a saved file holds.
+/// Encodings of a saved file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
     /// A picture fit for looking at.

@@ -35,7 +35,7 @@ pub fn check(args: &CheckArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let (sender, changes) = mpsc::channel();
     let folders = watch::folders(args.graphs.iter().map(String::as_str));
     let listen = move || {
-        // Nobody listens any more only when this command ends.
+        // The receiver goes away only when this command ends.
         let _ = sender.send(());
     };
     let _watch = Watch::start(&folders, listen).map_err(|error| {
@@ -85,7 +85,7 @@ fn check_once(args: &CheckArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     }
 }
 
-/// What the adapter that the arguments name can do for these graphs.
+/// Opens the adapter that the arguments name, and returns its abilities for these graphs.
 fn open<'a>(
     gpu: &GpuArgs,
     paths: impl Iterator<Item = &'a String>,
@@ -100,7 +100,7 @@ fn open<'a>(
 enum Fault {
     /// It names no graph.
     Missing(String),
-    /// What is wrong with the graph.
+    /// Mistakes in the graph.
     Graph(Diagnostics),
 }
 

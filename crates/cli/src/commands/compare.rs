@@ -66,9 +66,9 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     if args.images == Images::All {
         check_pictures(&methods, &views_or_paths, &viewports)?;
     }
-    // Everything is planned before anything runs: nobody should wait for an hour to read that the
-    // last file has a mistake. What a provider describes is the same for every view under a light
-    // of one kind.
+    // Everything is planned before anything runs, so that a mistake in the last file is told at
+    // once and not after an hour. A provider describes the same for every view under a light of one
+    // kind.
     for &viewport in &viewports {
         primary.plan(&gpu, viewport, &provider)?;
     }
@@ -135,7 +135,7 @@ fn graphs(setup: &ComparisonSetup, provider: &SceneProvider) -> Vec<(String, Str
     setup.methods.iter().filter_map(chart).collect()
 }
 
-/// Of all that every run depends on.
+/// Hashes everything that all runs depend on.
 fn fingerprint(
     args: &CompareArgs,
     scene: &Scene,
@@ -243,7 +243,7 @@ fn run(
     Ok(())
 }
 
-/// What all views and viewports come to, as far as they are done.
+/// Prints the summary over all views and viewports, as far as they are done.
 fn print_summary(args: &CompareArgs, results: &Results) -> Result<(), CliError> {
     let summaries = summary_table::summaries(results);
     match args.format {

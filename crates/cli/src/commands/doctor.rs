@@ -53,7 +53,7 @@ fn chosen(gpu: &Gpu) -> String {
     let mut text = format!("\nChosen: {}\n", adapter(&gpu.adapter.get_info()));
     let edge = limits.max_texture_dimension_2d;
     let storage = limits.max_storage_buffer_binding_size;
-    // What there is more of is drawn and traced in parts, but indices are bound whole.
+    // Larger meshes are drawn and traced in parts, but indices are bound whole.
     let (storage, triangles) = (bytes(storage), storage / 12 / 1_000_000);
     let memory = gpu.memory.map(bytes);
     let memory = memory.unwrap_or("what the driver gives (it does not say how much)".into());

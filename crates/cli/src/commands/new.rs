@@ -99,7 +99,7 @@ fn line_of(param: &Param) -> String {
     format!("        // \"{name}\": {value}, // {ty}{about}\n")
 }
 
-/// Whether a value stands for itself: numbers, a vector of them, a word; else it is an expression
+/// True if a value stands for itself: numbers, a vector of them, a word; else it is an expression
 /// and stands in quotes.
 fn is_literal(text: &str) -> bool {
     let is_word = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
@@ -130,7 +130,7 @@ fn write_all(files: &[(String, String)]) -> Result<(), CliError> {
             Err(error) => error,
         };
         for (written, _) in &files[..index] {
-            // What is left behind if even this fails is named by the next attempt.
+            // The next attempt names a file that is left behind if even this fails.
             let _ = fs::remove_file(written);
         }
         return Err(error);

@@ -52,7 +52,7 @@ fn range(param: &Param) -> String {
     }
 }
 
-/// What each preset is and answers, as its document says it.
+/// Returns a table of the presets: what each is and answers, as its document says it.
 fn table(presets: &[Preset]) -> Result<String, CliError> {
     let heads = [
         "preset",

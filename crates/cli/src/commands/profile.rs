@@ -73,7 +73,7 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     if timed.len() < args.frames as usize {
         return Err(CliError::Interrupted {
             kept: format!(
-                "what is shown is of the {} of {} frames that were timed{written}",
+                "the figures are of the {} of {} frames that were timed{written}",
                 timed.len(),
                 args.frames
             ),

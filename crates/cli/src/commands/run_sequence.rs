@@ -38,7 +38,8 @@ pub struct PoseSequence {
 }
 
 impl PoseSequence {
-    /// Of each path that is asked for, or of each view; none without `--frames` and `--path`.
+    /// Collects the frames of each path that is asked for, or of each view; none without `--frames`
+    /// and `--path`.
     ///
     /// # Errors
     /// No such path, or one that has fewer frames.

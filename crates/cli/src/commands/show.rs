@@ -51,8 +51,8 @@ pub fn show(args: &ShowArgs) -> Result<(), CliError> {
     }
 }
 
-/// What the passes of a document read and write, and what its values come to, as comments of RON;
-/// `None` where it cannot be planned by itself.
+/// Lists what the passes of a document read and write and the values that its expressions have, as
+/// comments of RON; `None` where it cannot be planned by itself.
 fn passes(path: &str, sources: &dyn Sources) -> Option<String> {
     let graph = Graph::load(path, &registry(), sources).ok()?;
     let viewport = [1024, 1024];
@@ -85,7 +85,7 @@ fn passes(path: &str, sources: &dyn Sources) -> Option<String> {
     Some(text)
 }
 
-/// What is called by a name.
+/// A file or scene that a name stands for.
 enum Found {
     /// A document or shader: its path and text.
     Text(String, std::sync::Arc<str>),

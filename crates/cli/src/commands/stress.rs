@@ -222,7 +222,7 @@ fn cases(names: &[String]) -> Result<Vec<HardCase>, CliError> {
             let known = skiagraph_cases::cases();
             let hint = did_you_mean(name, known.iter().map(|case| case.name));
             CliError::Input(format!(
-                "there is no case `{name}`{hint}\n  `skiagraph stress --list` names them"
+                "unknown case `{name}`{hint}\n  `skiagraph stress --list` names them"
             ))
         })
     };

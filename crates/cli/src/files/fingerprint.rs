@@ -1,5 +1,5 @@
-//! What a run depends on, in one number: `compare --resume` keeps a run only if nothing of it has
-//! changed.
+//! A hash of everything that a run depends on: `compare --resume` keeps a run only if nothing of it
+//! has changed.
 
 use skiagraph_graph::{Picture, Sources};
 use skiagraph_scene::{Light, Mesh, View, packed_masks::mask_words};
@@ -15,7 +15,7 @@ use std::{
 pub struct Fingerprint(u64);
 
 impl Fingerprint {
-    /// Of nothing.
+    /// The fingerprint of nothing.
     pub const EMPTY: Self = Self(0xcbf2_9ce4_8422_2325);
 
     /// With more bytes.
@@ -89,7 +89,7 @@ impl<'a> RecordedSources<'a> {
         }
     }
 
-    /// Of every path and text that was read.
+    /// Returns the fingerprint of every path and text that was read.
     pub fn fingerprint(&self) -> Fingerprint {
         let texts = self.texts.lock().unwrap_or_else(PoisonError::into_inner);
         let with = |all: Fingerprint, (path, text): (&String, &Fingerprint)| {

@@ -22,7 +22,7 @@ pub struct Mistake {
 }
 
 impl Mistake {
-    /// What serde found, where it found it.
+    /// Takes over the message and the place of an error of serde.
     pub fn from_serde(text: &str, error: &serde_json::Error) -> Self {
         // serde_json counts lines and, in bytes, columns from 1; an empty text has column 0.
         let lines = text.split_inclusive('\n').map(str::len);
@@ -41,13 +41,13 @@ impl Mistake {
         Self { at, what }
     }
 
-    /// Shown in its file: `what_for` goes on "`FILE` is no …", `help` is the way out, `summary` the
-    /// last line.
+    /// Shows the mistake in its file: `what_for` goes on "`FILE` is not a …", `help` is the way
+    /// out, `summary` the last line.
     pub fn in_file(self, file: &SourceFile, what_for: &str, help: &str, summary: &str) -> CliError {
         // Rendering moves a place inside a character or behind the text to where it can be shown.
         let error = Diagnostic::error(
             Code::Syntax,
-            format!("`{}` is no {what_for}: {}", file.name, self.what),
+            format!("`{}` is not a {what_for}: {}", file.name, self.what),
         )
         .at(file.span(self.at..self.at + 1), "")
         .help(help);

@@ -55,7 +55,7 @@ pub fn wait_for(folder: &Path, files: Shared) -> Result<Locked, CliError> {
         if let Some(locked) = claim(folder, files)? {
             return Ok(locked);
         }
-        // What is done is written after Ctrl-C, too, but does not wait for ever.
+        // Finished work is written after Ctrl-C, too, but the wait has an end.
         if interrupt::raised() && began.elapsed() > PATIENCE {
             return Err(CliError::interrupted());
         }

@@ -17,7 +17,7 @@ impl Sources for PictureSources {
 
     fn picture(&self, path: &str) -> Result<Option<Picture>, String> {
         let path = self.0.root.join(path);
-        // A pipe would block whoever opens it.
+        // Opening a pipe would block.
         if !path.is_file() {
             return Ok(None);
         }

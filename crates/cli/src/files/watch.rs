@@ -30,7 +30,7 @@ impl Watch {
         let (heard, events) = mpsc::channel();
         let mut watcher = notify::recommended_watcher(move |event: notify::Result<_>| {
             if event.is_ok_and(|event| is_of_interest(&event)) {
-                // Nobody listens any more only when the watcher is about to go, too.
+                // The receiver goes away only when the watcher is about to go, too.
                 let _ = heard.send(());
             }
         })?;
@@ -69,7 +69,7 @@ pub fn folders<'a>(arguments: impl Iterator<Item = &'a str>) -> BTreeSet<PathBuf
     folders
 }
 
-/// Whether documents name files in such a folder: not in one of a build or of git.
+/// True if documents name files in such a folder: not in one of a build or of git.
 fn holds_shaders(folder: &Path) -> bool {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     entries

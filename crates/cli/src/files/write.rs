@@ -64,8 +64,8 @@ fn try_out(folder: &Path) -> io::Result<()> {
     file.write_all(&[0; 4096])
 }
 
-/// Whether a path holds a file, or nothing yet. Devices and pipes (`/dev/stdout`) are written into;
-/// a file in their place would take them away from everybody else.
+/// True if a path holds a file, or nothing yet. Devices and pipes (`/dev/stdout`) are written into;
+/// a file in their place would take them away from all other processes.
 fn is_replaced(path: &Path) -> bool {
     fs::metadata(path).map_or(true, |found| found.is_file())
 }

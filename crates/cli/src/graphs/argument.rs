@@ -8,13 +8,13 @@ use std::path::Path;
 pub struct MethodArgument {
     /// The preset's name, or the graph's path.
     pub preset: String,
-    /// What is set of this one alone.
+    /// Params set for this method alone.
     pub own: Vec<Assignment>,
 }
 
 impl MethodArgument {
-    /// Of a word of the command line. A comma also stands in the values of vectors, so that what
-    /// has no `=` belongs to the value before it.
+    /// Splits a word of the command line. A comma also stands in the values of vectors, so that a
+    /// part without `=` belongs to the value before it.
     pub fn new(word: &str) -> Self {
         // Folders have any name.
         let split = word.split_once('@').filter(|_| !Path::new(word).is_file());

@@ -1,4 +1,4 @@
-//! What is wrong with graphs, as it is shown.
+//! Mistakes of graphs, as they are shown.
 
 use crate::error::CliError;
 use crate::terminal::console::{colour, note};

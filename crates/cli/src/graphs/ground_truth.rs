@@ -14,7 +14,7 @@ pub struct Judgement {
 }
 
 impl Judgement {
-    /// Of a frame's outputs beside the ground truth.
+    /// Compares a frame's outputs with the ground truth.
     ///
     /// # Errors
     /// Outputs of another size than the reference, or with values that are none.

@@ -17,7 +17,7 @@ pub fn split(graph: &Graph) -> [Vec<&'static str>; 2] {
     [takes, others]
 }
 
-/// Whether a method takes lights of this kind.
+/// True if a method takes lights of this kind.
 pub fn takes(graph: &Graph, kind: &str) -> bool {
     split(graph)[0].contains(&kind)
 }

@@ -28,7 +28,7 @@ pub struct Method<'a> {
     pub params: ParamValues,
     /// In how many pixels it runs.
     pub viewport: [u32; 2],
-    /// What the adapter has.
+    /// Features of the adapter.
     pub features: wgpu::Features,
     /// All params; a default may depend on the viewport, and on what the adapter can do.
     values: ParamValues,
@@ -37,20 +37,21 @@ pub struct Method<'a> {
 }
 
 impl<'a> Method<'a> {
-    /// Of a preset and what was set of its params, in 1024×1024 pixels on the most able adapter.
+    /// Creates a method of a preset and the params set for it, in 1024×1024 pixels on the most able
+    /// adapter.
     pub fn new(preset: &'a Preset, params: ParamValues) -> Self {
         Self::on(preset, params, [1024, 1024], wgpu::Features::all())
     }
 
-    /// Of a preset and what was set of its params, in so many pixels on an adapter with these
-    /// features.
+    /// Creates a method of a preset and the params set for it, in so many pixels on an adapter with
+    /// these features.
     pub fn on(
         preset: &'a Preset,
         params: ParamValues,
         viewport: [u32; 2],
         features: wgpu::Features,
     ) -> Self {
-        // What is wrong with a value is told where the method is planned.
+        // Planning the method tells what is wrong with a value.
         let values = preset.graph.values(&params, viewport, features);
         let values = values.unwrap_or_default();
         let map_size = match values.get(MAP_SIZE) {
@@ -105,7 +106,7 @@ impl<'a> Method<'a> {
         self.preset.graph.plan(&request)
     }
 
-    /// Of all that a run on a scene and view depends on, but the params.
+    /// Hashes everything that a run on a scene and view depends on, but the params.
     pub fn fingerprint(&self, scene: Fingerprint) -> String {
         scene.with_all(self.preset.fingerprint).to_string()
     }
@@ -172,7 +173,7 @@ pub fn methods<'a>(
     Ok(methods)
 }
 
-/// Whether a preset's name says what stands in an open include of it.
+/// True if a preset's name says what stands in an open include of it.
 fn is_over_another(name: &str) -> bool {
     !MethodArgument::new(name).own.is_empty()
 }
@@ -251,7 +252,7 @@ fn check_names(presets: &[Preset], assignments: &[Assignment]) -> Result<(), Cli
             known => known.join(", "),
         };
         return Err(CliError::Input(format!(
-            "--set {name}: no such param{}\n  params: {list}",
+            "--set {name}: unknown param{}\n  params: {list}",
             did_you_mean(name, known.iter().copied())
         )));
     }

@@ -108,7 +108,8 @@ mod tests {
         let found = read(&["step", "nsm@bias=1", "step@over=pcf,bias=1"], &[]);
         let expected = [("step", 0), ("nsm", 1), ("step@over=pcf", 1)];
         assert_eq!(found, (named(&expected), 0));
-        // What is set of all holds where nothing else is said; a list is several methods.
+        // A value set for all methods holds where nothing else is said; a list makes several
+        // methods.
         let found = read(
             &["step", "step@over=pcf", "nsm"],
             &["over=nsm,pcf", "bias=1"],

@@ -15,7 +15,7 @@ use skiagraph_scene::{
 };
 use std::sync::Arc;
 
-/// What an adapter can do, as far as a plan depends on it.
+/// Abilities of an adapter, as far as a plan depends on them.
 #[derive(Clone, Debug)]
 pub struct Capabilities {
     /// Limits of a device.
@@ -29,7 +29,7 @@ pub struct Capabilities {
 }
 
 impl Capabilities {
-    /// Of the opened device.
+    /// Reads the abilities of the opened device.
     pub fn new(gpu: &Gpu) -> Self {
         Self {
             limits: gpu.device.limits(),
@@ -39,8 +39,8 @@ impl Capabilities {
         }
     }
 
-    /// Of the most able adapters of today: a graph that cannot be planned for them is at fault
-    /// itself.
+    /// Returns the abilities of the greatest adapters of today: a graph that cannot be planned for
+    /// them is at fault itself.
     pub fn greatest() -> Self {
         let limits = wgpu::Limits {
             max_texture_dimension_2d: 32768,
@@ -77,7 +77,7 @@ pub fn check(
     sources: &dyn Sources,
     adapter: Option<&Capabilities>,
 ) -> Result<(Graph, Plan), Diagnostics> {
-    // What a document takes is not known if it is faulty: then a light that is refused is passed
+    // A faulty document does not tell which lights it takes: then a light that is refused is passed
     // over, unless nothing else is wrong with it.
     let lights = match Graph::load(path, registry, sources) {
         Ok(graph) => stand_ins(&graph),

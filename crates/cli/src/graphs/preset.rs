@@ -105,7 +105,7 @@ pub struct Preset {
     pub name: String,
     /// The graph.
     pub graph: Graph,
-    /// Of the texts that it was read from.
+    /// Hash of the texts that it was read from.
     pub fingerprint: Fingerprint,
 }
 
@@ -167,7 +167,7 @@ pub fn load_all(arguments: &[String], sources: &dyn Sources) -> Result<Vec<Prese
                 graph,
                 fingerprint: recorded.fingerprint(),
             }),
-            // What planning would find besides is shown in the same go.
+            // Faults that only planning finds are shown in the same go.
             (Err(diagnostics), path) => {
                 let all = planning::check(&path, &registry(), sources, None).err();
                 faults.add(argument, &all.unwrap_or(diagnostics));
@@ -219,12 +219,12 @@ pub fn locate(argument: &str, sources: &dyn Sources) -> Result<String, CliError>
             format!("`{argument}` is a folder; a graph is given as a path that ends in .ron")
         }
         Ok(None) if Path::new(argument).is_file() => {
-            format!("`{argument}` is no .ron file; a graph is given as a path that ends in .ron")
+            format!("`{argument}` is not a .ron file; a graph is given as a path that ends in .ron")
         }
         Ok(None) => {
             let known = names(sources);
             format!(
-                "there is no preset `{argument}`{}\n  presets: {}\n  a graph of your own is \
+                "unknown preset `{argument}`{}\n  presets: {}\n  a graph of your own is \
                  given as a path that ends in .ron",
                 did_you_mean(argument, known.iter().map(String::as_str)),
                 known.join(", ")
@@ -275,6 +275,6 @@ mod tests {
         let sources = sources();
         let message = |argument| locate(argument, &sources).unwrap_err().to_string();
         assert!(message("nowhere/a.ron").contains("no file `nowhere/a.ron`"));
-        assert!(message("zzzzzzzz").contains("no preset `zzzzzzzz`"));
+        assert!(message("zzzzzzzz").contains("unknown preset `zzzzzzzz`"));
     }
 }

@@ -1,4 +1,4 @@
-//! What a graph must hand out to stand in `compare`, and how that is read.
+//! The outputs that a graph must have to stand in `compare`, and how they are read.
 
 use crate::error::CliError;
 use crate::graphs::faults::GraphFaults;
@@ -50,7 +50,7 @@ pub fn check_plans(
     let lights = provider.lights().len();
     let mut faults = GraphFaults::default();
     let mut mismatches = BTreeSet::new();
-    // Of methods that this adapter cannot run; and whether it can run one.
+    // Refusals of methods that this adapter cannot run; and whether it can run one.
     let (mut refusals, mut can_run_one) = (GraphFaults::default(), device.is_none());
     for &viewport in viewports {
         for method in methods {
@@ -78,7 +78,7 @@ pub fn check_plans(
     none_or_error(mismatches.into_iter().collect())
 }
 
-/// Whether a method answers for every light at once, in a layer for each.
+/// True if a method answers for every light at once, in a layer for each.
 pub fn is_layered(method: &Method, device: &Capabilities, provider: &SceneProvider) -> bool {
     let plan = method.plan(method.viewport, device.clone(), provider);
     plan.is_ok_and(|plan| {
@@ -87,7 +87,7 @@ pub fn is_layered(method: &Method, device: &Capabilities, provider: &SceneProvid
     })
 }
 
-/// What the graph lacks as a shadow preset.
+/// Lists what the graph lacks as a shadow preset.
 fn missing_outputs(preset: &Preset) -> Option<String> {
     if preset.graph.outputs().contains(&VISIBILITY) {
         return None;
@@ -111,7 +111,7 @@ const INTEGERS: &str = "R8Uint, R16Uint or R32Uint";
 /// The formats of shares.
 const FLOATS: &str = "R8Unorm, R16Unorm, R16Float or R32Float";
 
-/// What is wrong with the outputs' sizes and formats on this viewport.
+/// Says what is wrong with the outputs' sizes and formats on this viewport.
 fn mismatch(preset: &Preset, plan: &Plan, viewport: [u32; 2], lights: usize) -> Option<String> {
     use wgpu::TextureFormat as F;
     plan.outputs().into_iter().find_map(|output| {
@@ -213,7 +213,7 @@ impl Outputs {
         })
     }
 
-    /// What each pixel shows of the light, of hard answers 0 or 1.
+    /// Share of the light that each pixel shows, of hard answers 0 or 1.
     pub fn shown(&self) -> Cow<'_, [f32]> {
         match &self.shares {
             Some(shares) => Cow::Borrowed(shares),

@@ -33,11 +33,11 @@ use std::{
     rc::Rc,
 };
 
-/// What a comparison is of.
+/// Everything that a comparison runs and judges.
 pub struct ComparisonSetup<'a> {
     /// Where it runs.
     pub gpu: &'a Gpu,
-    /// What is drawn.
+    /// The scene that is drawn.
     pub scene: &'a Scene,
     /// From where.
     pub views: &'a [ViewOrPath],
@@ -47,7 +47,7 @@ pub struct ComparisonSetup<'a> {
     pub methods: &'a [Method<'a>],
     /// Finds the visible triangles.
     pub primary: &'a PrimaryVisibility,
-    /// Of mesh and light, and of `primary`.
+    /// Hash of mesh and light, and of `primary`.
     pub fingerprint: Fingerprint,
 }
 
@@ -78,13 +78,13 @@ pub struct Comparison<'a> {
     args: &'a CompareArgs,
     setup: ComparisonSetup<'a>,
     provider: SceneProvider,
-    /// Whether the provider has the mesh of a path on which parts move, not the scene's own.
+    /// True if the provider has the mesh of a path on which parts move, not the scene's own.
     is_moved: bool,
-    /// Of the scene's own mesh; built when the first run needs it.
+    /// The oracle of the scene's own mesh; built when the first run needs it.
     oracle: OnceCell<Rc<Oracle<'a>>>,
-    /// What others have published.
+    /// Figures that others have published.
     published: Vec<Row>,
-    /// Of each planned run.
+    /// State of each planned run.
     states: Vec<RunState>,
     /// Holds the runs that are done, in the order in which they were planned.
     pub results: Results,
@@ -123,7 +123,7 @@ impl<'a> Comparison<'a> {
             commands,
         } = if args.replace {
             Earlier {
-                // What cannot be read is overwritten as well.
+                // A file that cannot be read is overwritten as well.
                 dropped: match read_back::results(&args.out.join("results.json")) {
                     Ok(Some(earlier)) => earlier.runs,
                     _ => Vec::new(),
@@ -339,7 +339,7 @@ impl<'a> Comparison<'a> {
         poses.iter().enumerate().map(named).collect()
     }
 
-    /// Of the scene's own mesh.
+    /// Returns the oracle of the scene's own mesh.
     fn still_oracle(&self) -> Rc<Oracle<'a>> {
         let scene = self.setup.scene;
         let oracle = self.oracle.get_or_init(|| {

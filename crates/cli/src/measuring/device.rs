@@ -73,7 +73,7 @@ pub fn driver(info: &wgpu::AdapterInfo) -> String {
         .into()
 }
 
-/// Whether this device's timestamps are true.
+/// Tells whether this device's timestamps are true.
 pub fn timestamp_trust(gpu: &Gpu) -> Trust {
     timing::check(&gpu.device, &gpu.queue).unwrap_or_else(|error| Trust::Untrusted {
         reason: format!(

@@ -12,7 +12,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// What was read of a frame, by its name.
+/// Contents that were read back from a frame, by their names.
 pub type Contents = BTreeMap<String, Content>;
 
 /// Makes what a plan needs on a GPU.
@@ -97,7 +97,7 @@ pub struct Growth {
     pub frames: u32,
     /// The buffers and textures that may grow, by their full names.
     pub buffers: Vec<String>,
-    /// Whether the last of the frames asked for no more.
+    /// True if the last of the frames asked for no more.
     pub is_settled: bool,
 }
 

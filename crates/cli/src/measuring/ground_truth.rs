@@ -26,7 +26,7 @@ const GBUFFER: &str = "pipelines/shared/gbuffer.ron";
 /// that they saw.
 pub struct PrimaryVisibility {
     graph: Graph,
-    /// Of the texts that it was read from.
+    /// Hash of the texts that it was read from.
     pub fingerprint: Fingerprint,
 }
 
@@ -106,7 +106,7 @@ pub struct GroundTruthView<'a> {
     light: LightKind,
     primitives: Vec<u32>,
     mode: OracleMode,
-    /// What the oracle found.
+    /// The oracle's answer.
     pub ground_truth: GroundTruth,
     /// Pixels that show a surface which is not seen there: on it, methods are judged all the same.
     pub wrong_surfaces: u64,
@@ -160,7 +160,7 @@ impl<'a> GroundTruthView<'a> {
         })
     }
 
-    /// What it looks at.
+    /// Returns mesh, camera and primitives that it looks at.
     pub fn seen(&self) -> Seen<'_> {
         Seen {
             mesh: self.oracle.mesh(),
@@ -169,7 +169,8 @@ impl<'a> GroundTruthView<'a> {
         }
     }
 
-    /// What blocks the pixels that a method is certain and wrong of, under a light without extent.
+    /// Counts what blocks the pixels that a method is certain and wrong of, under a light without
+    /// extent.
     ///
     /// # Errors
     /// Outputs that do not fit the reference.

@@ -1,4 +1,4 @@
-//! What methods guarantee, and on which casters a guarantee holds.
+//! Guarantees of methods, and the casters on which they hold.
 
 use crate::error::CliError;
 use crate::graphs::faults::reasons;
@@ -7,15 +7,15 @@ use crate::records::results::Promise;
 use crate::records::stress::Guarantee;
 use crate::wording::did_you_mean;
 
-/// What a document may claim of its method, the stronger claim first. Graphs know no shadows; what
-/// the words mean is said here, and judged by `stress`.
+/// Claims that a document may make of its method, the stronger one first. Graphs know no shadows;
+/// the meaning of the words is said here, and judged by `stress`.
 const CLAIMS: [Guarantee; 2] = [Guarantee::Exact, Guarantee::Certain];
 
-/// What a method guarantees with its params, and why; `exact` are the names of those that the user
-/// wants judged.
+/// Finds what a method guarantees with its params, and why; `exact` are the names of those that the
+/// user wants judged.
 ///
 /// # Errors
-/// A claim that nobody judges, a condition without a value.
+/// An unknown claim, or a condition without a value.
 pub fn find(method: &Method, exact: &[String]) -> Result<Option<(Guarantee, String)>, CliError> {
     let preset = method.preset;
     if exact.contains(&method.name) || exact.contains(&preset.name) {
@@ -31,7 +31,7 @@ pub fn find(method: &Method, exact: &[String]) -> Result<Option<(Guarantee, Stri
         .find(|claim| !words.contains(&claim.name.as_str()))
     {
         return Err(CliError::Input(format!(
-            "`{}` claims `{}`, which nobody judges{}\n  a document claims {}",
+            "`{}` claims `{}`, which is an unknown guarantee{}\n  a document claims {}",
             preset.name,
             unknown.name,
             did_you_mean(&unknown.name, words.into_iter()),
@@ -66,7 +66,7 @@ pub fn without_culling<'a>(method: &Method<'a>) -> Option<Method<'a>> {
     Some(Method::new(method.preset, params).named(&method.name))
 }
 
-/// What the document promises, for the record; a claim that nobody judges is no promise.
+/// Returns the document's promise, for the record; an unknown claim is no promise.
 pub fn promise(method: &Method) -> Option<Promise> {
     let (guarantee, _) = find(method, &[]).ok()??;
     Some(Promise {

@@ -40,7 +40,8 @@ pub struct MethodRun<'a> {
 }
 
 impl<'a> MethodRun<'a> {
-    /// Of a method that can run; `exact` are the names of those that the user wants judged.
+    /// Creates the run of a method that can run; `exact` are the names of those that the user wants
+    /// judged.
     ///
     /// # Errors
     /// Those of [`guarantee::of`].
@@ -82,7 +83,7 @@ impl<'a> MethodRun<'a> {
         [as_it_is].into_iter().chain(judged).collect()
     }
 
-    /// What the names of its pictures of a case begin with, and whose they are.
+    /// Returns the beginnings of the names of its pictures of a case, and whose they are.
     pub fn stems(&self, case: &HardCase, viewport: [u32; 2]) -> Vec<(String, String)> {
         let variants = self.variants(casters(case)).into_iter();
         let owner = format!("`{}` on `{}`", self.method.name, case.name);
@@ -95,14 +96,14 @@ impl<'a> MethodRun<'a> {
 /// A way to run a method on a case.
 struct Variant<'a> {
     method: &'a Method<'a>,
-    /// What is set for it besides.
+    /// The param set for it besides.
     set: Option<&'static str>,
-    /// Whether not all faces cast shadows.
+    /// True if not all faces cast shadows.
     culls: bool,
 }
 
 impl Variant<'_> {
-    /// What the names of its pictures begin with.
+    /// Returns the beginning of the names of its pictures.
     fn stem(&self, case: &HardCase, viewport: [u32; 2]) -> String {
         let with_set = |set| format!("{} {set}", case.name);
         let place = self.set.map_or(case.name.into(), with_set);
@@ -117,7 +118,7 @@ fn casters(case: &HardCase) -> Casters {
     }
 }
 
-/// What all cases share.
+/// Context shared by all cases.
 pub struct HardCaseContext<'a> {
     /// Where they run.
     pub gpu: &'a Gpu,
@@ -321,7 +322,7 @@ fn right_in_band(visibility: &[u32], truth: &GroundTruthPixels) -> Vec<u32> {
         .collect()
 }
 
-/// Whether no other method or case can run either.
+/// True if no other method or case can run either.
 fn ends_all(error: &CliError) -> bool {
     match error {
         CliError::Interrupted { .. } => true,

@@ -10,7 +10,7 @@ pub struct MeshFrames {
 }
 
 impl MeshFrames {
-    /// Of the first frames of a path; `None` where nothing moves.
+    /// Builds the meshes of the first frames of a path; `None` where nothing moves.
     ///
     /// # Errors
     /// A part that the mesh has not, that is welded to others, or that f32 cannot hold where it is

@@ -16,8 +16,8 @@ const PATTERNS: [u8; 2] = [0x11, 0xee];
 const AGAIN: usize = 4;
 
 /// Renders with two patterns in all memory that a frame has not written yet: outputs that differ
-/// depend on what nobody wrote. An output that differs between frames of the same pattern, too,
-/// depends on the order of threads; that is no fault, and such an output is not judged.
+/// depend on memory that no pass wrote. An output that differs between frames of the same pattern,
+/// too, depends on the order of threads; that is no fault, and such an output is not judged.
 ///
 /// # Errors
 /// Names the outputs at fault.

@@ -88,7 +88,7 @@ impl ResultsFolder {
             self.others = found.runs;
             self.others.retain(|run| !self.dropped.contains(run));
         }
-        // What was measured here counts.
+        // Runs that were measured here count.
         let is_own = |run: &Run| own.runs.iter().any(|own| own.is_in_place_of(run));
         self.others.retain(|run| !is_own(run));
         Ok(())

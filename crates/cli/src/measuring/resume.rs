@@ -1,5 +1,5 @@
-//! What of an earlier comparison stays: the runs of others, and with `--resume` what need not be
-//! measured again.
+//! The parts of an earlier comparison that stay: the runs of others, and with `--resume` those that
+//! need not be measured again.
 
 use crate::error::CliError;
 use crate::records::read_back::{self, WITHOUT_RESULTS};
@@ -9,7 +9,7 @@ use crate::wording::plural;
 use serde_json::Value;
 use std::{collections::BTreeMap, path::Path};
 
-/// What tells a run from every other.
+/// The traits that tell a run from every other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunKey {
     /// Name of the preset, or path of the graph.
@@ -22,12 +22,12 @@ pub struct RunKey {
     pub map_size: Option<u32>,
     /// All params.
     pub params: BTreeMap<String, Value>,
-    /// Of everything else that the run depends on.
+    /// Hash of everything else that the run depends on.
     pub fingerprint: String,
 }
 
 impl RunKey {
-    /// Whether the run stands at this place of the comparison.
+    /// True if the run stands at this place of the comparison.
     fn is_place_of(&self, run: &Run) -> bool {
         (&self.preset, &self.view, self.viewport, self.map_size)
             == (&run.preset, &run.view, run.viewport, run.map_size)
@@ -39,7 +39,7 @@ impl RunKey {
     }
 }
 
-/// What of an earlier comparison stays.
+/// The parts of an earlier comparison that stay.
 #[derive(Debug, Default)]
 pub struct Earlier {
     /// For each planned run the one that is as this comparison would have it.
@@ -48,11 +48,12 @@ pub struct Earlier {
     pub others: Vec<Run>,
     /// Runs that it measures again.
     pub dropped: Vec<Run>,
-    /// What measured them.
+    /// Commands that measured them.
     pub commands: Vec<String>,
 }
 
-/// What of an earlier comparison in the same folder stays; of the planned runs only if `resumes`.
+/// Returns what stays of an earlier comparison in the same folder; of the planned runs only if
+/// `resumes`.
 ///
 /// # Errors
 /// A file that cannot be read, is no results.json, or was measured under other conditions than
@@ -187,7 +188,7 @@ mod tests {
         results.runs.iter().map(identity).collect()
     }
 
-    /// What is kept of `sample()`, written to a file, by what `change` makes of it.
+    /// Returns which runs of `sample()`, written to a file after `change`, are kept.
     fn kept(change: impl Fn(&mut Results, &mut Vec<RunKey>)) -> Result<Vec<bool>, String> {
         let folder = tempfile::tempdir().unwrap();
         save(&sample(), folder.path()).unwrap();

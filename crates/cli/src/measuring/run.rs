@@ -26,17 +26,17 @@ use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{GroundTruth, Statistics};
 use std::cell::RefCell;
 
-/// What all methods on one view and viewport share.
+/// Context shared by all methods on one view and viewport.
 pub struct MeasureContext<'a> {
     /// The GPU.
     pub gpu: &'a Gpu,
-    /// Whether its timestamps are true.
+    /// True if its timestamps are true.
     pub timestamps: bool,
     /// Name of the view.
     pub view: &'a str,
     /// Which of the view's lights it is under.
     pub light: usize,
-    /// Of mesh, light and view.
+    /// Hash of mesh, light and view.
     pub fingerprint: Fingerprint,
     /// The ground truth, and where it is from; of a path's first frame.
     pub truth_view: &'a GroundTruthView<'a>,
@@ -54,7 +54,7 @@ pub struct MeasureContext<'a> {
     pub pictures: Option<RefCell<Vec<PictureFile>>>,
 }
 
-/// What came of a method's frames.
+/// Results of a method's frames.
 struct Executed {
     times: Times,
     cached: Option<Cached>,
@@ -182,7 +182,7 @@ impl MeasureContext<'_> {
         })
     }
 
-    /// What was read, of the light that is judged.
+    /// Decodes the outputs that were read, of the light that is judged.
     pub fn decode(
         &self,
         contents: Contents,

@@ -114,7 +114,8 @@ fn explain(error: SceneError, args: &SceneArgs, library: &SceneLibrary) -> CliEr
     }
 }
 
-/// What a bare mesh file lacks. Its view is put in place once its bounds are known.
+/// Returns the parts that a bare mesh file lacks. Its view is put in place once its bounds are
+/// known.
 fn bare_setup(args: &SceneArgs) -> Option<ObjSetup> {
     let extension = Path::new(&args.scene).extension()?;
     let mut known = ["obj", "gltf", "glb"].into_iter();
@@ -137,7 +138,7 @@ fn bare_setup(args: &SceneArgs) -> Option<ObjSetup> {
     })
 }
 
-/// The direction in which light travels over a mesh where nobody says: a high sun, from the side.
+/// The direction in which light travels over a mesh by default: a high sun, from the side.
 const FALLBACK_LIGHT: DVec3 = DVec3::new(-0.4, -1.0, -0.55);
 
 /// A depth buffer of 32-bit floats tells depths apart well over this range.
@@ -150,7 +151,8 @@ fn own_light(args: &SceneArgs) -> Option<DVec3> {
     }
 }
 
-/// Looks at a bare mesh from where all of it is seen, as far as nobody says otherwise, and says so.
+/// Looks at a bare mesh from where all of it is seen, as far as no argument says otherwise, and
+/// says so.
 fn look_at_all(scene: &mut Scene, args: &SceneArgs) {
     let (Some((min, max)), Some(view)) = (scene.mesh.bounds(), scene.views.first_mut()) else {
         return;

@@ -125,7 +125,7 @@ struct Done {
     remade: Vec<Remade>,
 }
 
-/// What was made between two moments.
+/// Lists the resources that were made between two moments.
 fn remade(before: &[Built], now: &[Built]) -> Vec<Remade> {
     let times = |of: &Built| {
         let known = before.iter().find(|known| known.name == of.name);
@@ -157,7 +157,7 @@ fn timed_frame(report: FrameReport, wall: Duration) -> Result<TimedFrame, Execut
     })
 }
 
-/// What is known of the frames so far.
+/// Figures of the frames so far.
 #[derive(Default)]
 struct Account {
     counts: Statistics,
@@ -165,11 +165,11 @@ struct Account {
     blockers: Option<BlockerCounts>,
     frames: Vec<SequenceFrame>,
     timed: Vec<TimedFrame>,
-    /// What the frame before showed.
+    /// Shares of light that the frame before showed.
     before: Option<Vec<f32>>,
     /// Where answers or the light are graded: of each frame.
     graded: Vec<(Graded, JudgedPixels)>,
-    /// Whether the method answers in shares.
+    /// True if the method answers in shares.
     shares: bool,
     /// The worst frame that was seen yet, for its pictures.
     worst: Option<(usize, Outputs, Judgement)>,
@@ -283,7 +283,7 @@ impl MeasureContext<'_> {
         })
     }
 
-    /// Frames that nobody looks at.
+    /// Runs frames whose outputs are not read.
     fn stand(&self, executor: &mut Executor, frames: u32) -> Result<(), ExecuteError> {
         (0..frames).try_for_each(|_| {
             frame::run(self.gpu, executor, &Frame::default())?;

@@ -1,4 +1,4 @@
-//! What a method that remembers shows of a still view: its steady state.
+//! The steady state: what a method that remembers shows of a still view.
 
 use crate::error::CliError;
 use crate::graphs::ground_truth::Judgement;

@@ -36,7 +36,7 @@ impl From<CliError> for Stop {
     }
 }
 
-/// What came of running a method: measurements, or why the device refuses.
+/// Outcome of running a method: measurements, or why the device refuses.
 pub type Attempt = Result<Result<Measured, String>, CliError>;
 
 /// Tells a method that the device refuses from a device that is of no more use.

@@ -8,7 +8,7 @@ use crate::terminal::interrupt;
 use skiagraph_gpu::{ExecuteError, Executor, Frame, device::Gpu};
 use std::time::Instant;
 
-/// What frames are timed.
+/// Kinds of frames that are timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameMode {
     /// Every pass runs in every frame.
@@ -39,8 +39,8 @@ pub fn sample(
             first = Instant::now();
         }
         let began = first.elapsed();
-        // Warm-up frames are timed too: they then do the same work, only nobody looks at the
-        // figures.
+        // Warm-up frames are timed too: they then do the same work, only their figures are not
+        // kept.
         if mode == FrameMode::CameraMoves && executor.plan().provided().contains(&"camera") {
             executor.touch("camera")?;
         }

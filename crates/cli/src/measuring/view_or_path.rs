@@ -1,4 +1,4 @@
-//! What is looked at: a still view, or every frame of a camera path.
+//! The camera's view: a still one, or every frame of a camera path.
 
 use crate::args::shared::SceneArgs;
 use crate::error::CliError;
@@ -51,7 +51,7 @@ impl ViewOrPath {
         }
     }
 
-    /// Of its own time.
+    /// Frames per second of its own time.
     pub fn frames_per_second(&self) -> f64 {
         match self {
             Self::Still(_) => 30.0,

@@ -30,7 +30,7 @@ pub struct ClipPlanes {
 }
 
 impl ClipPlanes {
-    /// Of a view.
+    /// Reads the planes of a view.
     pub fn new(view: &View) -> Self {
         let View { near, far, .. } = *view;
         Self { near, far }
@@ -93,7 +93,7 @@ fn count<T: Copy>(values: &[T], is: impl Fn(T) -> bool) -> usize {
     values.iter().filter(|value| is(**value)).count()
 }
 
-/// What a colour stands for and how often.
+/// Says what a colour stands for and how often.
 fn counted(meaning: &str, count: usize) -> String {
     format!("{meaning} ({})", thousands(count as u64))
 }

@@ -1,4 +1,4 @@
-//! What any material of a graph looks like.
+//! Pictures of any material of a graph.
 
 use crate::pictures::colours::{ClipPlanes, EMPTY, depths, floats, fractions, integers};
 use skiagraph_gpu::Content;
@@ -88,7 +88,7 @@ fn sheet(parts: &[[u32; 2]], rgb: Vec<u8>) -> Image {
     Image { size, rgb: sheet }
 }
 
-/// Whether the channels reach from 0 to 1 whatever they hold.
+/// True if the channels reach from 0 to 1 whatever they hold.
 fn is_unorm(format: wgpu::TextureFormat) -> bool {
     use wgpu::TextureFormat as F;
     matches!(

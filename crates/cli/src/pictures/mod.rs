@@ -1,5 +1,4 @@
-//! What becomes of texels and items: the pictures of a run, and what `run --save` writes of any
-//! material.
+//! Texels and items as files: the pictures of a run, and what `run --save` writes of any material.
 
 pub mod buffer_csv;
 pub mod colours;

@@ -162,7 +162,7 @@ pub fn conditions(method: &Method, view: &str, viewport: [u32; 2]) -> String {
     format!("{} {}{map}", slug(view), size(viewport))
 }
 
-/// What the names of a run's pictures begin with.
+/// Returns the beginning of the names of a run's pictures.
 pub fn stem(method: &Method, view: &str, viewport: [u32; 2]) -> String {
     format!(
         "{}-{}",
@@ -171,7 +171,7 @@ pub fn stem(method: &Method, view: &str, viewport: [u32; 2]) -> String {
     )
 }
 
-/// What the name of the reference's picture begins with.
+/// Returns the beginning of the name of the reference's picture.
 pub fn reference_stem(view: &str, viewport: [u32; 2]) -> String {
     format!("reference-{}-{}", slug(view), size(viewport))
 }

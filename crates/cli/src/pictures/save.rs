@@ -12,7 +12,7 @@ use skiagraph_graph::{Capture, Item, PartSummary, Plan};
 use skiagraph_passes::names::{CAMERA, LIGHT};
 use std::collections::BTreeMap;
 
-/// What is read back for a save.
+/// Returns the capture to read back for a save.
 pub fn capture(save: &Save) -> Capture {
     Capture {
         material: save.material.clone(),
@@ -20,7 +20,7 @@ pub fn capture(save: &Save) -> Capture {
     }
 }
 
-/// What of the saves the graph does not hand out anyway.
+/// Returns captures of those saves that are not outputs of the graph anyway.
 pub fn captures(outputs: &[&str], saves: &[Save]) -> Vec<Capture> {
     let wanted: BTreeMap<String, Capture> = saves
         .iter()
@@ -67,7 +67,7 @@ pub struct Decoding {
 }
 
 impl Decoding {
-    /// Of what this plan writes into the output or capture, seen between these planes.
+    /// Describes what this plan writes into the output or capture, seen between these planes.
     pub fn new(plan: &Plan, name: &str, planes: ClipPlanes) -> Self {
         let behind = plan.provided_behind(name);
         // A pass that also knows the light may well draw from there.

@@ -42,18 +42,18 @@ pub struct Difference {
 pub struct PassRatio {
     /// Its name.
     pub name: String,
-    /// Of GPU times; null unless both profiles have them.
+    /// Ratio of GPU times; null unless both profiles have them.
     pub gpu: Option<Ratio>,
-    /// Of encoding on the CPU.
+    /// Ratio of encoding times on the CPU.
     pub cpu: Ratio,
 }
 
 /// Whole frames.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FrameRatio {
-    /// Of GPU times; null unless both profiles have them.
+    /// Ratio of GPU times; null unless both profiles have them.
     pub gpu: Option<Ratio>,
-    /// Of encoding on the CPU.
+    /// Ratio of encoding times on the CPU.
     pub cpu: Ratio,
     /// From the start of encoding until the GPU was done.
     pub wall: Ratio,
@@ -72,11 +72,11 @@ pub struct Ratio {
     pub low: f64,
     /// Q3(new) / Q1(old).
     pub high: f64,
-    /// Whether that is a difference.
+    /// The ratio in a word: a difference, or none.
     pub verdict: Verdict,
 }
 
-/// Whether times differ.
+/// Judgement whether times differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -97,7 +97,7 @@ pub const MIN_FRAMES: usize = 5;
 const RESOLUTION_MS: f64 = 1e-6;
 
 impl Ratio {
-    /// Of an old and a new series.
+    /// Compares an old and a new series.
     pub fn new(old: &Series, new: &Series) -> Self {
         let ratio = |new: f64, old: f64| new.max(RESOLUTION_MS) / old.max(RESOLUTION_MS);
         let [old_q1, old_q3] = old.quartiles();

@@ -4,7 +4,7 @@
 use serde::Serialize;
 use skiagraph_graph::{Code, Diagnostic, Label, Severity};
 
-/// What `check` found.
+/// Findings of `check`.
 #[derive(Debug, Serialize)]
 pub struct CheckReport {
     /// Version of this schema: 1.
@@ -47,7 +47,7 @@ struct LabelReport {
 }
 
 impl FileReport {
-    /// Of a graph: how many passes run, if it can be planned, and what is wrong with it.
+    /// Reports on a graph: how many passes run, if it can be planned, and what is wrong with it.
     pub fn new<'a>(
         file: &str,
         passes: Option<usize>,
@@ -60,14 +60,14 @@ impl FileReport {
         }
     }
 
-    /// Of an argument that names no graph.
+    /// Reports on an argument that names no graph.
     pub fn missing(file: &str, message: String) -> Self {
         Self::new(file, None, &[Diagnostic::error(Code::MissingFile, message)])
     }
 }
 
 impl CheckReport {
-    /// Of all arguments.
+    /// Puts together the reports of all arguments.
     pub fn new(files: Vec<FileReport>) -> Self {
         Self { schema: 1, files }
     }

@@ -1,5 +1,5 @@
-//! What was measured, as plain data. The types of the JSON files are their schemas: scripts rely
-//! on them, so fields are added and never renamed.
+//! Measurements as plain data. The types of the JSON files are their schemas: scripts rely on them,
+//! so fields are added and never renamed.
 
 pub mod baseline;
 pub mod check;

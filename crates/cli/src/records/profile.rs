@@ -36,7 +36,7 @@ pub struct Profile {
     pub baseline: Option<Comparison>,
 }
 
-/// What a time is worth nothing without.
+/// Conditions without which a time is worth nothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Conditions {
     /// The program, `skiagraph 0.1.0`.
@@ -47,7 +47,7 @@ pub struct Conditions {
     pub date: String,
     /// Where; `gpu_unavailable` says why GPU times are null.
     pub adapter: Adapter,
-    /// What was drawn.
+    /// The scene that was drawn.
     pub scene: Scene,
     /// Name of the preset, or path of the graph.
     pub preset: String,
@@ -74,7 +74,7 @@ impl Conditions {
         })
     }
 
-    /// What was not alike under older conditions.
+    /// Lists the conditions that were not alike in an older profile.
     fn differences(&self, old: &Self) -> Vec<Difference> {
         let facts = |conditions: &Self| {
             [
@@ -137,7 +137,7 @@ pub struct FrameProfile {
 /// The graph's own textures and buffers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Memory {
-    /// Of all of them.
+    /// Bytes of all of them.
     pub bytes: u64,
     /// Saved by letting materials share memory.
     pub saved_bytes: u64,
@@ -158,7 +158,7 @@ pub struct Material {
     pub mips: u32,
     /// Array layers.
     pub layers: u32,
-    /// What it takes.
+    /// Bytes that it takes.
     pub bytes: u64,
     /// Materials in the same memory.
     pub shared_with: Vec<String>,

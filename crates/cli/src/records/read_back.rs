@@ -41,7 +41,7 @@ const PROFILE: Limit = Limit {
 /// Reads an older profile, for `--baseline`.
 ///
 /// # Errors
-/// A file that cannot be read, or that is no profile; with the place.
+/// A file that cannot be read, or that is not a profile; with the place.
 pub fn profile(path: &Path) -> Result<Profile, CliError> {
     let text = PROFILE
         .read_text(path)
@@ -52,7 +52,7 @@ pub fn profile(path: &Path) -> Result<Profile, CliError> {
 /// Reads earlier results, for `--resume`; `None` if there are none.
 ///
 /// # Errors
-/// A file that cannot be read, or that is no results.json; with the place.
+/// A file that cannot be read, or that is not a results.json; with the place.
 pub fn results(path: &Path) -> Result<Option<Results>, CliError> {
     let file = results_file(path)?;
     file.map(|file| results_of(&file)).transpose()
@@ -105,7 +105,7 @@ pub fn kept(folder: &Path) -> Result<Results, CliError> {
 /// Reads the matrix in a folder; `None` if there is none.
 ///
 /// # Errors
-/// A file that cannot be read or is no stress.json; with the place.
+/// A file that cannot be read or is not a stress.json; with the place.
 pub fn stress(folder: &Path) -> Result<Option<Value>, CliError> {
     let path = folder.join("stress.json");
     let name = path.display().to_string();
@@ -128,7 +128,7 @@ fn parse_stress(text: &str) -> Result<Value, Mistake> {
     if has("methods") && has("cases") {
         Ok(value)
     } else {
-        let what = "there are no \"methods\" in it, or no \"cases\"".into();
+        let what = "\"methods\" or \"cases\" is missing".into();
         Err(Mistake::at_field(text, "{", what))
     }
 }
@@ -152,8 +152,8 @@ pub fn results_of(file: &SourceFile) -> Result<Results, CliError> {
     })
 }
 
-/// What tells our files from each other and from other JSON. Any other file lacks many fields, and
-/// to name the first would mislead.
+/// Fields that tell our files from each other and from other JSON. Any other file lacks many
+/// fields, and to name the first would mislead.
 #[derive(Deserialize)]
 struct Head {
     schema: Option<Value>,
@@ -171,7 +171,7 @@ fn parse_profile(text: &str) -> Result<Profile, Mistake> {
     if head.kind != Some(KIND.into()) {
         let what = match head.kind {
             Some(kind) => format!("the kind is {kind}, not \"{KIND}\""),
-            None => format!("there is no \"kind\": \"{KIND}\" in it"),
+            None => format!("\"kind\": \"{KIND}\" is missing"),
         };
         return Err(Mistake::at_field(text, "\"kind\"", what));
     }
@@ -182,7 +182,7 @@ fn parse_profile(text: &str) -> Result<Profile, Mistake> {
         Some(place) => Err(Mistake::at_field(
             text,
             &place,
-            "no samples here, or some that are no times".into(),
+            "no samples here, or some that are not times".into(),
         )),
     }
 }
@@ -208,7 +208,7 @@ fn without_times(profile: &Profile) -> Option<String> {
 fn parse_results(text: &str) -> Result<Results, Mistake> {
     let head: Head = parse(text)?;
     if head.oracle.is_none() || head.runs.is_none() {
-        let what = "there is no \"oracle\" in it, or there are no \"runs\"".into();
+        let what = "\"oracle\" or \"runs\" is missing".into();
         return Err(Mistake::at_field(text, "{", what));
     }
     check_schema(text, head.schema)?;

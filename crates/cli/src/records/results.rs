@@ -24,7 +24,7 @@ pub struct Results {
     pub program: String,
     /// Where it ran.
     pub adapter: Adapter,
-    /// What was drawn.
+    /// The scene that was drawn.
     pub scene: Scene,
     /// The oracle's mode, `exact` or `offset:LENGTH`.
     pub oracle: String,
@@ -81,7 +81,7 @@ pub struct OpenParts {
 }
 
 impl OpenParts {
-    /// Of a mesh.
+    /// Counts the parts of a mesh.
     pub fn new(mesh: &skiagraph_scene::Mesh) -> Self {
         let parts = skiagraph_scene::Parts::new(mesh);
         let open = |part: &&u32| parts.open[**part as usize];
@@ -134,43 +134,43 @@ pub struct Run {
     pub map_size: Option<u32>,
     /// All params of the graph with the values it ran with.
     pub params: BTreeMap<String, serde_json::Value>,
-    /// Of all else that the run depends on: the texts of the graph, of what it includes and of
-    /// their shaders, the same of the graph that finds the visible triangles, mesh, light and view.
-    /// Empty in files of older programs.
+    /// Hash of everything else that the run depends on: the texts of the graph, of what it includes
+    /// and of their shaders, the same of the graph that finds the visible triangles, mesh, light
+    /// and view. Empty in files of older programs.
     #[serde(default)]
     pub fingerprint: String,
     /// The day on which it was measured, `2026-11-21` (UTC). Empty in files of older programs.
     #[serde(default)]
     pub date: String,
-    /// What the document promises of its answers with these params; absent where nothing, and in
+    /// The document's promise of its answers with these params; absent where it has none, and in
     /// files of older programs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub promise: Option<Promise>,
     /// The reference's pixels.
     pub pixels: PixelCounts,
-    /// Of those facing the light, the ones whose answer flips within the rounding error of receiver
-    /// and casters.
+    /// Pixels facing the light whose answer flips within the rounding error of receiver and
+    /// casters.
     pub band: u64,
     /// Pixels that show a surface which is not seen there: another one stands before it by more
     /// than rounding. All methods are judged on what is shown. Absent in files of older programs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wrong_surface: Option<u64>,
-    /// Of a light that has an extent, how the reference was sampled; absent where it has none.
+    /// Sampling of the reference, of a light that has an extent; absent where it has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area: Option<AreaReference>,
-    /// What was measured; absent where the preset is unavailable.
+    /// The measurements; absent where the preset is unavailable.
     #[serde(flatten)]
     pub measured: Option<Measured>,
     /// Why the preset could not run on this adapter; absent where it did.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unavailable: Option<String>,
-    /// What others have published, with `--beside`.
+    /// Figures that others have published, with `--beside`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub published: Vec<Published>,
 }
 
 impl Run {
-    /// Whether answer and light are hard, so that pixels are right or wrong.
+    /// True if answer and light are hard, so that pixels are right or wrong.
     pub fn is_hard(&self) -> bool {
         let graded = self.measured.as_ref().and_then(|of| of.graded.as_ref());
         self.area.is_none() && graded.is_none()
@@ -209,7 +209,7 @@ impl Run {
         })
     }
 
-    /// Whether it stands at the same place of a comparison as another one: of the same method,
+    /// True if it stands at the same place of a comparison as another one: of the same method,
     /// view, viewport and map.
     pub fn is_in_place_of(&self, other: &Self) -> bool {
         (&self.preset, &self.view, self.viewport, self.map_size)
@@ -223,12 +223,12 @@ impl Run {
     }
 }
 
-/// What a document promises.
+/// The promise of a document.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Promise {
     /// `exact` of all its pixels, `certain` of those that it calls certain.
     pub of: String,
-    /// Whether it holds of closed casters alone, as the method leaves out faces.
+    /// True if it holds of closed casters alone, as the method leaves out faces.
     pub closed_only: bool,
 }
 
@@ -269,7 +269,7 @@ pub struct AreaReference {
 }
 
 impl AreaReference {
-    /// Of the oracle's answer.
+    /// Takes the figures of the oracle's answer.
     pub fn new(area: &AreaVisibility, truth: &GroundTruthPixels) -> Self {
         let [standard_error_rms, standard_error_worst] = area.standard_error(truth);
         let partial = area
@@ -290,27 +290,27 @@ impl AreaReference {
 pub struct Part {
     /// How many.
     pub count: u64,
-    /// Of how many.
+    /// Number of all of them.
     pub of: u64,
 }
 
-/// A figure that somebody else published about such a run or about its view and viewport.
+/// A figure published by others about such a run or about its view and viewport.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Published {
     /// Label of who did.
     pub by: String,
-    /// What it is of: `wrong_percent`, `ms.trace_rays` …
+    /// Quantity that it is of: `wrong_percent`, `ms.trace_rays` …
     pub quantity: String,
     /// The figure.
     pub value: f64,
     /// Where it stands, `table 12`.
     pub source: String,
-    /// What is wrong with it as it is printed there.
+    /// A remark on what is wrong with it as it is printed there.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
 }
 
-/// What a run measured.
+/// Measurements of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// Pixels that the method decided by its map alone.

@@ -39,7 +39,7 @@ pub struct PassSamples {
 }
 
 impl Samples {
-    /// Of some frames.
+    /// Gathers the samples of some frames.
     pub fn new(frames: &[TimedFrame]) -> Self {
         let mut samples = Self::default();
         for TimedFrame { timing, wall, .. } in frames {

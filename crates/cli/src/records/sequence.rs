@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use skiagraph_reference::{Graded, Shimmer};
 use std::collections::BTreeMap;
 
-/// What a method did in each frame of a path. The run's own counts are the sums over all frames,
-/// its times the spread over them.
+/// Measurements of each frame of a path. The run's own counts are the sums over all frames, its
+/// times the spread over them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sequence {
     /// In their order.
@@ -24,9 +24,9 @@ pub struct Sequence {
 pub struct SequenceFrame {
     /// Pixels facing the light (PFL).
     pub facing_light: u64,
-    /// Of these: wrong, in-band pixels included.
+    /// Number of these that are wrong, in-band pixels included.
     pub wrong: u64,
-    /// Of these: wrong outside the band.
+    /// Number of these that are wrong outside the band.
     pub wrong_outside_band: u64,
     /// How far the shown shares of light are off, where the answer or the light is graded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -43,7 +43,8 @@ pub struct SequenceFrame {
     /// Passes that did not run, as nothing that they read had changed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub skipped: Vec<String>,
-    /// What of the scene was made anew before it, for something has changed that it follows from.
+    /// Resources of the scene that were made anew before it, as something that they follow from has
+    /// changed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub remade: Vec<Remade>,
     /// Its times when every pass runs: what it costs without what is kept.
@@ -58,7 +59,8 @@ pub struct Remade {
     pub name: String,
     /// `made`, or `refitted`, of a hierarchy.
     pub how: String,
-    /// What that took on the CPU, uploads included; not part of the frame's times.
+    /// Time that this took on the CPU in milliseconds, uploads included; not part of the frame's
+    /// times.
     pub ms: f64,
 }
 
@@ -121,8 +123,8 @@ impl Sequence {
 }
 
 impl Sequence {
-    /// What of the scene was made anew and took a tenth of a millisecond or more, each with how, in
-    /// how many frames, and the median of what that took in ms.
+    /// Lists resources of the scene whose remaking took a tenth of a millisecond or more, each with
+    /// how, in how many frames, and the median time in ms.
     pub fn remade<'s>(&'s self) -> Vec<(&'s str, &'s str, usize, f64)> {
         let all = self.frames.iter().flat_map(|frame| &frame.remade);
         let mut times: BTreeMap<(&str, &str), Vec<f64>> = BTreeMap::new();

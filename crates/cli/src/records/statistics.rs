@@ -25,12 +25,12 @@ pub struct FrameTimes {
 }
 
 impl Spread {
-    /// Of some samples; `None` if there are none.
+    /// Returns the spread of some samples; `None` if there are none.
     pub fn new(samples: &[Duration]) -> Option<Self> {
         Self::from_ms(samples.iter().map(|sample| sample.as_secs_f64() * 1e3))
     }
 
-    /// Of some samples in milliseconds; `None` if there are none.
+    /// Returns the spread of some samples in milliseconds; `None` if there are none.
     pub fn from_ms(samples: impl Iterator<Item = f64>) -> Option<Self> {
         let mut ms: Vec<f64> = samples.collect();
         ms.sort_by(f64::total_cmp);
@@ -43,7 +43,7 @@ impl Spread {
         })
     }
 
-    /// Of samples of which any may be missing; `None` if one is.
+    /// Returns the spread of samples of which any may be missing; `None` if one is.
     pub fn from_all(samples: &[Option<Duration>]) -> Option<Self> {
         Self::new(&all(samples)?)
     }
@@ -69,7 +69,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// Of some milliseconds; `None` if there are none.
+    /// Creates a series of some milliseconds; `None` if there are none.
     pub fn new(samples: Vec<f64>) -> Option<Self> {
         let Spread { min, median, p95 } = Spread::from_ms(samples.iter().copied())?;
         Some(Self {
@@ -81,14 +81,14 @@ impl Series {
         })
     }
 
-    /// Of some samples; `None` if there are none.
+    /// Creates a series of some samples; `None` if there are none.
     pub fn from_times(times: &[Duration]) -> Option<Self> {
         // From whole nanoseconds, so that a sample has no more than six digits behind the point.
         let ms = times.iter().map(|time| time.as_nanos() as f64 / 1e6);
         Self::new(ms.collect())
     }
 
-    /// Of samples of which any may be missing; `None` if one is.
+    /// Creates a series of samples of which any may be missing; `None` if one is.
     pub fn from_all(times: &[Option<Duration>]) -> Option<Self> {
         Self::from_times(&all(times)?)
     }

@@ -9,7 +9,7 @@ pub struct Steady {
     pub frames: u32,
     /// Its picture repeats after so many frames; null if it did not within `frames`.
     pub period: Option<u32>,
-    /// What was judged in this state; absent where a camera path begins in it.
+    /// The cycle that was judged in this state; absent where a camera path begins in it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub judged: Option<Cycle>,
 }

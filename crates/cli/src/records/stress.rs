@@ -69,21 +69,21 @@ impl Guarantee {
 pub struct Case {
     /// Its name in the catalogue.
     pub name: String,
-    /// What it provokes.
+    /// The fault that it provokes.
     pub reason: String,
-    /// Whether the casters are closed or open.
+    /// Closed or open casters.
     pub casters: Casters,
     /// The greatest share of the pixels facing the light that the band may take.
     pub band_cap: f64,
-    /// Of the band: failed where it is above its cap, or there is no reference at all.
+    /// Verdict on the band: failed where it is above its cap, or there is no reference at all.
     pub verdict: Verdict,
     /// Why there is no reference, and so no cell; absent where there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failed: Option<String>,
     /// The reference's pixels.
     pub pixels: PixelCounts,
-    /// Of those facing the light, the ones whose answer flips within the rounding error of receiver
-    /// and casters.
+    /// Pixels facing the light whose answer flips within the rounding error of receiver and
+    /// casters.
     pub band: u64,
     /// Pixels that show a surface which is not seen there: another one stands before it by more
     /// than rounding.
@@ -92,7 +92,7 @@ pub struct Case {
     pub cells: Vec<Cell>,
 }
 
-/// What the casters of a case are.
+/// Kinds of casters of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Casters {
@@ -111,9 +111,9 @@ pub struct Cell {
     pub map_size: Option<u32>,
     /// The param that differs from the method's, `cull=none`; null where none does.
     pub set: Option<String>,
-    /// What it comes to.
+    /// The cell's verdict.
     pub verdict: Verdict,
-    /// What was counted; absent where it could not run.
+    /// The cell's counts; absent where it could not run.
     #[serde(flatten)]
     pub counts: Option<Counts>,
     /// Why it could not run; absent where it could.
@@ -124,7 +124,7 @@ pub struct Cell {
     pub images: Option<Images>,
 }
 
-/// What a cell or band comes to.
+/// Verdict on a cell or band.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -140,7 +140,7 @@ pub enum Verdict {
     Unjudged,
 }
 
-/// What was counted of a cell.
+/// Counts of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Counts {
     /// Pixels on which method and reference disagree.
@@ -162,12 +162,12 @@ pub struct OutsideBand {
     pub lit: u64,
     /// In shadow by the method, lit by the reference.
     pub shadow: u64,
-    /// Of both: called certain.
+    /// Those of both that the method called certain.
     pub certain: u64,
 }
 
 impl OutsideBand {
-    /// Whether this breaks the guarantee.
+    /// True if this breaks the guarantee.
     pub fn breaks(&self, guarantee: Guarantee) -> bool {
         match guarantee {
             Guarantee::Exact => self.lit + self.shadow > 0,
@@ -177,8 +177,8 @@ impl OutsideBand {
 }
 
 impl Verdict {
-    /// Of a cell that ran. `culls`: not all faces cast shadows, so that nothing is guaranteed of
-    /// open casters; `certain`: pixels called so.
+    /// Judges a cell that ran. `culls`: not all faces cast shadows, so that nothing is guaranteed
+    /// of open casters; `certain`: pixels called so.
     pub fn new(
         guarantee: Option<Guarantee>,
         culls: bool,
@@ -197,7 +197,7 @@ impl Verdict {
 }
 
 impl Counts {
-    /// Of a picture: `whole` counts all of its pixels, `settled` the same with the reference's
+    /// Counts a picture: `whole` counts all of its pixels, `settled` the same with the reference's
     /// answer wherever that is in the band.
     pub fn new(whole: &Statistics, settled: &Statistics, rays: Option<u64>) -> Self {
         let WrongCounts {
@@ -221,20 +221,20 @@ impl Counts {
 }
 
 impl Cell {
-    /// Whether it is of this method.
+    /// True if it is of this method.
     pub fn is_of(&self, column: &Column) -> bool {
         (&self.preset, self.map_size) == (&column.preset, column.map_size)
     }
 }
 
 impl Case {
-    /// Whether the band takes more than its cap: what lies in it is not proven, and a band that
+    /// True if the band takes more than its cap: the pixels in it are not proven, and a band that
     /// swallows a case proves nothing.
     pub fn exceeds_cap(&self) -> bool {
         self.band as f64 > self.band_cap * self.pixels.facing_light as f64
     }
 
-    /// Whether a method with a map called nothing certain, so that a right answer says nothing of
+    /// True if a method with a map called nothing certain, so that a right answer says nothing of
     /// the map.
     pub fn is_left_to_rays(&self, cell: &Cell) -> bool {
         let all = self.pixels.facing_light;

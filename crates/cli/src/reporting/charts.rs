@@ -6,7 +6,7 @@ use crate::wording::{frames, size};
 use skiagraph_chart::{Figure, Kind, Mark, Panel, Series};
 use std::{collections::BTreeSet, path::PathBuf};
 
-/// What `compare` kept in a folder.
+/// Results that `compare` kept in a folder.
 #[derive(Debug)]
 pub struct Kept {
     /// The folder.

@@ -20,7 +20,7 @@ enum Source {
     Measure(fn(&Measured) -> Value),
 }
 
-/// What stands in a cell.
+/// Content of a cell.
 enum Value {
     Unknown,
     Text(String),
@@ -229,7 +229,7 @@ const DOCUMENT: [Entry; 20] = [
     ("gpu_ms", "frame ms", "ms.frame"),
 ];
 
-/// Columns of a document that only stand where somebody published figures of them.
+/// Columns of a document that only stand where figures of them were published.
 const IF_PUBLISHED: [&str; 8] = [
     "wrong_lit_percent",
     "wrong_shadow_percent",
@@ -279,7 +279,7 @@ fn blocked(measured: &Measured, count: fn(BlockerCounts) -> u64) -> Value {
     }
 }
 
-/// Of a camera path: answers that changed though the right ones did not, of those compared.
+/// Counts, of a camera path, answers that changed though the right ones did not, of those compared.
 fn shimmer(measured: &Measured) -> Option<Part> {
     let shimmer = measured.sequence.as_ref()?.shimmer;
     Some(Part {
@@ -325,9 +325,9 @@ fn area(run: &Run, figure: fn(&AreaReference) -> Value) -> Value {
 
 /// A column of a table.
 pub struct Column {
-    /// What stands above it.
+    /// Heading above it.
     pub head: &'static str,
-    /// What published figures of it are called; empty where there are none.
+    /// Name of published figures of it; empty where there are none.
     pub quantity: &'static str,
     source: &'static Source,
 }
@@ -343,7 +343,7 @@ impl Column {
         })
     }
 
-    /// Whether it is empty where the method could not run.
+    /// True if it is empty where the method could not run.
     pub fn is_measured(&self) -> bool {
         matches!(self.source, Measure(_))
     }
@@ -399,7 +399,7 @@ pub fn terminal(is_hard: bool, runs: &[&Run]) -> Vec<Column> {
     entries.filter_map(Column::new).collect()
 }
 
-/// Whether any run is of a camera path.
+/// True if any run is of a camera path.
 pub fn are_paths<'a>(runs: impl IntoIterator<Item = &'a Run>) -> bool {
     let mut measured = runs.into_iter().filter_map(|run| run.measured.as_ref());
     measured.any(|of| of.sequence.is_some())
@@ -426,7 +426,7 @@ pub fn document(
     })
 }
 
-/// What can be published about a run and stand beside its figures.
+/// Lists the quantities that can be published about a run and stand beside its figures.
 pub fn quantities() -> Vec<String> {
     let of_columns = DOCUMENT.iter().map(|(.., quantity)| quantity.to_string());
     let steps = STEPS.iter().map(|(step, _)| *step);

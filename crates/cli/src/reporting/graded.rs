@@ -1,4 +1,4 @@
-//! What tables and notes say of graded answers, and of lights that have an extent.
+//! Remarks of tables and notes on graded answers, and on lights that have an extent.
 
 use crate::records::results::{AreaReference, Run};
 use crate::wording::thousands;
@@ -31,8 +31,8 @@ pub fn area_reference(area: &AreaReference, band: u64) -> String {
     )
 }
 
-/// What there is to say of graded answers: their rank under a light with extent, what is no share,
-/// and what colours of error pictures mean.
+/// Writes the remarks on graded answers: their rank under a light with extent, values that are no
+/// share, and the meaning of the colours of error pictures.
 pub fn graded(runs: &[Run]) -> Vec<String> {
     let mut notes: Vec<String> = ranks(runs).into_iter().collect();
     notes.extend(runs.iter().filter_map(no_shares));
@@ -50,7 +50,7 @@ fn errors(run: &Run) -> Option<Graded> {
     run.measured.as_ref()?.graded
 }
 
-/// That a method shows what is no share of light.
+/// Warns of a method whose visibility is not a share of light.
 pub fn no_shares(run: &Run) -> Option<String> {
     let invalid = errors(run)?.invalid;
     let counts = [
@@ -62,7 +62,7 @@ pub fn no_shares(run: &Run) -> Option<String> {
     let counts = counts.map(|(what, count)| format!("{what} {}", thousands(count)));
     let counts = counts.collect::<Vec<_>>().join(", ");
     let label = run.method_label();
-    let text = format!("warning: {label}: visibility that is no share of light: {counts}");
+    let text = format!("warning: {label}: visibility that is not a share of light: {counts}");
     (invalid.total() > 0).then_some(text)
 }
 
@@ -156,7 +156,8 @@ mod tests {
         let expected = [
             "by RMSE: soft 1024 0.01000, nsm 1024 0.20000; the reference's own error is more than \
              a tenth of that of soft 1024",
-            "warning: soft 1024: visibility that is no share of light: NaN 2, outside 0 to 1 1,000",
+            "warning: soft 1024: visibility that is not a share of light: NaN 2, outside 0 to 1 \
+             1,000",
         ];
         assert_eq!(graded(&runs)[..2], expected);
         assert_eq!(

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 
-/// What is said before the tables.
+/// Text before the tables.
 const HEAD: &str = "# The language of documents: reference
 
 Format 3, as the types that read it have it: `skiagraph schema --format markdown` made this page,
@@ -119,7 +119,7 @@ impl<'s> Page<'s> {
         }
     }
 
-    /// What stands in fields: every definition that has not been told of.
+    /// Describes the values of fields: every definition that has not been told of.
     fn values(&mut self) {
         let defs = self.defs.as_object();
         for (name, of) in defs.into_iter().flatten() {
@@ -161,7 +161,7 @@ impl<'s> Page<'s> {
         self.text += &format!("{gap}- {}\n", wrapped(&format!("{value}{what}"), "  "));
     }
 
-    /// What a value may be, in a few words.
+    /// Describes the values that a field may have, in a few words.
     fn value(&self, of: &Value) -> String {
         if let Some(name) = named(of) {
             return match name {

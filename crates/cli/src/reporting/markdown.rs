@@ -11,8 +11,9 @@ use crate::reporting::notes::{
 use crate::wording::{command_line, frames, ms, share, thousands};
 use std::{collections::BTreeSet, env};
 
-/// What all tables have in common. `today` is the date of the runs that are still to be measured,
-/// if there are any; `are_paths` if they are of camera paths, whose frames are timed.
+/// Writes the lines that all tables have in common. `today` is the date of the runs that are still
+/// to be measured, if there are any; `are_paths` if they are of camera paths, whose frames are
+/// timed.
 pub fn header(
     results: &Results,
     today: Option<&str>,

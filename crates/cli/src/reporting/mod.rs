@@ -1,5 +1,5 @@
-//! What was measured, as people and spreadsheets read it: tables, documents, CSV, traces. No
-//! figure is worked out here that `records` does not hold.
+//! Measurements as people and spreadsheets read them: tables, documents, CSV, traces. No figure is
+//! worked out here that `records` does not hold.
 
 pub mod charts;
 pub mod columns;

@@ -1,4 +1,4 @@
-//! What is said below tables, wherever they stand.
+//! Notes below tables, wherever they stand.
 
 use crate::records::results::{Measured, Run};
 use crate::records::sequence::{FrameCost, Sequence};
@@ -53,8 +53,8 @@ pub fn wrong_surface(count: u64, all: u64) -> String {
     )
 }
 
-/// Of each method that is wrong of certain pixels: how many, and what blocks them. All maps of a
-/// method, whose runs stand together, are in one line.
+/// Says of each method that is wrong of certain pixels how many they are, and what blocks them. All
+/// maps of a method, whose runs stand together, are in one line.
 pub fn certain_wrong(runs: &[Run]) -> Vec<String> {
     let wrong = |run: &Run| {
         let certain = run.measured.as_ref().map_or(0, |of| of.wrong.certain);
@@ -121,7 +121,7 @@ pub fn blocked_by(wrong: u64, by: Option<BlockerCounts>) -> String {
     format!("certain wrong outside the band {}{kinds}", thousands(wrong))
 }
 
-/// What was judged of a method that remembers.
+/// Says what was judged of a method that remembers.
 pub fn remembering(run: &Run) -> Option<String> {
     let measured = run.measured.as_ref()?;
     let steady = measured.steady.as_ref()?;
@@ -151,7 +151,7 @@ pub fn remembering(run: &Run) -> Option<String> {
     })
 }
 
-/// What the frames of a camera path cost, with what is kept and without.
+/// Says what the frames of a camera path cost, with what is kept and without.
 pub fn path_costs(run: &Run) -> Vec<String> {
     let sequence = run.measured.as_ref().and_then(|of| of.sequence.as_ref());
     let lines = sequence.map(|sequence| {
@@ -174,7 +174,7 @@ pub fn path_costs(run: &Run) -> Vec<String> {
     lines
 }
 
-/// What of the scene followed from what moves.
+/// Lists the resources of the scene that followed from what moves.
 fn remade(run: &Run, sequence: &Sequence) -> Option<String> {
     let all = sequence.frames.len();
     let remade = sequence

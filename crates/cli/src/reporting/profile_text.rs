@@ -8,7 +8,7 @@ use crate::reporting::notes::untimed;
 use crate::reporting::table::table;
 use crate::wording::{bytes, frames, ms, size};
 
-/// What is printed on standard output.
+/// Writes a profile as it is printed on standard output.
 pub fn report(profile: &Profile) -> String {
     let mut text = conditions(profile);
     text += &format!("\nTimes, ms\n{}\n", times(profile));
@@ -34,7 +34,7 @@ pub fn report(profile: &Profile) -> String {
     text
 }
 
-/// What is printed of several: a table per method, a row per pass, a column per view and size.
+/// Writes several profiles: a table per method, a row per pass, a column per view and size.
 pub fn matrices(profiles: &[Profile]) -> String {
     let mut text = String::new();
     if let Some(first) = profiles.first() {
@@ -253,7 +253,7 @@ fn comparison(baseline: &Comparison, new: &Profile) -> String {
     text += &format!(
         "Medians, ms; the spread goes from Q1(now) / Q3(then) to Q3(now) / Q1(then). Faster or \
          slower: the middle halves of both\n\
-         samples do not overlap; with fewer than {MIN_FRAMES} frames nobody can say.\n",
+         samples do not overlap; with fewer than {MIN_FRAMES} frames there is no verdict.\n",
     );
     text
 }

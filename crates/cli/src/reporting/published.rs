@@ -1,4 +1,4 @@
-//! `compare --beside`: figures that somebody published, to stand beside ours.
+//! `compare --beside`: published figures, to stand beside ours.
 
 use crate::args::values::PublishedFile;
 use crate::error::CliError;

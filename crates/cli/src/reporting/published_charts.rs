@@ -10,7 +10,7 @@ use crate::reporting::published_panels::{
 use crate::reporting::published_row::Row;
 use skiagraph_chart::{Figure, Panel, Series};
 
-/// What could be drawn, and what could not.
+/// The charts that could be drawn, and why others could not.
 pub struct Charts {
     /// Names of files without their ending, and what is in them.
     pub charts: Vec<(&'static str, Figure)>,
@@ -18,14 +18,14 @@ pub struct Charts {
     pub left_out: Vec<String>,
 }
 
-/// What one chart shows.
+/// Description of one chart.
 struct Family {
     /// Name of its file.
     name: &'static str,
     title: &'static str,
-    /// What grows upwards.
+    /// Quantity that grows upwards.
     y: &'static str,
-    /// What a reader has to know.
+    /// Remark for the reader.
     note: &'static str,
     groups: Groups,
     bars: for<'a> fn(&'a Cell<'a>) -> Vec<Bar<'a>>,
@@ -201,7 +201,7 @@ pub fn draw(
     Charts { charts, left_out }
 }
 
-/// What is wrong with the figures that are drawn.
+/// Lists what is wrong with the figures that are drawn.
 fn remarks(drawn: &[PanelRow]) -> Vec<String> {
     let mut remarks = Vec::new();
     for figure in drawn.iter().flat_map(PanelRow::figures) {
@@ -307,8 +307,8 @@ mod tests {
     use crate::records::results::{Published, tests::sample};
     use skiagraph_chart::Kind;
 
-    /// `rt`, then `nsm`, `crsm` and a method that nobody published in two maps, and what was
-    /// published of them.
+    /// Results of `rt`, then `nsm`, `crsm` and a method without published figures in two maps, and
+    /// the figures published of them.
     fn kept() -> Kept {
         let mut results = sample();
         let mut run = results.runs.remove(0);

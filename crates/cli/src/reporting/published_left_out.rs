@@ -1,4 +1,4 @@
-//! What charts of published figures and ours lack, because only one side has it.
+//! Gaps in charts of published figures and ours, because only one side has a figure.
 
 use crate::reporting::published_panels::{Cell, Groups, PanelRow};
 use crate::reporting::published_row::Row;
@@ -32,7 +32,7 @@ pub fn views_left_out(
     })
 }
 
-/// What only one side has: scenes, and in a scene views, viewports, map sizes and presets.
+/// Lists what only one side has: scenes, and in a scene views, viewports, map sizes and presets.
 pub fn without_counterpart<'a>(
     cells: &[Cell],
     rows: impl Iterator<Item = &'a Row>,
@@ -51,7 +51,7 @@ pub fn without_counterpart<'a>(
             let mut own = cells.iter().filter(|cell| cell.scene == scene);
             own.any(|cell| cell.run.preset == *name)
         };
-        // Of several presets, one is enough.
+        // One of several presets is enough.
         let known = if row.named.iter().any(is_ours) {
             is_ours(&row.preset)
         } else {
@@ -94,7 +94,7 @@ fn of_scene<'a, 's>(all: &'s mut Vec<(&'a str, Sides)>, scene: &'a str) -> &'s m
     &mut all[place].1
 }
 
-/// What one side has of a scene.
+/// Figures that one side has of a scene.
 #[derive(Clone, Default)]
 struct Sides {
     views: BTreeSet<String>,
@@ -111,7 +111,7 @@ impl Sides {
         self.presets.insert(preset.to_owned());
     }
 
-    /// What the other side lacks, in words.
+    /// Says what the other side lacks, in words.
     fn lacking(&self, other: &Self) -> Option<String> {
         let viewports = &self.viewports - &other.viewports;
         let maps = &self.maps - &other.maps;

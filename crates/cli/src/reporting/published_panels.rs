@@ -16,7 +16,7 @@ pub struct Cell<'a> {
     pub scene: &'a str,
     /// The run.
     pub run: &'a Run,
-    /// What it measured.
+    /// Its measurements.
     pub measured: &'a Measured,
     /// The tracer's.
     pub tracer: Option<(&'a Run, &'a Measured)>,
@@ -45,7 +45,7 @@ pub fn published<'a>(run: &'a Run, quantity: &str) -> Option<&'a Published> {
     figures.find(|figure| figure.quantity == quantity)
 }
 
-/// What a group of bars stands for; the other one has panels of its own for each.
+/// Quantity that a group of bars stands for; the other one has panels of its own for each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Groups {
     /// Viewports.
@@ -90,7 +90,7 @@ pub struct Bar<'a> {
     pub ours: f64,
 }
 
-/// What one pair of panels shows.
+/// Content of one pair of panels.
 pub struct PanelRow<'a> {
     /// Name of the scene.
     pub scene: &'a str,

@@ -32,7 +32,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// What tells it from every other figure.
+    /// Returns the fields that tell it from every other figure.
     pub fn key(&self) -> (&str, &str, [u32; 2], Option<u32>, &str, &str) {
         let Self { scene, view, .. } = self;
         let quantity = &self.figure.quantity;
@@ -52,7 +52,7 @@ impl Row {
         self.named.iter().map(of).collect()
     }
 
-    /// Whether it is of this run, or of its reference.
+    /// True if it is of this run, or of its reference.
     pub fn applies_to(&self, scene: &str, run: &Run) -> bool {
         let of_run = self.preset == run.preset && self.map_size == run.map_size;
         (self.scene.as_str(), &self.view, self.viewport) == (scene, &run.view, run.viewport)
@@ -146,7 +146,7 @@ impl<'a> Fields<'a> {
         let text = self.text("map_size");
         let size = text.parse().ok();
         if size.is_none() && !text.is_empty() {
-            let what = format!("`{text}` is no size of a map in texels");
+            let what = format!("`{text}` is not a map size in texels");
             self.fault("map_size", Code::Syntax, what, "");
             return Some(0);
         }
@@ -157,7 +157,7 @@ impl<'a> Fields<'a> {
         let (text, quantity) = (self.text("value"), self.text("quantity"));
         let number = text.parse::<f64>().ok().filter(|value| value.is_finite());
         let Some(number) = number else {
-            let what = format!("`{text}` is no number");
+            let what = format!("`{text}` is not a number");
             let help = "digits with a decimal point, without separators of thousands";
             self.fault("value", Code::Syntax, what, help);
             return 0.0;
@@ -189,7 +189,7 @@ impl<'a> Fields<'a> {
             let what = format!("`{quantity}` is of a preset, and there is none");
             self.fault("preset", Code::MissingField, what, "");
         } else if !is_known(quantity) {
-            let what = format!("no quantity is called `{quantity}`");
+            let what = format!("unknown quantity `{quantity}`");
             let (line, place) = (self.line, self.columns.at("quantity"));
             let fault = line.fault(Code::UnknownVariant, place, what);
             let of_run = quantities();
@@ -212,16 +212,16 @@ fn is_known(quantity: &str) -> bool {
 pub struct Columns([usize; 9]);
 
 impl Columns {
-    /// Of a file that begins with this line.
+    /// Reads the columns of a file that begins with this line.
     ///
     /// # Errors
-    /// Columns that nobody knows or that are missing.
+    /// Unknown or missing columns.
     pub fn new(line: &Line) -> Result<Self, Vec<Diagnostic>> {
         let names: Vec<&str> = line.record.iter().map(str::trim).collect();
         let mut faults = Vec::new();
         for (index, name) in names.iter().enumerate() {
             if !HEADER.contains(name) {
-                let what = format!("no column is called `{name}`");
+                let what = format!("unknown column `{name}`");
                 let fault = line.fault(Code::UnknownField, index, what);
                 faults.push(fault.suggest(name, HEADER));
             }
@@ -254,12 +254,12 @@ impl Columns {
 pub struct Line<'a> {
     /// Where it stands.
     pub file: &'a SourceFile,
-    /// What stands in it.
+    /// Its fields.
     pub record: StringRecord,
 }
 
 impl Line<'_> {
-    /// What is wrong with a field.
+    /// Reports a mistake in a field.
     pub fn fault(&self, code: Code, field: usize, what: String) -> Diagnostic {
         Diagnostic::error(code, what).at(self.span(field), "")
     }

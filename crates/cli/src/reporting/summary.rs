@@ -1,5 +1,5 @@
-//! Runs folded to a row per method and setting, over all views of a viewport: what somebody who
-//! picks a method asks for.
+//! Runs folded to a row per method and setting, over all views of a viewport: the figures by which
+//! to pick a method.
 
 use crate::records::results::{Measured, Part, Run, step};
 use crate::records::sequence::SequenceFrame;
@@ -17,7 +17,7 @@ pub struct Row<'a> {
     runs: Vec<(&'a Run, &'a Measured)>,
     /// Why it could not run, where it could not at all.
     pub unavailable: Option<&'a str>,
-    /// Whether its times are the GPU's own, not the wall clock's.
+    /// True if its times are the GPU's own, not the wall clock's.
     pub has_gpu_times: bool,
 }
 
@@ -28,7 +28,7 @@ pub struct Wrong {
     pub outside_band: u64,
     /// In the band, where the answer hangs on rounding.
     pub in_band: u64,
-    /// Of so many that face the light.
+    /// Number of pixels that face the light, of which these are.
     pub facing_light: u64,
 }
 
@@ -122,7 +122,8 @@ impl<'a> Row<'a> {
         self.mean(|_, of| of.rays.map(|rays| rays as f64 / frames(of)))
     }
 
-    /// Of camera paths: answers that changed though the right ones did not, of those compared.
+    /// Counts, of camera paths, answers that changed though the right ones did not, of those
+    /// compared.
     pub fn shimmer(&self) -> Option<Part> {
         let shimmers = self
             .runs
@@ -209,7 +210,7 @@ pub fn rows<'a>(runs: impl IntoIterator<Item = &'a Run>, viewport: [u32; 2]) -> 
     rows
 }
 
-/// Whether rows can only be compared by the wall clock: some have no GPU times.
+/// True if rows can only be compared by the wall clock: some have no GPU times.
 pub fn by_wall(rows: &[Row]) -> bool {
     rows.iter().any(|row| !row.has_gpu_times)
 }

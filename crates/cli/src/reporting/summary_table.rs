@@ -19,7 +19,7 @@ pub struct Summary<'a> {
     /// Its size in pixels.
     pub viewport: [u32; 2],
     runs: Vec<&'a Run>,
-    /// Of hard answers to hard light and of all others, each by itself.
+    /// Rows of hard answers to hard light and of all others, each by itself.
     pub groups: Vec<Group<'a>>,
 }
 
@@ -47,7 +47,7 @@ pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
 /// Beginning of lines that warn; the page makes them stand out by it.
 const WARNING: &str = "warning: ";
 
-/// What stands in a row that could not run.
+/// Cell of a row that could not run.
 const NOT_THERE: &str = "n/a";
 
 impl<'a> Summary<'a> {
@@ -228,7 +228,7 @@ impl<'a> Summary<'a> {
         (heads, cells)
     }
 
-    /// What else there is to know, a line each.
+    /// Lists all further remarks, a line each.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         if self
@@ -328,7 +328,7 @@ impl<'a> Summary<'a> {
             .collect()
     }
 
-    /// What blocks the pixels of which a method was certain and wrong, over all views.
+    /// Says what blocks the pixels of which a method was certain and wrong, over all views.
     fn certain_wrong(&self) -> Vec<String> {
         let mut sums: BTreeMap<String, (u64, Option<BlockerCounts>)> = BTreeMap::new();
         for run in self.runs.iter().filter(|run| run.is_hard()) {
@@ -356,7 +356,7 @@ impl<'a> Summary<'a> {
 }
 
 impl Group<'_> {
-    /// What is judged against what.
+    /// Title: what is judged against what.
     pub fn title(&self) -> &'static str {
         if self.is_hard {
             "Hard answers against the hard reference"

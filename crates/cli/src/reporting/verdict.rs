@@ -6,7 +6,7 @@ use crate::wording::{ms, percent};
 /// Times that differ by less than this share are level: no adapter's are surer.
 const LEVEL: f64 = 0.03;
 
-/// What a table of hard answers says: which rows are the best, and that in words.
+/// Verdict of a table of hard answers: which rows are the best, and that in words.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Verdict {
     /// Index of the fastest row with 0 wrong pixels outside the band, while light or meshes move.
@@ -15,8 +15,8 @@ pub struct Verdict {
     pub sentences: Vec<String>,
 }
 
-/// Of rows that were measured on the same views, the fastest first; those on fewer views and those
-/// that could not run take no part.
+/// Judges rows that were measured on the same views, the fastest first; those on fewer views and
+/// those that could not run take no part.
 pub fn verdict(rows: &[Row]) -> Verdict {
     let most = rows.iter().map(Row::views).max().unwrap_or_default();
     let by_wall = by_wall(rows);
@@ -183,7 +183,7 @@ fn none_exact(all: &[Contender]) -> Vec<String> {
     }]
 }
 
-/// Of errors of shares: the least one, and the fastest.
+/// Judges errors of shares: the least one, and the fastest.
 fn graded(all: &[Contender], rows: &[Row]) -> Verdict {
     let rmse = |of: &Contender| of.rmse.unwrap_or(f64::INFINITY);
     let least = all

@@ -8,7 +8,7 @@ use std::{
     process::ExitCode,
 };
 
-/// Whether standard error takes colour: a terminal, and <https://no-color.org> not asked for.
+/// True if standard error takes colour: a terminal, and <https://no-color.org> not asked for.
 pub fn colour() -> bool {
     io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }
@@ -61,7 +61,7 @@ pub fn report(error: &CliError) -> ExitCode {
                 line(table);
             }
         }
-        // With standard error closed there is nobody left to tell.
+        // With standard error closed no place is left to tell it.
         note(&text);
     }
     ExitCode::from(code)

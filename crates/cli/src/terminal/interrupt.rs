@@ -23,12 +23,12 @@ pub fn install() -> Result<(), CliError> {
     .map_err(|error| CliError::Input(format!("cannot listen for Ctrl-C: {error}")))
 }
 
-/// Whether somebody wants the program to stop.
+/// Returns the flag that Ctrl-C raises.
 pub fn flag() -> &'static AtomicBool {
     &RAISED
 }
 
-/// Whether somebody wants the program to stop.
+/// True if Ctrl-C has asked the program to stop.
 pub fn raised() -> bool {
     RAISED.load(Ordering::Relaxed)
 }

@@ -1,4 +1,4 @@
-//! How the program talks to whoever runs it: standard output and error, progress, Ctrl-C.
+//! Talk with the user: standard output and error, progress, Ctrl-C.
 
 pub mod console;
 pub mod interrupt;

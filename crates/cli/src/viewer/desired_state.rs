@@ -1,5 +1,5 @@
-//! What is to be seen, and what came of it: what the window and the thread of the graphs send each
-//! other.
+//! The desired state and the frames that come of it: the messages between the window and the thread
+//! of the graphs.
 
 use crate::graphs::method::ParamValues;
 use crate::measuring::frame::Contents;
@@ -10,7 +10,7 @@ use skiagraph_reference::GroundTruthPixels;
 use skiagraph_scene::{Camera, LightKind, Scene, View};
 use std::{collections::BTreeMap, sync::Arc};
 
-/// What is to be seen.
+/// The state that the window asks for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesiredState {
     /// The scene, as on the command line.
@@ -38,7 +38,7 @@ pub struct DesiredMethod {
     pub material: Option<Capture>,
 }
 
-/// What the thread of the graphs tells.
+/// Messages of the thread of the graphs.
 pub enum Event {
     /// A scene was loaded, or could not be.
     Scene(String, Result<Loaded, String>),
@@ -59,7 +59,7 @@ pub struct Loaded {
 
 /// A frame of each method.
 pub struct FrameSnapshot {
-    /// What it shows.
+    /// The state that it shows.
     pub desired: DesiredState,
     /// From where.
     pub camera: Camera,
@@ -67,11 +67,11 @@ pub struct FrameSnapshot {
     pub light: LightKind,
     /// Which of the view's lights that is.
     pub light_number: usize,
-    /// Of which mesh.
+    /// The scene whose mesh it shows.
     pub scene: Arc<Scene>,
     /// The primitive of each pixel.
     pub primitives: Arc<Vec<u32>>,
-    /// What faces the light, as if nothing stood in its way.
+    /// Pixels that face the light, as if nothing stood in its way.
     pub facing: Arc<GroundTruthPixels>,
     /// One for each method.
     pub methods: Vec<MethodSnapshot>,
@@ -82,9 +82,9 @@ pub struct FrameSnapshot {
 pub struct MethodSnapshot {
     /// The name in the desired state.
     pub name: String,
-    /// What its document says of itself.
+    /// The document's description of itself.
     pub description: String,
-    /// What its document declares.
+    /// The params that its document declares.
     pub params: Vec<Param>,
     /// The value of each.
     pub values: BTreeMap<String, ParamValue>,
@@ -96,7 +96,7 @@ pub struct MethodSnapshot {
     pub gpu_ms: Option<f64>,
     /// Time from the begin of encoding to the end of the frame, milliseconds.
     pub wall_ms: f64,
-    /// What was read back.
+    /// Contents that were read back.
     pub contents: Arc<Contents>,
     /// How depths and buffers among it are to be read.
     pub readings: BTreeMap<String, Decoding>,
@@ -115,7 +115,7 @@ pub struct PassSnapshot {
     pub kind: String,
     /// The materials that it writes.
     pub writes: Vec<String>,
-    /// Whether it had no reason to run.
+    /// True if it had no reason to run.
     pub skipped: bool,
     /// GPU time, milliseconds.
     pub gpu_ms: Option<f64>,

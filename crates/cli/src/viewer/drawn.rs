@@ -14,7 +14,7 @@ use skiagraph_graph::{Capture, PartSummary};
 use skiagraph_reference::{Class, Image, statistics::UNANSWERED};
 use std::collections::BTreeMap;
 
-/// What a pane shows.
+/// Kinds of pictures of a pane.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Show {
     /// The scene in the method's light.
@@ -40,7 +40,7 @@ pub struct Reading {
     pub channel: usize,
 }
 
-/// What there is to see.
+/// A picture, its legend, or why there is none.
 #[derive(Default)]
 pub struct Drawn {
     /// The picture.
@@ -71,7 +71,7 @@ impl Drawn {
     }
 }
 
-/// What a pane shows of the method `index`; `answer` is the reference's to this frame.
+/// Draws what a pane shows of the method `index`; `answer` is the reference's to this frame.
 pub fn draw(
     snapshot: &FrameSnapshot,
     index: usize,
@@ -217,7 +217,7 @@ fn thin_content(content: &Content, size: [u32; 2], stride: u32) -> Content {
         if texels.len() == size[0] as usize * size[1] as usize {
             thin(&texels, size, stride).concat()
         } else {
-            // Of another size, which judging refuses by name.
+            // Texels of another size, which judging refuses by name.
             Vec::new()
         }
     });

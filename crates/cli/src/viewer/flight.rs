@@ -3,7 +3,8 @@
 use glam::{DQuat, DVec3};
 use skiagraph_scene::{LightKind, View};
 
-/// Closer than this to straight up or down nobody looks: there is no right and left then.
+/// Greatest angle of the view to the horizon, degrees: straight up or down there is no right and
+/// left.
 const STEEPEST_DEGREES: f64 = 89.0;
 
 /// The frame of a view: right, up and forward, unit vectors.
@@ -21,7 +22,7 @@ fn turned(direction: DVec3, up: DVec3, yaw: f64, pitch: f64) -> DVec3 {
         .normalize_or(up.any_orthonormal_vector());
     let height = direction.dot(up).clamp(-1.0, 1.0).asin();
     let steepest = STEEPEST_DEGREES.to_radians();
-    // What is steeper from the start may stay so, and not become more so.
+    // A view that is steeper from the start may stay so, and not become more so.
     let most = steepest.max(height.abs());
     let pitch = (height + pitch).clamp(-most, most) - height;
     DQuat::from_axis_angle(right, pitch) * direction

@@ -22,14 +22,14 @@ pub const STRIDES: [u32; 3] = [9, 3, 1];
 /// Shadow rays per pixel to a light that has an extent: a live picture has no time for more.
 pub const SAMPLES: u32 = 64;
 
-/// What the oracle is asked.
+/// Question to the oracle.
 #[derive(Clone)]
 pub struct Question {
     scene: Arc<Scene>,
     camera: Camera,
     light: LightKind,
     primitives: Arc<Vec<u32>>,
-    /// Raised when nobody wants to know any more.
+    /// Raised when the answer is not wanted any more.
     outdated: Arc<AtomicBool>,
 }
 
@@ -45,7 +45,7 @@ impl Question {
         }
     }
 
-    /// Whether it asks for the same.
+    /// True if it asks for the same.
     pub fn is_about(&self, snapshot: &FrameSnapshot) -> bool {
         Arc::ptr_eq(&self.scene, &snapshot.scene)
             && (self.camera, self.light) == (snapshot.camera, snapshot.light)
@@ -59,7 +59,7 @@ pub struct Answer {
     pub question: Question,
     /// It holds for one pixel of so many in each row and column.
     pub stride: u32,
-    /// Of those pixels.
+    /// Ground truth of those pixels.
     pub ground_truth: Result<GroundTruth, String>,
 }
 
@@ -186,7 +186,7 @@ fn thinned(camera: &Camera, primitives: &[u32], stride: u32) -> Option<(Camera, 
         return None;
     }
     let share = |axis: usize| f64::from(viewport[axis] * stride) / f64::from(size[axis]);
-    // What is cut off at the right and below moves the picture's middle.
+    // The cut at the right and below moves the picture's middle.
     let cut = |axis: usize| f64::from(viewport[axis] * stride) - f64::from(size[axis]);
     let jitter = (camera.jitter * 2.0 + DVec2::new(cut(0), cut(1))) / (2.0 * f64::from(stride));
     let camera = Camera {

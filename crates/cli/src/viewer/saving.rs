@@ -1,4 +1,4 @@
-//! What is seen as a view of a scene file: text to paste, or a scene file of its own.
+//! The current picture as a view of a scene file: text to paste, or a scene file of its own.
 
 use crate::error::CliError;
 use crate::files::write::write_new;

@@ -15,7 +15,7 @@ use std::{sync::Arc, time::Duration};
 /// The device is of no more use.
 pub struct Lost;
 
-/// What a plan was made for.
+/// The state that a plan was made for.
 #[derive(Clone, PartialEq)]
 struct PlannedFor {
     desired: DesiredMethod,
@@ -30,20 +30,20 @@ pub struct Slot {
     preset: Option<Preset>,
     executor: Option<Executor>,
     planned: Option<PlannedFor>,
-    /// What could not be planned or run: it is not tried again.
+    /// The state that could not be planned or run: it is not tried again.
     refused: Option<PlannedFor>,
-    /// What is wrong with the files.
+    /// Mistakes in the files.
     faults: Option<String>,
-    /// What is wrong with what was refused.
+    /// Reason why the state was refused.
     error: Option<String>,
-    /// Of what was read last, whether it was good or not.
+    /// Hash of the texts read last, whether they were good or not.
     texts: Option<Fingerprint>,
     reads: u64,
     last: MethodSnapshot,
 }
 
 impl Slot {
-    /// Of a preset or path.
+    /// Creates the slot of a preset or path.
     pub fn new(name: &str) -> Self {
         Self {
             name: name.to_owned(),
@@ -251,7 +251,7 @@ impl Refusal {
 }
 
 impl PlannedFor {
-    /// Whether the next plan is this one with other values of params, and no default comes back.
+    /// True if the next plan is this one with other values of params, and no default comes back.
     fn only_sets_params(&self, next: &Self) -> bool {
         let known = |name| next.desired.params.contains_key(name);
         let with_params = Self {
@@ -287,7 +287,7 @@ fn plan(
     })
 }
 
-/// What a frame brought, as the window shows it.
+/// Turns a frame into what the window shows.
 fn snapshot(
     preset: &Preset,
     plan: &Plan,

@@ -21,7 +21,7 @@ use std::{
     thread,
 };
 
-/// What a window needs to know when something has happened.
+/// Wakes the window when something has happened.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 /// Starts the threads, and makes the state that shows what they do. The methods of the arguments
@@ -41,7 +41,7 @@ pub fn start(
     let (commands, command_receiver) = mpsc::channel();
     let (tell, events) = mpsc::channel();
     let woken = Arc::clone(&wake);
-    // Who is not listened to any more is about to end.
+    // A failed send is passed over: the window that no longer listens is about to end.
     let tell = move |event| {
         let _ = tell.send(event);
         woken();

@@ -1,5 +1,5 @@
-//! What the window shows and what was chosen in it. It knows no toolkit: tests drive it as the
-//! window does.
+//! The window's state: the pictures, and the choices made in it. It knows no toolkit: tests drive
+//! it as the window does.
 
 use crate::viewer::desired_state::{
     DesiredMethod, DesiredState, Event, FrameSnapshot, Loaded, MethodSnapshot,
@@ -16,7 +16,7 @@ use std::{collections::VecDeque, sync::mpsc};
 /// Frames whose times are kept.
 pub const HISTORY: usize = 120;
 
-/// What a press and a move of the pointer do in a picture.
+/// Meaning of a press and a move of the pointer in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drag {
     /// Look around.
@@ -31,11 +31,11 @@ pub enum Drag {
 
 /// One of the pictures.
 pub struct Pane {
-    /// What it shows.
+    /// Kind of picture that it shows.
     pub show: Show,
     /// How a material is shown.
     pub reading: Reading,
-    /// What there is to see.
+    /// The picture.
     pub drawn: Drawn,
     /// Counts up with each new picture.
     pub version: u64,
@@ -73,7 +73,7 @@ pub struct Channels {
     pub answers: mpsc::Receiver<Answer>,
 }
 
-/// What there is to choose from.
+/// Scenes and methods to choose from.
 #[derive(Clone, Default)]
 pub struct Choices {
     /// Scenes by name.
@@ -87,9 +87,9 @@ pub struct Choices {
 /// The state of the window.
 pub struct Viewer {
     channels: Channels,
-    /// What there is to choose from.
+    /// Scenes and methods to choose from.
     pub choices: Choices,
-    /// What is to be seen.
+    /// The state that the window asks for.
     pub desired: DesiredState,
     sent: Option<DesiredState>,
     /// The scene that is there.
@@ -99,13 +99,13 @@ pub struct Viewer {
     answer: Option<Answer>,
     /// The pictures; as many are shown as there are methods.
     pub panes: [Pane; 2],
-    /// What dragging does.
+    /// Meaning of a drag.
     pub drag: Drag,
     /// Run a frame after the other, though nothing changes.
     pub keep_running: bool,
     /// Trace the reference of what is shown.
     pub is_judged: bool,
-    /// What was said last, and whether it is an error.
+    /// The last notice, and whether it is an error.
     pub notice: Option<(String, bool)>,
 }
 
@@ -221,7 +221,7 @@ impl Viewer {
         self.answer.as_ref()
     }
 
-    /// Whether the picture is of the desired state.
+    /// True if the picture is of the desired state.
     pub fn is_current(&self) -> bool {
         let shown = self.snapshot.as_ref().map(|snapshot| &snapshot.desired);
         shown == Some(&self.desired) && self.sent.as_ref() == Some(&self.desired)
@@ -242,7 +242,7 @@ impl Viewer {
         pane.is_stale = false;
     }
 
-    /// What the pane shows from now on.
+    /// Sets the kind of picture that the pane shows from now on.
     pub fn show(&mut self, index: usize, show: Show) {
         let pane = &mut self.panes[index];
         if pane.show != show {
@@ -328,7 +328,7 @@ impl Viewer {
         }
     }
 
-    /// What each pass writes, in the order of the passes.
+    /// Lists what each pass writes, in the order of the passes.
     pub fn steps(&self, index: usize) -> Vec<Capture> {
         let passes = self.method(index).into_iter().flat_map(|it| &it.passes);
         let captures = passes.flat_map(|pass| {

@@ -99,7 +99,7 @@ fn output(desk: &Harness<Desk>, index: usize, name: &str) -> Vec<u8> {
     shown(desk, index).contents[name].bytes().to_vec()
 }
 
-/// Where pictures of the window are kept, if somebody wants to look at them.
+/// Writes a picture of the window where the environment names a folder for them.
 fn keep(desk: &mut Harness<Desk>, name: &str) {
     let picture = desk.render().unwrap();
     let colours: std::collections::BTreeSet<_> = picture.pixels().map(|pixel| pixel.0).collect();
@@ -155,7 +155,7 @@ fn a_lamp_is_moved_and_its_cone_narrowed() {
     let moved = [narrow.position, narrow.direction];
     assert_eq!(moved, [before.position, before.direction]);
     assert_ne!(output(&desk, 0, "visibility"), lit);
-    // What each pass did stands beside its time, where the adapter counts.
+    // The counts of each pass stand beside its time, where the adapter counts.
     if shown(&desk, 0)
         .passes
         .iter()

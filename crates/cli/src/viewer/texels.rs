@@ -38,7 +38,7 @@ pub struct Histogram {
 }
 
 impl Texels {
-    /// Of one part of a texture; `None` of a buffer, or a format that is not read as numbers.
+    /// Reads one part of a texture; `None` of a buffer, or a format that is not read as numbers.
     pub fn new(part: &Content, planes: Option<ClipPlanes>) -> Option<Self> {
         let Content::Texture { format, parts, .. } = part else {
             return None;
@@ -68,7 +68,7 @@ impl Texels {
         self.channels
     }
 
-    /// What a texel holds, as it is stored; `None` outside of the picture.
+    /// Returns the value of a texel as it is stored; `None` outside of the picture.
     pub fn text(&self, [x, y]: [u32; 2]) -> Option<String> {
         if x >= self.size[0] || y >= self.size[1] {
             return None;

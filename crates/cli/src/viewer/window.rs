@@ -36,7 +36,7 @@ pub fn open(args: &ViewArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let proxy = events.create_proxy();
     let context = egui::Context::default();
     context.set_request_repaint_callback(move |info| {
-        // The loop is over when nobody listens.
+        // A failed send is passed over: the loop is over then.
         let _ = proxy.send_event(Wake(info.delay));
     });
     let woken = context.clone();

@@ -19,7 +19,7 @@ use std::{
     time::Instant,
 };
 
-/// What the window asks of the thread.
+/// Requests of the window to the thread.
 pub enum Command {
     /// Show this.
     Show(Box<DesiredState>),
@@ -83,7 +83,7 @@ impl Worker {
         while let Ok(first) = commands.recv() {
             let mut is_changed = false;
             let mut reload = false;
-            // Of several the last one counts.
+            // The last one of several counts.
             for command in [first].into_iter().chain(commands.try_iter()) {
                 match command {
                     Command::Show(next) => (desired, is_changed) = (Some(*next), true),
@@ -212,7 +212,7 @@ impl Worker {
         desired: &DesiredState,
     ) -> Result<Result<FrameSnapshot, Lost>, CliError> {
         let Some(stage) = &mut self.stage else {
-            return Err(CliError::Input("there is no scene".into()));
+            return Err(CliError::Input("no scene is loaded".into()));
         };
         let view = desired.view.as_ref().or(stage.loaded.views.first());
         let Some(view) = view.cloned() else {
@@ -277,10 +277,10 @@ impl Stage {
             wrong(explain(&error))
         })?;
         let ids = contents.get("primitive").and_then(Content::as_u32);
-        ids.ok_or_else(|| wrong("its primitives are no integers".into()))
+        ids.ok_or_else(|| wrong("its primitives are not integers".into()))
     }
 
-    /// What faces the light.
+    /// Computes which pixels face the light.
     fn facing(
         &self,
         camera: &Camera,

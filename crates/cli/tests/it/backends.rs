@@ -72,7 +72,7 @@ fn each_adapter_is_listed_with_its_backend() {
     assert!(help.contains("--backend"), "{help}");
 }
 
-/// What is run as the layer of Chromium's package sees it: .ci/long does so with every preset.
+/// Checks runs with the validation layer of Chromium's package: .ci/long does so with every preset.
 #[cfg(target_os = "linux")]
 #[test]
 fn validation_finds_nothing_but_what_is_known() {

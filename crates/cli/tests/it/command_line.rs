@@ -196,9 +196,9 @@ fn graph_names_what_is_wrong() {
     for (arguments, part) in [
         (&["graph", "target.ron"][..], "`satus`"),
         (&["graph", "rt", "--outputs", "visibilty"], "`visibility`"),
-        (&["graph", "rt", "--set", "bias=1"], "no such param"),
+        (&["graph", "rt", "--set", "bias=1"], "unknown param"),
         (&["graph", "rt", "--out", "missing/rt.svg"], "rt.svg"),
-        (&["graph", "rtt"], "no preset `rtt`"),
+        (&["graph", "rtt"], "unknown preset `rtt`"),
     ] {
         let output = skiagraph(folder.path(), arguments);
         assert_exit(&output, 1);
@@ -314,13 +314,13 @@ fn wrong_input_has_exit_code_1_and_says_what_there_is() {
     .unwrap();
     let faults = [
         (&["compare", "other.ron"][..], "no output `visibility`"),
-        (&["compare", "rt", "--set", "map_sise=4"], "no such param"),
+        (&["compare", "rt", "--set", "map_sise=4"], "unknown param"),
         (
             &["compare", "nsm", "--set", "map_sise=4"],
             "did you mean `map_size`?",
         ),
         (&["compare", "nsm", "--map-size", "many"], "invalid value"),
-        (&["compare", "crsn"], "no preset `crsn`"),
+        (&["compare", "crsn"], "unknown preset `crsn`"),
         (&["compare", "--beside", "D:nowhere.csv"], "nowhere.csv"),
         (&["compare", "--beside", "D:other.ron"], "other.ron:1:1"),
     ];
@@ -376,7 +376,7 @@ fn check_tells_folders_and_other_files_from_presets() {
     assert_exit(&output, 1);
     let text = stderr(&output);
     assert!(
-        text.contains("`graphs` is a folder") && text.contains("`facing.wgsl` is no .ron file"),
+        text.contains("`graphs` is a folder") && text.contains("`facing.wgsl` is not a .ron file"),
         "{text}"
     );
 }
@@ -515,7 +515,7 @@ fn published_charts_say_what_is_missing() {
         (
             "good --beside D:faulty.csv --out charts",
             1,
-            "no quantity is called `wrong_light_percent`",
+            "unknown quantity `wrong_light_percent`",
         ),
         (
             "good --beside D:none.csv --out charts",
@@ -592,7 +592,7 @@ fn chart_says_what_is_missing() {
             &["empty"],
             "there is no results.json in empty; name a folder that",
         ),
-        (&["foreign"], "`foreign/results.json` is no results.json"),
+        (&["foreign"], "`foreign/results.json` is not a results.json"),
         (&["timeless"], "timeless: there are no GPU times to draw"),
         (
             &["good", "--size", "1x1"],

@@ -100,7 +100,7 @@ impl Figures {
         count
     }
 
-    /// What the cell has of another preset, `rt` without a map.
+    /// Returns the cell's figure of another preset, `rt` without a map.
     fn of(&self, (view, viewport, map, _): &Cell, preset: &str, quantity: &str) -> f64 {
         let map = if preset == "rt" { 0 } else { *map };
         self.get(&(view.clone(), *viewport, map, preset.to_owned()), quantity)

@@ -73,7 +73,7 @@ const COMMANDS: [(&str, &str, &str, [&str; 3]); 6] = [
     ),
 ];
 
-/// What each command says when its file was made by `make`.
+/// Returns the message of each command when its file was made by `make`.
 fn said(make: impl Fn(&std::path::Path)) -> Vec<String> {
     let answer = |(line, file, begin, _): &(&str, &str, &str, [&str; 3])| {
         let folder = tempfile::tempdir().unwrap();

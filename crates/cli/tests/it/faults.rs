@@ -1,4 +1,4 @@
-//! What goes wrong while the program runs: docs/faults.md has a row for each of these.
+//! Failures while the program runs: docs/faults.md has a row for each of these.
 #![cfg(unix)]
 
 use serde_json::Value;

@@ -33,7 +33,7 @@ fn skiagraph(folder: &Path, line: &str) -> Output {
 fn count(value: &Value) -> u64 {
     value
         .as_u64()
-        .unwrap_or_else(|| panic!("{value} is no count"))
+        .unwrap_or_else(|| panic!("{value} is not a count"))
 }
 
 fn png(path: &Path) -> image::RgbImage {
@@ -519,7 +519,7 @@ fn a_view_and_a_light_of_ones_own_on_any_scene() {
         above["pixels"]["background"], 0,
         "straight down there is ground"
     );
-    // Of a bare mesh all is seen, and it is said from where.
+    // All of a bare mesh is seen, and it is said from where.
     let (mesh, text) = compare("--scene mesh.obj");
     assert!(text.contains("chosen: --eye "), "{text}");
     assert!(count(&mesh["pixels"]["facing_light"]) > 50, "{mesh}");
@@ -621,7 +621,7 @@ fn a_light_with_extent_is_judged_by_shares() {
     assert_eq!(runs[1]["answer"], "graded");
     assert_eq!(runs[1]["graded"]["rmse"], 0.5);
     assert_eq!(count(&runs[2]["graded"]["invalid"]["outside"]), certain);
-    assert!(text.contains("odd.ron: visibility that is no share of light: outside 0 to 1"));
+    assert!(text.contains("odd.ron: visibility that is not a share of light: outside 0 to 1"));
 
     let soft = park_with_width();
     fs::write(folder.path().join("soft.ron"), soft).unwrap();

@@ -7,7 +7,7 @@ use std::fs;
 fn count(value: &Value) -> u64 {
     value
         .as_u64()
-        .unwrap_or_else(|| panic!("{value} is no count"))
+        .unwrap_or_else(|| panic!("{value} is not a count"))
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn moving_parts_are_followed_by_what_is_kept_and_by_the_reference() {
                 assert_eq!(wrong, [0; 9], "{path} {}", run["preset"]);
                 assert_eq!(count(&shimmer["changed"]), 0, "{path} {}", run["preset"]);
             }
-            // What draws the mesh runs while it moves, and no longer.
+            // The passes that draw the mesh run while it moves, and no longer.
             for (index, frame) in frames.iter().enumerate() {
                 let skipped = frame["skipped"].to_string();
                 let expected = match run["preset"].as_str() {

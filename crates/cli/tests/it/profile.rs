@@ -124,8 +124,8 @@ fn a_profile_says_under_what_it_was_measured_and_writes_all_its_files() {
     check_trace(&json(&folder.path().join("p.trace.json")), is_trusted);
 }
 
-/// What a viewer needs beside the schema: slices of one track do not overlap, every track has a
-/// name.
+/// Checks the needs of a viewer beside the schema: slices of one track do not overlap, every track
+/// has a name.
 fn check_trace(trace: &Value, is_trusted: bool) {
     let schema: Value = serde_json::from_str(include_str!("trace.schema.json")).unwrap();
     let validator = jsonschema::validator_for(&schema).unwrap();
@@ -199,7 +199,7 @@ fn a_baseline_stands_beside_and_other_conditions_are_called_out() {
             ["old_ms", "new_ms", "ratio"].map(|key| pass["cpu"][key].as_f64().unwrap());
         assert!((ratio - new / old).abs() < 1e-9, "{pass}");
     }
-    // What --json wrote with a comparison in it is a baseline itself.
+    // A file that --json wrote with a comparison in it is a baseline itself.
     skiagraph(
         folder.path(),
         "profile rt --size 16x16 --frames 1 --warmup 0 --baseline new.json",

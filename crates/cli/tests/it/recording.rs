@@ -23,7 +23,7 @@ fn a_path_is_saved_frame_by_frame() {
     let frames = [0, 1, 2].map(|index| file(&format!("v.000{index}.bin")));
     assert!(frames[0] != frames[1] && frames[1] != frames[2]);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
-    // Pictures, too; and all frames where nobody says how many.
+    // Pictures, too; and all frames where no number is given.
     let line = "run rt --size 16x16 --path sunrise --save visibility=v.png";
     run(folder.path(), line);
     let pictures = fs::read_dir(folder.path()).unwrap();
@@ -104,8 +104,8 @@ fn ctrl_c_keeps_the_whole_pictures_of_the_frames_before() {
     assert!(sizes.into_iter().all(|size| size == 16 * 16 * 4));
 }
 
-/// What shaders are told of a frame: number, time, and of this frame and the one before the eye,
-/// the jitter and the light.
+/// Values that shaders are told of a frame: number, time, and of this frame and the one before the
+/// eye, the jitter and the light.
 const TOLD: &str = r#"
     #import "shared/camera.wgsl"
     #import "shared/light.wgsl"

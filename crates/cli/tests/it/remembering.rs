@@ -5,7 +5,7 @@ use crate::support::{results, skiagraph, temporal};
 use serde_json::Value;
 use std::path::Path;
 
-/// What must not depend on how much is timed.
+/// Figures that must not depend on how much is timed.
 fn figures(folder: &Path, line: &str) -> (Value, String) {
     let line =
         format!("compare temporal.ron --size 48x48 --images none --replace --out out {line}");
@@ -71,7 +71,7 @@ fn it_is_right_where_the_camera_stands_and_late_where_it_moves() {
     assert!(frames.iter().filter(late).count() > 12, "{frames:?}");
 }
 
-/// What counts frames: the graph's number of them, or a buffer that stays.
+/// Documents that count frames: by the graph's number of them, or by a buffer that stays.
 const COUNTERS: [[&str; 3]; 2] = [
     [
         "",

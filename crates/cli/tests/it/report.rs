@@ -11,7 +11,7 @@ const BEFORE: &str = "<script>window.faults = []; \
      addEventListener('unhandledrejection', (event) => faults.push(String(event.reason))); \
      console.error = (...words) => faults.push(words.join(' '));</script>";
 
-/// What the page comes to in a frame so wide under `script`, which ends by calling `done`.
+/// Returns what `script` finds on the page in a frame so wide; the script ends by calling `done`.
 fn browsed(folder: &Path, page: &str, width: u32, is_dark: bool, script: &str) -> Value {
     let html = fs::read_to_string(folder.join(page)).unwrap();
     let html = html.replacen("<head>", &format!("<head>{BEFORE}"), 1);

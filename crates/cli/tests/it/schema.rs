@@ -133,7 +133,7 @@ fn validator() -> Validator {
     jsonschema::validator_for(&schema).unwrap()
 }
 
-/// What is wrong with a document, and where.
+/// Lists what is wrong with a document, and where.
 fn mistakes(schema: &Validator, text: &str) -> Vec<String> {
     let document = Ron::json(text);
     let errors = schema.iter_errors(&document);

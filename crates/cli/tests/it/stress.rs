@@ -22,7 +22,7 @@ fn stress(folder: &Path, line: &str) -> Command {
     command
 }
 
-/// What it printed on standard output and standard error, once it has ended with `code`.
+/// Returns what it printed on standard output and standard error, once it has ended with `code`.
 #[track_caller]
 fn ends(output: Output, code: i32) -> (String, String) {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
@@ -76,7 +76,7 @@ fn an_unknown_case_or_method_is_named_before_anything_runs() {
         ("--case zzzzzzzz", 1, "`skiagraph stress --list` names them"),
         ("nms", 1, "did you mean `nsm`?"),
         ("rt nsm --exact nms", 2, "did you mean `nsm`?"),
-        ("rt --set cull=none", 1, "--set cull: no such param"),
+        ("rt --set cull=none", 1, "--set cull: unknown param"),
         ("--size 0x1", 2, "at least 1x1"),
         ("--list rt", 2, "--list"),
     ] {

@@ -12,7 +12,7 @@ const BOX_OVER_FLOOR: &str = "\
     v -1 1 -1\nv -1 1 1\nv -1 1.2 -1\nv -1 1.2 1\nv 1 1 -1\nv 1 1 1\nv 1 1.2 -1\nv 1 1.2 1\n\
     f 1 4 3 2\nf 5 6 8 7\nf 9 11 12 10\nf 5 9 10 6\nf 7 8 12 11\nf 5 7 11 9\nf 6 10 12 8\n";
 
-/// What the program prints, and the one run of results.json.
+/// Returns what the program prints, and the one run of results.json.
 fn compared(folder: &Path, near: &str, out: &str) -> (String, Value) {
     fs::write(folder.join("box.obj"), BOX_OVER_FLOOR).unwrap();
     let line = format!(

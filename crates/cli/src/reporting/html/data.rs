@@ -1,4 +1,4 @@
-//! What the page draws, as JSON.
+//! The content of the page, as JSON.
 
 use crate::records::results::{PROGRAM, Part, Results};
 use crate::records::sequence::SequenceFrame;
@@ -22,7 +22,7 @@ struct Data<'a> {
     left_out: &'a [String],
 }
 
-/// Of a source.
+/// Conditions of a source.
 #[derive(Serialize)]
 struct Conditions<'a> {
     scene: &'a str,
@@ -48,7 +48,7 @@ struct Table<'a> {
     title: &'a str,
     /// By wrong pixels; else by the root mean square error of shares.
     hard: bool,
-    /// Whether times are the wall clock's.
+    /// True if times are the wall clock's.
     wall: bool,
     sentences: Vec<String>,
     conditions: Vec<String>,
@@ -63,7 +63,7 @@ struct Line<'a> {
     method: &'a str,
     map: Option<u32>,
     views: usize,
-    /// Whether it is the fastest with nothing wrong outside the band.
+    /// True if it is the fastest with nothing wrong outside the band.
     best: bool,
     wrong: u64,
     facing: u64,

@@ -1,5 +1,5 @@
 //! `report.html`: everything that `compare` and `stress` kept, in one file that needs no network.
-//! What a figure says is worked out here, by what the tables say, too; the page only draws it.
+//! Every figure is worked out here, by the same rules as the tables; the page only draws it.
 //!
 //! | | |
 //! |-|-|
@@ -35,7 +35,7 @@ const SCRIPTS: [&str; 7] = [
 pub struct Page {
     /// The file's contents.
     pub html: String,
-    /// What was left out, a line each; the page says so, too.
+    /// Things that were left out, a line each; the page says so, too.
     pub left_out: Vec<String>,
 }
 
@@ -73,7 +73,7 @@ mod tests {
         sources(vec![Kept { folder, results }])
     }
 
-    /// What the page is given.
+    /// Returns the data that the page is given.
     fn data_of(html: &str) -> Value {
         let begin = html.find("id=\"data\">").unwrap() + "id=\"data\">".len();
         let data = &html[begin..];

@@ -8,7 +8,7 @@ use base64::{Engine, engine::general_purpose::STANDARD};
 use serde::Serialize;
 use std::{collections::BTreeMap, fs};
 
-/// What is embedded. Pictures are named by their index in `files`.
+/// Embedded files. Pictures are named by their index in `files`.
 #[derive(Debug, Default, Serialize)]
 pub struct Pictures {
     /// One for each run that has any.
@@ -17,7 +17,7 @@ pub struct Pictures {
     pub graphs: Vec<Graph>,
     /// The files, in Base64.
     pub files: Vec<String>,
-    /// What there is no room for, a line each.
+    /// Pictures that there is no room for, a line each.
     #[serde(skip)]
     pub left_out: Vec<String>,
 }
@@ -36,7 +36,7 @@ pub struct Set {
     visibility: Option<usize>,
     error: Option<usize>,
     uncertain: Option<usize>,
-    /// Whether its answer is a share of light.
+    /// True if its answer is a share of light.
     graded: bool,
 }
 
@@ -92,8 +92,8 @@ struct EmbedCandidate {
 }
 
 impl Pictures {
-    /// What there is in the sources' folders, in `room` bytes of the page at most. Files that have
-    /// gone are left out in silence: the page shows what there is.
+    /// Embeds the pictures in the sources' folders, in `room` bytes of the page at most. Files that
+    /// have gone are left out in silence: the page shows what there is.
     pub fn embed(sources: &[Source], room: usize) -> Self {
         let mut pictures = Self::default();
         let mut room = room;

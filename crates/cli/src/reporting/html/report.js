@@ -7,7 +7,7 @@ function drawHead() {
   document.title = `${source.scene}: Skiagraph report`;
   byId('subtitle').textContent = table().conditions.slice(0, 2).join(' · ');
   byId('facts').replaceChildren(...table().conditions.slice(2).map((text) => el('p', { class: lineClass(text) }, text)));
-  // What stands between backquotes is a name.
+  // Text between backquotes is a name.
   const words = (text) => text.split('`').map((part, index) => (index % 2 === 1 ? el('code', {}, part) : part));
   byId('verdict').replaceChildren(...table().sentences.map((text) => el('p', {}, ...words(text))));
 }

@@ -4,7 +4,7 @@ use crate::records::results::{Results, Run};
 use crate::reporting::charts::Kept;
 use std::path::{Path, PathBuf};
 
-/// What was measured on one adapter, of one scene, under the same conditions.
+/// Measurements on one adapter, of one scene, under the same conditions.
 pub struct Source {
     /// All its runs.
     pub results: Results,

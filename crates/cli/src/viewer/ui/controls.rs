@@ -92,7 +92,7 @@ fn scene(ui: &mut Ui, viewer: &mut Viewer) {
     });
 }
 
-/// What a plain drag in a picture does.
+/// Lets the user choose what a plain drag in a picture does.
 fn pointer(ui: &mut Ui, viewer: &mut Viewer) {
     ui.horizontal(|ui| {
         ui.label("pointer");

@@ -1,4 +1,4 @@
-//! What is wrong with a method, where its params are.
+//! The mistakes of a method, shown where its params are.
 
 use egui::{RichText, ScrollArea, Ui};
 

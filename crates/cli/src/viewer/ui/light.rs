@@ -1,4 +1,4 @@
-//! What moves the light: where a sun stands, where a lamp hangs and what it lights.
+//! The controls that move the light: where a sun stands, where a lamp hangs and what it lights.
 
 use crate::viewer::state::Viewer;
 use egui::{DragValue, Slider, Ui};
@@ -58,7 +58,7 @@ fn direction(ui: &mut Ui, direction: &mut DVec3) {
     let mut above = to.y.clamp(-1.0, 1.0).asin().to_degrees();
     let is_turned = number(ui, &mut around, "light from", -180.0..=180.0, "°");
     let is_raised = number(ui, &mut above, "above", -89.0..=89.0, "°");
-    // What nobody has moved stays to the last bit.
+    // A direction that was not moved stays to the last bit.
     if is_turned || is_raised {
         let [around, above] = [around, above].map(f64::to_radians);
         *direction = -DVec3::new(

@@ -1,4 +1,4 @@
-//! What draws: the state as panels, plots and pictures of egui.
+//! The drawing: the state as panels, plots and pictures of egui.
 
 mod controls;
 mod fault;
@@ -10,7 +10,7 @@ mod picture;
 use crate::viewer::state::Viewer;
 use egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 
-/// What the toolkit holds for the pictures.
+/// The toolkit's textures of the pictures.
 #[derive(Default)]
 pub struct Surface {
     pictures: [picture::Held; 2],

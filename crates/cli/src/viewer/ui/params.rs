@@ -15,7 +15,7 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
     let set = viewer.desired.methods[index].params.clone();
     for param in &params {
         let name = &param.name.value;
-        // What was set and does not run yet stays under the pointer.
+        // A value that was set and does not run yet stays under the pointer.
         let Some(now) = set.get(name).or_else(|| values.get(name)) else {
             continue;
         };

@@ -78,11 +78,11 @@ fn summary(method: &MethodSnapshot) -> String {
     )
 }
 
-/// What the counts of a pass are of.
+/// Explanation of the counts of a pass.
 const COUNTED: &str = "Runs of its shaders, as the adapter counts them; triangles are those left \
     after clipping.";
 
-/// What a pass's shaders did: only what there was.
+/// Writes what a pass's shaders did: only the counts that there are.
 fn counted(pass: &PassStatistics) -> String {
     let counts = [
         (pass.vertices, "vertex", "vertices"),

@@ -45,7 +45,7 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer, index: usize, held: &mut Held) {
     below(ui, viewer, index, &response, rect);
 }
 
-/// What of the method is shown, and how.
+/// Lets the user choose what of the method is shown, and how.
 fn choice(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
     let now = viewer.panes[index].show.clone();
     let mut chosen = now.clone();

@@ -1,4 +1,4 @@
-// What the scripts of the browser test share.
+// Functions that the scripts of the browser test share.
 const failed = [];
 const find = (selector) => document.querySelector(selector);
 const all = (selector) => [...document.querySelectorAll(selector)];

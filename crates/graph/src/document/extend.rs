@@ -55,6 +55,7 @@ pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports)
     }
     let mut edits = Edits {
         ends: HashMap::new(),
+        above: None,
         reports,
     };
     for edit in own.passes {
@@ -180,6 +181,9 @@ fn put(fields: &mut Vec<Field>, field: Field) {
 struct Edits<'r> {
     /// By the path after which entries were put: the name of the last of them.
     ends: HashMap<String, String>,
+    /// The path behind which an entry without a place stands: that of the new entry above, or the
+    /// one that this stands after.
+    above: Option<String>,
     reports: &'r mut Reports,
 }
 
@@ -228,13 +232,19 @@ impl Edits<'_> {
             .into_iter()
             .filter(|place| entry.field(place).is_some())
             .collect();
-        let place = match given[..] {
-            [place] => place,
-            [] => return Err(EditError::NoPlace(entry.tag.clone())),
+        let above = self.above.take();
+        let (place, mut path) = match (&given[..], above) {
+            ([place], _) => (*place, path_of(&mut entry, place)?),
+            ([], Some(above)) => ("after", Located::new(above, entry.tag.span.clone())),
+            ([], None) => return Err(EditError::NoPlace(entry.tag.clone())),
             _ => return Err(EditError::TwoPlaces(entry.tag.clone())),
         };
-        let mut path = path_of(&mut entry, place)?;
         let name = entry.name().unwrap_or_default();
+        self.above = Some(match (place, path.rsplit_once('.')) {
+            ("after", _) => path.value.clone(),
+            (_, Some((group, _))) => format!("{group}.{name}"),
+            (_, None) => name.clone(),
+        });
         if place == "after" {
             // Several after one entry stand in the order in which they are written.
             let end = self.ends.insert(path.value.clone(), name.clone());

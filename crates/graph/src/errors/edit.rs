@@ -57,7 +57,8 @@ impl IntoDiagnostic for EditError {
     }
 
     fn explain(self, diagnostic: Diagnostic) -> Diagnostic {
-        const PLACES: &str = "say `before`, `after` or `instead: \"entry\"`";
+        const PLACES: &str = "say `before`, `after` or `instead: \"entry\"`; without one, an entry \
+            stands behind the new one above it";
         match self {
             Self::NoSuchEntry { path, name, known } => {
                 diagnostic.at(path.span, "").suggest(&name, known)

@@ -89,7 +89,7 @@ impl Sources for FolderSources {
             },
             Ok(found) if !found.is_dir() => {
                 return Err(
-                    "it is a device, a pipe or a socket: copy what it gives into a file".to_owned(),
+                    "it is a device, a pipe or a socket: copy its content into a file".to_owned(),
                 );
             }
             _ => return Ok(None),

@@ -207,6 +207,34 @@ fn entries_are_put_and_taken_where_a_path_says() {
             ),
             "both.one both.two a b over",
         ),
+        // One without a place stands behind the new one above it.
+        (
+            format!(
+                r#"{}, {}, {}, {}"#,
+                clear("a", r#"before: "both.two""#),
+                r#"Clear(name: "b", target: "second")"#,
+                r#"Clear(name: "c", target: "second")"#,
+                clear("d", r#"before: "both.two""#)
+            ),
+            "both.one both.a both.b both.c both.d both.two over",
+        ),
+        (
+            format!(
+                r#"{}, {}, {}"#,
+                clear("a", r#"after: "both.one""#),
+                r#"Clear(name: "b", target: "second")"#,
+                clear("c", r#"after: "both.one""#)
+            ),
+            "both.one both.a both.b both.c both.two over",
+        ),
+        (
+            format!(
+                r#"{}, {}"#,
+                clear("a", r#"instead: "both.two""#),
+                r#"Clear(name: "b", target: "second")"#
+            ),
+            "both.one both.a both.b over",
+        ),
         // An added entry is like any other, and may be taken out again.
         (
             [

@@ -50,7 +50,7 @@ fn files_without_end() {
     for name in ["zero.ron", "pipe.ron"] {
         assert_eq!(
             sources.read(name),
-            Err("it is a device, a pipe or a socket: copy what it gives into a file".to_owned())
+            Err("it is a device, a pipe or a socket: copy its content into a file".to_owned())
         );
     }
     let long = std::fs::File::create(file("long.ron")).expect("it can be made");

@@ -173,6 +173,46 @@ fn a_change_replaces_what_it_gives() {
     assert_eq!(value(&files, "both.deux"), 9.0);
 }
 
+/// One without a place.
+#[test]
+fn an_entry_stands_behind_the_new_one_above_it() {
+    let clear = |name: &str, place: &str| {
+        let place = match place {
+            "" => String::new(),
+            place => format!("{place}, "),
+        };
+        format!(r#"Clear(name: "{name}", {place}target: "second")"#)
+    };
+    for (edits, expected) in [
+        (
+            [
+                clear("a", r#"before: "both.two""#),
+                clear("b", ""),
+                clear("c", ""),
+                clear("d", r#"before: "both.two""#),
+            ]
+            .join(", "),
+            "both.one both.a both.b both.c both.d both.two over",
+        ),
+        (
+            [
+                clear("a", r#"after: "both.one""#),
+                clear("b", ""),
+                clear("c", r#"after: "both.one""#),
+            ]
+            .join(", "),
+            "both.one both.a both.b both.c both.two over",
+        ),
+        (
+            [clear("a", r#"instead: "both.two""#), clear("b", "")].join(", "),
+            "both.one both.a both.b over",
+        ),
+    ] {
+        let files = extending(&format!("passes: [{edits}]"));
+        assert_eq!(all(&files).join(" "), expected, "{edits}");
+    }
+}
+
 #[test]
 fn entries_are_put_and_taken_where_a_path_says() {
     let clear =
@@ -206,34 +246,6 @@ fn entries_are_put_and_taken_where_a_path_says() {
                 clear("b", r#"before: "over""#)
             ),
             "both.one both.two a b over",
-        ),
-        // One without a place stands behind the new one above it.
-        (
-            format!(
-                r#"{}, {}, {}, {}"#,
-                clear("a", r#"before: "both.two""#),
-                r#"Clear(name: "b", target: "second")"#,
-                r#"Clear(name: "c", target: "second")"#,
-                clear("d", r#"before: "both.two""#)
-            ),
-            "both.one both.a both.b both.c both.d both.two over",
-        ),
-        (
-            format!(
-                r#"{}, {}, {}"#,
-                clear("a", r#"after: "both.one""#),
-                r#"Clear(name: "b", target: "second")"#,
-                clear("c", r#"after: "both.one""#)
-            ),
-            "both.one both.a both.b both.c both.two over",
-        ),
-        (
-            format!(
-                r#"{}, {}"#,
-                clear("a", r#"instead: "both.two""#),
-                r#"Clear(name: "b", target: "second")"#
-            ),
-            "both.one both.a both.b over",
         ),
         // An added entry is like any other, and may be taken out again.
         (

@@ -1,7 +1,9 @@
 // Stage to ask, for each receiver, the casters that are listed in its texel, by the tracer's own
-// test; a full-screen triangle, as some adapters take long to write texels in a compute stage.
-// Receivers that no complete list answers are left to a ray.
+// test. Receivers that no complete list answers are left to a ray. `fragment`: a full-screen
+// triangle, as some adapters take long to write texels in a compute stage; `compute`: one thread
+// per pixel, as others take long to draw.
 
+#import "shared/answer.wgsl"
 #import "shared/camera.wgsl"
 #import "shared/light_buffer.wgsl"
 #import "shared/ray_triangle.wgsl"
@@ -25,16 +27,27 @@ struct Answer {
 
 @fragment
 fn fragment(@builtin(position) centre: vec4<f32>) -> Answer {
-    let pixel = vec2<u32>(centre.xy);
-    let receiver = textureLoad(position, pixel, 0);
-    var status = initial_status(pixel, receiver);
-    if status == STATUS_UNCERTAIN {
-        status = test_casters(receiver.xyz, textureLoad(primitive, pixel, 0).x);
+    let pixel_status = answer(vec2<u32>(centre.xy));
+    return Answer(initial_visibility(pixel_status), pixel_status);
+}
+
+@compute @workgroup_size(8, 8)
+fn compute(@builtin(global_invocation_id) thread: vec3<u32>) {
+    if all(thread.xy < textureDimensions(primitive)) {
+        store_answer(thread.xy, answer(thread.xy));
     }
-    if status == STATUS_UNCERTAIN {
+}
+
+fn answer(pixel: vec2<u32>) -> u32 {
+    let receiver = textureLoad(position, pixel, 0);
+    var pixel_status = initial_status(pixel, receiver);
+    if pixel_status == STATUS_UNCERTAIN {
+        pixel_status = test_casters(receiver.xyz, textureLoad(primitive, pixel, 0).x);
+    }
+    if pixel_status == STATUS_UNCERTAIN {
         ask_rays();
     }
-    return Answer(initial_visibility(status), status);
+    return pixel_status;
 }
 
 // Has the rays filled in: by one workgroup for 32 by 32 pixels.

@@ -64,6 +64,8 @@ struct Bench {
     gpu: Gpu,
     provider: SceneProvider,
     viewport: [u32; 2],
+    /// The param `stage`.
+    stage: &'static str,
 }
 
 const FITS: [&str; 3] = ["scene", "camera", "receivers"];
@@ -80,14 +82,17 @@ impl Bench {
             gpu: open(),
             provider: provider(scene, &scene.views[0], viewport),
             viewport,
+            stage: "fragment",
         }
     }
 
     fn executor(&mut self, fit: &str, params: &[(&str, u32)], captured: &[&str]) -> Executor {
         let path = "pipelines/light_buffer.ron";
         let plan = plan(path, &self.provider, self.viewport, |request| {
-            let fit = ParamValue::Choice(fit.to_owned());
-            request.params.insert("fit".to_owned(), fit);
+            for (name, word) in [("fit", fit), ("stage", self.stage)] {
+                let word = ParamValue::Choice(word.to_owned());
+                request.params.insert(name.to_owned(), word);
+            }
             for (name, value) in params {
                 let value = ParamValue::U32(*value);
                 request.params.insert((*name).to_owned(), value);
@@ -428,6 +433,25 @@ fn a_list_that_is_too_long_to_look_at_is_a_ray() {
             lists.uncertain
         );
         before = lists.uncertain;
+    }
+}
+
+/// In a picture whose edges are no multiple of a workgroup's.
+#[test]
+fn compute_threads_answer_as_fragments_do() {
+    let scene = mixed(1);
+    let mut bench = Bench::from_scene(&scene, [61, 43]);
+    for longest in [4, 2048] {
+        let params = [("map_size", 16), ("longest_list", longest)];
+        bench.stage = "fragment";
+        let by_fragments = bench.by_lists("receivers", &params);
+        bench.stage = "compute";
+        let by_threads = bench.by_lists("receivers", &params);
+        let asked = by_fragments.lit + by_fragments.shadow + by_fragments.uncertain;
+        assert!(asked > 500, "{asked}");
+        assert!(by_threads.visibility == by_fragments.visibility);
+        let counts = |answer: &Answer| [answer.lit, answer.shadow, answer.uncertain];
+        assert_eq!(counts(&by_threads), counts(&by_fragments));
     }
 }
 

@@ -44,7 +44,7 @@ impl<'a> MethodRun<'a> {
     /// judged.
     ///
     /// # Errors
-    /// Those of [`guarantee::of`].
+    /// Those of [`guarantee::find`].
     pub fn new(method: Method<'a>, exact: &[String]) -> Result<Self, CliError> {
         Ok(Self {
             guarantee: guarantee::find(&method, exact)?,
